@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.activity import TWELVE
+from radhar_cli.capture.board_frames import SAME
 from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.images import are_images, is_image, listed, read_image
 from radhar_cli.capture.recording import Recording, RecordingInfo
@@ -96,7 +97,7 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
     if are_images(manifest):
         return _with_images(config, manifest)
     parts, sums = read_manifest(manifest), dict[str, str]()
-    lengths: dict[str, float] = {}
+    lengths, radar = dict[str, float](), dict[str, float]()
     document = _shared(config)
     given = document["recordings"]
     checked = [{**part, "start_s": part["start_s"] or 0.0, "stop_s": 0.0} for part in parts]
@@ -109,8 +110,13 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
             refuse_outside(path, manifest.parent)
             with Recording(path) as recording:
                 lengths[name] = round(recording.segments.duration, 9)
-                if len(lengths) == 1:
-                    document["radar"] |= _radar(recording.info)
+                own = radar_of(recording.info)
+            radar = radar or own
+            for key in radar | own:
+                ours, theirs = own.get(key, 0.0), radar.get(key, 0.0)
+                if abs(ours - theirs) > SAME * theirs:
+                    told = f"should be {theirs:.10g}, as in {parts[0]['file']}: one radar"
+                    raise ConfigError(f"{manifest}: {name}: {key} = {ours:.10g}: {told}")
             with path.open("rb") as file:
                 sums[name] = hashlib.file_digest(file, "sha256").hexdigest()
         start, stop = part["start_s"] or 0.0, part["stop_s"]
@@ -122,12 +128,13 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
             )
         part["start_s"], part["stop_s"] = start, stop
     document["recordings"] = {**given, "parts": parts, "sha256": sums}
+    document["radar"] |= radar
     return _whole(config, document, manifest)
 
 
 def _shared(config: Config) -> dict[str, Any]:
     """What a config says of measured data too, as plain values."""
-    every = resolved(nominal_scene(config, config.chosen_activities[0]).config)
+    every = resolved(nominal_scene(config, config.every_class[0]).config)
     document = {key: every[key] for key in MeasuredConfig.model_fields}
     return document | {"recordings": every["recordings"] or {}}
 
@@ -155,12 +162,13 @@ def _whole(config: Config, document: dict[str, Any], manifest: Path) -> Measured
     document["split"] = _split(config, parts, manifest)
     if len(json.dumps(document)) > MAX_CONFIG:
         raise ConfigError(f"{manifest}: has {len(parts)} rows, too many for one data set")
-    return validated(MeasuredConfig, document, str(manifest), {})
+    return validated(MeasuredConfig, document, str(manifest), *config._places)
 
 
-def _radar(info: RecordingInfo) -> dict[str, float]:
+def radar_of(info: RecordingInfo) -> dict[str, float]:
     """Keys of `radar:` that a recording says."""
-    known = {"carrier_hz": info.carrier_hz, "prf_hz": info.prf_hz}
+    # Slow time has the frequency of the carrier.
+    known = {"carrier_hz": info.carrier_hz, "prf_hz": info.prf_hz, "bandwidth_hz": 1e3}
     if info.samples is not None and info.adc_rate_hz is not None and info.bandwidth_hz is not None:
         known |= {
             "bandwidth_hz": info.bandwidth_hz,

@@ -60,7 +60,8 @@ def generate(
     """
     with resumable(f"what is finished in {out}"):
         from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part, print_plan
-        from radhar_cli.config import load_config
+        from radhar_cli.config.reading import load_config
+        from radhar_cli.config.schema import Config, ConfigOfRecordings
         from radhar_cli.dataset.build import build
         from radhar_cli.dataset.estimate import jobs_that_pay
         from radhar_cli.dataset.layout import Rows
@@ -69,7 +70,8 @@ def generate(
         from radhar_cli.worker_process import prepare_process
 
         prepare_process()
-        loaded, factory = load_config(config, with_tolerance(set_, tolerance)), None
+        kind = Config if recordings is None else ConfigOfRecordings
+        loaded, factory = load_config(config, with_tolerance(set_, tolerance), kind), None
         made: AnyConfig = loaded
         if recordings is not None:
             if shard is not None or cluster is not None:

@@ -37,17 +37,20 @@ def process(
     """
     from radhar_cli.capture import maps_file
     from radhar_cli.capture.board_frames import OF_FRAMES, frames_of_recording
-    from radhar_cli.capture.chain import maps_of
+    from radhar_cli.capture.chain import maps_of, pulses_between
     from radhar_cli.capture.recording import Recording
-    from radhar_cli.config import load_config
+    from radhar_cli.capture.windows import radar_of
+    from radhar_cli.config import resolved
+    from radhar_cli.config.reading import load_config, validated
+    from radhar_cli.config.schema import ConfigOfRecordings, ProcessedConfig
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.pipeline.unused_keys import unused_keys
     from radhar_cli.scene import nominal_scene
     from radhar_cli.simulation.simulate import map_names
 
-    loaded = load_config(config, set_ or [])
-    fixed = nominal_scene(loaded, loaded.chosen_activities[0]).config
+    loaded = load_config(config, set_ or [], ConfigOfRecordings)
+    fixed = nominal_scene(loaded, loaded.every_class[0]).config
     names = loaded.maps if maps is None else map_names(maps.split(","))
     refuse_file(out)
     for name in maps_file.FILES:
@@ -56,6 +59,10 @@ def process(
     signals = tuple(name for name in names if name not in OF_FRAMES)
     with Recording(recording) as opened:
         info, gaps = opened.info, len(opened.segments) - 1
+        first, last, _ = pulses_between(opened, start, stop)
+        given = resolved(fixed) | {"duration_s": (last - first) / info.prf_hz}
+        given |= {"maps": signals or ("rtm",), "radar": given["radar"] | radar_of(info)}
+        validated(ProcessedConfig, given, str(config), *loaded._places)
         made = maps_of(opened, fixed, signals, start, stop, receiver)
         if frames:
             made.frames, made.board = frames_of_recording(opened, fixed, frames, start, stop)

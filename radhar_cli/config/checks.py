@@ -17,8 +17,10 @@ from radhar_cli.config.schema import (
     OF_POINTS,
     AnyConfig,
     Config,
+    ConfigOfRecordings,
     MeasuredConfig,
     PerActivity,
+    ProcessedConfig,
     SequenceConfig,
     WallConfig,
     class_activities,
@@ -47,6 +49,14 @@ class Problem(NamedTuple):
 
 
 def problems(c: Config) -> Iterator[Problem]:
+    if isinstance(c, ConfigOfRecordings):
+        found, kept = _board_problems(c) if c.radar.cfg else (), MeasuredConfig.model_fields
+        yield from (one for one in found if one.key.partition(".")[0] in kept)
+        return
+    if isinstance(c, ProcessedConfig):  # windows are shortened, or refused, where gaps are known
+        lengths = ("duration_s", "processing.window_s", "processing.savgol.frame")
+        yield from (one for one in _processing_problems(c) if one.key not in lengths)
+        return
     if not c.chosen_activities:
         yield Problem("classes", {}, "should have files of each class with motion.model: file")
         return
@@ -69,22 +79,15 @@ def problems(c: Config) -> Iterator[Problem]:
     yield from _class_problems(c)
     yield from _people_problems(c)
     if c.engine.motion_in_chirp and c.engine.kind == "direct":
-        yield Problem(
-            "engine.motion_in_chirp",
-            True,
-            "should be false with engine.kind: direct, which freezes positions during a chirp; "
-            "engine.kind: cube can have it",
-        )
+        right = "should be false with engine.kind: direct, which freezes a chirp; cube can have it"
+        yield Problem("engine.motion_in_chirp", True, right)
     split = c.split
     fewest = min(c.chosen_activities, key=c.samples_of)
     if split.subjects is not None and split.subjects > c.samples_of(fewest):
         whose = "" if isinstance(c.samples_per_class, int) else f" of {fewest.slug}"
-        yield Problem(
-            "split.subjects",
-            split.subjects,
-            f"should be at most samples_per_class = {c.samples_of(fewest)}{whose}: "
-            "every person performs every activity",
-        )
+        most = f"samples_per_class = {c.samples_of(fewest)}{whose}"
+        right = f"should be at most {most}: every person performs every activity"
+        yield Problem("split.subjects", split.subjects, right)
 
 
 def measured_problems(c: MeasuredConfig) -> Iterator[Problem]:
@@ -93,7 +96,8 @@ def measured_problems(c: MeasuredConfig) -> Iterator[Problem]:
         right = "should be at most as long as the longest part of a recording"
         yield Problem("recordings.window_s", c.recordings.window_s, right)
     if others := [name for name in c.maps if name not in MAP_NAMES]:
-        yield Problem("maps", others, f"should be some of {', '.join(MAP_NAMES)}, of recordings")
+        right = f"should be some of {', '.join(MAP_NAMES)}; `radhar process` makes those of boards"
+        yield Problem("maps", others, right)
     for key in ("column_labels", "slow_time", "products"):
         if value := getattr(c.output, key):
             yield Problem(f"output.{key}", value, "should be left out: recordings have none")
@@ -400,12 +404,11 @@ def _clutter_problems(c: AnyConfig) -> Iterator[Problem]:
     if processing.clutter == "highpass" and given is not None:
         least, most = 2 * given / prf[1], 2 * given / prf[0]
         if most >= 1 or least < MIN_CUTOFF:
-            yield Problem(
-                "processing.highpass.cutoff_hz",
-                given,
+            right = (
                 f"should be from {MIN_CUTOFF:g} times PRF/2 to below PRF/2 in every scene "
-                f"(it is {least:g} to {most:g} times PRF/2)",
+                f"(it is {least:g} to {most:g} times PRF/2)"
             )
+            yield Problem("processing.highpass.cutoff_hz", given, right)
     if "rtm" in c.maps and processing.clutter in ("mean", "highpass"):
         yield from _too_many(c, "processing.clutter", processing.clutter, "the rtm")
 
@@ -416,28 +419,20 @@ def _gate_problems(c: AnyConfig) -> Iterator[Problem]:
         return
     fsst = [name for name in c.maps if name.startswith("fsst")]
     if fsst and c.radar.waveform != "impulse":  # which says so itself
-        yield Problem(
-            "maps",
-            fsst,
+        right = (
             "should be stft maps and rtm with processing.range_sum: gated, which adds up powers of "
-            "bins: the fsst moves coefficients by their phase",
+            "bins: the fsst moves coefficients by their phase"
         )
+        yield Problem("maps", fsst, right)
     within = processing.gate_m
     half_band = _waveform(c, "bandwidth_hz").half_band_range  # the least
     if isinstance(within, tuple):
         if within[1] >= half_band:
-            yield Problem(
-                "processing.gate_m",
-                list(within),
-                f"should end before the range half-band does, at {half_band:.4g} m",
-            )
+            right = f"should end before the range half-band does, at {half_band:.4g} m"
+            yield Problem("processing.gate_m", list(within), right)
     elif 2 * within >= half_band:
-        yield Problem(
-            "processing.gate_m",
-            within,
-            "should reach so far to both sides that the gate is narrower than the range "
-            f"half-band of {half_band:.4g} m",
-        )
+        right = f"should be less than half the range half-band of {half_band:.4g} m"
+        yield Problem("processing.gate_m", within, right)
     yield from _too_many(c, "processing.range_sum", "gated", "the gate")
 
 
@@ -446,12 +441,11 @@ def _too_many(c: AnyConfig, key: str, value: object, what: str) -> Iterator[Prob
     w = _waveform(c, *ENDS)
     bins, pulses = w.n_bins, w.n_pulses
     if bins * pulses > MAX_BIN_SAMPLES:
-        yield Problem(
-            key,
-            value,
+        right = (
             f"should not go with {pulses} pulses of {bins} range bins: for {what} they are held "
-            f"at once, {MAX_BIN_SAMPLES} samples at most",
+            f"at once, {MAX_BIN_SAMPLES} samples at most"
         )
+        yield Problem(key, value, right)
 
 
 def _wall_problems(c: Config) -> Iterator[Problem]:
@@ -468,12 +462,9 @@ def _wall_problems(c: Config) -> Iterator[Problem]:
             low, high = support(centre)[0] - half, support(centre)[1] + half
             inside &= support(place)[0] <= high and support(place)[1] >= low
         if inside:
-            yield Problem(
-                f"radar.{name}",
-                list(antenna),
-                "should be outside the wall, whose faces count as inside "
-                f"(wall.center_m = {list(c.wall.center_m)}, wall.size_m = {list(c.wall.size_m)})",
-            )
+            given = f"wall.center_m = {list(c.wall.center_m)}, wall.size_m = {list(c.wall.size_m)}"
+            right = f"should be outside the wall, whose faces count as inside ({given})"
+            yield Problem(f"radar.{name}", list(antenna), right)
 
 
 def _layer_problems(c: Config, wall: WallConfig) -> Iterator[Problem]:
@@ -603,24 +594,22 @@ def _image_problems(c: AnyConfig) -> Iterator[Problem]:
     if c.image.kind == "cfar" and not any(cfar.training):
         yield Problem("image.cfar.training", list(cfar.training), "should be 1 or more of a side")
     if c.image.kind == "cfar" and any(r > px for r, px in zip(reach, size, strict=True)):
-        yield Problem(
-            "image.cfar.training",
-            list(cfar.training),
+        right = (
             f"should fit into the image of {size[0]} x {size[1]} pixels: with the guard cells "
-            f"{list(cfar.guard)} on each side it takes {reach[0]} x {reach[1]}",
+            f"{list(cfar.guard)} on each side it takes {reach[0]} x {reach[1]}"
         )
+        yield Problem("image.cfar.training", list(cfar.training), right)
     limits = c.image.doppler_limits_mps
     if limits is None or set(c.maps) == {"rtm"} or c.radar.cfg is not None:
         return
     shortest = _waveform(c, *HIGHEST_F0)
     fastest = shortest.highest_speed
     if max(-limits[0], limits[1]) > fastest * (1 + 1e-9):
-        yield Problem(
-            "image.doppler_limits_mps",
-            list(limits),
+        right = (
             f"should be within the unambiguous band, -{fastest:.6g} to {fastest:.6g} m/s "
-            f"(c prf_hz / 4 f0: radar.prf_hz may be {shortest.prf:g})",
+            f"(c prf_hz / 4 f0: radar.prf_hz may be {shortest.prf:g})"
         )
+        yield Problem("image.doppler_limits_mps", list(limits), right)
     step = SPEED_OF_LIGHT * shortest.prf / (2 * _waveform(c).f0 * max(_window(c, shortest), 1))
     if limits[1] - limits[0] < 2 * step:
         right = f"should hold at least 2 Doppler bins (one has {step:.3g} m/s)"
@@ -645,12 +634,9 @@ def _human_problems(c: Config) -> Iterator[Problem]:
         ends = [support(for_activity(number, one)) for one in users]
         least, most = min(end[0] for end in ends), max(end[1] for end in ends)
         if least < low or most > high:
-            yield Problem(
-                key,
-                number,
-                f"should be from {low:g} to {high:g} with motion.model: human "
-                f"(this one reaches from {least:g} to {most:g})",
-            )
+            right = f"should be from {low:g} to {high:g} with motion.model: human"
+            right = f"{right} (this one reaches from {least:g} to {most:g})"
+            yield Problem(key, number, right)
 
 
 def tone_warnings(c: Config) -> list[str]:

@@ -12,7 +12,7 @@ from radhar_cli.config.annotations import section
 from radhar_cli.config.checks import Problem
 from radhar_cli.config.documents import BASE, Places, cfg_text, read_document, read_on_bases
 from radhar_cli.config.motion_files import with_files
-from radhar_cli.config.schema import Config, Section
+from radhar_cli.config.schema import Config, ConfigOfRecordings, Section
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.untrusted import shown
@@ -47,7 +47,9 @@ ABSENT = {
 }
 
 
-def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
+def load_config(
+    path: str | Path, overrides: Iterable[str] = (), kind: type[Config] = Config
+) -> Config:
     """Read a data set's config file and apply overrides such as ``radar.prf_hz=128``.
 
     Raises:
@@ -55,7 +57,10 @@ def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
             file (that or one under it, `base`), the line, the key, the value and what would be
             right.
     """
-    config, places, options = _load(Config, Path(path), overrides)
+    config, places, options = _load(kind, Path(path), overrides)
+    if kind is ConfigOfRecordings:
+        config = config.model_copy(update={"people": ()})  # which nobody has checked
+        config._places = places, options
 
     def refuse(key: str, value: object, right: str) -> ConfigError:
         return ConfigError(
@@ -216,7 +221,7 @@ def _document_path(location: tuple[int | str, ...], document: Any) -> list[int |
 
 
 def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
-    if kind is Config and (absent := ABSENT.get(str(names[-1]))):
+    if issubclass(kind, Config) and (absent := ABSENT.get(str(names[-1]))):
         return absent
     place: type[BaseModel] | None = kind
     for name in names[:-1]:

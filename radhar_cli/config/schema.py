@@ -1384,6 +1384,8 @@ class Config(Section):
     split: SplitConfig = SplitConfig()
     engine: EngineConfig = EngineConfig()
     output: OutputConfig = OutputConfig()
+    _places: tuple[dict[str, str], dict[str, str]] = ({}, {})  # {key: file:line}, {key: option}
+
     recordings: RecordingsConfig | None = None
     """How `radhar generate --recordings` cuts them: see docs/guide/measured.md."""
 
@@ -1590,6 +1592,14 @@ class MeasuredConfig(Section):
 
 
 AnyConfig: TypeAlias = Config | MeasuredConfig
+
+
+class ConfigOfRecordings(Config):
+    """A config before its recordings are opened: sections are not checked against each other."""
+
+
+class ProcessedConfig(Config):
+    """A config with radar and length of the recording that it processes, and checked for that."""
 
 
 def _fill_from_cfg(c: Config, changed: dict[str, dict[str, Any]]) -> None:

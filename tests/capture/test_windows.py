@@ -219,3 +219,121 @@ def test_a_hop_that_makes_too_many_windows_is_refused(recordings: Path, tmp_path
     done = radhar(*command, "--set", "recordings.hop_s=1e-9")
     assert done.returncode == 2
     assert "windows; hop_s makes" in done.stderr
+
+
+OTHER_RADAR = """
+radar: {prf_hz: 100, bandwidth_hz: 8e9}
+maps: [stft]
+image: {size_px: 32}
+output: {png: false}
+recordings: {window_s: 1, hop_s: 0.5}
+"""
+# Each fits the recordings, and is refused by simulations with the radar above or with defaults.
+FITTING = [
+    ["processing.range_fft_length=128"],
+    ["image.doppler_limits_mps=[-1.5, 1.5]"],
+    ["radar.prf_hz=10e3", "processing.stft_fft_length=300"],
+    ["processing.range_sum=gated", "processing.gate_m=[1, 6]"],
+]
+WITHOUT_EFFECT = [
+    ["split={by: subject, subjects: 400, train: 0.5, validation: 0.5}"],
+    ["samples_per_class=3", "split={by: subject, subjects: 8, train: 0.5, validation: 0.5}"],
+    ["duration_s=0.3", "processing.window_s=0.5"],
+    ["motion.model=file"],
+    ["people=[{activity: flying}]"],
+    ["snr_db=null", "receiver.tones=[{doppler_hz: 50, level_db: 0}]"],
+]
+
+
+def settings(texts: list[str]) -> list[str]:
+    return [word for text in texts for word in ("--set", text)]
+
+
+@pytest.mark.parametrize("texts", FITTING + WITHOUT_EFFECT, ids=" ".join)
+def test_settings_are_checked_against_the_radar_of_the_recordings(
+    recordings: Path, tmp_path: Path, texts: list[str]
+) -> None:
+    (tmp_path / "other.yaml").write_text(OTHER_RADAR)
+    manifest, out = recordings / "manifest.csv", tmp_path / "set"
+    command = ("generate", tmp_path / "other.yaml", "--recordings", manifest, "-o", out)
+    done = radhar(*command, "--jobs", 1, *settings(texts))
+    assert done.returncode == 0, done.stderr
+    with open_dataset(out) as data:
+        assert data.config.radar.prf_hz == 256
+
+
+@pytest.mark.parametrize("texts", FITTING + WITHOUT_EFFECT[2:], ids=" ".join)
+def test_process_checks_settings_against_the_radar_of_the_recording(
+    recordings: Path, tmp_path: Path, texts: list[str]
+) -> None:
+    (tmp_path / "other.yaml").write_text(OTHER_RADAR)
+    command = ("process", recordings / "p1/walking.h5", "--config", tmp_path / "other.yaml")
+    done = radhar(*command, "-o", tmp_path / "maps", "--no-figures", *settings(texts))
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "right"),
+    [
+        ("processing.range_fft_length", "64", "at least the 100 ADC samples"),
+        ("image.doppler_limits_mps", "[-3.0, 3.0]", "within the unambiguous band, -1.8"),
+        ("processing.gate_m", "[1.0, 9.0]", "before the range half-band does, at 7.4"),
+        ("processing.range_fft_lenght", "128", "did you mean 'range_fft_length'"),
+    ],
+)
+def test_what_does_not_fit_the_recordings_is_refused_where_it_stands(
+    recordings: Path, tmp_path: Path, key: str, value: str, right: str
+) -> None:
+    section, _, name = key.partition(".")
+    text = (
+        "maps: [stft]\nprocessing:\n  range_sum: gated\n  gate_m: [1, 6]\nimage:\n  size_px: 32\n"
+    )
+    text = text.replace("  gate_m: [1, 6]\n", "") if name == "gate_m" else text
+    text = text.replace(f"{section}:\n", f"{section}:\n  {name}: {value}\n")
+    file, out = tmp_path / "c.yaml", tmp_path / "out"
+    file.write_text(text + "recordings: {window_s: 1}\n")
+    for command in (
+        ("generate", file, "--recordings", recordings / "manifest.csv", "-o", out),
+        ("process", recordings / "p1/walking.h5", "--config", file, "-o", out),
+    ):
+        done = radhar(*command)
+        assert done.returncode == 2
+        line = 1 + text.splitlines().index(f"  {name}: {value}")
+        assert f"{file}:{line}: {key} = {value}: " in done.stderr
+        assert right in done.stderr
+        assert done.stderr.count("\n") == 1
+
+
+def test_recordings_of_several_radars_are_refused(recordings: Path, tmp_path: Path) -> None:
+    config = load_config(recordings / "c.yaml", ["radar.prf_hz=200", "engine.kind=direct"])
+    scene = simulate(config, "walking", 3, maps=("stft",), raw=True)
+    assert scene.beat is not None
+    write_simulated(recordings / "slow.h5", scene.beat[None], scene.waveform, Label(label="x"))
+    (recordings / "two.csv").write_text("file,label\np1/walking.h5,walking\nslow.h5,walking\n")
+    command = ("generate", recordings / "c.yaml", "--recordings", recordings / "two.csv")
+    done = radhar(*command, "-o", tmp_path / "set")
+    assert done.returncode == 2
+    assert "two.csv: slow.h5: prf_hz = 200: should be 256, as in p1/walking.h5" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_maps_of_a_board_are_those_of_process(recordings: Path, tmp_path: Path) -> None:
+    (tmp_path / "board.yaml").write_text("radar: {device: IWR1443BOOST, cfg: iwr1443boost}\n")
+    manifest, out = recordings / "manifest.csv", tmp_path / "set"
+    command = ("generate", tmp_path / "board.yaml", "--recordings", manifest, "-o", out)
+    done = radhar(*command, "--set", "maps=[range_doppler]")
+    assert done.returncode == 2
+    assert "`radhar process` makes those of boards" in done.stderr
+
+
+@pytest.mark.parametrize("command", ["generate", "process"])
+def test_a_cfg_without_its_board_is_refused(recordings: Path, tmp_path: Path, command: str) -> None:
+    (tmp_path / "board.yaml").write_text("radar: {cfg: iwr1443boost}\n")
+    words: tuple[object, ...] = ("--recordings", recordings / "manifest.csv")
+    words = (tmp_path / "board.yaml", *words)
+    if command == "process":
+        words = (recordings / "p1/walking.h5", "--config", tmp_path / "board.yaml")
+    done = radhar(command, *words, "-o", tmp_path / "out")
+    assert done.returncode == 2
+    assert "radar.device" in done.stderr
+    assert done.stderr.count("\n") == 1

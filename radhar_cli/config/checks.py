@@ -50,7 +50,8 @@ class Problem(NamedTuple):
 
 def problems(c: Config) -> Iterator[Problem]:
     if isinstance(c, ConfigOfRecordings):
-        found, kept = _board_problems(c) if c.radar.cfg else (), MeasuredConfig.model_fields
+        found = _board_problems(c) if c.radar.cfg else _impulse_problems(c)
+        kept = MeasuredConfig.model_fields
         yield from (one for one in found if one.key.partition(".")[0] in kept)
         return
     if isinstance(c, ProcessedConfig):  # windows are shortened, or refused, where gaps are known

@@ -278,6 +278,7 @@ def test_process_checks_settings_against_the_radar_of_the_recording(
         ("processing.range_fft_length", "64", "at least the 100 ADC samples"),
         ("image.doppler_limits_mps", "[-3.0, 3.0]", "within the unambiguous band, -1.8"),
         ("processing.gate_m", "[1.0, 9.0]", "before the range half-band does, at 7.4"),
+        ("image.kind", '"signed"', "decibel or cfar"),
         ("processing.range_fft_lenght", "128", "did you mean 'range_fft_length'"),
     ],
 )

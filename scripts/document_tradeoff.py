@@ -11,6 +11,7 @@ is off by default.
 import argparse
 import json
 import re
+from math import log2
 from pathlib import Path
 from typing import Any
 
@@ -37,16 +38,17 @@ def draw(settings: list[dict[str, Any]], title: str, path: Path) -> None:
     figure, (engine, missed) = plt.subplots(1, 2, figsize=(12, 4.6), layout="constrained")
     tried = [one for one in settings if one["group"] != "switch"]
     exact = min(one["signal_error_db"] for one in tried if not one["exact"]) - 15
-    named: dict[int, list[str]] = {}  # settings by their error
-    right: dict[int, float] = {}
+    named: dict[tuple[int, int], list[str]] = {}  # settings by error, and octave of time
+    right: dict[tuple[int, int], float] = {}
     for one in sorted(tried, key=lambda one: float(one["time_ratio"])):
         place = one["time_ratio"], exact if one["exact"] else one["signal_error_db"]
         engine.plot(*place, "C3D" if one["default"] else "C0o")
-        names = named.setdefault(round(place[1]), [])
+        near = round(place[1]), round(log2(place[0]))
+        names = named.setdefault(near, [])
         names.append(one["setting"] + ", exact" * one["exact"])
-        right[round(place[1])] = place[0]
-    for error, names in named.items():
-        place = right[error], error
+        right[near] = place[0]
+    for near, names in named.items():
+        place = right[near], near[0]
         engine.annotate("; ".join(names), place, (8, -3), textcoords="offset points", fontsize=8)
     engine.set(xscale="log", xlabel="time of a sample, relative to the default")
     engine.set(ylabel="error of the slow-time signal (dB), worst scene")

@@ -68,8 +68,7 @@ class TorsoTrack:
 
     def delays(self, t: Float) -> Float:
         """Two-way delay (s) at times t (s)."""
-        delays: Float = self.ranges(t) * (2 / SPEED_OF_LIGHT)
-        return delays
+        return self.ranges(t) * (2 / SPEED_OF_LIGHT)
 
 
 def without_static(bins: Complex) -> Complex:

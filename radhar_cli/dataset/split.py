@@ -22,8 +22,7 @@ def split_rows(config: AnyConfig) -> Levels:
     if everyone is not None:
         assert split.subjects is not None
         cut = _cut(split, split.subjects, stream(config.seed, SPLIT, name="subjects"))
-        numbers: Levels = cut[everyone]
-        return numbers
+        return cut[everyone]
     return np.concatenate(
         [
             _cut(split, count, stream(config.seed, SPLIT, activity.index, name="samples"))

@@ -24,8 +24,7 @@ LABELS = {0: "ahead (m)", 1: "right (m)", 2: "up (m)"}
 def bones(joints: Float, parents: Parents) -> Float:
     """Joints [..., joint, n] as ends of bones [..., joint, 2, n]: from a joint's parent to it."""
     pairs = [(one if parent is None else parent, one) for one, parent in enumerate(parents)]
-    ends: Float = joints[..., np.array(pairs, int).reshape(-1, 2), :]
-    return ends
+    return joints[..., np.array(pairs, int).reshape(-1, 2), :]
 
 
 def limbs(joints: Float, parents: Parents, hips: Float | None) -> Float:

@@ -35,10 +35,8 @@ def embed(vectors: Float) -> Float:
     if vectors.shape[1] > most:
         vectors = PCA(most, svd_solver="full").fit_transform(vectors)
     perplexity = min(PERPLEXITY, max(1.0, (vectors.shape[0] - 1) / 3))
-    points: Float = TSNE(2, perplexity=perplexity, init="pca", random_state=0).fit_transform(
-        vectors
-    )
-    return points
+    tsne = TSNE(2, perplexity=perplexity, init="pca", random_state=0)
+    return np.asarray(tsne.fit_transform(vectors))
 
 
 def separation(vectors: Float, label: Index) -> float | None:

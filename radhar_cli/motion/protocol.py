@@ -96,8 +96,7 @@ def remembered(motion: Motion) -> Motion:
         return Only(remembered(motion.motion), motion.kept)
     if isinstance(motion, _Remembered):
         return motion
-    held: Motion = _Remembered(motion)  # the rest of it comes by __getattr__
-    return held
+    return _Remembered(motion)  # the rest of it comes by __getattr__
 
 
 class _Remembered:

@@ -163,5 +163,4 @@ class SurfacePaths(OfMotion):
         words = (one.name.split("_")[-1] for one in self.body.segments)
         sigma = 10 ** (np.array([FACING_DBSM[word] for word in words]) / 10)
         size = self.body.stature / REFERENCE_STATURE * self.body.thickness
-        field_: Float = np.sqrt(sigma * size / (count * mean))
-        return field_
+        return np.sqrt(sigma * size / (count * mean))

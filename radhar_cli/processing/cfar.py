@@ -40,8 +40,7 @@ class CellAveraging:
         count = self.training_cells(cells.shape)
         mean = self._training_sum(cells.astype(float, copy=False)) / np.maximum(count, 1)
         level = mean * false_alarm_factor(self.pfa, np.maximum(count, 1))
-        exceeds: Bool = (cells > level) & (count > 0)
-        return exceeds
+        return (cells > level) & (count > 0)
 
     def training_cells(self, shape: tuple[int, ...]) -> Float:
         """How many training cells each cell has [rows, columns]."""

@@ -36,8 +36,7 @@ def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
     weighted = cube * (window / window.sum()).astype(cube.real.dtype)
     if (board.signs < 0).any():
         weighted *= board.signs[:, None].astype(cube.real.dtype)
-    spectrum: Complex = scipy.fft.ifft(weighted, board.n_fft, axis=-1, norm="forward")
-    return spectrum
+    return scipy.fft.ifft(weighted, board.n_fft, axis=-1, norm="forward")
 
 
 def doppler_spectrum(x: Complex, board: Board, window: Float, remove_mean: bool) -> Complex:
@@ -48,8 +47,7 @@ def doppler_spectrum(x: Complex, board: Board, window: Float, remove_mean: bool)
     if remove_mean:
         x = x - x.mean(axis=1, keepdims=True)
     weights = (window / window.sum()).astype(x.real.dtype)[:, None, None]
-    spectrum: Complex = scipy.fft.fft(x * weights, board.n_doppler, axis=1)
-    return spectrum
+    return scipy.fft.fft(x * weights, board.n_doppler, axis=1)
 
 
 def without_turns(x: Complex, board: Board) -> Complex:

@@ -152,8 +152,7 @@ def _colour(waveform: Waveform, first: int, stop: int) -> Complex:
     """W W^H [k, k'] = sum_n exp(j 2 pi (k - k')(n - n0)/N_FFT); with W^H = Q R it is R^H R."""
     n = np.arange(waveform.n_adc) - waveform.n0
     w = np.exp(2j * np.pi * np.mod(np.outer(np.arange(first, stop), n) / waveform.n_fft, 1))
-    colour: Complex = np.linalg.qr(w.conj().T).R.conj().T
-    return colour
+    return np.linalg.qr(w.conj().T).R.conj().T
 
 
 @lru_cache(maxsize=4)
@@ -167,8 +166,7 @@ def weights(waveform: Waveform) -> Complex:
         series = np.exp(1j * (waveform.n_bins - 1) * angle) * (
             np.sin(waveform.n_bins * angle) / np.sin(angle)
         )
-    d: Complex = np.where(whole, waveform.n_bins, series)
-    return d
+    return np.where(whole, waveform.n_bins, series)
 
 
 def noise_gain(waveform: Waveform) -> float:

@@ -149,8 +149,7 @@ class Board:
         """(left, up) of the virtual elements [V, 2], half wavelengths at f_c."""
         tx, rx = np.array(self.array.tx, float), np.array(self.array.rx, float)
         at = np.array([tx[self.order[k]] + rx[r] for k, r in self.pairs])
-        places: Float = at * (self.unit * 2 * self.centre / SPEED_OF_LIGHT)
-        return places
+        return at * (self.unit * 2 * self.centre / SPEED_OF_LIGHT)
 
     @cached_property
     def turns(self) -> Float:
@@ -166,8 +165,7 @@ class Board:
         """When chirps begin [frame, loop, place in the loop], s; positions are frozen there."""
         f = np.arange(self.frames)[frames, None, None]
         loop, k = np.arange(self.loops)[:, None], np.arange(len(self.order))
-        times: Float = f * self.period + (loop * len(self.order) + k) * self.slot
-        return times
+        return f * self.period + (loop * len(self.order) + k) * self.slot
 
     @property
     def middles(self) -> Float:
@@ -241,5 +239,4 @@ class BoardWaveform(Waveform):
         """When chirps of these numbers begin, counted through frames, loops and transmitters."""
         assert self.board is not None
         frame, chirp = np.divmod(pulses, self.board.loops * len(self.board.order))
-        times: Float = frame * self.board.period + chirp * self.board.slot
-        return times
+        return frame * self.board.period + chirp * self.board.slot

@@ -45,8 +45,7 @@ def cross_section(
 ) -> Float:
     """sigma = |Gamma|^2 pi r^4 c^2/h^4, m^2, r across (mean), c along, h for a unit vector."""
     size = pi * reflectance * radius**4 * half**2
-    sigma: Float = size / (square_height * square_height)
-    return sigma
+    return size / (square_height * square_height)
 
 
 def shadow(clearance: Float, behind: Float, radius: Float | float, wavelength: float) -> Float:

@@ -20,16 +20,14 @@ def reflection(cosine: Float, eps: complex, polarisation: Polarisation) -> Compl
     incidence (TE, s), (w - eps cos)/(w + eps cos) for a parallel one (TM, p).
     """
     w, x = _medium(cosine, eps), _air(cosine, eps, polarisation)
-    gamma: Complex = (x - w) / (x + w) if polarisation == "perpendicular" else (w - x) / (w + x)
-    return gamma
+    return (x - w) / (x + w) if polarisation == "perpendicular" else (w - x) / (w + x)
 
 
 def face_factor(cosine: Float, eps: complex, polarisation: Polarisation) -> Float:
     """sqrt(1 - |Gamma(theta)|^2) [...], the field that passes one face; arguments as above."""
     w, x = _medium(cosine, eps), _air(cosine, eps, polarisation)
     # |x + w|^2 - |x - w|^2 = 4 Re(x conj(w)): no cancellation at grazing incidence.
-    factor: Float = 2 * np.sqrt(np.real(x * np.conj(w))) / np.abs(x + w)
-    return factor
+    return 2 * np.sqrt(np.real(x * np.conj(w))) / np.abs(x + w)
 
 
 def faces_factor(

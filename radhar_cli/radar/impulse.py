@@ -58,8 +58,7 @@ class Impulse(Waveform):
     def spectrum(self, f: Float) -> Float:
         """P(f) = s sqrt(2 pi) exp(-2 (pi s (f - fm))^2) at frequencies f [...] above 0 (Hz)."""
         turn = pi * self.width * (f - self.f0)
-        p: Float = self.width * sqrt(2 * pi) * np.exp(-2 * turn * turn)
-        return p
+        return self.width * sqrt(2 * pi) * np.exp(-2 * turn * turn)
 
     def stepped(self, reach: float) -> Waveform:
         """Frequencies that hold its spectrum, so close that echoes up to a range (m) do not fold.

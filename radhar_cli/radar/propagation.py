@@ -23,8 +23,7 @@ class Aim(NamedTuple):
 
     def to_radar(self, p: Float) -> Float:
         """Places p [3, ...] of the scene as the radar has them: ahead, left, up, m."""
-        seen: Float = np.tensordot(np.array(self.axes), (p.T - np.array(self.position)).T, axes=1)
-        return seen
+        return np.tensordot(np.array(self.axes), (p.T - np.array(self.position)).T, axes=1)
 
     def two_way(self, p: Float) -> Float:
         """Two-way amplitude pattern exp(-ln 2 ((az/az3)^2 + (el/el3)^2)) [...] at p [3, ...]."""

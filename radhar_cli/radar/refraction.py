@@ -69,13 +69,11 @@ def _along_normal(x: Float, at: float, faces: tuple[float, float]) -> tuple[Floa
 
 def inside_tangent(t: Float, n: float) -> Float:
     """t' = t/q, the tangent of the refracted angle, of t [...] outside."""
-    inside: Float = t / _q(t, n)
-    return inside
+    return t / _q(t, n)
 
 
 def _q(t: Float, n: float) -> Float:
-    q: Float = np.sqrt(1 + (n - 1) * (n + 1) * (1 + t * t))
-    return q
+    return np.sqrt(1 + (n - 1) * (n + 1) * (1 + t * t))
 
 
 def outside_tangent(outside: Float, depth: Float, offset: Float, n: float) -> Float:
@@ -115,5 +113,4 @@ def optical_excess(outside: Float, depth: Float, offset: Float, t: Float, n: flo
     ahead = np.sqrt(1 + t * t) + (height + t * offset) / distance
     ahead_inside = np.sqrt(1 + inside * inside) + (height + inside * offset) / distance
     detour = outside * depth * turn * turn * (depth / ahead + outside / ahead_inside)
-    excess: Float = (n - 1) * depth * np.sqrt(1 + inside * inside) + detour
-    return excess
+    return (n - 1) * depth * np.sqrt(1 + inside * inside) + detour

@@ -75,8 +75,7 @@ class Way(NamedTuple):
         if not self.faces:
             return p
         sign, shift = self._mirror
-        image: Float = (p.T * sign + shift).T
-        return image
+        return (p.T * sign + shift).T
 
     def antenna(self, at: Point) -> Point:
         """Where an antenna (m) appears to be, seen from what the leg leads to."""

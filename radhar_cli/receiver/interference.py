@@ -65,5 +65,4 @@ class Line(Impairment):
 
     def apply(self, x: Complex, look: Look) -> Complex:
         """x + W c[n] times the tone, seen after the canceller."""
-        noisy: Complex = x + look.fast(self.code[:, None]) * look.taken(self.tone)
-        return noisy
+        return x + look.fast(self.code[:, None]) * look.taken(self.tone)

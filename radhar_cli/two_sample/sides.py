@@ -40,8 +40,7 @@ class Side:
 
     def power(self, levels: Levels) -> Float:
         """Power of levels, over the largest."""
-        power: Float = 10 ** ((self.dynamic_range_db or ASSUMED_DB) / 10 * (levels / 255.0 - 1))
-        return power
+        return 10 ** ((self.dynamic_range_db or ASSUMED_DB) / 10 * (levels / 255.0 - 1))
 
 
 @dataclass(frozen=True)

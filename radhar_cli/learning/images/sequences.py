@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.arrays import Float, Index
 from radhar_cli.config.schema import FRAME_MAPS
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
@@ -84,8 +84,7 @@ class SequenceReader(Opened):
         if self.product == CLOUDS:
             clouds = cloud_frames(values, products["points_start"][row], self.points)
             return of_length(clouds, self.frames, 0)
-        levels: Levels = of_length(values, self.frames, 0).transpose(1, 2, 0)
-        return levels
+        return of_length(values, self.frames, 0).transpose(1, 2, 0)
 
     def joints(self, row: int) -> NDArray[np.float32]:
         """Joints [T, joint, 3] of the first person, m; NaN after the end of a sample."""

@@ -178,5 +178,4 @@ class FileMotion:
 
 def _about_z(angle: float) -> Float:
     c, s = cos(angle), sin(angle)
-    matrix: Float = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return matrix
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -108,8 +108,7 @@ def _turned(outer: Float, rest: Float, links: Float) -> Float:
         size = np.linalg.norm(axis, axis=1, keepdims=True)
         angle = np.arctan2(size, cosine[:, None])
         vector = np.where(size > 1e-15, axis / np.maximum(size, 1e-15), 0.0) * angle
-        turned: Float = outer @ Rotation.from_rotvec(vector).as_matrix()
-        return turned
+        return outer @ Rotation.from_rotvec(vector).as_matrix()
     u, _, vh = np.linalg.svd(np.einsum("fkr,kc->frc", local, rest))
     u[:, :, 2] *= np.sign(np.linalg.det(u @ vh))[:, None]
     fitted: Float = outer @ (u @ vh)
@@ -121,8 +120,7 @@ def _euler(outer: Float, axes: Float) -> Float:
     from scipy.spatial.transform import Rotation
 
     inner = np.einsum("frc,frd->fcd", outer, axes)
-    angles: Float = Rotation.from_matrix(inner).as_euler(_EULER, degrees=True)
-    return angles
+    return Rotation.from_matrix(inner).as_euler(_EULER, degrees=True)
 
 
 def _tree(number: int, rest: Float, channels: list[list[str]], indent: str) -> Iterator[str]:

@@ -34,7 +34,7 @@ from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, load_best
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.single_result import EvalOptions, EvalSet, open_eval_set, open_run
-from radhar_cli.learning.training import train_on
+from radhar_cli.learning.training import train
 from radhar_cli.randomness import TRAINING, stream
 
 AS_TRAINED, TUNED, ADAPTED, SCRATCH = "as trained", "fine-tuned", "adapted", "from scratch"
@@ -160,7 +160,7 @@ def few_shots(
         if k:
             images, weights = learned_from(opened.metadata, labelled, mixed, MAX_SHOWN)
             chosen = tuned.model_copy(update={"data_weights": weights, "seed": seed})
-            train_on(chosen, images, ways[TUNED], Silent(), start=run)
+            train(chosen, images, ways[TUNED], Silent(), start=run)
             beside = Mixed(images, weights)
         if adapt:
             ways[ADAPTED] = here / "adapted"
@@ -171,7 +171,7 @@ def few_shots(
             ways[SCRATCH] = here / "from_scratch"
             images, weights = learned_from(opened.metadata, labelled, [], SHOWN)
             chosen = scratch.model_copy(update={"data_weights": weights, "seed": seed})
-            train_on(chosen, images, ways[SCRATCH], Silent())
+            train(chosen, images, ways[SCRATCH], Silent())
         return ways
 
     points = []

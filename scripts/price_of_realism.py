@@ -29,7 +29,7 @@ from radhar_cli.learning.evaluation import predict
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.settings import Target, TrainConfig
 from radhar_cli.learning.single_result import EvalOptions, open_eval_set, open_run
-from radhar_cli.learning.training import train_on
+from radhar_cli.learning.training import train
 from radhar_cli.tradeoff.measures import time_setting
 from radhar_cli.tradeoff.settings import BEAM, Scenes, Setting
 
@@ -104,7 +104,7 @@ class Study(NamedTuple):
             run = self.out / "runs" / f"{digest(learned)}_{row.map}_{row.target}_{seed}"
             if not (run / "done").exists():
                 settings = TrainConfig(target=row.target, map=row.map, seed=seed, **FIXED)
-                train_on(settings, images.learned_as(row.target), run, Silent())
+                train(settings, images.learned_as(row.target), run, Silent())
                 (run / "done").touch()
             opened, cpu = open_run("run", run, torch.device("cpu")), torch.device("cpu")
             data = open_eval_set(opened, self.data(on, "tested"), EvalOptions("all"))

@@ -90,10 +90,8 @@ def maps_of(
     else:
         processing = config.processing
         centred = processing.range_reference == "centre" or processing.range_sum == "gated"
-        waveform = replace(
-            recording.info.waveform(processing.range_fft_length, centred),
-            duration=segments.pulses / prf,
-        )
+        waveform = recording.info.waveform(processing.range_fft_length, centred)
+        waveform = replace(waveform, duration=segments.pulses / prf)
         if config.radar.cfg is not None:  # whose samples have no half band
             waveform = replace(board_of(Numbers(config.radar)).waveform, centred=centred)
         x = filled(bins_of_part(recording, waveform, chosen, first, last), lost)
@@ -116,15 +114,8 @@ def maps_of(
         else:
             far = np.full(signal.pulses, signal.ranges.mean() * 2 / SPEED_OF_LIGHT)
             tau = track.delays(signal.t) if track else far
-        maps = process(
-            signal,
-            config,
-            doppler,
-            canceller=canceller,
-            torso_track=tau,
-            frames=frames,
-            fsst_frames=fine,
-        )
+        given: dict[str, Any] = {"torso_track": tau, "frames": frames, "fsst_frames": fine}
+        maps = process(signal, config, doppler, canceller=canceller, **given)
         made |= {name: _even(maps[name]) for name in doppler}
     return Maps({name: made[name] for name in names}, track, signal.f0, list(dict.fromkeys(notes)))
 

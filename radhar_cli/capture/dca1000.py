@@ -98,12 +98,9 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
             raise CaptureError(
                 f"{header}: {key} is missing; give it by --radar FILE or --set {key}=N"
             )
-    settings = settings.model_copy(
-        update={
-            "lanes": settings.lanes or (4 if settings.interleaved else 2),
-            "interleaved": bool(settings.interleaved),
-        }
-    )
+    interleaved, lanes = bool(settings.interleaved), settings.lanes
+    stream = {"lanes": lanes or (4 if interleaved else 2), "interleaved": interleaved}
+    settings = settings.model_copy(update=stream)
     words = Words(files)
     unit, notes = settings.words_of_a_pulse, list[str]()
     pulses, rest = divmod(words.count, unit)

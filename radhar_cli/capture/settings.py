@@ -3,9 +3,9 @@
 from math import prod
 from typing import Annotated, Literal, TypeAlias
 
-from pydantic import Field, field_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field
 
+from radhar_cli.config.number import must
 from radhar_cli.config.schema import Section
 
 Count: TypeAlias = Annotated[int, Field(ge=1, le=2**24, strict=True)]
@@ -63,16 +63,15 @@ class CaptureSettings(Section):
     beat: Literal["negative", "positive"] | None = None
     dataset: Text | None = None
     times: Text | None = None
-    axes: tuple[AxisName, ...] | None = None
+    axes: Annotated[
+        tuple[AxisName, ...] | None,
+        must(
+            lambda value: len(set(value)) == len(value) and "pulse" in value,
+            "should name each axis once, including pulse",
+        ),
+    ] = None
     label: Text | None = None
     person: Text | None = None
-
-    @field_validator("axes")
-    @classmethod
-    def _each_once(cls, value: tuple[AxisName, ...] | None) -> tuple[AxisName, ...] | None:
-        if value is not None and (len(set(value)) != len(value) or "pulse" not in value):
-            raise PydanticCustomError("axes", "should name each axis once, including pulse")
-        return value
 
     @property
     def words_of_a_pulse(self) -> int:

@@ -7,7 +7,7 @@ import typer
 
 from radhar_cli.commands.learning_options import Device, Resize, Run, Split, TrainedMap
 from radhar_cli.commands.options import StartOver
-from radhar_cli.commands.tell import report, tell
+from radhar_cli.commands.tell import counted, report, tell
 from radhar_cli.errors import ConfigError
 
 
@@ -77,5 +77,5 @@ def adapt(
         BarProgress(),
     )
     report(folder=out, run=run, data=data, epochs=epochs)
-    more = f", after {epochs} epoch{'s' * (epochs > 1)} without labels" if epochs else ""
+    more = f", after {counted(epochs, 'epoch')} without labels" if epochs else ""
     tell(f"{out}: {run}, adapted to {data}{more}")

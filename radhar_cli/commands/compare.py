@@ -44,19 +44,17 @@ def compare(
     from radhar_cli.two_sample.report import write
 
     apart(out, [simulated, measured])
-    names = read_classes(classes) if classes else {}
+    names = read_classes(classes)
     with BarProgress("map") as progress:
         comparison = compared(simulated, measured, progress, map_, names, per_class, seed)
     for warning in comparison.warnings:
         tell(f"warning: {warning}", err=True)
     files = write(comparison, out)
     numbers = comparison.numbers()
-    report(files=files, **{key: numbers[key] for key in ("test", "classes", "warnings")})
     for name, one in numbers["classes"].items():
         tell(f"{name}: {_test(one['test'])}")
     tell(f"all classes: {_test(numbers['test'])}")
-    for path in files:
-        tell(f"  {path}")
+    report(files=files, **{key: numbers[key] for key in ("test", "classes", "warnings")})
 
 
 def _test(test: dict[str, Any] | None) -> str:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.tell import report, tell
+from radhar_cli.commands.tell import counted, report, tell
 
 
 def convert(
@@ -40,4 +40,4 @@ def convert(
     with BarProgress() as progress:
         samples = write(dataset, out, to, progress)
     report(folder=out, samples=samples, format=to)
-    tell(f"{out}: {samples} samples as {to}; {out / 'README.md'} says how to read them")
+    tell(f"{out}: {counted(samples, 'sample')} as {to}; {out / 'README.md'} says how to read them")

@@ -56,15 +56,8 @@ def evaluate(
     from radhar_cli.learning.single_result import EvalOptions
 
     runs, data = runs_and_data(paths)
-    options = EvalOptions(
-        split_named(split),
-        map_,
-        tsne,
-        in_place_vs_moving,
-        batch,
-        resize,
-        read_classes(classes) if classes else {},
-    )
+    names = read_classes(classes)
+    options = EvalOptions(split_named(split), map_, tsne, in_place_vs_moving, batch, resize, names)
     inside = runs[0] if runs[0].is_dir() else runs[0].parent
     folder = out or inside / "eval"
     if out is None:

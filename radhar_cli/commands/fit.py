@@ -43,5 +43,3 @@ def fit(
     write_text(out, text + "\n".join(lines) + "\n")
     draw(fitted, out.with_suffix(".png"))
     report(files=[out, out.with_suffix(".png")], numbers=fitted.numbers(), parts=len(fitted.parts))
-    for path in (out, out.with_suffix(".png")):
-        tell(f"  {path}")

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.options import Replace, refuse_to_replace
-from radhar_cli.commands.tell import report, tell
+from radhar_cli.commands.tell import counted, report, tell
 
 
 def import_(
@@ -57,8 +57,7 @@ def import_(
     info = import_capture(captures, out, settings, str(radar) if radar else "--set", overwrite)
     for line in info.source.found:
         tell(f"  {line}")
-    shape = f"{info.receivers} receiver{'s' * (info.receivers > 1)}, "
-    shape += f"{info.samples or 'no'} samples a chirp, "
+    shape = f"{counted(info.receivers, 'receiver')}, {info.samples or 'no'} samples a chirp, "
     tell(f"{info.pulses} pulses at {info.prf_hz:.6g} Hz: {shape}{info.carrier_hz / 1e9:.6g} GHz")
     report(
         files=[out],
@@ -69,4 +68,3 @@ def import_(
         prf_hz=info.prf_hz,
         carrier_hz=info.carrier_hz,
     )
-    tell(f"  {out}")

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.options import Figures, Maps, Overrides
-from radhar_cli.commands.tell import report, tell
+from radhar_cli.commands.tell import counted, report, tell
 
 
 def process(
@@ -67,7 +67,7 @@ def process(
         if frames:
             made.frames, made.board = frames_of_recording(opened, fixed, frames, start, stop)
     if gaps:
-        tell(f"{gaps} gap{'s' * (gaps > 1)}: the stretches between are processed separately")
+        tell(f"{counted(gaps, 'gap')}: the stretches between are processed separately")
     for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *made.notes]:
         tell(f"warning: {note}", err=True)
     written = maps_file.write_maps(made, loaded, info, out)
@@ -83,5 +83,3 @@ def process(
             f"{abs(track.velocity).max():.2f} m/s, confidence {track.confidence.mean():.2f}"
         )
     report(files=written, gaps=gaps, warnings=made.notes, maps=names)
-    for path in written:
-        tell(f"  {path}")

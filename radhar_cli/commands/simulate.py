@@ -116,8 +116,6 @@ def _say(simulation: "Simulation", written: list[Path]) -> None:
     from radhar_cli.simulation.scene_file import describe
 
     one, took = simulation.activity, sum(simulation.seconds.values())
-    shown = {"seconds": took, "warnings": simulation.warnings, "files": written}
-    report(activity=one.slug, label=one.label, **shown)
     tell(f"{one.label} {one.slug}: synthesised in {took:.2f} s")
     file = describe(simulation)["motion_file"]
     if file is not None:
@@ -125,8 +123,8 @@ def _say(simulation: "Simulation", written: list[Path]) -> None:
             f"  motion: {file['path']}, {file['begin_s']:.2f} to {file['end_s']:.2f} s of its "
             f"{file['lasts_s']:.2f} s; leg length of a person of {file['stature_m']:.2f} m"
         )
-    for path in written:
-        tell(f"  {path}")
+    shown = {"seconds": took, "warnings": simulation.warnings, "files": written}
+    report(activity=one.slug, label=one.label, **shown)
 
 
 def _record(simulation: "Simulation", path: Path) -> Path:

@@ -46,9 +46,19 @@ def wanted(message: str) -> bool:
     return not _output.quiet or message.lstrip().startswith("warning")
 
 
-def report(**values: object) -> None:
-    """With --json, print an object of values on a line; docs/reference/output.md lists all keys."""
+def counted(count: int, noun: str) -> str:
+    """1 sample, 2 samples."""
+    return f"{count} {noun}{'s' * (count != 1)}"
+
+
+def report(**values: Any) -> None:
+    """With --json, print an object of values on a line; docs/reference/output.md lists all keys.
+
+    People are told the `files` among them.
+    """
     interrupts.check()  # before it is called done
+    for path in values.get("files", ()):
+        tell(f"  {path}")
     if _output.json:
         typer.echo(json.dumps(plain(values), allow_nan=False))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tqdm import tqdm
 
 from radhar_cli import interrupts
-from radhar_cli.commands.tell import is_quiet, report, tell, wanted
+from radhar_cli.commands.tell import counted, is_quiet, report, tell, wanted
 from radhar_cli.untrusted import Closing, shown
 
 if TYPE_CHECKING:
@@ -104,9 +104,10 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
         warnings=[warning["message"] for warning in outcome.warnings],
     )
     if outcome.already_complete:
-        tell(f"{folder} is complete: {outcome.samples} samples; nothing to do")
+        tell(f"{folder} is complete: {counted(outcome.samples, 'sample')}; nothing to do")
         return
-    tell(f"{folder / DATASET}: {outcome.samples} samples, {outcome.made} new, {_mib(size)}")
+    samples = counted(outcome.samples, "sample")
+    tell(f"{folder / DATASET}: {samples}, {outcome.made} new, {_mib(size)}")
     tell(f"  {rows.counted}; " + ", ".join(f"{count} {part}" for part, count in split.items()))
     tell(f"  check it: radhar verify {folder}")
 
@@ -114,9 +115,8 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
 def print_part(outcome: "BuildOutcome", out: Path, part: str) -> None:
     """Print what a part holds and how to merge it."""
     report(folder=outcome.folder, part=part, samples=outcome.samples, made=outcome.made)
-    tell(
-        f"{outcome.folder}: part {part} is complete: {outcome.samples} samples, {outcome.made} new"
-    )
+    samples = counted(outcome.samples, "sample")
+    tell(f"{outcome.folder}: part {part} is complete: {samples}, {outcome.made} new")
     tell(f"  when all parts are: radhar merge {out}")
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from radhar_cli.commands.options import Overrides
-from radhar_cli.commands.tell import report, tell
+from radhar_cli.commands.tell import report
 
 
 def tradeoff(
@@ -49,5 +49,3 @@ def tradeoff(
     conditions: dict[str, Any] = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
     written = write_report(out, config.stem, command, rows, conditions)
     report(files=written)
-    for file in written:
-        tell(f"  {file}")

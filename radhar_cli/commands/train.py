@@ -67,13 +67,10 @@ def train(
     from radhar_cli.learning.settings import TrainConfig
 
     named = {"map": map_, "model": model, "target": target}
-    overrides = [
-        *(set_ or []),
-        *(f"--{key} {key}={value}" for key, value in named.items() if value),
-    ]
-    settings = load_section(TrainConfig, config, overrides)
+    overrides = [f"--{key} {key}={value}" for key, value in named.items() if value]
+    settings = load_section(TrainConfig, config, [*(set_ or []), *overrides])
     apart(out, [*data, *([init] if init else [])])
-    names = read_classes(classes) if classes else {}
+    names = read_classes(classes)
     with resumable(f"the last finished epoch in {out}"), TrainingView() as view:
         outcome = training.train(settings, data, out, view, overwrite, names, init)
     best = outcome.best

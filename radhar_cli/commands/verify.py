@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.tell import report, tell
+from radhar_cli.commands.tell import counted, report, tell
 
 
 def verify(
@@ -45,7 +45,7 @@ def verify(
     within = f"within {outcome.worst_level} grey level"
     anew = f"synthesised again and equal {within if outcome.other_versions else 'byte for byte'}"
     tell(
-        f"{out}: {outcome.samples} samples; checksums, labels and counts correct; "
+        f"{out}: {counted(outcome.samples, 'sample')}; checksums, labels and counts correct; "
         + (f"{outcome.resynthesised} {anew}" if outcome.resynthesised else "none synthesised again")
         + (f"; {outcome.pngs} PNG files show the same" if outcome.pngs else "")
     )

@@ -140,10 +140,9 @@ def _step_problems(c: Config) -> Iterator[Problem]:
             right = "should be coherent with radar.waveform: cw, which has no range"
             yield Problem("processing.range_sum", "gated", right)
         right = "should be false with radar.waveform: cw, which has no chirp"
-        if radar.residual_video_phase:
-            yield Problem("radar.residual_video_phase", True, right)
-        if c.engine.motion_in_chirp:
-            yield Problem("engine.motion_in_chirp", True, right)
+        for key in ("radar.residual_video_phase", "engine.motion_in_chirp"):
+            if at(c, key):
+                yield Problem(key, True, right)
     for key, number in radar.chirp_keys.items():
         value = getattr(radar, key)
         if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):

@@ -4,6 +4,7 @@ Every form is read through its quantile function, so one uniform variate per fie
 draw and two distributions of the same field stay comparable sample by sample.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeAlias
 
@@ -22,13 +23,26 @@ MAX_NUMBER = 1e30
 NORMAL_CUT = 6.0
 
 
-def _checked(value: float) -> float:
-    if not abs(value) <= MAX_NUMBER:
-        raise PydanticCustomError("range", "should be a finite number of at most 1e30 in size")
-    return value
+def wrong(what: str) -> PydanticCustomError:
+    """The error of a value, which says what would be right."""
+    return PydanticCustomError("wrong", "{what}", {"what": what})
 
 
-Real = Annotated[float, Field(strict=True, allow_inf_nan=False), AfterValidator(_checked)]
+def must(hold: Callable[[Any], bool], what: str) -> AfterValidator:
+    """Annotation of a value, or null, that is refused with these words unless this holds of it."""
+
+    def check(value: Any) -> Any:
+        if value is not None and not hold(value):
+            raise wrong(what)
+        return value
+
+    return AfterValidator(check)
+
+
+_FINITE = must(
+    lambda value: abs(value) <= MAX_NUMBER, "should be a finite number of at most 1e30 in size"
+)
+Real = Annotated[float, Field(strict=True, allow_inf_nan=False), _FINITE]
 
 
 class Distribution(BaseModel):
@@ -51,7 +65,7 @@ class Uniform(Distribution):
     @model_validator(mode="after")
     def _ordered(self) -> "Uniform":
         if self.uniform[0] > self.uniform[1]:
-            raise PydanticCustomError("order", "should be {uniform: [low, high]} with low <= high")
+            raise wrong("should be {uniform: [low, high]} with low <= high")
         return self
 
     @property
@@ -76,13 +90,11 @@ class Normal(Distribution):
     @model_validator(mode="after")
     def _sane(self) -> "Normal":
         if self.normal[1] < 0:
-            raise PydanticCustomError("sd", "should be {normal: [mean, sd]} with sd >= 0")
+            raise wrong("should be {normal: [mean, sd]} with sd >= 0")
         low, high = self.support
         mean, sd = self.normal
         if not low <= high or low > mean + NORMAL_CUT * sd or high < mean - NORMAL_CUT * sd:
-            raise PydanticCustomError(
-                "bounds", "should have min <= max, both within 6 standard deviations of the mean"
-            )
+            raise wrong("should have min <= max, both within 6 standard deviations of the mean")
         return self
 
     @property
@@ -120,9 +132,7 @@ class Choice(Distribution):
     @model_validator(mode="after")
     def _some(self) -> "Choice":
         if not self.choice:  # Field(min_length=1) also complains where all values are wrong
-            raise PydanticCustomError(
-                "choice", "should be {choice: [a, b, ...]} with 1 value or more"
-            )
+            raise wrong("should be {choice: [a, b, ...]} with 1 value or more")
         return self
 
     @property
@@ -145,9 +155,7 @@ class Vary(Distribution):
     @model_validator(mode="after")
     def _sane(self) -> "Vary":
         if not 0 <= self.vary[1] <= 1:
-            raise PydanticCustomError(
-                "fraction", "should be {vary: [nominal, fraction]} with a fraction from 0 to 1"
-            )
+            raise wrong("should be {vary: [nominal, fraction]} with a fraction from 0 to 1")
         return self
 
     @property
@@ -184,10 +192,9 @@ def _number(value: Any) -> Any:
         return _FIXED.validate_python(value)
     forms = [form for form in FORMS if form in value] if isinstance(value, dict) else []
     if len(forms) != 1:
-        raise PydanticCustomError(
-            "number",
+        raise wrong(
             "should be a number or one of {uniform: [low, high]}, {normal: [mean, sd]}, "
-            "{choice: [a, b, ...]}, {vary: [nominal, fraction]}",
+            "{choice: [a, b, ...]}, {vary: [nominal, fraction]}"
         )
     kind: type[BaseModel] = FORMS[forms[0]]
     return kind.model_validate(value)
@@ -248,7 +255,7 @@ class Bounds:
         if least < self.low or most > self.high or (self.open_low and least <= self.low):
             wording = self.wording or f"from {self.low:g} to {self.high:g} {self.unit}".rstrip()
             reach = "" if least == most else f" (this one reaches from {least:g} to {most:g})"
-            raise PydanticCustomError("bounds", "{what}", {"what": f"should be {wording}{reach}"})
+            raise wrong(f"should be {wording}{reach}")
         return number
 
 

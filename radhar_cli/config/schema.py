@@ -62,12 +62,14 @@ from radhar_cli.config.number import (
     Positive,
     Real,
     Vector,
+    must,
     nominal,
     normal,
     support,
     uniform,
     vary,
     within,
+    wrong,
 )
 from radhar_cli.errors import did_you_mean
 from radhar_cli.light import SPEED_OF_LIGHT
@@ -149,16 +151,19 @@ def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
     for name, number in value.items():
         slug = TWELVE.get(name.strip().lower(), name)
         if slug in numbers:
-            raise PydanticCustomError("activity", "should name {slug} once", {"slug": slug})
+            raise wrong(f"should name {slug} once")
         numbers[slug] = number
     if DEFAULT not in numbers:
-        raise PydanticCustomError(
-            "activity", "should have a 'default' beside the activities it names"
-        )
+        raise wrong("should have a 'default' beside the activities it names")
     return numbers
 
 
 By: TypeAlias = Annotated[T, _Either()]
+
+
+def by_activity(default: Number, **others: Number) -> PerActivity:
+    """A number for every activity, and others for those named."""
+    return PerActivity({DEFAULT: default, **others})
 
 
 def for_activity(value: Any, activity: Activity) -> Any:
@@ -345,16 +350,9 @@ class Falls(Section):
 
 # People face the radar, and in 6 s walk 8 m towards it: they start far enough away, all within its
 # half-band of 30 m. Classes of one's own may walk all the time.
-_HUMAN_RANGE = PerActivity(
-    per_activity={
-        DEFAULT: uniform(9.0, 12.0),
-        **{
-            a.slug: uniform(5.0, 8.0) if a.walks else uniform(2.0, 5.0)
-            for a in ACTIVITIES
-            if a.slug != "walking"
-        },
-    }
-)
+_NEARER = {a.slug: uniform(5, 8) if a.walks else uniform(2, 5) for a in ACTIVITIES}
+del _NEARER["walking"]
+_HUMAN_RANGE = by_activity(uniform(9.0, 12.0), **_NEARER)
 _FACING = uniform(150.0, 210.0)
 _GAIT = "S8 S9 S10 S11 S12"
 
@@ -502,12 +500,7 @@ class TimingConfig(Section):
         People("S5 S6", 1, 60),
         Paper("S5 S6"),
         ByModel(
-            human=PerActivity(
-                per_activity={
-                    "default": normal(2.0, 0.4, 1.3, 3.0),
-                    "standing_up": normal(1.8, 0.4, 1.2, 3.0),
-                }
-            ),
+            human=by_activity(normal(2.0, 0.4, 1.3, 3.0), standing_up=normal(1.8, 0.4, 1.2, 3.0)),
             paper=2.0,
         ),
     ] = None
@@ -523,11 +516,8 @@ class TimingConfig(Section):
         People("S9 S11", 1, 60),
         Paper("S9 S11"),
         ByModel(
-            human=PerActivity(
-                per_activity={
-                    "default": normal(1.8, 0.25, 1.2, 3.0),
-                    "falling_to_walking": normal(3.0, 0.5, 2.2, 4.5),
-                }
+            human=by_activity(
+                normal(1.8, 0.25, 1.2, 3.0), falling_to_walking=normal(3.0, 0.5, 2.2, 4.5)
             ),
             paper=1.5,
         ),
@@ -587,22 +577,22 @@ class SequenceConfig(Section):
         if not self.pauses_s:
             object.__setattr__(self, "pauses_s", (0.0,) * count)
         if not len(self.durations_s) == len(self.pauses_s) == count:
-            raise _wrong("should have as many durations_s, and pauses_s, as movements")
+            raise wrong("should have as many durations_s, and pauses_s, as movements")
         state = None
         for n, (name, duration) in enumerate(zip(self.sequence, self.durations_s, strict=True)):
             movement = MOVEMENTS.get(name)
             if movement is None:
                 hint = did_you_mean(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
-                raise _wrong(f"{name!r} is not a movement; {hint}")
+                raise wrong(f"{name!r} is not a movement; {hint}")
             if state not in (None, movement.before):
-                raise _wrong(
+                raise wrong(
                     f"should be joined at rest: {name} begins {movement.before}, "
                     f"{self.sequence[n - 1]} ends {state}"
                 )
             if duration is not None and not support(duration)[0] >= MIN_MOVEMENT_S:
-                raise _wrong(f"should have durations_s from {MIN_MOVEMENT_S} s on")
+                raise wrong(f"should have durations_s from {MIN_MOVEMENT_S} s on")
             if movement.seconds is None and duration is None and n < last:
-                raise _wrong(f"should have a duration of {name}, which something follows")
+                raise wrong(f"should have a duration of {name}, which something follows")
             state = movement.after
         return self
 
@@ -659,9 +649,9 @@ class FilesConfig(Section):
     def _known(cls, value: dict[str, str]) -> dict[str, str]:
         for path in value:
             if not path.lower().endswith(SUFFIXES) or len(path) > MAX_PATH_LENGTH or "\0" in path:
-                raise _wrong(f"should be paths of {', '.join(SUFFIXES)} files, not {path!r}")
+                raise wrong(f"should be paths of {', '.join(SUFFIXES)} files, not {path!r}")
         if not 0 < len(value) <= MAX_FILES:
-            raise _wrong(f"should have 1 to {MAX_FILES} files")
+            raise wrong(f"should have 1 to {MAX_FILES} files")
         return value
 
     @field_validator("joints")
@@ -669,15 +659,15 @@ class FilesConfig(Section):
     def _ours(cls, value: dict[str, str]) -> dict[str, str]:
         for name in value:
             if name not in WANTED:
-                raise _wrong(did_you_mean(name, WANTED, f"joints are {', '.join(WANTED)}"))
+                raise wrong(did_you_mean(name, WANTED, f"joints are {', '.join(WANTED)}"))
         return value
 
     @model_validator(mode="after")
     def _one_of_them(self) -> "FilesConfig":
         if self.file is not None and self.file >= len(self.files):
-            raise _wrong(f"should have a file below {len(self.files)}, the number of files")
+            raise wrong(f"should have a file below {len(self.files)}, the number of files")
         if self.section_s is not None and not self.section_s[0] < self.section_s[1]:
-            raise _wrong("should have a section_s that begins before it ends")
+            raise wrong("should have a section_s that begins before it ends")
         return self
 
 
@@ -691,10 +681,6 @@ ClassConfig: TypeAlias = Annotated[
     Annotated[SequenceConfig, Tag("movements")] | Annotated[FilesConfig, Tag("recordings")],
     Discriminator(_class_kind),
 ]
-
-
-def _wrong(what: str) -> PydanticCustomError:
-    return PydanticCustomError("sequence", "{what}", {"what": what})
 
 
 Size: TypeAlias = Annotated[Positive, within(1e-6, 1e6, "m")]
@@ -897,9 +883,7 @@ class SavgolConfig(Section):
     @model_validator(mode="after")
     def _fits(self) -> "SavgolConfig":
         if self.frame % 2 == 0 or self.frame <= self.order:
-            raise PydanticCustomError(
-                "frame", "should have a frame that is odd and above the order"
-            )
+            raise wrong("should have a frame that is odd and above the order")
         return self
 
 
@@ -970,10 +954,9 @@ class ProcessingConfig(Section):
         numbers = value if isinstance(value, (list, tuple)) and len(value) == 2 else [value]
         good = all(type(one) in (int, float) and 0 <= one <= 1e7 for one in numbers)
         if not good or sorted(numbers) != list(numbers) or numbers == [0]:
-            raise PydanticCustomError(
-                "gate",
+            raise wrong(
                 "should be how far (m) the gate reaches to both sides of the torso, above 0, "
-                "or [from, to], ranges with from <= to; 1e7 at most",
+                "or [from, to], ranges with from <= to; 1e7 at most"
             )
         return value
 
@@ -1044,7 +1027,10 @@ class ImageConfig(Section):
     Doppler limits are speeds, positive approaching.
     """
 
-    size_px: tuple[Pixels, Pixels] = (256, 256)
+    size_px: Annotated[
+        tuple[Pixels, Pixels],
+        BeforeValidator(lambda one: (one, one) if isinstance(one, int) else one),
+    ] = (256, 256)
     """[height, width]; one number is a square."""
     kind: Literal["decibel", "cfar", "signed"] = "decibel"
     """Grey levels; binary masks of what exceeds its background; or, of an impulse radar's rtm,
@@ -1056,20 +1042,12 @@ class ImageConfig(Section):
     cfar: Annotated[CfarConfig, Needs("image.kind", "cfar")] = CfarConfig()
     colour_map: str = DEFAULT_COLOUR_MAP
     """Any Matplotlib name; of PNGs and figures, as dataset.h5 holds grey levels."""
-    doppler_limits_mps: Annotated[tuple[Real, Real] | None, _SPECTRA] = None
+    doppler_limits_mps: Annotated[
+        tuple[Real, Real] | None,
+        must(lambda value: value[0] < value[1], "should be [low, high] with low < high"),
+        _SPECTRA,
+    ] = None
     """[low, high], approaching positive; null is all."""
-
-    @field_validator("doppler_limits_mps")
-    @classmethod
-    def _ordered(cls, value: tuple[float, float] | None) -> tuple[float, float] | None:
-        if value is not None and not value[0] < value[1]:
-            raise PydanticCustomError("limits", "should be [low, high] with low < high")
-        return value
-
-    @field_validator("size_px", mode="before")
-    @classmethod
-    def _square(cls, value: Any) -> Any:
-        return (value, value) if isinstance(value, int) else value
 
     @field_validator("colour_map")
     @classmethod
@@ -1078,11 +1056,8 @@ class ImageConfig(Section):
             from matplotlib import colormaps
 
             if value not in colormaps:
-                some = "viridis, gray, turbo, jet are some"
-                hint = did_you_mean(value, colormaps, some)
-                raise PydanticCustomError(
-                    "colour", "should be a Matplotlib colour map; {hint}", {"hint": hint}
-                )
+                hint = did_you_mean(value, colormaps, "viridis, gray, turbo, jet are some")
+                raise wrong(f"should be a Matplotlib colour map; {hint}")
         return value
 
 
@@ -1107,15 +1082,9 @@ class SplitConfig(Section):
     def _whole(self) -> "SplitConfig":
         total = self.train + self.validation + self.test
         if abs(total - 1) > 1e-9:
-            raise PydanticCustomError(
-                "shares",
-                "should have train + validation + test = 1 (they add up to {total})",
-                {"total": f"{total:g}"},
-            )
+            raise wrong(f"should have train + validation + test = 1 (they add up to {total:g})")
         if (self.by == "subject") != (self.subjects is not None):
-            raise PydanticCustomError(
-                "subjects", "should have 'subjects: n' with 'by: subject', and only with it"
-            )
+            raise wrong("should have 'subjects: n' with 'by: subject', and only with it")
         return self
 
 
@@ -1194,7 +1163,7 @@ def _known_map(name: str) -> str:
     if name not in (*MAP_NAMES, *FRAME_MAPS) and not is_known(name):
         names = (*MAP_NAMES, *FRAME_MAPS, *(product.name for product in own_products()))
         right = " or ".join(filter(None, (", ".join(map(repr, names[:-1])), repr(names[-1]))))
-        raise PydanticCustomError("map", "should be {right}", {"right": right})
+        raise wrong(f"should be {right}")
     return name
 
 
@@ -1222,7 +1191,7 @@ class RecordedPart(Section):
     def _below(cls, value: str) -> str:
         place = PurePosixPath(value)
         if place.is_absolute() or ".." in place.parts or "\\" in value or not place.name:
-            raise _wrong("should be a path below the manifest's folder")
+            raise wrong("should be a path below the manifest's folder")
         return value
 
 
@@ -1247,7 +1216,7 @@ class RecordingsConfig(Section):
     @model_validator(mode="after")
     def _bounded(self) -> "RecordingsConfig":
         if (total := sum(map(self.count, self.parts))) > MAX_WINDOWS:
-            raise _wrong(f"should have at most {MAX_WINDOWS} windows; hop_s makes {total}")
+            raise wrong(f"should have at most {MAX_WINDOWS} windows; hop_s makes {total}")
         return self
 
     def count(self, part: RecordedPart) -> int:
@@ -1284,7 +1253,7 @@ def _name_or_choice(value: object) -> object:
     listed = isinstance(names, (list, tuple)) and all(isinstance(one, str) for one in names)
     if isinstance(value, (str, OneOf)) or (listed and names):
         return value
-    raise _wrong("should be a slug or label, or {choice: [walking, punching]}")
+    raise wrong("should be a slug or label, or {choice: [walking, punching]}")
 
 
 class PersonConfig(Section):
@@ -1313,17 +1282,17 @@ def _own_classes(value: dict[str, ClassConfig]) -> dict[str, ClassConfig]:
     twelve = {activity.slug for activity in ACTIVITIES}
     for slug, one in value.items():
         if not (is_new_slug(slug) or (isinstance(one, FilesConfig) and slug in twelve)):
-            raise _wrong(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
+            raise wrong(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
     if sum(len(one.files) for one in value.values() if isinstance(one, FilesConfig)) > MAX_FILES:
-        raise _wrong(f"should have at most {MAX_FILES} files in all")
+        raise wrong(f"should have at most {MAX_FILES} files in all")
     return value
 
 
 def _maps_in_order(value: tuple[str, ...]) -> tuple[str, ...]:
     if not value:
-        raise PydanticCustomError("maps", "should name at least 1 map")
+        raise wrong("should name at least 1 map")
     if len(set(value)) != len(value):
-        raise PydanticCustomError("maps", "should name each map once")
+        raise wrong("should name each map once")
     known = (*MAP_NAMES, *FRAME_MAPS)
     own = [name for name in value if name not in known]
     return (*sorted(set(value) - set(own), key=known.index), *own)
@@ -1398,9 +1367,9 @@ class Config(Section):
         try:
             chosen = [activity_named(str(name), own) for name in value]
         except ValueError as error:
-            raise PydanticCustomError("activity", "{what}", {"what": str(error)}) from None
+            raise wrong(str(error)) from None
         if not chosen or len({a.slug for a in chosen}) != len(chosen):
-            raise PydanticCustomError("activity", "should name at least one activity, each once")
+            raise wrong("should name at least one activity, each once")
         # User-defined ones last: those of `classes`, then those of `add_activity`.
         return tuple(a.slug for a in sorted(chosen, key=lambda a: (a.motion is not None, a.number)))
 
@@ -1609,7 +1578,7 @@ def _fill_from_cfg(c: Config, changed: dict[str, dict[str, Any]]) -> None:
     try:
         board = c.radar.header
     except CaptureError as error:
-        raise PydanticCustomError("cfg", "{what}", {"what": str(error)}) from None
+        raise wrong(str(error)) from None
     radar = {
         key: value for key, value in board.numbers.items() if key not in c.radar.model_fields_set
     }

@@ -21,27 +21,11 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Float
 from radhar_cli.config.identity import as_yaml, config_hash, resolved
 from radhar_cli.config.schema import FRAME_MAPS, AnyConfig, Config
-from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.files import digest_of, unfinished_path, write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
-from radhar_cli.dataset.layout import (
-    COLUMN_LABEL,
-    CONFIG,
-    DATASET,
-    LABELS,
-    PERSON_LABEL,
-    SCENES,
-    SPLITS,
-    TIME,
-    Rows,
-    chunked,
-    column_axis,
-    columns,
-    count_of,
-    row_axis,
-    row_bytes,
-)
+from radhar_cli.dataset.layout import SPLITS, TIME, Rows
 from radhar_cli.dataset.shards import (
     Runs,
     Shard,
@@ -108,11 +92,11 @@ def assembled(
     unfinished_path(folder).parent.mkdir(parents=True, exist_ok=True)
     try:
         with (  # replaced from the last to the first: dataset.h5 comes when the others are there
-            replacing(folder / DATASET, unfinished_path(folder)) as unfinished,
-            replacing(folder / SCENES, unfinished_path(folder)) as table,
+            replacing(folder / layout.DATASET, unfinished_path(folder)) as unfinished,
+            replacing(folder / layout.SCENES, unfinished_path(folder)) as table,
         ):
             with (
-                new_hdf5(unfinished, folder / DATASET) as (file, check),
+                new_hdf5(unfinished, folder / layout.DATASET) as (file, check),
                 table.open("w", newline="", encoding="utf-8") as text,
             ):
                 _describe_samples(file, config)
@@ -126,7 +110,7 @@ def assembled(
                 file.attrs[DIGESTS] = json.dumps(attribute_digests(file), sort_keys=True)
             remember(unfinished)
             yield unfinished, messages
-            write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
+            write_whole(folder, folder / layout.CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
     except ShardError as error:
         sound, unusable = check_shards(shards, own_hash)
         require_tiling(folder, sound, count, remedy, unusable)
@@ -151,11 +135,11 @@ def _copy_shards(
         How many rows have each flag.
     """
     count, stored = shards[-1].stop, 0
-    run, large = max(1, min(RUN, RUN_BYTES // row_bytes(config))), chunked(config)
+    run, large = max(1, min(RUN, RUN_BYTES // layout.row_bytes(config))), layout.chunked(config)
     targets = {name: chunked_dataset(file, name, count, config).id for name in large}
     small = {
         name: (_Column(file.create_dataset(name, (count, *shape), dtype)), np.dtype(dtype), shape)
-        for name, (dtype, shape) in columns(config).items()
+        for name, (dtype, shape) in layout.columns(config).items()
     }
     chunks: dict[str, list[tuple[int, bytes]]] = {name: [] for name in large}
     fields = scene_fields.fields(config)
@@ -173,7 +157,7 @@ def _copy_shards(
                 source = part.chunks(name, dtype, (rows, *shape))
                 chunks[name] += [source.stored(row) for row in range(rows)]
             for name in config.stored:
-                if part.column(count_of(name), np.int64, (rows,))[:].any():
+                if part.column(layout.count_of(name), np.int64, (rows,))[:].any():
                     products[name].append(part.samples(f"products/{name}"))
             for column, (target, kind, shape) in small.items():
                 found = part.column(column, kind, (rows, *shape))[:]
@@ -214,10 +198,9 @@ def _describe_products(file: h5py.File, config: Config) -> None:
     if "products/skeleton" in file and not recorded:
         file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
     if config.people:
-        file[LABELS].attrs["class_slugs"] = [activity.slug for activity in config.every_class]
-        file[PERSON_LABEL].attrs["meaning"] = (
-            "class of each person, the sample's own first; -1 absent"
-        )
+        file[layout.LABELS].attrs["class_slugs"] = [one.slug for one in config.every_class]
+        meaning = "class of each person, the sample's own first; -1 absent"
+        file[layout.PERSON_LABEL].attrs["meaning"] = meaning
     if config.output.slow_time:
         file["slow_time"].attrs.update({"axes": ["sample", "pulse"], "meaning": SLOW_TIME_TEXT})
 
@@ -277,10 +260,9 @@ def _describe_samples(file: h5py.File, config: AnyConfig) -> None:
     rows = Rows.of(config)
     count = len(rows)
     labels = np.repeat(np.array([a.index for a in rows.activities], np.uint8), rows.counts)
+    meaning = "0..11 for S1..S12, whatever subset was built; own classes after"
     file["label"] = labels
-    file["label"].attrs["meaning"] = (
-        "0..11 for S1..S12, whatever subset was built; own classes after"
-    )
+    file["label"].attrs["meaning"] = meaning
     file["split"] = split_rows(config)
     file["split"].attrs["meaning"] = ", ".join(f"{i} {name}" for i, name in enumerate(SPLITS))
     keys = file.create_dataset("sample_key", (count, 2), np.int64)
@@ -303,8 +285,9 @@ def _describe_map(
     """Attributes of a map of these extents; of more than one, two are enough."""
     same = len(extents) == 1
     start, stop, low, high = next(iter(extents)) if same else [np.nan] * 4
-    (rows, unit), (across, column_unit), image = row_axis(name), column_axis(name), config.image
-    decibel, sheet = image.kind == "decibel", name in FRAME_MAPS
+    (rows, unit), (across, column_unit) = layout.row_axis(name), layout.column_axis(name)
+    image, sheet = config.image, name in FRAME_MAPS
+    decibel = image.kind == "decibel"
     sides = "time" if across == TIME[0] else across
     described = {
         "axes": ["sample", f"{rows} (row 0 is the highest)", sides],
@@ -332,7 +315,7 @@ def _describe_map(
         file[f"power/{name}"].attrs["meaning"] = "resized power, not clipped; rows as in /maps"
         file[f"largest_db/{name}"].attrs["unit"] = "dB for unit transmit power"
     if config.output.column_labels:
-        labels = file[f"{COLUMN_LABEL}/{name}"].attrs
+        labels = file[f"{layout.COLUMN_LABEL}/{name}"].attrs
         labels["names"] = label_names(config)
         labels["meaning"] = "number in names of what is under way at the middle of each column"
 

@@ -188,7 +188,7 @@ class Build:
         self.progress.stage("samples", len(rows), len(rows) - left)
         size = batch_size or _batch_size(left, self.jobs, row_bytes(config))
         table = colour_table(config.image.colour_map) if self.png else None
-        cuts = _cuts(gaps, size)
+        cuts = [(a, min(a + size, stop)) for start, stop in gaps for a in range(start, stop, size)]
 
         def batches() -> Iterator[tuple[Batch]]:
             for start, stop in cuts:
@@ -214,11 +214,6 @@ class Build:
                 shard.path.unlink(missing_ok=True)
         try_files([shard.path for shard in sound])
         return sound
-
-
-def _cuts(gaps: Runs, size: int) -> list[tuple[int, int]]:
-    """Runs of rows cut into pieces of at most `size`."""
-    return [(a, min(a + size, stop)) for start, stop in gaps for a in range(start, stop, size)]
 
 
 def _batch_size(left: int, jobs: int, one: int) -> int:

@@ -1,6 +1,7 @@
 """A contact sheet: some samples of every class of a data set."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,15 +22,9 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
     }
     rows = {name: samples[:per_class] for name, samples in rows.items()}
     figure, panels = page_of_rows(rows, (1.5, 1.4), (1.6, 0.7))
+    look: dict[str, Any] = {"cmap": image.colour_map, "vmin": 0, "vmax": 255, "aspect": "auto"}
     for panel, sample in panels:
-        panel.imshow(
-            images[sample][every],
-            extent=extent,
-            aspect="auto",
-            cmap=image.colour_map,
-            vmin=0,
-            vmax=255,
-        )
+        panel.imshow(images[sample][every], extent=extent, **look)
         panel.tick_params(labelsize=5, length=2)
         panel.label_outer()
     figure.supxlabel("time (s)", fontsize=8)

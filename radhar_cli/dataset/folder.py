@@ -12,21 +12,10 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from radhar_cli.config.schema import AnyConfig
+from radhar_cli.dataset import layout
 from radhar_cli.dataset.files import refuse_foreign_work, refuse_links, unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
-from radhar_cli.dataset.layout import (
-    BUILT,
-    CARD,
-    CONFIG,
-    DATASET,
-    GALLERY,
-    IDENTITY,
-    PARTS,
-    PNG,
-    SCENES,
-    WORK,
-    is_incomplete,
-)
+from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError, RadharError
 from radhar_cli.untrusted import read_json
 
@@ -75,7 +64,7 @@ def reserve(
         _clear(folder, new)
     old = stored_identity(folder)
     if old is None:
-        if PARTS not in allowed and (folder / PARTS).exists():
+        if layout.PARTS not in allowed and (folder / layout.PARTS).exists():
             raise FolderError(
                 f"{folder}: holds parts of a data set; `radhar merge {folder}` puts them together, "
                 "--shard K/N makes one"
@@ -112,12 +101,12 @@ def refuse_differences(
 
 def _name(folder: Path, named: dict[str, Any]) -> None:
     # In the order of the config, which `merge` writes into dataset.h5.
-    write_whole(folder, folder / WORK / IDENTITY, json.dumps(named).encode())
+    write_whole(folder, folder / WORK / layout.IDENTITY, json.dumps(named).encode())
 
 
 def stored_identity(folder: Path) -> dict[str, Any] | None:
     """Identity of a folder's data set, finished or not; None if it is not one of radhar."""
-    path = folder / DATASET
+    path = folder / layout.DATASET
     if path.exists():
         from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 
@@ -129,7 +118,7 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
                 f"{error}; this is not a data set of radhar, or is damaged; choose another "
                 "folder, or --overwrite if radhar built it"
             ) from None
-    path = folder / WORK / IDENTITY
+    path = folder / WORK / layout.IDENTITY
     return checked_identity(read_json(path), path) if path.exists() else None
 
 
@@ -144,16 +133,16 @@ def checked_identity(value: Any, path: Path) -> dict[str, Any]:
 def holds_samples(folder: Path) -> bool:
     """Whether anything was made in a folder that a build has taken."""
     shards = folder / WORK / "shards"
-    made = (folder / name for name in (DATASET, PNG))
+    made = (folder / name for name in (layout.DATASET, layout.PNG))
     return any(map(Path.exists, made)) or (shards.is_dir() and any(shards.iterdir()))
 
 
 def clean_up(folder: Path) -> None:
     """Mark a folder as built (dataset.h5 may be damaged later); remove what only a build needs."""
-    (folder / WORK / BUILT).touch()
+    (folder / WORK / layout.BUILT).touch()
     _remove_batches(folder)
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
-    (folder / WORK / IDENTITY).unlink(missing_ok=True)
+    (folder / WORK / layout.IDENTITY).unlink(missing_ok=True)
 
 
 def _remove_batches(folder: Path) -> None:
@@ -172,17 +161,17 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
     The new name comes first and the old data set's file last but for the PNGs that were put aside,
     so that a kill in between leaves a folder that either run can go on with.
     """
-    ours = is_incomplete(folder) or (folder / WORK / BUILT).exists()
+    ours = layout.is_incomplete(folder) or (folder / WORK / layout.BUILT).exists()
     with suppress(FolderError):  # of radhar, or damaged
         ours = ours or stored_identity(folder) is not None
     if not ours:
         return
-    if (folder / PNG).exists():
+    if (folder / layout.PNG).exists():
         put_aside = unfinished_path(folder)
         put_aside.parent.mkdir(parents=True, exist_ok=True)
-        (folder / PNG).rename(put_aside)
-    for name in (SCENES, CONFIG, CARD, GALLERY):
+        (folder / layout.PNG).rename(put_aside)
+    for name in (layout.SCENES, layout.CONFIG, layout.CARD, layout.GALLERY):
         (folder / name).unlink(missing_ok=True)
     _remove_batches(folder)
     _name(folder, new)
-    (folder / DATASET).unlink(missing_ok=True)
+    (folder / layout.DATASET).unlink(missing_ok=True)

@@ -30,19 +30,11 @@ def write_missing_pngs(
     if not missing.size:
         return 0
     progress.stage("png", missing.size, 0)
-    table = colour_table(config.image.colour_map)
-    tasks = (
-        (
-            config,
-            folder,
-            source,
-            [(row, int(split[row])) for row in missing[first : first + ROWS].tolist()],
-            table,
-            parent_pid(),
-        )
-        for first in range(0, missing.size, ROWS)
-    )
-    for written in run_tasks(png_rows, tasks, max(1, min(jobs, -(-missing.size // ROWS)))):
+    where, table = (config, folder, source), colour_table(config.image.colour_map)
+    pairs = list(zip(missing.tolist(), split[missing].tolist(), strict=True))
+    some = [pairs[first : first + ROWS] for first in range(0, len(pairs), ROWS)]
+    tasks = ((*where, rows, table, parent_pid()) for rows in some)
+    for written in run_tasks(png_rows, tasks, min(jobs, len(some))):
         progress.advance(written)
     return missing.size * len(config.maps)
 

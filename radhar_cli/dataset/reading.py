@@ -10,25 +10,9 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import AnyConfig, Config, MeasuredConfig
-from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.folder import holds_samples, stored_identity
 from radhar_cli.dataset.identity import versions
-from radhar_cli.dataset.layout import (
-    BUILT,
-    COLUMN_LABEL,
-    DATASET,
-    LABELS,
-    PARTS,
-    PERSON_LABEL,
-    SPLITS,
-    WORK,
-    Rows,
-    checksum_of,
-    chunked,
-    columns,
-    count_of,
-    is_incomplete,
-)
 from radhar_cli.dataset.untrusted_hdf5 import Column, NumberColumn, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.registry import any_name
@@ -71,6 +55,8 @@ class Dataset(Closing):
         self.path = path
         self.file = UntrustedFile(path)
         try:
+            if self.file.has_attribute("scene"):
+                raise FolderError(f"{path}: is a scene of `radhar simulate`, not a data set")
             self.config = stored_config(self.file.json("config"), str(path))
             self._check()
         except BaseException:
@@ -78,13 +64,13 @@ class Dataset(Closing):
             raise
 
     def _check(self) -> None:
-        config, file, count = self.config, self.file, len(Rows.of(self.config))
+        config, file, count = self.config, self.file, len(layout.Rows.of(self.config))
         self.fields = scene_fields.fields(config)
         self.class_slugs = [activity.slug for activity in config.every_class]
         names: tuple[str, ...] = config.maps
         self.large = {
             name: file.chunks(name, dtype, (count, *shape))
-            for name, (dtype, shape) in chunked(config).items()
+            for name, (dtype, shape) in layout.chunked(config).items()
         }
         self.maps = {name: self.large[f"maps/{name}"] for name in names}
         self.sample_key = file.column("sample_key", np.int64, (count, 2))
@@ -96,45 +82,43 @@ class Dataset(Closing):
             self.scene["subject"] = file.column("scene/subject", np.int64, (count,))
         small = {
             name: file.column(name, dtype, (count, *shape))
-            for name, (dtype, shape) in columns(config).items()
+            for name, (dtype, shape) in layout.columns(config).items()
         }
-        self.sha256 = {name: small[checksum_of(name)] for name in self.large}
+        self.sha256 = {name: small[layout.checksum_of(name)] for name in self.large}
         named = (f"scene/{field.name}" for field in self.fields)
         self.small = small | dict(zip(named, self.scene.values(), strict=False))
         self.products = {
-            name: Ragged(file.samples(f"products/{name}"), small[count_of(name)][:])
+            name: Ragged(file.samples(f"products/{name}"), small[layout.count_of(name)][:])
             for name in config.stored
-            if small[count_of(name)][:].any()
+            if small[layout.count_of(name)][:].any()
         }
         self._entropy = {name: small[f"entropy/{name}"] for name in names}
         self._extent = {name: small[f"extent/{name}"] for name in names}
         labelled = names if config.output.column_labels else ()
-        self.column_label = {name: small[f"{COLUMN_LABEL}/{name}"] for name in labelled}
+        self.column_label = {name: small[f"{layout.COLUMN_LABEL}/{name}"] for name in labelled}
         self.labels, self.person_label = (
-            small[name][:] if config.people else None for name in (LABELS, PERSON_LABEL)
+            small[name][:] if config.people else None
+            for name in (layout.LABELS, layout.PERSON_LABEL)
         )
         self.label = _small(file.column("label", np.uint8, (count,)), len(config.every_class))
-        self.split = _small(file.column("split", np.uint8, (count,)), len(SPLITS))
+        self.split = _small(file.column("split", np.uint8, (count,)), len(layout.SPLITS))
 
     def __len__(self) -> int:
         return len(self.label)
 
     def __repr__(self) -> str:
-        numbers = np.bincount(self.split, minlength=len(SPLITS))
+        numbers = np.bincount(self.split, minlength=len(layout.SPLITS))
         splits = ", ".join(f"{numbers[n]} {name}" for n, name in self.present_splits.items())
         products = f"; products {', '.join(self.products)}" if self.products else ""
-        maps = (
-            f"maps {', '.join(self.maps)} of {' x '.join(map(str, self.config.image.size_px))} px"
-        )
+        size = " x ".join(map(str, self.config.image.size_px))
+        maps = f"maps {', '.join(self.maps)} of {size} px{products}"
         classes = ", ".join(self.class_slugs[n] for n in np.unique(self.label))
-        return (
-            f"<Dataset {self.path}: {len(self)} samples ({splits}) of {classes}; {maps}{products}>"
-        )
+        return f"<Dataset {self.path}: {len(self)} samples ({splits}) of {classes}; {maps}>"
 
     @property
     def present_splits(self) -> dict[int, str]:
         """{number: name} of the splits that have samples."""
-        return {n: name for n, name in enumerate(SPLITS) if (self.split == n).any()}
+        return {n: name for n, name in enumerate(layout.SPLITS) if (self.split == n).any()}
 
     @property
     def warnings(self) -> list[dict[str, Any]]:
@@ -247,7 +231,7 @@ def open_dataset(path: str | Path) -> Dataset:
         FolderError: there is none, it is not radhar's, or it is damaged.
     """
     path = Path(path)
-    file = path / DATASET if path.is_dir() else path
+    file = path / layout.DATASET if path.is_dir() else path
     if not file.exists():
         raise FolderError(f"{file}: {_why_missing(path)}")
     return Dataset(file)
@@ -255,12 +239,12 @@ def open_dataset(path: str | Path) -> Dataset:
 
 def _why_missing(path: Path) -> str:
     """Why a path leads to no dataset.h5, and what makes one."""
-    if (path / PARTS).is_dir():
-        return f"not made yet; `radhar merge {path}` puts the parts in {path / PARTS} together"
-    if not is_incomplete(path):
+    if (parts := path / layout.PARTS).is_dir():
+        return f"not made yet; `radhar merge {path}` puts the parts in {parts} together"
+    if not layout.is_incomplete(path):
         return "no such file"
     part = (stored_identity(path) or {}).get("part")
-    if part is not None and (path / WORK / BUILT).exists():
+    if part is not None and (path / layout.WORK / layout.BUILT).exists():
         return f"{path} is part {part} alone; `radhar merge OUT` makes OUT of all parts"
     if not holds_samples(path):
         return f"no sample is made yet; `radhar generate CONFIG -o {path}` can build there"

@@ -1,5 +1,6 @@
 """The drawn numbers of a scene as columns: SI for dataset.h5, config units for scenes.csv."""
 
+from collections.abc import Sequence
 from math import nan, pi
 from typing import NamedTuple
 
@@ -9,17 +10,8 @@ from radhar_cli.arrays import Float
 from radhar_cli.config.schema import AnyConfig, FacesConfig, MeasuredConfig
 from radhar_cli.scene import FALL, Scene, file_keys, keys_of_people, number_at, numbers
 
-_UNITS = {
-    "m": ("m", 1.0),
-    "s": ("s", 1.0),
-    "hz": ("Hz", 1.0),
-    "kg": ("kg", 1.0),
-    "mps": ("m/s", 1.0),
-    "deg": ("rad", pi / 180),
-    "db": ("dB", 1.0),
-    "dbi": ("dBi", 1.0),
-    "dbsm": ("dBsm", 1.0),
-}
+_UNITS = {name: name for name in ("m", "s", "kg")} | {"hz": "Hz", "mps": "m/s", "deg": "rad"}
+_UNITS |= {"db": "dB", "dbi": "dBi", "dbsm": "dBsm"}
 
 
 class Field(NamedTuple):
@@ -55,16 +47,9 @@ def fields(config: AnyConfig) -> tuple[Field, ...]:
     """
     if isinstance(config, MeasuredConfig):
         return RECORDED
-    keys = [
-        key
-        for key, _ in numbers(config)
-        if any(config.depends_on(activity, key) for activity in config.chosen_activities)
-    ]
-    keys += [
-        key
-        for key in (FALL, *file_keys(config))
-        if any(config.depends_on(activity, key) for activity in config.chosen_activities)
-    ]
+    every, chosen = [key for key, _ in numbers(config)], config.chosen_activities
+    every += [FALL, *file_keys(config)]
+    keys = [key for key in every if any(config.depends_on(activity, key) for activity in chosen)]
     if "subject.weight_kg" not in keys:
         keys.insert(keys.index("subject.height_m") + 1, "subject.weight_kg")
     keys += keys_of_people(config)
@@ -90,21 +75,13 @@ def _field(key: str) -> Field:
     path, _, axis = key.rpartition(".") if key[-1].isdigit() else (key, "", "")
     section, _, name = path.rpartition(".")
     stem, _, suffix = name.rpartition("_")
-    if suffix not in _UNITS:
-        stem, unit, factor = name, "1", 1.0
-    else:
-        unit, factor = _UNITS[suffix]
-    if name == "snr_db":
-        stem = "snr"
+    unit = _UNITS.get(suffix, "1")
+    stem = stem if suffix in _UNITS else name
     listed, _, number = section.rpartition(".")
     if listed in LISTS:
         stem = f"{LISTS[listed]}_{number}_{stem}"
-    ends = "xyz" if section != "room.box_m" else ("from", "to")
+    ends: Sequence[str] = "xyz"
     if section == "room.box_m":
-        unit = "m"
-    parts = [
-        *([PREFIXES[section]] if section in PREFIXES else []),
-        stem,
-        *([ends[int(axis)]] if axis else []),
-    ]
-    return Field(key, "_".join(parts), unit, factor)
+        ends, unit = ("from", "to"), "m"
+    parts = (PREFIXES.get(section), stem, ends[int(axis)] if axis else None)
+    return Field(key, "_".join(filter(None, parts)), unit, pi / 180 if unit == "rad" else 1.0)

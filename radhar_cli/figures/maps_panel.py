@@ -49,11 +49,6 @@ class Shown:
 
 def of_simulation(simulation: Simulation, overlay: bool) -> Shown:
     """The maps of a scene, and if asked the true Doppler of every joint."""
-
-    def draw_truth(axes: Axes, name: str, unit: float) -> None:
-        if name != "rtm":
-            _draw_truth(axes, name, simulation, unit)
-
     p = simulation.truth.positions.transpose(2, 1, 0)
     farthest = point_delay(p, simulation.antennas, simulation.wall).max() * SPEED_OF_LIGHT / 2
     return Shown(
@@ -62,7 +57,7 @@ def of_simulation(simulation: Simulation, overlay: bool) -> Shown:
         simulation.waveform.f0,
         1.3 * float(farthest) + 0.5,
         title(simulation),
-        draw_truth if overlay else None,
+        partial(_draw_truth, simulation) if overlay else None,
     )
 
 
@@ -101,8 +96,10 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
     return drawn
 
 
-def _draw_truth(axes: Axes, map_name: str, simulation: Simulation, unit: float) -> None:
+def _draw_truth(simulation: Simulation, axes: Axes, map_name: str, unit: float) -> None:
     """Curves of everybody's true Doppler, folded into +-PRF/2 as the map is."""
+    if map_name == "rtm":
+        return
     truth, prf = simulation.truth, simulation.waveform.prf
     joint, names = simulation.joint, simulation.motion.names
     own = [number for number, name in enumerate(names) if joint in (None, name)]
@@ -132,9 +129,8 @@ def draw_maps(shown: Shown, path: Path) -> None:
     panels = [figure.add_subplot(rows, columns, 1 + place) for place in range(len(names))]
     drawn = [draw_map(axes, name, shown) for axes, name in zip(panels, names, strict=True)]
     bar = figure.colorbar(drawn[0], ax=panels, shrink=0.8, pad=0.01)
-    signed = shown.image.kind == "signed"
-    label = "amplitude" if signed else "power (dB below the largest of each map)"
-    bar.set_label(label, fontsize=9)
+    powers = "power (dB below the largest of each map)"
+    bar.set_label("amplitude" if shown.image.kind == "signed" else powers, fontsize=9)
     figure.suptitle(shown.title, fontsize=11)
     write_figure(figure, path, 90)
 

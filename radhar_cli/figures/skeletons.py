@@ -10,7 +10,7 @@ from radhar_cli.figures.sides import Parents, bones
 
 # What lies across and which way: seen from the radar left is left; from the person's left.
 SIDES = {"from the radar": (1, -1), "from the side": (0, 1)}
-REACH_M = 1.15
+REACH = np.array([-1.15, 1.15])  # m
 
 
 def skeletons_png(pairs: Sequence[tuple[Float, Float, str]], parents: Parents, title: str) -> bytes:
@@ -28,10 +28,8 @@ def skeletons_png(pairs: Sequence[tuple[Float, Float, str]], parents: Parents, t
                 for bone in bones(joints, parents):
                     axes.plot(sign * bone[:, across], bone[:, 2], color=colour, linewidth=1.6)
                 axes.plot(x, z, "o", color=colour, markersize=2.5, label=name)
-            middle = np.array([sign * true[:, across].mean(), true[:, 2].mean()])
-            axes.set_xlim(middle[0] - REACH_M, middle[0] + REACH_M)
-            axes.set_ylim(middle[1] - REACH_M, middle[1] + REACH_M)
-            axes.set_aspect("equal")
+            x, z = (middle + REACH for middle in (sign * true[:, across].mean(), true[:, 2].mean()))
+            axes.set(xlim=x, ylim=z, aspect="equal")
             axes.set_title(caption, fontsize=6)
             axes.tick_params(labelsize=5)
         row[0].set_ylabel(f"{side}, m", fontsize=7)

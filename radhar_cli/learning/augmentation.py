@@ -54,6 +54,5 @@ def _resampled(levels: Levels, scale: tuple[float, float], shift: tuple[float, f
     change = np.array(scale)
     centre = (np.array(levels.shape) - 1) / 2
     offset = centre - (centre + np.array(shift)) / change
-    return np.asarray(
-        ndimage.affine_transform(levels.astype(np.float32), 1 / change, offset, order=1)
-    )
+    single = levels.astype(np.float32)
+    return np.asarray(ndimage.affine_transform(single, 1 / change, offset, order=1))

@@ -13,12 +13,12 @@ from typing import Annotated, Any
 
 import torch
 from pydantic import Field, ValidationError, field_validator, model_validator
-from pydantic_core import PydanticCustomError
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save as safetensors_bytes
 from torch import Tensor, nn
 from typing_extensions import TypedDict
 
+from radhar_cli.config.number import must, wrong
 from radhar_cli.config.schema import Section
 from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
@@ -56,7 +56,11 @@ class RunMetadata(Section):
     """What a model was trained for and on; stored with its weights."""
 
     model: Name
-    classes: Annotated[tuple[Name, ...], Field(min_length=1, max_length=MAX_CLASSES)]
+    classes: Annotated[
+        tuple[Name, ...],
+        Field(min_length=1, max_length=MAX_CLASSES),
+        must(lambda value: len(set(value)) == len(value), "should name each class once"),
+    ]
     size: tuple[Side, Side]  # (height, width)
     map: Annotated[Name, Field(pattern=r"^[^/\\]*[^/\\.][^/\\]*$")] | None
     channels: Annotated[int, Field(ge=1, le=2**14)] = 3
@@ -71,13 +75,6 @@ class RunMetadata(Section):
     work: dict[str, Any] = Field(default_factory=dict)
     epoch: Annotated[int, Field(ge=1)] | None = None  # with weights, after which they were kept
 
-    @field_validator("classes")
-    @classmethod
-    def _each_once(cls, value: tuple[str, ...]) -> tuple[str, ...]:
-        if len(set(value)) != len(value):
-            raise PydanticCustomError("classes", "should name each class once")
-        return value
-
     @field_validator("config")
     @classmethod
     def _usable(cls, value: dict[str, Any]) -> dict[str, Any]:
@@ -87,9 +84,9 @@ class RunMetadata(Section):
     @model_validator(mode="after")
     def _fits(self) -> "RunMetadata":
         if not len(self.mean) == len(self.sd) in (1, self.channels):
-            raise PydanticCustomError("mean", "should have a mean and an sd for each channel")
+            raise wrong("should have a mean and an sd for each channel")
         if self.model != self.settings.model or (self.finds_joints and not self.joints):
-            raise PydanticCustomError("model", "should be that of its config")
+            raise wrong("should be that of its config")
         return self
 
     @property

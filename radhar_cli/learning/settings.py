@@ -4,8 +4,8 @@ from math import log2
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
 
+from radhar_cli.config.number import wrong
 from radhar_cli.config.schema import Section
 
 
@@ -13,9 +13,7 @@ def _auto_or(least: int) -> BeforeValidator:
     def check(value: object) -> object:
         whole = isinstance(value, int) and not isinstance(value, bool) and value >= least
         if value != "auto" and not whole:
-            raise PydanticCustomError(
-                "auto", "should be auto or a whole number of at least {least}", {"least": least}
-            )
+            raise wrong(f"should be auto or a whole number of at least {least}")
         return value
 
     return BeforeValidator(check)
@@ -154,15 +152,11 @@ class TrainConfig(Section):
     @model_validator(mode="after")
     def _fits(self) -> "TrainConfig":
         if self.warmup_epochs > self.epochs:
-            raise PydanticCustomError("warmup", "should have warmup_epochs of at most epochs")
+            raise wrong("should have warmup_epochs of at most epochs")
         if self.target == "skeleton" and self.model not in OF_SEQUENCES:
-            raise PydanticCustomError(
-                "skeleton", "should have model: cloudnet or framenet for target: skeleton"
-            )
+            raise wrong("should have model: cloudnet or framenet for target: skeleton")
         if self.augment != AugmentConfig() and self.model in OF_SEQUENCES:
-            raise PydanticCustomError("augment", "should have no augment, which is of images")
+            raise wrong("should have no augment, which is of images")
         if self.augment != AugmentConfig() and self.input != "gray":
-            raise PydanticCustomError(
-                "gray", "should have input: gray for augment, which changes grey levels"
-            )
+            raise wrong("should have input: gray for augment, which changes grey levels")
         return self

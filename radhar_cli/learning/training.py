@@ -17,7 +17,7 @@ from radhar_cli.arrays import Index
 from radhar_cli.config.identity import resolved
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError, FolderError, RadharError
-from radhar_cli.learning import run_files
+from radhar_cli.learning import machine, run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.batches import Labels, Reader, epoch_batches, epoch_order, pieces
@@ -26,13 +26,6 @@ from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_inputs
 from radhar_cli.learning.images.scan import content_hash, scan
-from radhar_cli.learning.machine import (
-    autocast,
-    choose_device,
-    choose_precision,
-    reading_workers,
-    repeatable,
-)
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.optimiser import check_state, optimiser_for, rate
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
@@ -84,7 +77,7 @@ class Outcome:
 
 def train(
     config: TrainConfig,
-    data: Path | Sequence[Path],
+    data: Path | Sequence[Path] | ImageSet,
     folder: Path,
     progress: TrainingProgress,
     overwrite: bool = False,
@@ -94,7 +87,7 @@ def train(
     """Train `config` on `data` in `folder`, or resume; nothing to do where it is complete.
 
     Args:
-        data: a data set, or several that are combined.
+        data: a data set, several that are combined, or images that are open already.
         overwrite: start over in a folder that holds a run.
         names: {class of the data: class here, or None to leave it out}.
         start: a run whose best weights and normalisation are the initial ones; those of the last
@@ -108,24 +101,12 @@ def train(
         TrainingError: a step too large for memory, or a loss that is not finite; earlier
             checkpoints are kept.
     """
-    images = checked_images(config, data, names)
-    return train_on(config, images, folder, progress, overwrite, start)
-
-
-def train_on(
-    config: TrainConfig,
-    images: ImageSet,
-    folder: Path,
-    progress: TrainingProgress,
-    overwrite: bool = False,
-    start: Path | None = None,
-) -> Outcome:
-    """As `train`, on images that are open already."""
+    images = data if isinstance(data, ImageSet) else checked_images(config, data, names)
     config = config.for_images(images.rows("train").size, images.frames)
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
-    device = choose_device(config.device)
-    repeatable(device)
+    device = machine.choose_device(config.device)
+    machine.repeatable(device)
     if device.type == "cpu":
         keep_memory()
     with folder_lock(folder):
@@ -191,7 +172,7 @@ class _Training:
     ) -> None:
         self.config, self.images, self.folder = config, images, folder
         self.progress, self.device = progress, device
-        self.precision = choose_precision(config.precision, device)
+        self.precision = machine.choose_precision(config.precision, device)
         self.history: list[Epoch] = []
         torch.manual_seed(config.seed)
         joints = config.target == "skeleton"
@@ -219,7 +200,7 @@ class _Training:
         augmentation = None
         if config.augment != AugmentConfig():
             augmentation = Augmentation(config.augment, config.seed)
-        wanted, workers = _wanted(config, images), reading_workers(config.workers, device)
+        wanted, workers = _wanted(config, images), machine.reading_workers(config.workers, device)
         pin = device.type == "cuda"
         reader = Reader(images.pixels, wanted, augmentation, workers, pin)
         for epoch in range(resumed, config.epochs):
@@ -331,7 +312,7 @@ class _Training:
     def _loss(self, network: nn.Module, levels: Tensor, labels: Tensor) -> tuple[Tensor, float]:
         """Sums over a batch of the loss, and of what is right: classes, or shares of the joints."""
         x = self.metadata.normalisation(levels.to(self.device, non_blocking=True))
-        with autocast(self.device, self.precision):
+        with machine.autocast(self.device, self.precision):
             outputs: Tensor = network(x)
         wanted, smoothing = labels.to(self.device), self.config.label_smoothing
         return loss_and_right(self.config.target, outputs.float(), wanted, smoothing)

@@ -18,11 +18,8 @@ _clips: OrderedDict[tuple[Any, ...], Clip] = OrderedDict()
 
 def file_motion(person: Person) -> FileMotion:
     """The motion of a person whose class has files; MotionFileError of one that cannot be used."""
-    one, slug, folder = (
-        person.config.files_of(person.activity),
-        person.activity.slug,
-        person.motion.folder,
-    )
+    one, slug = person.config.files_of(person.activity), person.activity.slug
+    folder = person.motion.folder
     assert one is not None
     assert one.file is not None
     numbers = person.own_class

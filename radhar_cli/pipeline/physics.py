@@ -16,13 +16,7 @@ from radhar_cli.motion.protocol import Motion, Only, remembered
 from radhar_cli.motion.reflectors import TONES, Reflectors
 from radhar_cli.motion.segments import found_segments, landmarks_of, thickness
 from radhar_cli.pipeline.segment_paths import Body
-from radhar_cli.processing.canceller import (
-    FIRST_DIFFERENCE,
-    NO_CANCELLER,
-    Canceller,
-    HighPass,
-    MeanRemoval,
-)
+from radhar_cli.processing import canceller
 from radhar_cli.processing.cfar import CellAveraging
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate, around, interval
@@ -252,24 +246,14 @@ def impairments_of(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impair
     are the same in all channels, phases included.
     """
     receiver, impairments = scene.receiver, list[Impairment]()
-    corner = receiver.noise_corner_hz
+    corner, slope = receiver.noise_corner_hz, receiver.noise_slope_db
     if corner > 0:
-        slope = receiver.noise_slope_db
         impairments.append(FlickerNoise(noise.sigma, noise.stream, corner, slope))
+    of_scene = partial(noise_stream, scene)
     for number, tone in enumerate(receiver.tones):
-        amplitude = noise.sigma * 10 ** (tone.level_db / 20)
+        line = noise.sigma * 10 ** (tone.level_db / 20), tone.doppler_hz, w
         times = tone.on_s, tone.off_s
-        impairments.append(
-            Line(
-                amplitude,
-                tone.doppler_hz,
-                w,
-                partial(noise_stream, scene),
-                f"line {number}",
-                *times,
-                tone.both_sides,
-            )
-        )
+        impairments.append(Line(*line, of_scene, f"line {number}", *times, tone.both_sides))
     return tuple(impairments)
 
 
@@ -289,23 +273,21 @@ def _paper_body(person: Person) -> PaperBody:
             turn=radians(motion.turn_deg),
             speed=motion.speed_mps,
         ),
-        timing=Timing(
-            **{field.name: getattr(timing, f"{field.name}_s") for field in fields(Timing)}
-        ),
+        timing=Timing(**{one.name: getattr(timing, f"{one.name}_s") for one in fields(Timing)}),
     )
 
 
-def canceller_of(config: AnyConfig, prf: float) -> Canceller:
+def canceller_of(config: AnyConfig, prf: float) -> canceller.Canceller:
     """The canceller of a config, for pulses per second."""
     given = config.processing.highpass
     match config.processing.clutter:
         case "difference":
-            return FIRST_DIFFERENCE
+            return canceller.FIRST_DIFFERENCE
         case "mean":
-            return MeanRemoval()
+            return canceller.MeanRemoval()
         case "none":
-            return NO_CANCELLER
-    return HighPass(given.order, given.cutoff(prf), given.zero_phase, given.remove_mean)
+            return canceller.NO_CANCELLER
+    return canceller.HighPass(given.order, given.cutoff(prf), given.zero_phase, given.remove_mean)
 
 
 def gate_of(config: AnyConfig, ranges: Float, torso: Float | None) -> Gate:

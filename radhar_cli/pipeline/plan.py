@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from radhar_cli.errors import RadharError
+
 
 @dataclass(frozen=True)
 class Product:
@@ -48,13 +50,16 @@ def plan(table: Mapping[str, Product], asked: Iterable[str], given: Iterable[str
     """The products of a table {name: product} that these need, less those given, in running order.
 
     Raises:
-        KeyError: a product is neither in the table nor given.
+        RadharError: a product is neither in the table nor given.
     """
     asked, ordered, there = tuple(asked), dict[str, Product](), set(given)
 
     def visit(name: str) -> None:
         if name in there or name in ordered:
             return
+        if name not in table:
+            by = ", ".join(one.name for one in table.values() if name in one.needs)
+            raise RadharError(f"product {name!r}: is unknown" + (f"; {by} needs it" if by else ""))
         for need in table[name].needs:
             visit(need)
         ordered[name] = table[name]

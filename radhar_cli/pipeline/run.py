@@ -8,13 +8,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.config.schema import AnyConfig
-from radhar_cli.pipeline.physics import (
-    canceller_of,
-    cfar_of,
-    frames_of,
-    fsst_frames_of,
-    gate_in_windows,
-)
+from radhar_cli.pipeline import physics
 from radhar_cli.pipeline.plan import Plan, Product, plan
 from radhar_cli.pipeline.products import products, products_of_signals
 from radhar_cli.processing.signal import Signal
@@ -73,18 +67,18 @@ def process(
     does a gate that follows the torso.
 
     Raises:
-        KeyError: a product would need a scene.
+        RadharError: a product would need a scene.
     """
     table = products_of_signals(config) | {product.name: product for product in more}
     duration = signal.pulses / signal.prf
     given = {
-        "frames": frames_of(config, duration, signal.prf, signal.f0),
-        "fsst_frames": fsst_frames_of(config, duration, signal.prf, signal.f0),
-        "canceller": canceller_of(config, signal.prf),
+        "frames": physics.frames_of(config, duration, signal.prf, signal.f0),
+        "fsst_frames": physics.fsst_frames_of(config, duration, signal.prf, signal.f0),
+        "canceller": physics.canceller_of(config, signal.prf),
         **given,
     }
     if config.image.kind == "cfar":
-        given.setdefault("cfar", cfar_of(config))
+        given.setdefault("cfar", physics.cfar_of(config))
     if signal.ranges is None:
         given = {"signal": signal, **given}
     else:
@@ -94,7 +88,9 @@ def process(
             later = after.t + canceller.lost / 2 / signal.prf
             given["torso_track"] = np.interp(later, signal.t, track)
             if gated:
-                given["gate"] = gate_in_windows(config, after, given["frames"], signal.t, track)
+                given["gate"] = physics.gate_in_windows(
+                    config, after, given["frames"], signal.t, track
+                )
         profiles = after.columns(config.image.size_px[1])
         made = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
         given = {**made, "range_axis": signal.ranges, **given}

@@ -56,9 +56,7 @@ def _frame_points(x: Complex, board: Board, pfa: float, step: float, bias: float
     if not ranges.size:
         return np.empty((0, len(COLUMNS)))
     first, stop = max(ranges[0] - 1, 0), min(ranges[-1] + 2, len(power))
-    turned = without_turns(x, board)[..., first:stop].transpose(
-        2, 0, 1
-    )  # [range, Doppler, virtual]
+    turned = without_turns(x, board).transpose(2, 0, 1)[first:stop]  # [range, Doppler, virtual]
     row = elevation_pair(board)[0]
     beams = np.abs(np.fft.fft(turned[..., row], BEAMS) / len(row)) ** 2
     around = (3, 3, 2 * BEAMS // len(row) // 2 + 1)

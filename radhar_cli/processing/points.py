@@ -123,10 +123,7 @@ def _above(d: Float, cfar: Cfar, axis: int) -> Float:
     wrapped = np.concatenate([d[..., count - reach :], d, d[..., :reach]], axis=-1)
     windows = np.lib.stride_tricks.sliding_window_view(wrapped, cfar.window, axis=-1)
     means = windows.mean(axis=-1)
-    left, right = (
-        means[..., :count].copy(),
-        means[..., reach + cfar.guard + 1 :][..., :count].copy(),
-    )
+    left, right = means[..., :count].copy(), means[..., -count:].copy()
     if not cfar.cyclic:
         left[..., :reach] = np.nan
         right[..., max(count - reach, 0) :] = np.nan

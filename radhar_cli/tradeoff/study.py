@@ -1,6 +1,7 @@
 """The whole sweep: errors and times of every setting, put together into rows."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from math import inf
 from statistics import median, quantiles
 from typing import Any, TypeAlias
@@ -22,7 +23,10 @@ def run_sweep(scenes: Scenes, progress: Progress) -> list[Record]:
     for slug in names:
         scene = SceneErrors(scenes, slug)
         for setting in settings:
-            found[setting].append(_of(scene, setting))
+            errors = None  # of a scene that is refused
+            with suppress(RadharError):
+                errors = scene.of(setting)
+            found[setting].append(errors)
             progress.advance(1)
     times: dict[Setting, list[Times]] = {setting: [] for setting in settings}
     timed = [setting for setting in settings if None not in found[setting]]
@@ -46,14 +50,6 @@ def possible(scenes: Scenes, progress: Progress) -> list[Setting]:
             continue
         settings.append(setting)
     return settings
-
-
-def _of(scene: SceneErrors, setting: Setting) -> Errors | None:
-    """Errors in a scene, None where it is refused."""
-    try:
-        return scene.of(setting)
-    except RadharError:
-        return None
 
 
 def _row(setting: Setting, times: Sequence[Times], found: Sequence[Errors | None]) -> Record:

@@ -10,7 +10,7 @@ from signals import signal
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config.schema import Config
-from radhar_cli.errors import ConfigError
+from radhar_cli.errors import ConfigError, RadharError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import Results, process
 from radhar_cli.pipeline.run import record as record_scene
@@ -153,7 +153,7 @@ class TestRecording:
         config = scene_of(processing=gate, **wide).config
         assert process(signals, config, ["stft"])["stft"].power.any()
         around = scene_of(processing={"gate_m": 1.0}).config
-        with pytest.raises(KeyError):
+        with pytest.raises(RadharError):
             process(signals, around, ["stft"])
 
 

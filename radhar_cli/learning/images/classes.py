@@ -9,9 +9,9 @@ from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.images.image_set import ImageSet
 
 
-def read_classes(path: Path) -> dict[str, str | None]:
-    """Read `foreign name: our name`, or `null` for a class to leave out."""
-    names = load_mapping(path)
+def read_classes(path: Path | None) -> dict[str, str | None]:
+    """Read `foreign name: our name`, or `null` for a class to leave out; none without a file."""
+    names = load_mapping(path) if path else {}
     for foreign, ours in names.items():
         if ours is not None and (not isinstance(ours, str) or not ours):
             raise ConfigError(

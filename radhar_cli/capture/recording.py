@@ -56,26 +56,19 @@ class SourceNote(_Part):
 
 
 class RecordingInfo(_Part):
-    """The attribute `recording` of a recording file.
+    """The attribute `recording` of a recording file."""
 
-    Attributes:
-        carrier_hz: at the first sample of a chirp; of slow time, the frequency of its Doppler.
-        prf_hz: pulses per second of one receiver within a segment.
-        bandwidth_hz, adc_rate_hz, samples: of a chirp; None of slow time.
-        receivers, pulses: shape of the samples.
-        segments: stretches of pulses without a gap.
-        receiver_delay_s: delay of each receiver's pulses, if transmitters take turns.
-        labels, source: see `Label` and `SourceNote`.
-    """
-
-    carrier_hz: Hertz
-    prf_hz: Hertz
+    carrier_hz: Hertz  # at the first sample of a chirp; of slow time, the frequency of its Doppler
+    prf_hz: Hertz  # pulses per second of one receiver within a segment
+    # of a chirp; None of slow time
     bandwidth_hz: Hertz | None = None
     adc_rate_hz: Hertz | None = None
     samples: Annotated[int, Field(ge=2, le=2**24)] | None = None
+    # shape of the samples
     receivers: Annotated[int, Field(ge=1, le=2**16)]
     pulses: Whole
-    segments: Whole = 1
+    segments: Whole = 1  # stretches of pulses without a gap
+    # delay of each receiver's pulses, if transmitters take turns
     receiver_delay_s: Annotated[list[float], Field(max_length=2**16)]
     labels: Annotated[list[Label], Field(max_length=10_000)] = []
     source: SourceNote
@@ -215,12 +208,8 @@ class Recording(Closing):
         start = self._file.column("segment_start", "f8", shape)[:]
         first = self._file.column("segment_first", "i8", shape)[:]
         lengths = np.diff(first, append=self.info.pulses)
-        if (
-            first[0] != 0
-            or not np.isfinite(start).all()
-            or (lengths < 1).any()
-            or (np.diff(start) <= 0).any()
-        ):
+        ordered = (lengths >= 1).all() and (np.diff(start) > 0).all()
+        if first[0] != 0 or not np.isfinite(start).all() or not ordered:
             raise FolderError(f"{self.path}: /segment_first: segments should be in order")
         return PulseTimes(start, first, self.info.pulses, self.info.prf_hz)
 

@@ -21,48 +21,35 @@ USUAL_AXES: dict[int, tuple[AxisName, ...]] = {
 
 
 class CaptureSettings(Section):
-    """The header of a capture; None is unknown, and requested where it is needed.
+    """The header of a capture; None is unknown, and requested where it is needed."""
 
-    Attributes:
-        carrier_hz: at the first sample of a chirp; of slow time, the frequency of its Doppler.
-        bandwidth_hz: swept while the samples are taken.
-        adc_rate_hz: samples per second within a chirp.
-        prf_hz: pulses per second of one transmitter: 1/(transmitters times chirp interval).
-        samples: of a chirp, N_ADC.
-        receivers, transmitters: antennas; transmitters take turns (TDM-MIMO).
-        frame_pulses: pulses of one transmitter in a frame; None where slow time has no frames.
-        frame_s: from the start of a frame to that of the next.
-        lanes, interleaved, receiver_lanes: of TI's LVDS stream; see dca1000.py.
-        iq: which part comes first.
-        complex: whether samples have two parts.
-        adc_bits: of a sample.
-        coding: of whole numbers, two's complement or offset binary; detected if None.
-        beat: half of the spectrum with the targets: `negative` is radhar's exp(-j 2 pi K tau t),
-            `positive` TI's; detected if None.
-        dataset, times: names of the samples, and of the pulses' times (s), within the file.
-        axes: of an array, outermost first, in the order of the program that wrote it.
-        label, person: of the whole recording.
-    """
-
+    # at the first sample of a chirp; of slow time, the frequency of its Doppler
     carrier_hz: Above | None = None
-    bandwidth_hz: Above | None = None
-    adc_rate_hz: Above | None = None
+    bandwidth_hz: Above | None = None  # swept while the samples are taken
+    adc_rate_hz: Above | None = None  # samples per second within a chirp
+    # pulses per second of one transmitter: 1/(transmitters times chirp interval)
     prf_hz: Above | None = None
-    samples: Annotated[int, Field(ge=2, le=2**24, strict=True)] | None = None
+    samples: Annotated[int, Field(ge=2, le=2**24, strict=True)] | None = None  # of a chirp
     receivers: Annotated[int, Field(ge=1, le=64, strict=True)] | None = None
-    transmitters: Annotated[int, Field(ge=1, le=512, strict=True)] = 1
-    frame_pulses: Count | None = None
-    frame_s: Above | None = None
+    transmitters: Annotated[int, Field(ge=1, le=512, strict=True)] = 1  # they take turns
+    frame_pulses: Count | None = None  # of one transmitter; None where slow time has no frames
+    frame_s: Above | None = None  # from the start of a frame to that of the next
+    # of TI's LVDS stream; see dca1000.py
     lanes: Literal[2, 4] | None = None
     interleaved: Annotated[bool, Field(strict=True)] | None = None
     receiver_lanes: tuple[Annotated[int, Field(ge=0, le=3, strict=True)], ...] | None = None
-    iq: Literal["iq", "qi"] = "iq"
-    complex: Annotated[bool, Field(strict=True)] = True
+    iq: Literal["iq", "qi"] = "iq"  # which part comes first
+    complex: Annotated[bool, Field(strict=True)] = True  # whether samples have two parts
     adc_bits: Literal[12, 14, 16] = 16
+    # of whole numbers, two's complement or offset binary; detected if None
     coding: Literal["signed", "offset"] | None = None
+    # half of the spectrum with the targets: negative is radhar's exp(-j 2 pi K tau t), positive
+    # TI's; detected if None
     beat: Literal["negative", "positive"] | None = None
+    # names of the samples, and of the pulses' times (s), within the file
     dataset: Text | None = None
     times: Text | None = None
+    # of an array, outermost first, in the order of the program that wrote it
     axes: Annotated[
         tuple[AxisName, ...] | None,
         must(
@@ -70,7 +57,7 @@ class CaptureSettings(Section):
             "should name each axis once, including pulse",
         ),
     ] = None
-    label: Text | None = None
+    label: Text | None = None  # of the whole recording, as the person
     person: Text | None = None
 
     @property

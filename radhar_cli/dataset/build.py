@@ -43,25 +43,17 @@ BATCH, MAX_BATCH, SHARE, BATCH_BYTES = 32, 1024, 64, 2**28
 
 @dataclass(frozen=True)
 class BuildOutcome:
-    """What a build did.
+    """What a build did."""
 
-    Attributes:
-        folder: the output folder.
-        samples: in the data set.
-        made: samples synthesised by this run.
-        pngs: PNG files written by this run outside of batches.
-        warnings: physical warnings.
-        already_complete: nothing was missing.
-    """
-
-    folder: Path
-    samples: int
-    made: int
-    pngs: int
-    warnings: list[dict[str, Any]] = field(default_factory=list)
+    folder: Path  # the output folder
+    samples: int  # in the data set
+    made: int  # of them, synthesised by this run
+    pngs: int  # PNG files written by this run outside of batches
+    warnings: list[dict[str, Any]] = field(default_factory=list)  # physical ones
 
     @property
     def already_complete(self) -> bool:
+        """Whether nothing was missing."""
         return self.made == 0 and self.pngs == 0
 
 

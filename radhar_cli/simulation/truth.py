@@ -24,44 +24,29 @@ WHOLE = "the whole activity"
 
 @dataclass(frozen=True)
 class Truth:
-    """Kinematics at every pulse, or at other times.
+    """Kinematics at every pulse, or at other times."""
 
-    Attributes:
-        time: t_m [M], s.
-        positions: [M, I, 3], m.
-        radial_velocity: half the rate of the two-way path [M, I], m/s, positive receding.
-        doppler: -f0 dtau/dt [M, I], Hz, the wall's delay included, before aliasing.
-        phase_label: number in `phases` of the movement under way [M].
-        phases: names of the movements within the activity.
-        hip_joints: where thighs begin, right and left [M, 2, 3], m; None where it is the hip.
-    """
-
-    time: Float = field(repr=False)
-    positions: Float = field(repr=False)
+    time: Float = field(repr=False)  # t_m [M], s
+    positions: Float = field(repr=False)  # [M, I, 3], m
+    # half the rate of the two-way path [M, I], m/s, positive receding
     radial_velocity: Float = field(repr=False)
-    doppler: Float = field(repr=False)
-    phase_label: Levels = field(repr=False)
-    phases: tuple[str, ...]
+    doppler: Float = field(repr=False)  # -f0 dtau/dt [M, I], Hz, with the wall, before aliasing
+    phase_label: Levels = field(repr=False)  # number in `phases` of what is under way [M]
+    phases: tuple[str, ...]  # names of the movements within the activity
+    # where thighs begin, right and left [M, 2, 3], m; None where it is the hip
     hip_joints: Float | None = field(default=None, repr=False)
 
 
 class PathTruth(NamedTuple):
-    """Every path of a scene: of everybody, straight and by way of the room.
+    """Every path of a scene: of everybody, straight and by way of the room."""
 
-    Attributes:
-        time: of the pulses that a range-time map shows [M], s.
-        delay, amplitude: [I, M], s and for unit transmit power.
-        kind: faces of the leg of the transmitter/of the receiver [I].
-        person, scatterer, bounces: numbers [I]; person -1 is what stands in the room.
-    """
-
-    time: Float
-    delay: Float
-    amplitude: Float
-    kind: list[str]
-    person: Index
-    scatterer: Index
-    bounces: Index
+    time: Float  # of the pulses that a range-time map shows [M], s
+    delay: Float  # [I, M], s
+    amplitude: Float  # [I, M], for unit transmit power
+    kind: list[str]  # faces of the leg of the transmitter/of the receiver [I]
+    person: Index  # number [I]; -1 is what stands in the room
+    scatterer: Index  # number [I]
+    bounces: Index  # of both legs [I]
 
 
 def path_truth(sources: list[Whose], t: Float) -> PathTruth:

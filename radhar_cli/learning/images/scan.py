@@ -13,17 +13,12 @@ from radhar_cli.learning.images.image_set import ImageSet
 
 @dataclass(frozen=True)
 class Scan:
-    """Digests and statistics of some images.
+    """Digests and statistics of some images."""
 
-    Attributes:
-        digests: [rows] of each image's pixels.
-        mean: of each channel, of levels from 0 to 1; of all frames of a sequence together.
-        sd: standard deviation of each, 1 where it is constant.
-    """
-
-    digests: tuple[str, ...]
+    digests: tuple[str, ...]  # [rows] of each image's pixels
+    # of each channel, of levels from 0 to 1; of all frames of a sequence together
     mean: tuple[float, ...]
-    sd: tuple[float, ...]
+    sd: tuple[float, ...]  # standard deviation of each, 1 where it is constant
 
 
 def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:

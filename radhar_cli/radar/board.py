@@ -183,14 +183,9 @@ class Board:
     @property
     def seen_as(self) -> Waveform:
         """A waveform of the centre frequency, as paths are computed for, without gaps."""
-        return Waveform(
-            self.centre,
-            self.slope * self.samples / self.adc_rate,
-            self.samples / self.adc_rate,
-            self.adc_rate,
-            1 / self.loop,
-            self.frames * self.period,
-        )
+        chirp, band = self.samples / self.adc_rate, self.slope * self.samples / self.adc_rate
+        timing = self.adc_rate, 1 / self.loop, self.frames * self.period
+        return Waveform(self.centre, band, chirp, *timing)
 
     @cached_property
     def waveform(self) -> Waveform:

@@ -1,7 +1,7 @@
 """Permittivity of building materials: ITU-R P.2040-3, table 3."""
 
 from math import pi
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
@@ -32,7 +32,6 @@ NUMBERS = {
     "floorboard": (3.66, 0.0044, 1.3515),
     "metal": (1.0, 1e7, 0.0),
 }
-MATERIALS: tuple[Material, ...] = get_args(Material)
 
 
 def permittivity(material: str, f: Float) -> Complex:

@@ -28,7 +28,7 @@ from radhar_cli.motion.files.recording import (
 MAX_NAMES_BYTES = 2**20
 _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # as NumPy writes; others can ask for memory
 _DAMAGE = (
-    *(zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError),
+    *(zipfile.BadZipFile, zlib.error, struct.error, RuntimeError),
     *(EOFError, ValueError, OSError),
 )
 

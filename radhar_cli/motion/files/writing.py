@@ -23,9 +23,8 @@ class _Node(NamedTuple):
     name: str
     joint: str
     parent: int | None
-    rest: tuple[
-        float, float, float
-    ]  # where its link points in the rest pose: y up, z ahead, x left
+    # where its link points in the rest pose: y up, z ahead, x left
+    rest: tuple[float, float, float]
 
 
 _ARM = (("Arm", "shoulder"), ("ForeArm", "elbow"), ("Hand", "hand"))

@@ -57,10 +57,6 @@ class Posture:
     twist: Float | float = 0.0  # yaw beyond the motion angle [M], rad
 
 
-def _stationary(t: Float, gait: PaperGait, timing: Timing) -> Posture:
-    return Posture()
-
-
 def _punching(t: Float, gait: PaperGait, timing: Timing) -> Posture:
     phase = 2 * pi * gait.frequency * t
     swing, stretch = gait.arm * np.sin(phase), gait.calf * np.cos(phase)
@@ -216,7 +212,7 @@ def _lying(share: Float) -> Posture:
 
 
 PAPER_ACTIVITIES: dict[str, PaperActivity] = {
-    "stationary": _repeated(_stationary, "standing", swings=False),
+    "stationary": _repeated(lambda *_: Posture(), "standing", swings=False),
     "punching": _repeated(_punching, "punching"),
     "kicking": _repeated(_kicking, "kicking"),
     "grabbing": _repeated(_grabbing, "picking up"),

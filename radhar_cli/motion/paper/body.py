@@ -1,6 +1,7 @@
 """Forward kinematics: angles -> positions of the 13 scatterers (paper, equations 1 and 2)."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -29,20 +30,14 @@ class PaperBody:
     # gait, timing: how and when the limbs move
     gait: PaperGait
     timing: Timing
-    links: Float = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "links", skeleton.links(self.height))
+    names = JOINTS
+    parents = PARENTS
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The 13 joints."""
-        return JOINTS
-
-    @property
-    def parents(self) -> tuple[int | None, ...]:
-        """The joint that each one hangs on."""
-        return PARENTS
+    @cached_property
+    def links(self) -> Float:
+        """Vectors [13, 3] (m) from the joint that each one hangs on."""
+        return skeleton.links(self.height)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -80,10 +75,8 @@ class PaperBody:
         if np.any(now.seated):
             bend = np.pi / 2 * np.asarray(now.seated)
             for side in ("right", "left"):
-                now.angles[f"{side}_knee"] = np.asarray(now.angles.get(f"{side}_knee", 0.0)) - bend
-                now.angles[f"{side}_ankle"] = (
-                    np.asarray(now.angles.get(f"{side}_ankle", 0.0)) + bend
-                )
+                for joint, sign in ((f"{side}_knee", -1), (f"{side}_ankle", 1)):
+                    now.angles[joint] = np.asarray(now.angles.get(joint, 0.0)) + sign * bend
         p = np.empty((3, len(JOINTS), t.size))
         p[:, TORSO] = self._torso(now, t.size)
         forward, sideways = self._relative(now, p)

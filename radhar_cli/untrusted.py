@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import Any, Self
 
-from radhar_cli.errors import FolderError
+from radhar_cli.errors import FolderError, RadharError
 
 DEEPEST = 32
 MAX_JSON = 2**20  # characters
@@ -71,6 +71,17 @@ def read_text(path: Path, most: int) -> str:
     if len(data) > most:
         raise OSError(errno.EFBIG, f"holds more than {most} bytes", str(path))
     return data.decode()
+
+
+def text_of(path: Path, most: int, refused: type[RadharError]) -> str:
+    """`read_text` of a file that a user named; an error of this kind says what is wrong."""
+    try:
+        return read_text(path, most)
+    except FileNotFoundError:
+        raise refused(f"{path}: no such file") from None
+    except (OSError, ValueError) as error:  # no UTF-8; no name of a file
+        told = getattr(error, "strerror", None) or error
+        raise refused(f"{path}: cannot be read as text ({told})") from None
 
 
 def read_json(path: Path) -> Any:

@@ -28,7 +28,7 @@ from radhar_cli.pipeline.products import image_of
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import nominal_scene
-from radhar_cli.untrusted import read_text, refuse_outside
+from radhar_cli.untrusted import refuse_outside, text_of
 
 MAX_MANIFEST = 2**20  # bytes
 MAX_CONFIG = 2**19  # characters of the resolved config: two of it lie beside the data set
@@ -40,11 +40,7 @@ def read_manifest(path: Path) -> list[dict[str, Any]]:
 
     Columns: file (below the manifest's folder), label, and if wanted person, start and stop (s).
     """
-    try:
-        text = read_text(path, MAX_MANIFEST)
-    except (OSError, UnicodeDecodeError) as error:
-        told = getattr(error, "strerror", None) or error
-        raise ConfigError(f"{path}: cannot be read as text ({told})") from None
+    text = text_of(path, MAX_MANIFEST, ConfigError)
     if path.suffix.lower() in (".yaml", ".yml"):
         rows = parse_yaml(text, str(path))[0]
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 from radhar_cli.config.number import FORMS
 from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
 from radhar_cli.errors import ConfigError
-from radhar_cli.untrusted import read_text
+from radhar_cli.untrusted import read_text, text_of
 
 Document: TypeAlias = dict[str, Any]
 Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
@@ -24,17 +24,8 @@ _ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are repla
 
 def read_document(path: Path) -> tuple[Document, Places]:
     """A file of keys and values, and where each key stands."""
-    try:
-        text = read_text(path, MAX_TEXT)
-    except FileNotFoundError:
-        raise ConfigError(f"{path}: no such file") from None
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read as text ({error.strerror})") from None
-    except ValueError as error:  # no UTF-8; no name of a file
-        raise ConfigError(f"{path}: cannot be read as text ({error})") from None
-    document, lines = parse_yaml(text, str(path))
-    if document is None:
-        document = {}
+    document, lines = parse_yaml(text_of(path, MAX_TEXT, ConfigError), str(path))
+    document = {} if document is None else document
     if not isinstance(document, dict):
         raise ConfigError(f"{path}: should be a mapping of keys such as 'seed: 1'")
     places = {key: f"{path}:{line}" for key, line in lines.items()}

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 
 from radhar_cli.config.annotations import section
 from radhar_cli.config.checks import Problem
-from radhar_cli.config.documents import BASE, Places, cfg_text, read_document, read_on_bases
+from radhar_cli.config.documents import BASE, Places, cfg_text, read_on_bases
 from radhar_cli.config.motion_files import with_files
 from radhar_cli.config.schema import Config, ConfigOfRecordings, Section
 from radhar_cli.config.yaml_reader import parse_yaml
@@ -81,15 +81,9 @@ def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()
     return _load(kind, path, overrides)[0]
 
 
-def _option_and_text(override: str) -> tuple[str, str]:
-    """The option that an override names, if it does, and its text."""
-    option, _, text = override.partition(" ") if override.startswith("--") else ("", "", override)
-    return option, text
-
-
 def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S, Places, Options]:
     """The config, the places of its keys, and the options that gave some of them."""
-    given = [_option_and_text(override) for override in overrides]
+    given = [one.partition(" ")[::2] if one.startswith("--") else ("", one) for one in overrides]
     bases = [text for _, text in given if text.partition("=")[0].strip() == BASE]
     document, places = read_on_bases(path, with_overrides({}, bases))
     options: Options = {}
@@ -101,11 +95,6 @@ def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S
         options[key] = option or f"--set {key}"
     where = str(path) if path else "--set"
     return validated(kind, document, where, places, options), places, options
-
-
-def load_mapping(path: Path) -> dict[str, Any]:
-    """Read a file of plain keys and values."""
-    return read_document(path)[0]
 
 
 def validated(

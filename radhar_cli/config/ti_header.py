@@ -18,7 +18,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Section
 from radhar_cli.errors import CaptureError, ConfigError
 from radhar_cli.radar.detection import CA, CAGO, CASO, Cfar, Detection, ti_threshold_db
-from radhar_cli.untrusted import read_json, read_text
+from radhar_cli.untrusted import read_json, text_of
 
 MAX_CFG = 2**16
 MAX_CHIRPS = 512  # of a frame
@@ -98,7 +98,7 @@ def read_header(path: Path) -> dict[str, Any]:
         if path.suffix.lower() == ".json":
             device = validated(_Studio, _studio(path), str(path), {}).devices[0]
         else:
-            device = validated(_Device, *_demo(_text(path), str(path)))
+            device = validated(_Device, *_demo(text_of(path, MAX_CFG, CaptureError), str(path)))
     except ConfigError as error:
         raise CaptureError(str(error).partition("\n")[0]) from None
     if device.lanes.bit_count() not in (2, 4):
@@ -236,14 +236,6 @@ _COMMANDS = {
         ("chirpStartIdx", "chirpEndIdx", "numLoops", "numFrames", "framePeriodicity_msec"),
     ),
 }
-
-
-def _text(path: Path) -> str:
-    try:
-        return read_text(path, MAX_CFG)
-    except (OSError, UnicodeDecodeError) as error:
-        told = getattr(error, "strerror", None) or error
-        raise CaptureError(f"{path}: cannot be read as text ({told})") from None
 
 
 def _demo(text: str, path: str) -> tuple[dict[str, Any], str, dict[str, str]]:

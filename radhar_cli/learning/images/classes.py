@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.config.reading import load_mapping
+from radhar_cli.config.documents import read_document
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.images.image_set import ImageSet
 
 
 def read_classes(path: Path | None) -> dict[str, str | None]:
     """Read `foreign name: our name`, or `null` for a class to leave out; none without a file."""
-    names = load_mapping(path) if path else {}
+    names = read_document(path)[0] if path else {}
     for foreign, ours in names.items():
         if ours is not None and (not isinstance(ours, str) or not ours):
             raise ConfigError(

@@ -26,7 +26,8 @@ from radhar_cli.arrays import Index
 from radhar_cli.config.reading import with_overrides
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.split import TRAIN, VALIDATION
-from radhar_cli.learning.adaptation import Mixed, adapt_to
+from radhar_cli.learning.adaptation import Mixed
+from radhar_cli.learning.adaptation import adapt as adapt_run
 from radhar_cli.learning.evaluation import predict, training_images
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined
@@ -164,9 +165,9 @@ def few_shots(
             beside = Mixed(images, weights)
         if adapt:
             ways[ADAPTED] = here / "adapted"
-            adapt_to(
-                measured.images, measured.rows, run, ways[ADAPTED], device, True, adapt, beside
-            )
+            unlabelled, kept = (measured.images, measured.rows), beside or ()
+            where = (run, unlabelled, ways[ADAPTED], device)
+            adapt_run(*where, overwrite=True, epochs=adapt, mix=kept)
         if k:
             ways[SCRATCH] = here / "from_scratch"
             images, weights = learned_from(opened.metadata, labelled, [], SHOWN)

@@ -63,7 +63,7 @@ class Mixed:
 
 def adapt(
     run: Path,
-    data: Path,
+    data: Path | tuple[ImageSet, Index],
     folder: Path,
     device: torch.device,
     map_name: str | None = None,
@@ -71,7 +71,7 @@ def adapt(
     resize: bool = False,
     overwrite: bool = False,
     epochs: int = 0,
-    mix: Sequence[Path] = (),
+    mix: Sequence[Path] | Mixed = (),
     progress: Messages | None = None,
 ) -> RunMetadata:
     """Write a copy of a run that has learned from all images of `data`.
@@ -81,32 +81,24 @@ def adapt(
     the images should show the classes about as often as those that will be predicted.
 
     Args:
+        data: a data set, or some rows of images that are open already.
         map_name: of a data set, if not the one of the run.
         split: of `data`, where it has any.
         resize: bring images to the model's size.
         epochs: passes in which it learns from the images.
         mix: labelled data sets that it shows as well, those that the run learned from.
     """
-    metadata, _ = load_best(run)
-    images = open_for(metadata, data, map_name, labelled=False, resize=resize)
-    rows, _ = rows_of(images, split)
-    mixed = Mixed(joined([training_images(metadata, path) for path in mix])) if mix else None
-    return adapt_to(images, rows, run, folder, device, overwrite, epochs, mixed, progress)
-
-
-def adapt_to(
-    images: ImageSet,
-    rows: Index,
-    run: Path,
-    folder: Path,
-    device: torch.device,
-    overwrite: bool = False,
-    epochs: int = 0,
-    mixed: Mixed | None = None,
-    progress: Messages | None = None,
-) -> RunMetadata:
-    """As `adapt`, to some rows of images that are open already."""
     metadata, model = load_best(run)
+    if isinstance(data, Path):
+        images = open_for(metadata, data, map_name, labelled=False, resize=resize)
+        rows, _ = rows_of(images, split)
+    else:
+        images, rows = data
+    mixed: Mixed | None = None
+    if isinstance(mix, Mixed):
+        mixed = mix
+    elif mix:
+        mixed = Mixed(joined([training_images(metadata, path) for path in mix]))
     if not run.is_dir():
         raise run_folder.RunError(f"{run}: should be the folder of a run")
     if run.resolve() == folder.resolve():

@@ -25,6 +25,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.page import page, write_figure
+from radhar_cli.processing.frames import Frames
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
@@ -200,9 +201,7 @@ def _range_doppler(
     """
     length = min(max(round(WINDOW_S * w.prf), 8), int(segments.lengths.max()))
     window = np.hanning(length + 2)[1:-1]
-    starts = np.concatenate(
-        [np.arange(one.start, one.stop - length + 1, length) for one in segments.slices]
-    )
+    starts = Frames(length, length).starts(segments.slices)
     frames = (hann_in_range(moving[:, at : at + length]) * window for at in starts.tolist())
     maps = np.stack([np.abs(scipy.fft.fft(frame, axis=1)) ** 2 for frame in frames])
     return maps, starts + length // 2, HANN_GAIN * w.n_adc * float(np.sum(window**2))

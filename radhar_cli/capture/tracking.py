@@ -121,12 +121,9 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
     ridge = _ridge(found, times, range_sd)
     if np.count_nonzero(ridge >= 0) < max(MIN_FRAMES, MIN_SHARE * ridge.size):
         return None
-    measured = np.array(
-        [
-            (p.range[c], p.velocity[c]) if c >= 0 else (np.nan, np.nan)
-            for p, c in zip(found, ridge, strict=True)
-        ]
-    )
+    measured = np.full((ridge.size, 2), np.nan)
+    for f in np.flatnonzero(ridge >= 0).tolist():
+        measured[f] = found[f].range[ridge[f]], found[f].velocity[ridge[f]]
     sd = range_sd, max(float(speeds[1] - speeds[0]) / 2, 0.02)
     position, velocity = _smoothed(measured, times, sd)
     profile = np.array(profiles)

@@ -641,16 +641,13 @@ def _human_problems(c: Config) -> Iterator[Problem]:
 
 def tone_warnings(c: Config) -> list[str]:
     """Say which interference tones alias."""
-    warnings = []
-    prf = support(c.radar.prf_hz)[0]
-    for number, tone in enumerate(c.receiver.tones):
-        least, most = support(tone.doppler_hz)
-        if max(-least, most) > prf / 2:
-            warnings.append(
-                f"receiver.tones.{number}.doppler_hz reaches beyond PRF/2 = {prf / 2:g} Hz: the "
-                "tone aliases, to that frequency less a multiple of the PRF"
-            )
-    return warnings
+    highest = support(c.radar.prf_hz)[0] / 2
+    return [
+        f"receiver.tones.{number}.doppler_hz reaches beyond PRF/2 = {highest:g} Hz: the tone "
+        "aliases, to that frequency less a multiple of the PRF"
+        for number, tone in enumerate(c.receiver.tones)
+        if max(map(abs, support(tone.doppler_hz))) > highest
+    ]
 
 
 def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> list[str]:

@@ -239,7 +239,7 @@ class Bounds:
 
     low: float
     high: float
-    unit: str = ""
+    unit: str = ""  # that messages and docs/reference/limits.md give
     wording: str = ""
     open_low: bool = False
 
@@ -259,11 +259,7 @@ class Bounds:
         return number
 
 
-def within(low: float, high: float, unit: str = "") -> Bounds:
-    """Bounds of a number's draws, with the unit that messages and docs/reference/limits.md give."""
-    return Bounds(low, high, unit)
-
-
+within = Bounds  # (low, high, unit)
 Positive: TypeAlias = Annotated[Number, Bounds(0, MAX_NUMBER, wording="above 0", open_low=True)]
 NotNegative: TypeAlias = Annotated[Number, Bounds(0, MAX_NUMBER, wording="0 or more")]
 AtLeastOne: TypeAlias = Annotated[Number, Bounds(1, MAX_NUMBER, wording="1 or more")]

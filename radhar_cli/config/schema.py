@@ -140,10 +140,8 @@ class _Either:
 
 
 def _kind(value: Any) -> str:
-    per_activity = isinstance(value, PerActivity) or (
-        isinstance(value, dict) and "per_activity" in value
-    )
-    return "per_activity" if per_activity else "same"
+    several = "per_activity" in value if isinstance(value, dict) else isinstance(value, PerActivity)
+    return "per_activity" if several else "same"
 
 
 def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
@@ -672,9 +670,9 @@ class FilesConfig(Section):
 
 
 def _class_kind(value: Any) -> str:
-    if isinstance(value, dict):
-        return "recordings" if "files" in value else "movements"
-    return "recordings" if isinstance(value, (FilesConfig, list, tuple)) else "movements"
+    of_files = isinstance(value, (FilesConfig, list, tuple))
+    of_files |= isinstance(value, dict) and "files" in value
+    return "recordings" if of_files else "movements"
 
 
 ClassConfig: TypeAlias = Annotated[

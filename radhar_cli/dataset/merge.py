@@ -67,9 +67,8 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
             refuse_foreign_work(part)
             named = stored_identity(part)
             if named is not None and isinstance(named.get("part"), str):
-                places[part] = _Place(
-                    DataSetPart.parse(named["part"], f"{part}: part"), part, named
-                )
+                number = DataSetPart.parse(named["part"], f"{part}: part")
+                places[part] = _Place(number, part, named)
             elif not inner.is_dir():
                 what = "is not a part that `radhar generate --shard` made"
                 raise FolderError(f"{part}: {what if part.is_dir() else 'no such folder'}")

@@ -1,6 +1,5 @@
 """What `radhar inspect` shows of a data set, a half-built folder or a scene, as plain values."""
 
-from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +35,6 @@ def summarise(path: Path) -> dict[str, Any]:
 
 def _data_set(data: Dataset) -> dict[str, Any]:
     labels, splits = data.label, data.split
-    slugs = [data.class_slugs[label] for label in labels]
     return {
         "kind": "data set",
         "path": str(data.path),
@@ -47,11 +45,11 @@ def _data_set(data: Dataset) -> dict[str, Any]:
         "versions": data.versions,
         "maps": {name: list(array.shape[1:]) for name, array in data.maps.items()},
         "classes": {
-            slug: {
+            data.class_slugs[label]: {
                 part: int(np.count_nonzero((labels == label) & (splits == number)))
                 for number, part in enumerate(SPLITS)
             }
-            for label, slug in Counter(zip(labels.tolist(), slugs, strict=True))
+            for label in np.unique(labels)
         },
         "labels": None
         if data.labels is None

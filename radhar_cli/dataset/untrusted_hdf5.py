@@ -33,7 +33,6 @@ from radhar_cli.untrusted import Closing, parse_json, regular_size
 _DAMAGED = (
     AttributeError,
     KeyError,
-    NotImplementedError,
     OSError,
     OverflowError,
     RuntimeError,

@@ -16,17 +16,12 @@ from radhar_cli.scene import FALL, numbers
 
 def unused_keys(config: Config) -> list[str]:
     """Say which keys have no effect although their values are not the defaults."""
-    return list(dict.fromkeys(_unused(config)))
-
-
-def _unused(config: Config) -> Iterator[str]:
     default = Config.model_construct(motion=MotionConfig(model=config.motion.model)).filled()
     fixed = all(isinstance(number, int | float) for _, number in numbers(config))
     same = _drawn_from if fixed else eq
-
-    for key, reason in _without_effect(config):
-        if not same(at(config, key), at(default, key)):
-            yield f"{key} has no effect with {reason}"
+    found = dict.fromkeys(_without_effect(config))
+    given = [(key, why) for key, why in found if not same(at(config, key), at(default, key))]
+    return [f"{key} has no effect with {why}" for key, why in given]
 
 
 def _without_effect(config: Config) -> Iterator[tuple[str, str]]:

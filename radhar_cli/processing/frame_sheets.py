@@ -1,5 +1,6 @@
 """Sheets of frames: one image a sample of a board's maps, points and skeletons, for looking."""
 
+from itertools import pairwise, product
 from math import ceil, nan, sqrt
 from typing import TypeAlias
 
@@ -25,12 +26,9 @@ def _tiles(frames: int, size: Size) -> tuple[Index, list[tuple[slice, slice]]]:
     shown = np.unique(np.linspace(0, frames - 1, min(frames, across * across)).round().astype(int))
     rows = np.linspace(0, size[0], across + 1).astype(int).tolist()
     columns = np.linspace(0, size[1], across + 1).astype(int).tolist()
-
-    def tile(n: int) -> tuple[slice, slice]:
-        y, x = divmod(n, across)
-        return slice(rows[y], rows[y + 1] - GAP), slice(columns[x], columns[x + 1] - GAP)
-
-    return shown, [tile(n) for n in range(shown.size)]
+    high = [slice(start, stop - GAP) for start, stop in pairwise(rows)]
+    wide = [slice(start, stop - GAP) for start, stop in pairwise(columns)]
+    return shown, list(product(high, wide))[: shown.size]
 
 
 def maps_sheet(

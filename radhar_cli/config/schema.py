@@ -12,7 +12,7 @@ from itertools import pairwise
 from math import floor, sqrt
 from pathlib import PurePosixPath
 from textwrap import dedent
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -21,13 +21,12 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
-    GetCoreSchemaHandler,
     Tag,
     ValidationInfo,
     field_validator,
     model_validator,
 )
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic_core import PydanticCustomError
 
 from radhar_cli.activity import (
     ACTIVITIES,
@@ -111,39 +110,6 @@ class Section(BaseModel):
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class PerActivity:
-    """``{per_activity: {default: 2.0, walking: 1.0, S9: 1.0}}``: a number by activity.
-
-    Names that are none of the twelve's are a config's own classes, which `Config` knows.
-    """
-
-    per_activity: dict[str, Any]
-
-
-class _Either:
-    """Annotation of a number that may also differ by activity."""
-
-    def __get_pydantic_core_schema__(
-        self, source: object, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        one = handler(source)
-        numbers = core_schema.no_info_after_validator_function(
-            _by_slug, core_schema.dict_schema(core_schema.str_schema(), one)
-        )
-        fields = core_schema.dataclass_args_schema(
-            "PerActivity", [core_schema.dataclass_field("per_activity", numbers)]
-        )
-        strict = core_schema.CoreConfig(extra_fields_behavior="forbid")
-        many = core_schema.dataclass_schema(PerActivity, fields, ["per_activity"], config=strict)
-        return core_schema.tagged_union_schema({"same": one, "per_activity": many}, _kind)
-
-
-def _kind(value: Any) -> str:
-    several = "per_activity" in value if isinstance(value, dict) else isinstance(value, PerActivity)
-    return "per_activity" if several else "same"
-
-
 def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
     numbers = dict[str, Any]()
     for name, number in value.items():
@@ -156,10 +122,30 @@ def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
     return numbers
 
 
-By: TypeAlias = Annotated[T, _Either()]
+@dataclass(frozen=True)
+class PerActivity(Generic[T]):
+    """``{per_activity: {default: 2.0, walking: 1.0, S9: 1.0}}``: a number by activity.
+
+    Names that are none of the twelve's are a config's own classes, which `Config` knows.
+    """
+
+    per_activity: Annotated[dict[str, T], AfterValidator(_by_slug)]
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
 
 
-def by_activity(default: Number, **others: Number) -> PerActivity:
+def _kind(value: Any) -> str:
+    several = "per_activity" in value if isinstance(value, dict) else isinstance(value, PerActivity)
+    return "per_activity" if several else "same"
+
+
+# A number that may also differ by activity.
+By: TypeAlias = Annotated[
+    Annotated[T, Tag("same")] | Annotated[PerActivity[T], Tag("per_activity")], Discriminator(_kind)
+]
+
+
+def by_activity(default: Number, **others: Number) -> PerActivity[Number]:
     """A number for every activity, and others for those named."""
     return PerActivity({DEFAULT: default, **others})
 

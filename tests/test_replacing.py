@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from command_line import ROOT
 
+from radhar_cli.dataset.folder import refuse_foreign_files
 from radhar_cli.replacing import UNFINISHED, replacing, write_text
-from radhar_cli.simulation.scene_file import refuse_foreign
 
 
 def interrupted(path: Path) -> None:
@@ -83,4 +83,4 @@ def test_what_a_killed_process_left_goes_and_what_another_writes_stays(tmp_path:
 
 def test_a_folder_with_nothing_but_leftovers_takes_a_scene(tmp_path: Path) -> None:
     (tmp_path / f"{UNFINISHED}1").touch()
-    refuse_foreign(tmp_path)
+    refuse_foreign_files(tmp_path, "scene of radhar's")

@@ -112,10 +112,9 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
         if one.file_size > MAX_PACKING * max(one.compress_size, 1024):
             raise ValueError(f"{one.filename} is compressed {MAX_PACKING}-fold or more")
         with archive.open(one) as file:
-            old = np.lib.format.read_magic(file) == (1, 0)
-            read = (
-                np.lib.format.read_array_header_1_0 if old else np.lib.format.read_array_header_2_0
-            )
+            form = np.lib.format
+            old = form.read_magic(file) == (1, 0)
+            read = form.read_array_header_1_0 if old else form.read_array_header_2_0
             shape, _, dtype = read(file)
         if not dtype.hasobject and prod(shape) * dtype.itemsize > one.file_size:
             raise ValueError(f"{one.filename} has the shape {shape}, but too few bytes")
@@ -237,6 +236,7 @@ def as_source(
         block = np.moveaxis(block.reshape(*full, -1, alternate, parts), 4, 0)
         return block.reshape(-1, full[2], stop - first, parts)
 
+    left_out = f"the last {rest} chirps (an incomplete transmitter cycle) are left out"
     chunk = array.chunk[axes.index("frame" if "frame" in axes else "pulse")]
     return Source(
         (path,),
@@ -249,9 +249,7 @@ def as_source(
         times=times,
         step=max(chunk * (per_frame if "frame" in axes else 1) // alternate, 1),
         settings={"frame_pulses": per_frame // alternate} if "frame" in sizes else {},
-        notes=(f"the last {rest} chirps (an incomplete transmitter cycle) are left out",)
-        if rest
-        else (),
+        notes=(left_out,) if rest else (),
     )
 
 

@@ -69,7 +69,7 @@ def simulate(
 
     from radhar_cli.config import load_config
     from radhar_cli.dataset.files import refuse_links
-    from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.dataset.folder import refuse_file, refuse_foreign_files
     from radhar_cli.simulation import scene_file
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
@@ -83,7 +83,8 @@ def simulate(
     loaded = load_config(config, overrides)
     chosen = None if maps is None else map_names(maps.split(","))
     refuse_file(out)
-    scene_file.refuse_foreign(out)
+    if not any((out / name).exists() for name in scene_file.FILES):
+        refuse_foreign_files(out, "scene of radhar's", allowed=())
     for name in (*scene_file.FILES, RECORDING):
         refuse_links(out, out / name)
     simulation = simulate_scene(

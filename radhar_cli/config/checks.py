@@ -456,12 +456,8 @@ def _wall_problems(c: Config) -> Iterator[Problem]:
     sizes = [depth if size is None else support(size)[1] for size in c.wall.size_m]
     for name in ("tx_m", "rx_m") if c.radar.cfg is None else ("position_m",):
         antenna = getattr(c.radar, name)
-        inside = True
-        for place, centre, size in zip(antenna, c.wall.center_m, sizes, strict=True):
-            half = size / 2
-            low, high = support(centre)[0] - half, support(centre)[1] + half
-            inside &= support(place)[0] <= high and support(place)[1] >= low
-        if inside:
+        along = zip(map(support, antenna), map(support, c.wall.center_m), sizes, strict=True)
+        if all(p[0] <= m[1] + size / 2 and p[1] >= m[0] - size / 2 for p, m, size in along):
             given = f"wall.center_m = {list(c.wall.center_m)}, wall.size_m = {list(c.wall.size_m)}"
             right = f"should be outside the wall, whose faces count as inside ({given})"
             yield Problem(f"radar.{name}", list(antenna), right)
@@ -578,14 +574,10 @@ def _room_problems(c: Config) -> Iterator[Problem]:
 
 
 def _tone_problems(c: Config) -> Iterator[Problem]:
-    for key, extra in (
-        ("tones", c.receiver.tones),
-        ("noise_corner_hz", support(c.receiver.noise_corner_hz)[1] > 0),
-    ):
-        if extra and c.snr_db is None:
-            yield Problem(
-                "snr_db", None, f"should be a number: receiver.{key} is relative to the noise"
-            )
+    extra = {"tones": c.receiver.tones, "noise_corner_hz": support(c.receiver.noise_corner_hz)[1]}
+    for key in [key for key, there in extra.items() if there and c.snr_db is None]:
+        right = f"should be a number: receiver.{key} is relative to the noise"
+        yield Problem("snr_db", None, right)
 
 
 def _image_problems(c: AnyConfig) -> Iterator[Problem]:

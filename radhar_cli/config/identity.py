@@ -43,12 +43,8 @@ def flat_document(document: dict[str, Any]) -> dict[str, Any]:
     return {k: v for k, v in walk(document, "") if k not in NOT_IDENTITY}
 
 
-def config_hash(config: AnyConfig) -> str:
-    """Return the SHA-256 of the keys that decide bytes, in hex."""
-    return document_hash(resolved(config))
-
-
-def document_hash(document: dict[str, Any]) -> str:
-    """`config_hash` of a resolved config as it is stored, maybe from before newer keys."""
+def config_hash(config: AnyConfig | dict[str, Any]) -> str:
+    """SHA-256 of the keys that decide bytes, in hex; of a config, or of one as it is stored."""
+    document = config if isinstance(config, dict) else resolved(config)
     text = json.dumps(flat_document(document), sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()

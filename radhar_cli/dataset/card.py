@@ -151,12 +151,9 @@ def _summary(data: Dataset) -> str:
 def _maps(data: Dataset) -> str:
     lines = []
     for name in data.config.maps:
-        edges = data.extent(name)
-        reach = (
-            ", ".join(f"{round(edge, 9):.5g}" for edge in edges)
-            if edges
-            else "/extent of dataset.h5"
-        )
+        reach = "/extent of dataset.h5"
+        if edges := data.extent(name):
+            reach = ", ".join(f"{round(edge, 9):.5g}" for edge in edges)
         axes = (f"{quantity}, {unit}" for quantity, unit in (row_axis(name), column_axis(name)))
         lines.append([f"`{name}`", *axes, reach])
     image = data.config.image

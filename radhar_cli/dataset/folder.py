@@ -3,7 +3,7 @@
 import json
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatch
 from pathlib import Path
@@ -17,6 +17,7 @@ from radhar_cli.dataset.files import refuse_foreign_work, refuse_links, unfinish
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError, RadharError
+from radhar_cli.replacing import UNFINISHED
 from radhar_cli.untrusted import read_json
 
 
@@ -69,7 +70,7 @@ def reserve(
                 f"{folder}: holds parts of a data set; `radhar merge {folder}` puts them together, "
                 "--shard K/N makes one"
             )
-        refuse_foreign_files(folder, "radhar data set", allowed)
+        refuse_foreign_files(folder, "radhar data set", (WORK, *allowed))
         _name(folder, new)
     elif holds_samples(folder):
         refuse_differences(folder, "data set", differences(old, new))
@@ -79,10 +80,14 @@ def reserve(
 
 
 def refuse_foreign_files(
-    folder: Path, ours: str, allowed: tuple[str, ...] = (), error: type[RadharError] = FolderError
+    folder: Path,
+    ours: str,
+    allowed: Sequence[str] = (WORK,),
+    error: type[RadharError] = FolderError,
 ) -> None:
     """Refuse a folder that holds something, but not what is `ours`; `allowed` are names of it."""
-    names = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *allowed))
+    held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    names = [one for one in held if one not in allowed and not one.startswith(UNFINISHED)]
     if names:
         raise error(f"{folder}: holds {', '.join(names[:5])} but no {ours}; choose an empty folder")
 

@@ -174,9 +174,8 @@ def _start_trackers() -> None:
         resource_tracker.ensure_running()
         loky_tracker.ensure_running()
     finally:
-        if old is None:
-            del os.environ["PYTHONWARNINGS"]
-        else:
+        del os.environ["PYTHONWARNINGS"]
+        if old is not None:
             os.environ["PYTHONWARNINGS"] = old
 
 

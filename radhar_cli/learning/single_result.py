@@ -77,9 +77,8 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
     for run in runs:
         if options.tsne and run.metadata.input not in ("rgb", "gray"):
             raise RunError(f"--tsne: {run.name} reads {run.metadata.input}; it is of images")
-        if run.metadata.settings.target == "labels" and (
-            options.tsne or options.in_place_vs_moving
-        ):
+        several = run.metadata.settings.target == "labels"
+        if several and (options.tsne or options.in_place_vs_moving):
             raise RunError(f"{run.name} finds several labels at a time; that figure is of classes")
         for name in run.metadata.classes:
             if options.in_place_vs_moving and name not in ours:

@@ -154,10 +154,8 @@ def plane_wave(
         inside = np.sqrt(steps + cos * cos)  # n times the cosine inside
         delay = depth * steps / (inside + cos) / SPEED_OF_LIGHT
         chord = depth * n / inside
-    return (
-        np.where(both, chord, straight.chord),
-        np.where(both, delay, extra_delay(straight.chord, wall)),
-    )
+    own = straight.chord, extra_delay(straight.chord, wall)
+    return np.where(both, chord, own[0]), np.where(both, delay, own[1])
 
 
 def field_factor(crossed: Crossing, wall: Wall, fc: float) -> Float:

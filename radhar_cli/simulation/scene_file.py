@@ -12,12 +12,12 @@ import numpy as np
 from radhar_cli import __version__
 from radhar_cli.config.identity import as_yaml, resolved
 from radhar_cli.config.motion_files import alone
-from radhar_cli.errors import FolderError, UnfinishedError
+from radhar_cli.errors import UnfinishedError
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.replacing import UNFINISHED, replacing, write_text
+from radhar_cli.replacing import replacing, write_text
 from radhar_cli.scene import scene_numbers
 from radhar_cli.simulation.board_file import write_frames
 from radhar_cli.simulation.simulate import Simulation
@@ -30,21 +30,6 @@ MAPS, ANIMATION = "maps.png", "stickman.gif"
 FRAMES, CLOUD, PAGE = "frames.png", "cloud.gif", "view.html"
 DRAWN = (MAPS, ANIMATION, FRAMES, CLOUD, PAGE)
 FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, *DRAWN)
-
-
-def refuse_foreign(folder: Path) -> None:
-    """Refuse a folder that holds something, but no scene.
-
-    Raises:
-        FolderError: names some of it.
-    """
-    names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
-    held = [name for name in names if not name.startswith(UNFINISHED)]
-    if held and not set(held) & set(FILES):
-        raise FolderError(
-            f"{folder}: holds {', '.join(held[:5])} but no scene of radhar's; "
-            "choose an empty folder"
-        )
 
 
 def write_scene(simulation: Simulation, path: Path) -> None:

@@ -163,8 +163,7 @@ def simulate(
     of_maps = {signal_of(name) for name in possible if name in MAP_NAMES}
     signals = [name for name in SIGNALS if name in of_maps] if not board else SIGNALS[:1]
     frames += ["cube"] if board and raw and "cube" not in frames else []
-    asked = [*signals, *maps, *frames, "waveform", "antennas", "wall"]
-    asked += ["board"] if board else []
+    asked = [*signals, *maps, *frames, "waveform", "antennas", "wall"] + ["board"] * board
     asked += ["accuracy"] if config.engine.kind == "direct" else []
     asked += ["raw_echo"] if raw and not board else []
     recorded = record(scene, asked, [RAW_ECHO], motions=(kept, *(others if joint is None else ())))

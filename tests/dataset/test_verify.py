@@ -17,7 +17,7 @@ from small import SMALL, small_config
 
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import Config, load_config
-from radhar_cli.config.identity import document_hash
+from radhar_cli.config.identity import config_hash
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.summary import summarise
@@ -257,7 +257,7 @@ def test_a_data_set_from_before_newer_keys_is_of_another_version_and_not_wrong(
         stored = json.loads(file.attrs["config"])
         del stored["room"]["back_wall_m"]
         file.attrs["config"] = json.dumps(stored)
-        file.attrs["config_hash"] = document_hash(stored)
+        file.attrs["config_hash"] = config_hash(stored)
         file.attrs["radhar_version"] = "0.1.0+before"
         _digest_anew(file)
     report = verify(tmp_path / "set", 2)

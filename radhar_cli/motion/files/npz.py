@@ -107,10 +107,9 @@ def _array(archive: zipfile.ZipFile, name: str, most: int, where: str) -> NDArra
         version = np.lib.format.read_magic(data)
         if version not in ((1, 0), (2, 0)):
             raise ValueError(f"of version {version}")
-        head = np.lib.format.read_array_header_1_0
-        shape, fortran, dtype = (
-            head(data) if version == (1, 0) else np.lib.format.read_array_header_2_0(data)
-        )
+        form, old = np.lib.format, version == (1, 0)
+        head = form.read_array_header_1_0 if old else form.read_array_header_2_0
+        shape, fortran, dtype = head(data)
         if dtype.hasobject:
             raise ValueError("of Python objects, which are not read")
         content = data.read()

@@ -73,23 +73,14 @@ class Recipe:
 
     @classmethod
     def of(cls, config: Config | str | Path, seed: int | None = None) -> "Recipe":
-        """The recipe for arguments as those of `sample`.
-
-        Raises:
-            ConfigError: as `sample`.
-        """
+        """The recipe for arguments as those of `sample`; its errors are theirs."""
         config = as_config(config)
         if seed is not None:
             config = config.model_copy(update={"seed": whole("seed", seed)})
         return cls(config)
 
     def __call__(self, activity: Activity, index: int) -> Sample:
-        """The fields of one sample.
-
-        Raises:
-            ConfigError: an index that is not a whole number from 0 to 2^63 - 1.
-            SceneError: as `sample`.
-        """
+        """The fields of one sample; errors as of `sample`."""
         index = whole("index", index)
         with one_thread():
             scene, _ = draw_valid_scene(self.config, activity, index)

@@ -92,8 +92,6 @@ class Dataset(Closing):
             for name in config.stored
             if small[layout.count_of(name)][:].any()
         }
-        self._entropy = {name: small[f"entropy/{name}"] for name in names}
-        self._extent = {name: small[f"extent/{name}"] for name in names}
         labelled = names if config.output.column_labels else ()
         self.column_label = {name: small[f"{layout.COLUMN_LABEL}/{name}"] for name in labelled}
         self.labels, self.person_label = (
@@ -141,7 +139,7 @@ class Dataset(Closing):
 
     def entropy(self, name: str) -> Float:
         """Entropies [N] of a map's power, bits."""
-        column = self._entropy[name]
+        column = self.small[f"entropy/{name}"]
         bits: Float = column[:].astype(float)
         if not ((bits >= 0) & (bits <= MAX_ENTROPY_BITS)).all():
             raise FolderError(f"{column.where}: should be 0 to {MAX_ENTROPY_BITS:g} bits")
@@ -149,7 +147,7 @@ class Dataset(Closing):
 
     def extent(self, name: str) -> tuple[float, float, float, float] | None:
         """Edges (time left, right in s; bottom, top in Hz or m) that all images of a map share."""
-        first = self._extent[name].rows(0, 1)
+        first = self.small[f"extent/{name}"].rows(0, 1)
         same = [bool((edges == first).all()) for edges in self._edges(name)]
         left, right, bottom, top = map(float, first[0])
         return (left, right, bottom, top) if all(same) else None
@@ -159,7 +157,7 @@ class Dataset(Closing):
         return np.concatenate([*self._edges(name)])
 
     def _edges(self, name: str) -> Iterator[Float]:
-        column = self._extent[name]
+        column = self.small[f"extent/{name}"]
         for start in range(0, len(column), BLOCK):
             edges: Float = column.rows(start, start + BLOCK)
             left, right, bottom, top = edges.T

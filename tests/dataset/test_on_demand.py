@@ -39,19 +39,13 @@ def built(config, tmp_path_factory):
 
 def stored(data, row, name):
     """What dataset.h5 has in a row, by the name of the dataset."""
-    kind, _, rest = name.partition("/")
-    if kind == "scene":
-        return data.scene[rest][row]
+    if name.startswith("scene/"):
+        return data.scene[name.removeprefix("scene/")][row]
     if name in data.large:
         return data.large[name][row]
-    column = {
-        "entropy": lambda: data._entropy[rest],
-        "extent": lambda: data._extent[rest],
-        "column_label": lambda: data.column_label[rest],
-    }
-    if kind in column:
-        return column[kind]()[:][row]
-    return {"label": data.label, "sample_key": data.sample_key}[kind][row]
+    if name in data.small:
+        return data.small[name][:][row]
+    return {"label": data.label, "sample_key": data.sample_key}[name][row]
 
 
 def test_every_field_of_every_sample_is_that_of_the_data_set(config, built):

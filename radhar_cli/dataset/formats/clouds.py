@@ -121,7 +121,7 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
         return (c.frame, c.frame * header.period_s, point, ahead, -right, up, *seen)
 
     _write_csv(data, folder, ROS, columns, progress)
-    _describe(data, folder, _ROS)
+    _describe(data, folder, f"{_ROS}\n\n{_READ_CSV}")
 
 
 def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
@@ -133,7 +133,7 @@ def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
         return (c.frame, *c.xyz.T, c.doppler, c.snr_db, noise, track)
 
     _write_csv(data, folder, TI, columns, progress)
-    _describe(data, folder, _TI)
+    _describe(data, folder, f"{_TI}\n\n{_READ_CSV}")
 
 
 def _ti_axes(places: Float) -> Float:
@@ -195,19 +195,14 @@ _ROS = """\
 `train/CLASS/SAMPLE.csv` has a line a point, as the message RadarScan of TI's ROS driver
 (ti_mmwave_rospkg, SDK 2) has it: frame and its time `stamp_s`; `point_id` in the frame; x (ahead),
 y (left), z (up of the radar) and range, m; velocity, m/s, positive receding; `doppler_bin`, zero
-Doppler in the middle one; bearing, degrees, positive left; intensity, 10 lg(magnitude + 1).
-
-```python
-import csv
-
-points = list(csv.DictReader(open("train/CLASS/SAMPLE.csv")))
-```"""
+Doppler in the middle one; bearing, degrees, positive left; intensity, 10 lg(magnitude + 1)."""
 
 _TI = """\
 `train/CLASS/SAMPLE.csv` has a line a point: its frame, and the seven columns that a point cloud of
 TI's Industrial Visualizer has: x (right), y (ahead), z (up of the radar; m), Doppler (m/s, receding
-positive), SNR and noise (dB), and the track: here the person whose the point is, 255 nobody's.
+positive), SNR and noise (dB), and the track: here the person whose the point is, 255 nobody's."""
 
+_READ_CSV = """\
 ```python
 import csv
 

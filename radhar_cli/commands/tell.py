@@ -7,8 +7,8 @@ options to every command (`with_output_options`).
 import inspect
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import wraps
+from types import SimpleNamespace
 from typing import Annotated, Any
 
 import typer
@@ -21,18 +21,12 @@ Json = Annotated[bool, typer.Option("--json", help="Print only values, as JSON, 
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors only.")]
 
 
-@dataclass
-class _Output:
-    json: bool = False
-    quiet: bool = False
-
-
-_output = _Output()
+_output = SimpleNamespace(json=False, quiet=False)
 
 
 def is_quiet() -> bool:
     """Whether no progress is shown."""
-    return _output.quiet
+    return bool(_output.quiet)
 
 
 def tell(message: object, *, err: bool = False, nl: bool = True) -> None:

@@ -1,5 +1,6 @@
 """When pulses are: even trains with gaps between them."""
 
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -9,18 +10,14 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Float
 
 
+@dataclass(frozen=True, eq=False)
 class PulseTimes:
-    """Times of pulses, evenly spaced in stretches with gaps between.
+    """Times of pulses, evenly spaced in stretches with gaps between."""
 
-    Attributes:
-        start: time of the first pulse of each stretch, s [S].
-        first: number of that pulse [S].
-        pulses: of all.
-        prf: within each, Hz.
-    """
-
-    def __init__(self, start: Float, first: NDArray[np.int64], pulses: int, prf: float) -> None:
-        self.start, self.first, self.pulses, self.prf = start, first, pulses, prf
+    start: Float  # time of the first pulse of each stretch, s [S]
+    first: NDArray[np.int64]  # number of that pulse [S]
+    pulses: int  # of all
+    prf: float  # within each, Hz
 
     @classmethod
     def even(cls, pulses: int, prf: float, start: float = 0.0) -> "PulseTimes":

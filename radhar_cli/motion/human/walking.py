@@ -206,7 +206,7 @@ class Walking:
         on = self.begin + (self._turns + lost) / v - self.ramp / 2
         if self.from_rest:
             on += (self.start - self.ramp) / 2
-        return np.stack([on, on + takes])
+        return np.array([on, on + takes])
 
     def _lost(self, t: Float) -> Float:
         """Way [M] (m) that a walker has lost in turns."""
@@ -340,7 +340,7 @@ class Walking:
         if self.from_rest:
             off = np.maximum(off, START_PHASE)
             toe = np.maximum(toe, off + 0.12)
-        return np.stack([off, toe, k + later + 1 + gait.touch_down, k + later + gait.below])
+        return np.array([off, toe, k + later + 1 + gait.touch_down, k + later + gait.below])
 
     def _footfalls(self, times: Float, side: float) -> Footfalls:
         """Swings of a foot on one side, of which `_events` happen at `times` [4, N + 1] (s)."""
@@ -359,7 +359,7 @@ class Walking:
         x, y, heading = self._where(way)
         if heading is None:
             heading = np.zeros_like(way)
-        footholds = np.stack([x - sides * np.sin(heading), y + sides * np.cos(heading)])
+        footholds = np.array([x - sides * np.sin(heading), y + sides * np.cos(heading)])
         return Footfalls(
             off=off[:-1],
             toe=toe[:-1],
@@ -387,7 +387,7 @@ class Walking:
         )
         arm, bend = curves.shoulder(rv, gait.arm_swing), curves.elbow(rv)
         bend[0] -= self.person.elbow
-        return np.stack(
+        return np.array(
             [
                 surge,
                 curves.harmonic(1, -gait.sidewards, 0.03 + 1 / 4),
@@ -427,7 +427,7 @@ class Walking:
         ankles[1] -= y
         if heading is not None:
             ankles = turned(ankles, -heading)
-        way = np.stack([surge, side])
+        way = np.array([surge, side])
         standing = body.tallest - self.gait.sink * body.stature * g
         softness = body.softness + (self.gait.softness - body.softness) * g
         pitch, lean = self.gait.trunk_pitch * g, np.zeros(t.size)
@@ -446,12 +446,12 @@ class Walking:
             pitch += other["trunk"] + own * idle.pitch
             twist += own * idle.yaw
             lean = own * idle.roll
-            arms += own * np.stack([idle.shoulders, idle.elbows])
-            arms[0] += np.stack([other[channel] for channel in SHOULDERS])
-            arms[1] += np.stack([other[channel] for channel in ELBOWS]) - body.elbow
+            arms += own * np.array([idle.shoulders, idle.elbows])
+            arms[0] += np.array([other[channel] for channel in SHOULDERS])
+            arms[1] += np.array([other[channel] for channel in ELBOWS]) - body.elbow
             hands = other["hands"], other["hands_ahead"], other["hands_beside"]
         else:
-            hip = np.stack([*way, hip_height(body, standing, way, aside, ankles, softness)])
+            hip = np.array([*way, hip_height(body, standing, way, aside, ankles, softness)])
         if self.gait.trip and self._jitter is not None:
             upset = self.gait.trip * g * self._jitter(t)[1]
             pitch, arms = pitch + upset, arms + 1.5 * upset

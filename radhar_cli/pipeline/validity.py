@@ -32,7 +32,6 @@ from radhar_cli.pipeline.physics import (
     waveform_of,
     ways_of,
 )
-from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.transmission import transmission
@@ -183,7 +182,9 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
         one = _nearest(motion.names, t, r_tx, r_rx)
         near.append(_closest(motion, antennas, w, p, pulses, one))
         if body is not None and body.segments and near[-1].distance < REACH_M * body.thickness:
-            near.append(_nearest_segment(body, antennas, t))
+            clear = (body.clearance(antenna, t) for antenna in (antennas.tx, antennas.rx))
+            one = _nearest(tuple(segment.name for segment in body.segments), t, *clear)
+            near.append(one._replace(distance=max(one.distance, 0.0)))
     return SceneCheck(min(near), flags)
 
 
@@ -244,16 +245,6 @@ def _nearest(names: tuple[str, ...], t: Float, r_tx: Float, r_rx: Float) -> Appr
     for name, r in (("transmitter", r_tx), ("receiver", r_rx)):
         joint, at = divmod(int(np.argmin(r)), t.size)
         candidates.append(Approach(float(r[joint, at]), names[joint], name, float(t[at])))
-    return min(candidates)
-
-
-def _nearest_segment(body: Body, antennas: Antennas, t: Float) -> Approach:
-    candidates = []
-    for name, antenna in (("transmitter", antennas.tx), ("receiver", antennas.rx)):
-        way = body.clearance(antenna, t)
-        segment, at = divmod(int(np.argmin(way)), t.size)
-        distance = max(float(way[segment, at]), 0.0)
-        candidates.append(Approach(distance, body.segments[segment].name, name, float(t[at])))
     return min(candidates)
 
 

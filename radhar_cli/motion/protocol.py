@@ -112,7 +112,12 @@ class _Remembered:
         return lambda t: self.kept(name, t, lambda: found(t))
 
     def positions(self, t: Float) -> Float:
-        """Positions [3, I, M] (m)."""
+        """Positions [3, I, M] (m), of all landmarks where these are known and begin with them."""
+        names: tuple[str, ...] = self._motion.names
+        whole = self._held.get(("landmark_positions", t.tobytes()))
+        if whole is not None and self.landmarks[: len(names)] == names:
+            joints: Float = whole[:, : len(names)]
+            return joints
         return self.kept("positions", t, lambda: self._motion.positions(t))
 
     def torso(self, t: Float) -> Float:

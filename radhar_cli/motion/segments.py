@@ -198,6 +198,6 @@ def soft_unit(v: Float) -> Float:
 
 def cross(a: Float, b: Float) -> Float:
     """a x b [3, ...]; numpy.cross takes ten times as long."""
-    return np.stack(
+    return np.array(
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     )

@@ -1,6 +1,6 @@
 """Check scenes before any echo is computed: what lies outside the model, and what to warn of."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import IntFlag
 from math import log10
@@ -12,10 +12,16 @@ from radhar_cli.activity import Activity
 from radhar_cli.arrays import Float, Index
 from radhar_cli.config.checks import timing_warnings, tone_warnings
 from radhar_cli.config.schema import Config
+from radhar_cli.echo.accuracy import first_aim, settings
+from radhar_cli.echo.gated import GatedEcho
+from radhar_cli.echo.interpolation import BEFORE
+from radhar_cli.echo.knots import CHUNK_KNOTS, knots_of, widest_step
+from radhar_cli.echo.paths import Paths
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.pipeline.motion_paths import point_delay, through_wall_delay
+from radhar_cli.motion.segments import Landmarks
+from radhar_cli.pipeline.motion_paths import OfMotion, point_delay, through_wall_delay
 from radhar_cli.pipeline.physics import (
     antennas_of,
     body_of,
@@ -26,12 +32,9 @@ from radhar_cli.pipeline.physics import (
     waveform_of,
     ways_of,
 )
-from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
-from radhar_cli.radar.room import Box
 from radhar_cli.radar.transmission import transmission
-from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene import MAX_PLACES, Person, Scene, draw_scene, nominal_scene
 
@@ -40,6 +43,7 @@ LEAST_SNR_DB = -80.0  # of a raw sample; compression and windows gain less than 
 REACH_M = 1.0  # distance of a segment's surface from its joints, at most
 GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
+USUAL_DB = -80.0  # the tolerance at whose knots scenes are checked
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MAX_ATTEMPTS = 1000
 TORSOS_APART_M = 0.5
@@ -145,63 +149,78 @@ def _checked(scene: Scene, person: Person) -> SceneCheck:
 
 
 def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
-    antennas = antennas_of(scene)
-    wall, waveform = wall_of(scene), waveform_of(scene)
-    box = box_of(scene)
-    rate = max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)
-    step = max(1, int(waveform.prf / rate))
-    pulses = np.append(np.arange(0, waveform.n_pulses - 1, step), waveform.n_pulses - 1)
+    antennas, wall, box = antennas_of(scene), wall_of(scene), box_of(scene)
+    w, processing = waveform_of(scene), scene.config.processing
     body = body_of(person, motion) if scene.config.body.scatterers == "segments" else None
-    blocks = [  # consecutive ones share a pulse, so that no step between two is missed
-        _check_block(
-            motion, body, antennas, wall, box, waveform, pulses[first : first + GRID_CHUNK + 1]
-        )
-        for first in range(0, pulses.size - 1, GRID_CHUNK)
-    ]
+    gate = processing.gate_m if processing.range_sum == "gated" else None
     flags = Flags.RUNS_OUT if getattr(motion, "runs_out", False) else Flags(0)
-    for block in blocks:
-        flags |= block.flags
-    processing = scene.config.processing
-    if processing.range_sum == "gated" and isinstance(processing.gate_m, tuple):
-        low, high = processing.gate_m
-        torso = point_delay(motion.torso(waveform.times(pulses.astype(float))), antennas, wall)
-        distance = torso * (SPEED_OF_LIGHT / 2)
-        if distance.min() < low or distance.max() > high:
-            flags |= Flags.GATE
-    return SceneCheck(min(block.closest for block in blocks), flags)
-
-
-def _check_block(
-    motion: Motion,
-    body: Body | None,
-    antennas: Antennas,
-    wall: Wall | None,
-    box: Box | None,
-    waveform: Waveform,
-    pulses: Index,
-) -> SceneCheck:
-    """`check_scene` at some pulses of the grid."""
-    t = waveform.times(pulses.astype(float))
-    p = motion.positions(t)
-    r_tx, r_rx = leg(p, antennas.tx), leg(p, antennas.rx)
-    tau = bistatic_delay(r_tx, r_rx)
-    flags = Flags.FLOOR if p[2].min() < -FLOOR_MARGIN_M else Flags(0)
-    if wall is not None:
-        tau += through_wall_delay(p, antennas, wall)
-        if wall.contains(p).any():
+    near = list[Approach]()
+    for asked, places, pulses in _grid(motion, w):
+        if body is not None and isinstance(body.motion, Landmarks):  # which its echo asks for too
+            body.motion.landmark_positions(asked)
+        t, p = asked[places], motion.positions(asked)[..., places]
+        r_tx, r_rx = leg(p, antennas.tx), leg(p, antennas.rx)
+        tau = bistatic_delay(r_tx, r_rx)
+        if p[2].min() < -FLOOR_MARGIN_M:
+            flags |= Flags.FLOOR
+        if wall is not None:
+            tau += through_wall_delay(p, antennas, wall)
+            if wall.contains(p).any():
+                flags |= Flags.WALL
+        if box is not None and not box.holds(p):
             flags |= Flags.WALL
-    if box is not None and not box.holds(p):
-        flags |= Flags.WALL
-    if tau.max() * SPEED_OF_LIGHT / 2 >= waveform.half_band_range:
-        flags |= Flags.HALF_BAND
-    doppler = np.abs(np.diff(tau, axis=1)).max(axis=0, initial=0.0) / np.maximum(np.diff(t), 1e-300)
-    if doppler.max(initial=0.0) * waveform.f0 > waveform.prf / 2:
-        flags |= Flags.ALIASING
-    near = _nearest(motion.names, t, r_tx, r_rx)
-    near = _closest(motion, antennas, waveform, p, pulses, near)
-    if body is not None and body.segments and near.distance < REACH_M * body.thickness:
-        near = min(near, _nearest_segment(body, antennas, t))
-    return SceneCheck(near, flags)
+        if tau.max() * SPEED_OF_LIGHT / 2 >= w.half_band_range:
+            flags |= Flags.HALF_BAND
+        rate = np.abs(np.diff(tau)).max(axis=0, initial=0.0) / np.maximum(np.diff(t), 1e-300)
+        if rate.max(initial=0.0) * w.f0 > w.prf / 2:
+            flags |= Flags.ALIASING
+        if isinstance(gate, tuple):
+            torso = point_delay(motion.torso(asked)[..., places], antennas, wall)
+            distance = torso * (SPEED_OF_LIGHT / 2)
+            if distance.min() < gate[0] or distance.max() > gate[1]:
+                flags |= Flags.GATE
+        one = _nearest(motion.names, t, r_tx, r_rx)
+        near.append(_closest(motion, antennas, w, p, pulses, one))
+        if body is not None and body.segments and near[-1].distance < REACH_M * body.thickness:
+            clear = (body.clearance(antenna, t) for antenna in (antennas.tx, antennas.rx))
+            one = _nearest(tuple(segment.name for segment in body.segments), t, *clear)
+            near.append(one._replace(distance=max(one.distance, 0.0)))
+    return SceneCheck(min(near), flags)
+
+
+class _Asked(OfMotion):
+    """A source without paths that keeps the times it is asked for."""
+
+    wall = None
+    t: Float
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
+
+    def __call__(self, t: Float) -> Paths:
+        self.t = t
+        return Paths(*np.empty((2, 0, t.size)))
+
+
+def _grid(motion: Motion, w: Waveform) -> Iterator[tuple[Float, Index | slice, Index]]:
+    """(times for which to ask the motion, which of them to look at, their pulses), whatever the
+    engine: knots, at which the echo will ask too if it can, and of which the last may come after
+    the last pulse.
+    """
+    step = max(1, int(w.prf / max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)))
+    usual = settings(first_aim(USUAL_DB), w, motion.highest_frequency)
+    knots = widest_step(w, usual.spacing.per_second)
+    if GatedEcho.min_step <= knots <= step and w.n_pulses <= CHUNK_KNOTS * knots:
+        asked = _Asked(motion)
+        count = knots_of(asked, w, knots, (0, w.n_pulses)).shift.size
+        each = np.append(np.arange(0, count, step // knots), count)
+        yield asked.t, BEFORE + each, knots * each
+        return
+    pulses = np.append(np.arange(0, w.n_pulses - 1, step), w.n_pulses - 1)
+    for first in range(0, pulses.size - 1, GRID_CHUNK):
+        # Consecutive ones share a pulse, so that no step between two is missed.
+        some = pulses[first : first + GRID_CHUNK + 1]
+        yield w.times(some.astype(float)), slice(None), some
 
 
 def _closest(
@@ -213,8 +232,9 @@ def _closest(
     between = np.sqrt((np.diff(p, axis=2) ** 2).sum(axis=0).max())
     if near.distance - between > MIN_DISTANCE_M:
         return near
-    for start in range(pulses[0], pulses[-1] + 1, CHUNK):
-        t = waveform.times(np.arange(start, min(start + CHUNK, pulses[-1] + 1), dtype=float))
+    end = min(pulses[-1] + 1, waveform.n_pulses)
+    for start in range(pulses[0], end, CHUNK):
+        t = waveform.times(np.arange(start, min(start + CHUNK, end), dtype=float))
         p = motion.positions(t)
         near = min(near, _nearest(motion.names, t, leg(p, antennas.tx), leg(p, antennas.rx)))
     return near
@@ -225,16 +245,6 @@ def _nearest(names: tuple[str, ...], t: Float, r_tx: Float, r_rx: Float) -> Appr
     for name, r in (("transmitter", r_tx), ("receiver", r_rx)):
         joint, at = divmod(int(np.argmin(r)), t.size)
         candidates.append(Approach(float(r[joint, at]), names[joint], name, float(t[at])))
-    return min(candidates)
-
-
-def _nearest_segment(body: Body, antennas: Antennas, t: Float) -> Approach:
-    candidates = []
-    for name, antenna in (("transmitter", antennas.tx), ("receiver", antennas.rx)):
-        way = body.clearance(antenna, t)
-        segment, at = divmod(int(np.argmin(way)), t.size)
-        distance = max(float(way[segment, at]), 0.0)
-        candidates.append(Approach(distance, body.segments[segment].name, name, float(t[at])))
     return min(candidates)
 
 

@@ -11,9 +11,11 @@ from hypothesis import strategies as st
 from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.errors import SceneError
+from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline import validity as module
-from radhar_cli.pipeline.physics import motion_of, wall_of
+from radhar_cli.pipeline.physics import motion_of, wall_of, waveform_of
+from radhar_cli.pipeline.run import record
 from radhar_cli.pipeline.validity import (
     Approach,
     Flags,
@@ -468,3 +470,26 @@ def test_a_torso_that_leaves_a_fixed_gate_is_warned_of(gate_m, leaves):
     assert (
         any("the torso leaves the ranges of processing.gate_m" in one for one in messages) == leaves
     )
+
+
+@pytest.mark.parametrize("scatterers", ["points", "segments"])
+def test_the_echo_needs_no_other_instants_than_the_check(monkeypatch, scatterers) -> None:
+    """But for the pulses at which it measures its error, and those that count a segment's points:
+    what the check has seen is remembered."""
+    asked, gather = [], HumanMotion._gather
+
+    def noted(self, t, *rest):
+        asked.append(t)
+        return gather(self, t, *rest)
+
+    monkeypatch.setattr(HumanMotion, "_gather", noted)
+    config = Config(body={"scatterers": scatterers}, processing={"gate_m": (0.5, 6)})
+    scene, _ = draw_valid_scene(config, WALKING, 0)
+    (checked,) = asked
+    record(scene, ["echo", "torso_track"])
+    assert checked.size > 1000 > max(t.size for t in asked[1:])
+    # The grid is no coarser than what the motion needs, and ends with the recording.
+    each = next(module._grid(scene.people[0].held["motion"], waveform_of(scene)))[2]
+    assert np.diff(each).max() <= waveform_of(scene).prf / 120
+    assert each[0] == 0
+    assert each[-1] >= waveform_of(scene).n_pulses - 1

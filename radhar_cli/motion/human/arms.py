@@ -19,7 +19,7 @@ def swung(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
 
     Shoulders are flexed ahead and elbows by angles [2, M], right and left, rad.
     """
-    angles = np.stack([shoulder, shoulder + elbow])
+    angles = np.array([shoulder, shoulder + elbow])
     ahead, down = np.sin(angles), np.cos(angles)
     x, z = trunk.ahead[:, None], trunk.up[:, None]
     return ahead[0] * x - down[0] * z, ahead[1] * x - down[1] * z
@@ -54,10 +54,10 @@ def hanging(body: Physique, shoulder: Float, elbow: Float) -> tuple[Float, Float
     Both in the trunk's frame; flexion of shoulders and elbows [2, M], rad.
     """
     fore, nothing = shoulder + elbow, np.zeros_like(shoulder)
-    hands = body.arm * np.stack(
+    hands = body.arm * np.array(
         [np.sin(shoulder) + np.sin(fore), nothing, -np.cos(shoulder) - np.cos(fore)]
     )
-    return hands, np.stack([-np.cos(shoulder), nothing, -np.sin(shoulder)])
+    return hands, np.array([-np.cos(shoulder), nothing, -np.sin(shoulder)])
 
 
 def supported(
@@ -76,7 +76,7 @@ def supported(
     hanging shoulders and elbows [2, M] in rad; share [M]. In the trunk's frame [3, 2] `elbows` is
     to where they bend when the hands are down.
     """
-    frame = np.stack([trunk.ahead, trunk.left, trunk.up])
+    frame = np.array([trunk.ahead, trunk.left, trunk.up])
     way = np.einsum("axm,xim->aim", frame, floor - shoulders)
     distance = np.sqrt(np.einsum("aim,aim->im", way, way))
     longest = STRETCHED * 2 * body.arm

@@ -184,19 +184,19 @@ class Exercising(Striking[Exercise]):
     def pose(self, t: Float, idle: IdleState) -> Pose:
         body = self.person
         values = iter(self.course(t))
-        limbs = {channel: np.stack([next(values), next(values)]) for channel in LIMBS}
+        limbs = {channel: np.array([next(values), next(values)]) for channel in LIMBS}
         ahead, left, drop, pitch, lean = values
         feet, hop = self._risen(t)
         swing = limbs["leg"]
         out = body.stature * limbs["out"] + body.reach * np.sin(swing)
         up = body.stature * limbs["up"] + body.reach * (1 - np.cos(swing)) + feet
-        ankles = np.stack(
+        ankles = np.array(
             [body.stature * limbs["ahead"], SIDES * (body.hip + out), body.ankle + up]
         )
         aside = hip_joints(body, np.zeros(t.size), np.zeros(t.size))
         sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
         standing = body.tallest - body.stature * drop + hop
-        place = body.stature * np.stack([ahead, left])
+        place = body.stature * np.array([ahead, left])
         hip = swayed_hip(body, standing, place, aside, ankles, body.softness, sway)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)

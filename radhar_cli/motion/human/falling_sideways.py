@@ -121,13 +121,13 @@ class FallingSideways:
         own, nothing = 1 - still, np.zeros(t.size)
         stands = own * (self.before != SEATED)  # who sits does not sway
         lean, roll = behind + stands * idle.lean, fall.side * legs + stands * idle.legs_roll
-        hip = length * np.stack(
+        hip = length * np.array(
             [np.sin(lean), np.cos(lean) * np.sin(roll), np.cos(lean) * np.cos(roll)]
         )
         hip[2] += body.ankle
         tilted = axes(nothing, nothing, fall.side * pelvis)
         joints = hip[:, None] + body.hip * SIDES * tilted.left[:, None]
-        ankles = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
+        ankles = np.array([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankles, (3, 2, t.size))
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         upper_body = axes(
@@ -138,7 +138,7 @@ class FallingSideways:
         lies = body.leg * 2 * bent + fall.hands[1] * body.stature
         beside = fall.side * (lies + near * (0.22 * body.stature - lies))
         ahead = np.full(t.size, fall.hands[0] * body.stature)
-        hand = np.stack([ahead, beside, np.full(t.size, HAND)])[:, None]
+        hand = np.array([ahead, beside, np.full(t.size, HAND)])[:, None]
         floor = np.broadcast_to(hand, (3, 2, t.size))
         shoulders = shoulder_points(body, hip, upper_body)
         off_floor = np.array([[0.0, 0.0], [-0.35 * fall.side] * 2, [-1.0, -1.0]])

@@ -63,7 +63,7 @@ class FootTrack:
             x, y = x + np.cos(heading) * ahead, y + np.sin(heading) * ahead
         else:
             x = x + ahead
-        return np.stack([x, y, z + ball * sin + high * cos])
+        return np.array([x, y, z + ball * sin + high * cos])
 
     @cached_property
     def _polynomials(self) -> tuple[Float, Float]:
@@ -113,7 +113,7 @@ def to_rest(
     """Coefficients [6, N] of a quintic that ends at rest, lowest power of (t - t0)/length first."""
     v, a = velocity * length, acceleration * length**2
     way = end - position
-    return np.stack(
+    return np.array(
         [
             position,
             v,

@@ -168,12 +168,12 @@ class IdleState:
     @property
     def shoulders(self) -> Float:
         """Further flexion, right and left [2, M], rad."""
-        return np.stack([self._fidgets["right_shoulder"], self._fidgets["left_shoulder"]])
+        return np.array([self._fidgets["right_shoulder"], self._fidgets["left_shoulder"]])
 
     @property
     def elbows(self) -> Float:
         """Further flexion, right and left [2, M], rad."""
-        return np.stack([self._fidgets["right_elbow"], self._fidgets["left_elbow"]])
+        return np.array([self._fidgets["right_elbow"], self._fidgets["left_elbow"]])
 
     @property
     def breath(self) -> Float:

@@ -94,18 +94,18 @@ class Kicking(Striking[Kick]):
         thigh, knee, pitch, free, bend = self.course(t)
         height = 2 * body.leg * np.cos(bend)
         sway = swayed(height, idle.lean, idle.legs_roll)
-        hip = sway + np.stack([np.zeros(t.size), np.zeros(t.size), body.ankle + height])
-        joints = hip[:, None] + np.stack([np.zeros((2, 1)), body.hip * SIDES, np.zeros((2, 1))])
-        flexed = np.stack([bend + thigh, thigh - bend - knee])
+        hip = sway + np.array([np.zeros(t.size), np.zeros(t.size), body.ankle + height])
+        joints = hip[:, None] + np.array([np.zeros((2, 1)), body.hip * SIDES, np.zeros((2, 1))])
+        flexed = np.array([bend + thigh, thigh - bend - knee])
         ahead, down = body.leg * np.sin(flexed), -body.leg * np.cos(flexed)
-        foot = np.stack(
+        foot = np.array(
             [ahead.sum(axis=0), np.full(t.size, -body.hip), body.ankle + height + down.sum(axis=0)]
         )
         foot += free * sway  # in the air the foot goes with the hip
         standing = np.broadcast_to([[0.0], [body.hip], [body.ankle]], (3, t.size))
         ankles = np.stack([foot, standing], axis=1)
         planted = (1 - free) * idle.legs_roll  # the leg's plane rolls while it stands
-        thigh_line = np.stack([ahead[0], down[0] * np.sin(planted), down[0] * np.cos(planted)])
+        thigh_line = np.array([ahead[0], down[0] * np.sin(planted), down[0] * np.cos(planted)])
         poles = np.stack([thigh_line, np.broadcast_to(AHEAD[:, 0], (3, t.size))], axis=1)
         knees = two_link(joints, ankles, body.leg, body.leg, poles)
         trunk = axes(pitch + idle.pitch, idle.yaw, idle.roll)

@@ -15,14 +15,14 @@ from radhar_cli.arrays import Bool, Float
 
 def minimum_jerk(x: Float) -> Float:
     """S(x) of x [...], 0 before 0 and 1 after 1."""
-    x = np.clip(x, 0.0, 1.0)
+    x = x.clip(0.0, 1.0)
     s: Float = x * x * x * (10 + x * (6 * x - 15))
     return s
 
 
 def minimum_jerk_integral(x: Float) -> Float:
     """Integral of S from minus infinity to x [...]: x^4 (2.5 - 3 x + x^2), x - 1/2 beyond 1."""
-    inside = np.clip(x, 0.0, 1.0)
+    inside = x.clip(0.0, 1.0)
     square = inside * inside
     beyond = np.maximum(x - 1.0, 0.0)
     s: Float = square * square * (2.5 + inside * (inside - 3)) + beyond
@@ -85,7 +85,7 @@ class Course:
         """Values [C, M] at times t [M] (s)."""
         if not self.starts.size:
             return np.broadcast_to(self.initial, (len(self.channels), t.size))
-        x = np.clip((t - self.starts) / self.lengths, 0.0, 1.0)
+        x: Float = ((t - self.starts) / self.lengths).clip(0.0, 1.0)
         if self.late.any():
             x[self.late] **= 2
         return self.initial + self.weights @ (x * x * x * (10 + x * (6 * x - 15)))

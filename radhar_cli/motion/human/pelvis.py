@@ -12,10 +12,10 @@ def hip_joints(person: Physique, yaw: Float, roll: Float) -> Float:
 
     Of a pelvis turned by `yaw` (right hip ahead) and `roll` (left hip down) [M], rad.
     """
-    angles = np.stack([yaw, roll])
+    angles = np.array([yaw, roll])
     (cy, cr), (sy, sr) = np.cos(angles), np.sin(angles)
     beside = person.hip * SIDES
-    return np.stack([beside * (-cr * sy), beside * (cr * cy), beside * -sr])
+    return np.array([beside * (-cr * sy), beside * (cr * cy), beside * -sr])
 
 
 def hip_height(
@@ -47,7 +47,7 @@ def hip_height(
 def swayed(height: Float | float, lean: Float, roll: Float) -> Float:
     """By how much a hip at a height above the ankles [M] goes with the sway [3, M]."""
     ahead, rise = np.sin(lean), np.cos(lean)
-    return height * np.stack([ahead, rise * np.sin(roll), rise * np.cos(roll) - 1])
+    return height * np.array([ahead, rise * np.sin(roll), rise * np.cos(roll) - 1])
 
 
 def swayed_hip(
@@ -66,8 +66,8 @@ def swayed_hip(
     its height at rest [3, M], from `swayed`; all else as for `hip_height`.
     """
     x, y = hip[0] + sway[0], hip[1] + sway[1]
-    z = hip_height(person, standing, np.stack([x, y]), aside, ankles, softness)
+    z = hip_height(person, standing, np.array([x, y]), aside, ankles, softness)
     limit = person.ankle + np.sqrt(np.maximum(person.reach**2 - sway[0] ** 2 - sway[1] ** 2, 0.0))
     k = person.softness
     soft = person.tallest - np.log1p(2 * np.exp(k * (person.tallest - limit))) / k
-    return np.stack([x, y, z + (person.rest_height + sway[2] - soft)])
+    return np.array([x, y, z + (person.rest_height + sway[2] - soft)])

@@ -99,20 +99,20 @@ class Planted:
         body = self.person
         shank, thigh, trunk, *others, heels, feet = self.course(t)
         *arms, standing, upright, share, far, beside = others
-        ankle = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
+        ankle = np.array([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankle, (3, 2, t.size))
         knee, hip = legs(body, shank, thigh, standing * idle.lean, standing * idle.legs_roll)
         if heels.any():
             up = shank + heels
-            lifted = knee - body.leg * np.stack([np.sin(up), np.zeros(t.size), np.cos(up)])
+            lifted = knee - body.leg * np.array([np.sin(up), np.zeros(t.size), np.cos(up)])
             ankles = ankles + np.where(heels, lifted, 0.0)[:, None]
         if feet.any():
-            slid = np.stack([feet, 0 * feet, 0 * feet])
+            slid = np.array([feet, 0 * feet, 0 * feet])
             ankles, knee, hip = ankles + slid[:, None], knee + slid, hip + slid
         hip[2] += body.ankle
         tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
-        shoulder = np.stack(arms[:2]) + upright * idle.shoulders
-        elbow = np.stack(arms[2:]) + upright * idle.elbows
+        shoulder = np.array(arms[:2]) + upright * idle.shoulders
+        elbow = np.array(arms[2:]) + upright * idle.elbows
         upper, fore = arms_down(body, hip, tilted, (shoulder, elbow), share, far, beside)
         return Pose(
             hip=hip,
@@ -133,9 +133,9 @@ def legs(
     s, h = shank + lean, thigh + lean
     up, left = np.cos(roll), np.sin(roll)
     x, z = person.leg * np.sin(s), person.leg * np.cos(s)
-    knee = np.stack([x, z * left, z * up])
+    knee = np.array([x, z * left, z * up])
     x, z = x + person.leg * np.sin(h), z + person.leg * np.cos(h)
-    return knee, np.stack([x, z * left, z * up])
+    return knee, np.array([x, z * left, z * up])
 
 
 def arms_down(
@@ -153,5 +153,5 @@ def arms_down(
     """
     if not share.any():
         return swung(trunk, *flexion)
-    floor = np.stack([far + 0 * SIDES, beside * SIDES, HAND + 0 * flexion[0]])
+    floor = np.array([far + 0 * SIDES, beside * SIDES, HAND + 0 * flexion[0]])
     return supported(person, trunk, shoulder_points(person, hip, trunk), flexion, floor, share)

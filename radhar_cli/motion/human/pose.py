@@ -93,4 +93,4 @@ def shoulder_points(person: Physique, hip: Float, trunk: Axes) -> Float:
 def turned(v: Float, angle: Float) -> Float:
     """Vectors [3, ..., M] turned to the left by angles [M], rad."""
     cos, sin = np.cos(angle), np.sin(angle)
-    return np.stack([cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]])
+    return np.array([cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]])

@@ -88,7 +88,7 @@ class Punching(Striking[Punch]):
         body, punch = self.person, self.strikes
         scale = body.stature / REFERENCE_STATURE
         right, left, *feet, guard = self.course(t)
-        ankles = self._ankles(np.stack(feet))
+        ankles = self._ankles(np.array(feet))
         still, into = 1 - guard, punch.turn * (right - left)
         aside = hip_joints(body, punch.pelvis * into, np.zeros(t.size))
         hip = ankles.mean(axis=1)
@@ -101,10 +101,10 @@ class Punching(Striking[Punch]):
         trunk = axes(pitch, into + still * idle.yaw, idle.roll)
         hands, poles = hanging(body, still * idle.shoulders, body.elbow + still * idle.elbows)
         x, y, z = punch.guard
-        guarding = scale * np.stack([np.full((2, 1), x), -y * SIDES, np.full((2, 1), z)])
-        ahead = np.stack([trunk.ahead[0], trunk.left[0], trunk.up[0]])[:, None]  # the room's x axis
+        guarding = scale * np.array([np.full((2, 1), x), -y * SIDES, np.full((2, 1), z)])
+        ahead = np.array([trunk.ahead[0], trunk.left[0], trunk.up[0]])[:, None]  # the room's x axis
         target = punch.reach * 2 * body.arm * ahead
-        hands += guard * (guarding - hands) + np.stack([right, left]) * (target - guarding)
+        hands += guard * (guarding - hands) + np.array([right, left]) * (target - guarding)
         poles += guard * (OUTWARDS[:, :, None] - poles)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
@@ -117,4 +117,4 @@ class Punching(Striking[Punch]):
         ahead, beside = scale * self.strikes.stance[0], scale * self.strikes.stance[1]
         y = SIDES * (self.person.hip + (beside - self.person.hip) * feet)
         lift = 4 * self.strikes.lift * feet * (1 - feet)
-        return np.stack([SIDES * ahead * feet, y, self.person.ankle + lift])
+        return np.array([SIDES * ahead * feet, y, self.person.ankle + lift])

@@ -123,14 +123,14 @@ class Stepping:
         body, place = self.person, self.step.place
         share, upset, *steps = self.course(t)
         turn = share * place.turn
-        ankles = self._ankles(np.stack(steps))
+        ankles = self._ankles(np.array(steps))
         aside = hip_joints(body, turn, np.zeros(t.size))
         sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
         way = share * np.array([[place.ahead], [place.left]])
         standing = body.tallest - self.step.drop * upset
         hip = swayed_hip(body, standing, way, aside, ankles, body.softness, turned(sway, turn))
         joints = hip[:, None] + aside
-        ahead = np.stack([np.cos(turn), np.sin(turn), np.zeros(t.size)])
+        ahead = np.array([np.cos(turn), np.sin(turn), np.zeros(t.size)])
         knees = two_link(joints, ankles, body.leg, body.leg, ahead[:, None])
         pitch, lean = self.step.pitch * upset, self.step.lean * upset
         upright = axes(idle.pitch + pitch, idle.yaw, idle.roll + lean)

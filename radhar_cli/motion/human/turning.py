@@ -105,7 +105,7 @@ class Turning:
         phase, drive = 2 * pi * self._cycles(t), drive * size
         yaw = drive * turn.angle * np.sin(phase)
         aside = hip_joints(body, turn.pelvis * yaw, np.zeros(t.size))
-        ankles = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
+        ankles = np.array([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankles, (3, 2, t.size))
         sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
         hip = swayed_hip(

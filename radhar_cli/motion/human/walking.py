@@ -143,13 +143,18 @@ class Walking:
             g *= 1 - minimum_jerk((t - self.stop) / self.ramp)
         return g
 
-    def _unsteady(self, t: Float, g: Float) -> Float:
-        """How far a ragged walker is ahead of the mean path [M], m."""
-        ragged = self.gait.ragged
-        ahead = ragged.integral(t) - (0.0 if self.from_rest else ragged.integral(np.zeros(1)))
-        return self.gait.speed * g * ahead
+    @cached_property
+    def _ahead_at_first(self) -> Float | float:
+        return 0.0 if self.from_rest else self.gait.ragged.integral(np.zeros(1))
 
-    def path(self, t: Float) -> Float:
+    def _unsteady(self, t: Float, g: Float | None = None) -> Float | float:
+        """How far a ragged walker is ahead of the mean path [M] (m), g from `drive`."""
+        if not self.gait.ragged.amplitudes:
+            return 0.0
+        ahead = self.gait.ragged.integral(t) - self._ahead_at_first
+        return self.gait.speed * (self.drive(t) if g is None else g) * ahead
+
+    def path(self, t: Float, unsteady: Float | float | None = None) -> Float:
         """X(t) [M], m: where the body is above its feet on average."""
         v, ramp = self.gait.speed, self.ramp
         if self.from_rest:
@@ -158,8 +163,7 @@ class Walking:
             x = v * (t - self.begin)
         if self.stops:
             x -= v * ramp * minimum_jerk_integral((t - self.stop) / ramp)
-        if self.gait.ragged.amplitudes:
-            x += self._unsteady(t, self.drive(t))
+        x += self._unsteady(t) if unsteady is None else unsteady
         if self._slower.size:
             x -= self._lost(t)
         return x
@@ -206,7 +210,7 @@ class Walking:
         on = self.begin + (self._turns + lost) / v - self.ramp / 2
         if self.from_rest:
             on += (self.start - self.ramp) / 2
-        return np.stack([on, on + takes])
+        return np.array([on, on + takes])
 
     def _lost(self, t: Float) -> Float:
         """Way [M] (m) that a walker has lost in turns."""
@@ -222,11 +226,11 @@ class Walking:
             t = t - (self.path(t) - s) / self.gait.speed
         return t
 
-    def phase(self, t: Float) -> Float:
+    def phase(self, t: Float, unsteady: Float | float | None = None) -> Float:
         """u(t) [M]: of the stride; a ragged walker changes stride and cadence alike."""
         u = (START_PHASE if self.from_rest else self.gait.phase) + (t - self.begin) / self.stride
-        if self.gait.ragged.amplitudes:
-            u += self._unsteady(t, self.drive(t)) / (2 * self.gait.speed * self.stride)
+        ahead = self._unsteady(t) if unsteady is None else unsteady
+        u += ahead / (2 * self.gait.speed * self.stride)
         if self._slower.size:
             u -= self._lost(t) / (2 * self.gait.speed * self.stride)
         if self._jitter is not None:
@@ -340,7 +344,7 @@ class Walking:
         if self.from_rest:
             off = np.maximum(off, START_PHASE)
             toe = np.maximum(toe, off + 0.12)
-        return np.stack([off, toe, k + later + 1 + gait.touch_down, k + later + gait.below])
+        return np.array([off, toe, k + later + 1 + gait.touch_down, k + later + gait.below])
 
     def _footfalls(self, times: Float, side: float) -> Footfalls:
         """Swings of a foot on one side, of which `_events` happen at `times` [4, N + 1] (s)."""
@@ -359,7 +363,7 @@ class Walking:
         x, y, heading = self._where(way)
         if heading is None:
             heading = np.zeros_like(way)
-        footholds = np.stack([x - sides * np.sin(heading), y + sides * np.cos(heading)])
+        footholds = np.array([x - sides * np.sin(heading), y + sides * np.cos(heading)])
         return Footfalls(
             off=off[:-1],
             toe=toe[:-1],
@@ -387,7 +391,7 @@ class Walking:
         )
         arm, bend = curves.shoulder(rv, gait.arm_swing), curves.elbow(rv)
         bend[0] -= self.person.elbow
-        return np.stack(
+        return np.array(
             [
                 surge,
                 curves.harmonic(1, -gait.sidewards, 0.03 + 1 / 4),
@@ -416,9 +420,11 @@ class Walking:
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s); worked out as seen by the walker, then put in its place."""
-        body, g, gone = self.person, self.drive(t), self.path(t)
+        body, g = self.person, self.drive(t)
+        unsteady = self._unsteady(t, g)
+        gone = self.path(t, unsteady)
         x, y, heading = self._where(gone)
-        rows = self._curves @ curves.basis(self.phase(t))
+        rows = self._curves @ curves.basis(self.phase(t, unsteady))
         rows *= g
         (surge, side, yaw, roll, twist), arms = rows[:5], rows[5:].reshape(2, 2, t.size)
         aside = hip_joints(body, yaw, roll)
@@ -427,7 +433,7 @@ class Walking:
         ankles[1] -= y
         if heading is not None:
             ankles = turned(ankles, -heading)
-        way = np.stack([surge, side])
+        way = np.array([surge, side])
         standing = body.tallest - self.gait.sink * body.stature * g
         softness = body.softness + (self.gait.softness - body.softness) * g
         pitch, lean = self.gait.trunk_pitch * g, np.zeros(t.size)
@@ -446,12 +452,12 @@ class Walking:
             pitch += other["trunk"] + own * idle.pitch
             twist += own * idle.yaw
             lean = own * idle.roll
-            arms += own * np.stack([idle.shoulders, idle.elbows])
-            arms[0] += np.stack([other[channel] for channel in SHOULDERS])
-            arms[1] += np.stack([other[channel] for channel in ELBOWS]) - body.elbow
+            arms += own * np.array([idle.shoulders, idle.elbows])
+            arms[0] += np.array([other[channel] for channel in SHOULDERS])
+            arms[1] += np.array([other[channel] for channel in ELBOWS]) - body.elbow
             hands = other["hands"], other["hands_ahead"], other["hands_beside"]
         else:
-            hip = np.stack([*way, hip_height(body, standing, way, aside, ankles, softness)])
+            hip = np.array([*way, hip_height(body, standing, way, aside, ankles, softness)])
         if self.gait.trip and self._jitter is not None:
             upset = self.gait.trip * g * self._jitter(t)[1]
             pitch, arms = pitch + upset, arms + 1.5 * upset

@@ -12,7 +12,7 @@ import scipy.fft
 from radhar_cli.accelerators import installed, load
 from radhar_cli.arrays import Complex, Float
 
-COEFFICIENTS = 2**16  # of frames transformed at once, which stay in a processor's cache
+COEFFICIENTS = 2**15  # of frames transformed at once, which stay in a processor's cache
 PLANNING = Lock()  # FFTW forgets in no thread while it plans in another
 
 
@@ -23,7 +23,6 @@ def fill_in_spectra(found: Float | Complex, frames: Complex, window: Float) -> N
     """
     size, length, middle = found.shape[1], window.size, window.size // 2
     g, rows = window.astype(frames.real.dtype), max(1, COEFFICIENTS // size)
-    result = np.positive if np.iscomplexobj(found) else np.abs
     transforms = _transforms(size, length, frames.dtype, get_ident())
     for start in range(0, len(frames), rows):
         some = frames[start : start + rows]
@@ -31,7 +30,10 @@ def fill_in_spectra(found: Float | Complex, frames: Complex, window: Float) -> N
         # Sample L//2 comes first: that refers the phase to it.
         np.multiply(some[:, middle:], g[middle:], out=framed[:, : length - middle])
         np.multiply(some[:, :middle], g[:middle], out=framed[:, size - middle :])
-        result(transform(), out=found[start : start + rows])
+        if np.iscomplexobj(found):
+            found[start : start + rows] = transform()
+        else:
+            np.abs(transform(), out=found[start : start + rows])
 
 
 @lru_cache(maxsize=8)
@@ -47,7 +49,8 @@ def _transforms(
     shape = max(1, COEFFICIENTS // size), size
     if installed("pyfftw") is None:
         framed = np.zeros(shape, dtype)
-        return lambda count: (framed[:count], partial(scipy.fft.fft, framed[:count], axis=1))
+        fft = partial(scipy.fft.fft, axis=1, overwrite_x=size == length)
+        return lambda count: (framed[:count], partial(fft, framed[:count]))
     fftw = _fftw()
     framed, found = fftw.zeros_aligned(shape, dtype), fftw.empty_aligned(shape, dtype)
 

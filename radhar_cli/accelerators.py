@@ -21,11 +21,7 @@ def installed(library: str) -> str | None:
 
 
 def load(library: str) -> Any:
-    """Import one that is installed.
-
-    Raises:
-        MachineError: it does not work here.
-    """
+    """Import one that is installed; a MachineError says that it does not work here."""
     try:
         return import_module(library)
     except ImportError as error:

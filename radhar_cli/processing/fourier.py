@@ -17,60 +17,48 @@ PLANNING = Lock()  # FFTW forgets in no thread while it plans in another
 
 
 def fill_in_spectra(found: Float | Complex, frames: Complex, window: Float) -> None:
-    """X[l, k] = sum_n x[l, n] g[n] exp(-j 2 pi k (n - L//2)/N), or |X| if `found` [F, N] is real.
-
-    Frames x [F, L] are padded with zeros.
-    """
+    """X[l, k] = sum_n x[l, n] g[n] exp(-j 2 pi k (n - L//2)/N), or |X| where `found` is real."""
     size, length, middle = found.shape[1], window.size, window.size // 2
     g, rows = window.astype(frames.real.dtype), max(1, COEFFICIENTS // size)
-    transforms = _transforms(size, length, frames.dtype, get_ident())
     for start in range(0, len(frames), rows):
-        some = frames[start : start + rows]
-        framed, transform = transforms(len(some))
+        some, put = frames[start : start + rows], found[start : start + rows]
+        enough = -(-len(some) // 8) * 8  # for fewer plans
+        framed, transform = _transform(enough, size, length, frames.dtype, get_ident())
         # Sample L//2 comes first: that refers the phase to it.
-        np.multiply(some[:, middle:], g[middle:], out=framed[:, : length - middle])
-        np.multiply(some[:, :middle], g[:middle], out=framed[:, size - middle :])
+        np.multiply(some[:, middle:], g[middle:], out=framed[: len(some), : length - middle])
+        np.multiply(some[:, :middle], g[:middle], out=framed[: len(some), size - middle :])
         if np.iscomplexobj(found):
-            found[start : start + rows] = transform()
+            put[:] = transform()[: len(some)]
         else:
-            np.abs(transform(), out=found[start : start + rows])
+            np.abs(transform()[: len(some)], out=put)
 
 
-@lru_cache(maxsize=8)
-def _transforms(
-    size: int, length: int, dtype: np.dtype[Any], thread: int
-) -> Callable[[int], tuple[Complex, Callable[[], Complex]]]:
-    """Of a count of frames: where to put them, windowed, and what transforms them.
+@lru_cache(maxsize=64)
+def _transform(
+    count: int, size: int, length: int, dtype: Any, thread: int
+) -> tuple[Complex, Callable[[], Complex]]:
+    """Where to put windowed frames, zero beyond their `length`, and what transforms them.
 
-    Frames are zero between their `length` samples and their `size`. FFTW estimates which of its
-    ways is the fastest, by a count of operations: measuring would give other bytes at each start,
-    and so would what it was told before or other alignments of the arrays.
+    FFTW counts operations to choose its way: with one that it measures, or remembers from before,
+    or on arrays that are aligned otherwise, bytes would differ from process to process.
     """
-    shape = max(1, COEFFICIENTS // size), size
     if installed("pyfftw") is None:
-        framed = np.zeros(shape, dtype)
-        fft = partial(scipy.fft.fft, axis=1, overwrite_x=size == length)
-        return lambda count: (framed[:count], partial(fft, framed[:count]))
+        framed = np.zeros((count, size), dtype)
+        return framed, partial(scipy.fft.fft, framed, axis=1, overwrite_x=size == length)
     fftw = _fftw()
-    framed, found = fftw.zeros_aligned(shape, dtype), fftw.empty_aligned(shape, dtype)
-
-    @cache
-    def of(count: int) -> tuple[Complex, Callable[[], Complex]]:
-        here = framed[:count]
-        with PLANNING:
-            fftw.forget_wisdom()
-            return here, fftw.FFTW(here, found[:count], axes=(1,), flags=("FFTW_ESTIMATE",))
-
-    return of
+    framed, found = (fftw.zeros_aligned((count, size), dtype) for _ in range(2))
+    with PLANNING:
+        fftw.forget_wisdom()
+        return framed, fftw.FFTW(framed, found, axes=(1,), flags=("FFTW_ESTIMATE",))
 
 
 @cache
 def _fftw() -> Any:
-    if "dask" in sys.modules:
-        return load("pyfftw")
-    # It would import dask, if that is installed, for an interface that is not used: 0.15 of 0.16 s.
-    sys.modules["dask"] = None  # type: ignore[assignment]
+    """pyfftw, without dask, which it would import and never use here: 0.15 of 0.16 s."""
+    hidden = "dask" not in sys.modules
+    sys.modules.setdefault("dask", None)  # type: ignore[arg-type]
     try:
         return load("pyfftw")
     finally:
-        del sys.modules["dask"]
+        if hidden:
+            del sys.modules["dask"]

@@ -1,6 +1,7 @@
 """Fourier synchrosqueezed transform: STFT coefficients moved to their instantaneous frequency."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 
@@ -47,21 +48,16 @@ def power_blocks(stft: Stft, threshold: float, single: bool = False) -> Iterator
     """
     rows, frames = stft.signal.x[:, 0], stft.frames
 
-    def coefficients(block: slice) -> list[Complex]:
-        return [stft.transform(x, block, frames.window) for x in rows]
+    @lru_cache(maxsize=1)  # of which there is often but one
+    def coefficients(number: int) -> list[Complex]:
+        return [stft.transform(x, stft.blocks[number], frames.window) for x in rows]
 
-    kept = [coefficients(block) for block in stft.blocks[:1]] if len(stft.blocks) == 1 else None
-    least = 0.0
-    if threshold:
-        passes = kept or map(coefficients, stft.blocks)
-        least = threshold * max(float(np.abs(v).max()) for block in passes for v in block)
+    passes = map(coefficients, range(len(stft.blocks) if threshold else 0))
+    least = threshold * max((float(np.abs(v).max()) for block in passes for v in block), default=0)
     for number, block in enumerate(stft.blocks):
-        total: Float | None = None
-        each = kept[number] if kept else coefficients(block)
+        each = coefficients(number)
+        total = np.zeros(each[0].shape, np.float32 if single else float)
         for x, v in zip(rows, each, strict=True):
             t = synchrosqueeze(v, stft.transform(x, block, frames.window_slope), least)
-            power = t.real**2 + t.imag**2
-            total = power if total is None else total + power
-        assert total is not None
-        kind = np.float32 if single else each[0].real.dtype
-        yield np.fft.fftshift(total.astype(kind), axes=1)
+            total += t.real**2 + t.imag**2
+        yield np.fft.fftshift(total, axes=1)

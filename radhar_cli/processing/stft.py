@@ -92,27 +92,20 @@ class Stft:
     def power_blocks(self) -> Iterator[Float]:
         """sum |X|^2 over channels and rows, or (sum |X|)^2 [some frames, N], rising frequency."""
         for block in self.blocks:
-            total: Float | None = None
             each = self._shown(block)
+            total = np.zeros((each.shape[1], self.size), np.float32 if self.single else float)
             for channel in self.signal.x:
                 for x, shown in zip(channel, each, strict=True):
                     some = np.flatnonzero(shown)
                     if not some.size:
                         continue
-                    first, last = block.start + int(some[0]), block.start + int(some[-1]) + 1
-                    size = self.transform(x, slice(first, last), self.frames.window, True)
+                    first, last = int(some[0]), int(some[-1]) + 1
+                    frames = slice(block.start + first, block.start + last)
+                    size = self.transform(x, frames, self.frames.window, magnitudes=True)
                     if not self.magnitudes:
                         size *= size
-                    if total is None and some.size == shown.size:
-                        total = size
-                        continue
-                    if total is None:
-                        total = np.zeros((shown.size, self.size), size.dtype)
-                    if some.size == len(size):  # the usual case: frames without a gap
-                        total[some[0] : some[-1] + 1] += size
-                    else:
-                        total[some] += size[some - some[0]]
-            assert total is not None, "a gate shows at least one row of every frame"
+                    size[~shown[first:last]] = 0  # a gate may come back
+                    total[first:last] += size
             if self.magnitudes:
                 total *= total
             yield np.fft.fftshift(total, axes=1)

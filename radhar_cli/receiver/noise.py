@@ -9,8 +9,6 @@ from radhar_cli.arrays import Complex
 from radhar_cli.processing.look import Look
 from radhar_cli.receiver.impairment import Impairment
 
-CHUNK = 2**14  # numbers drawn at once, which stay in a processor's cache
-
 
 def noise_variance(signal_power: float, snr_db: float) -> float:
     """sigma_n^2 = P_s/10^(SNR/10) per complex raw sample."""
@@ -25,17 +23,12 @@ def circular_gaussian(
     They are sqrt(-log u) exp(j 2 pi v) of uniform u and v (Box and Muller), with the digits of
     float32, of which logarithms and sines are made many at a time.
     """
+    bits = rng.integers(2**64, size=shape, dtype=np.uint64)
+    u, v = (half.astype(np.float32) * 2.0**-32 for half in (bits >> 32, bits & 0xFFFFFFFF))
+    size, angle = np.sqrt(-np.log(u + 2.0**-33)), 2 * np.pi * v  # u may be 0
     z: Complex = np.empty(shape, np.complex64 if single else np.complex128)
-    for start in range(0, z.size, CHUNK):
-        part = z.reshape(-1)[start : start + CHUNK]
-        bits = rng.integers(2**64, size=part.size, dtype=np.uint64).view(np.uint32)
-        u, v = bits[::2].astype(np.float32), bits[1::2].astype(np.float32)
-        u += 0.5  # never 0
-        u *= 2.0**-32
-        v *= 2 * np.pi / 2**32
-        size = np.sqrt(-np.log(u))
-        np.multiply(size, np.cos(v), out=part.real)
-        np.multiply(size, np.sin(v), out=part.imag)
+    np.multiply(size, np.cos(angle), out=z.real)
+    np.multiply(size, np.sin(angle), out=z.imag)
     return z
 
 
@@ -50,8 +43,6 @@ def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Com
         v = np.zeros((rank, look.count), complex)
         for row, span in zip(v, look.spans, strict=True):
             row[span] = circular_gaussian(rng, row[span].shape)
-    elif look.spans is not None:
-        v = circular_gaussian(rng, (rank, look.count))
     elif look.count == 1 or reach == 0 or np.all(np.diff(look.pulses) > reach):
         v = circular_gaussian(rng, (look.count, rank)).T
         if reach:

@@ -10,7 +10,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from radhar_cli.accelerators import installed, machine_code
 from radhar_cli.arrays import Complex, Float
+
+MIN_SAMPLES = 2**19  # of a signal that numba filters, which takes some time to load
+TILE = 256  # pulses of all rows that are filtered at once, in a processor's cache
 
 
 class Canceller(ABC):
@@ -103,13 +107,42 @@ class HighPass(Canceller):
         return self.remove_mean
 
     def __call__(self, s: Complex) -> Complex:
+        sections = _butterworth(self.order, self.cutoff)
+        y = _filtered(sections, MeanRemoval()(s) if self.remove_mean else s)
+        if self.zero_phase:
+            y = _filtered(sections, y[..., ::-1])[..., ::-1]
+        return y
+
+
+def _filtered(sections: Float, x: Complex) -> Complex:
+    """Second-order sections from rest, along the pulses."""
+    if x.size < MIN_SAMPLES or installed("numba") is None:
         from scipy.signal import sosfilt  # slow to import
 
-        sections = _butterworth(self.order, self.cutoff)
-        y: Complex = sosfilt(sections, MeanRemoval()(s) if self.remove_mean else s)
-        if self.zero_phase:
-            y = sosfilt(sections, y[..., ::-1])[..., ::-1]
-        return y
+        return np.asarray(sosfilt(sections, x))
+    x = np.ascontiguousarray(x, np.result_type(x, sections))
+    y = np.empty_like(x)
+    machine_code(_all_rows)(*(z.reshape(-1, z.shape[-1]) for z in (x, y)), sections)
+    return y
+
+
+def _all_rows(x: Complex, y: Complex, sections: Float) -> None:
+    """Fill in y of x [rows, pulses], all rows at a time: each pulse of one waits for the last."""
+    tile = np.empty((TILE, len(x)), x.dtype)
+    state = np.zeros((len(sections), 2, len(x)), x.dtype)
+    for start in range(0, x.shape[1], TILE):
+        count = min(TILE, x.shape[1] - start)
+        tile[:count] = x[:, start : start + count].T
+        for s in range(len(sections)):
+            b0, b1, b2, _, a1, a2 = sections[s]
+            for m in range(count):
+                for r in range(len(x)):
+                    v = tile[m, r]
+                    w = b0 * v + state[s, 0, r]
+                    state[s, 0, r] = b1 * v - a1 * w + state[s, 1, r]
+                    state[s, 1, r] = b2 * v - a2 * w
+                    tile[m, r] = w
+        y[:, start : start + count] = tile[:count].T
 
 
 @lru_cache(maxsize=8)

@@ -30,7 +30,7 @@ def synchrosqueeze(v: Complex, slope: Complex, least: float) -> Complex:
     np.clip(k, -(2.0**52), 2.0**52, out=k)  # shifts beyond the digits of a double
     to = k.astype(np.intp)
     to += np.arange(length)
-    beyond = (to < 0) | (to >= length)
+    beyond = to.view(np.uintp) >= length  # or less than 0
     to[beyond] %= length
     to += length * np.arange(frames)[:, None]
     v[dropped] = 0

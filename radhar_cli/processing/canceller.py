@@ -14,7 +14,6 @@ from radhar_cli.accelerators import installed, machine_code
 from radhar_cli.arrays import Complex, Float
 
 MIN_SAMPLES = 2**19  # of a signal that numba filters, which takes some time to load
-TILE = 256  # pulses of all rows that are filtered at once, in a processor's cache
 
 
 class Canceller(ABC):
@@ -120,29 +119,23 @@ def _filtered(sections: Float, x: Complex) -> Complex:
         from scipy.signal import sosfilt  # slow to import
 
         return np.asarray(sosfilt(sections, x))
-    x = np.ascontiguousarray(x, np.result_type(x, sections))
-    y = np.empty_like(x)
-    machine_code(_all_rows)(*(z.reshape(-1, z.shape[-1]) for z in (x, y)), sections)
-    return y
+    y = np.array(x.reshape(-1, x.shape[-1]).T, np.result_type(x, sections), order="C")
+    machine_code(_filter_rows)(y, sections)
+    return np.ascontiguousarray(y.T).reshape(x.shape)
 
 
-def _all_rows(x: Complex, y: Complex, sections: Float) -> None:
-    """Fill in y of x [rows, pulses], all rows at a time: each pulse of one waits for the last."""
-    tile = np.empty((TILE, len(x)), x.dtype)
-    state = np.zeros((len(sections), 2, len(x)), x.dtype)
-    for start in range(0, x.shape[1], TILE):
-        count = min(TILE, x.shape[1] - start)
-        tile[:count] = x[:, start : start + count].T
+def _filter_rows(y: Complex, sections: Float) -> None:
+    """Filter y [pulses, rows], all rows at a time: each pulse of one waits for the last."""
+    state = np.zeros((len(sections), 2, y.shape[1]), y.dtype)
+    for m in range(len(y)):
         for s in range(len(sections)):
             b0, b1, b2, _, a1, a2 = sections[s]
-            for m in range(count):
-                for r in range(len(x)):
-                    v = tile[m, r]
-                    w = b0 * v + state[s, 0, r]
-                    state[s, 0, r] = b1 * v - a1 * w + state[s, 1, r]
-                    state[s, 1, r] = b2 * v - a2 * w
-                    tile[m, r] = w
-        y[:, start : start + count] = tile[:count].T
+            for r in range(y.shape[1]):
+                v = y[m, r]
+                w = b0 * v + state[s, 0, r]
+                state[s, 0, r] = b1 * v - a1 * w + state[s, 1, r]
+                state[s, 1, r] = b2 * v - a2 * w
+                y[m, r] = w
 
 
 @lru_cache(maxsize=8)

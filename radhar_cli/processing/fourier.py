@@ -1,8 +1,7 @@
 """Fourier transforms of windowed frames, by FFTW where pyfftw is installed, by scipy otherwise."""
 
-import sys
 from collections.abc import Callable
-from functools import cache, lru_cache, partial
+from functools import lru_cache, partial
 from threading import Lock, get_ident
 from typing import Any
 
@@ -45,20 +44,8 @@ def _transform(
     if installed("pyfftw") is None:
         framed = np.zeros((count, size), dtype)
         return framed, partial(scipy.fft.fft, framed, axis=1, overwrite_x=size == length)
-    fftw = _fftw()
+    fftw = load("pyfftw")
     framed, found = (fftw.zeros_aligned((count, size), dtype) for _ in range(2))
     with PLANNING:
         fftw.forget_wisdom()
         return framed, fftw.FFTW(framed, found, axes=(1,), flags=("FFTW_ESTIMATE",))
-
-
-@cache
-def _fftw() -> Any:
-    """pyfftw, without dask, which it would import and never use here: 0.15 of 0.16 s."""
-    hidden = "dask" not in sys.modules
-    sys.modules.setdefault("dask", None)  # type: ignore[arg-type]
-    try:
-        return load("pyfftw")
-    finally:
-        if hidden:
-            del sys.modules["dask"]

@@ -13,7 +13,6 @@ from radhar_cli.processing import canceller as canceller_module
 from radhar_cli.processing.canceller import (
     FIRST_DIFFERENCE,
     NO_CANCELLER,
-    TILE,
     Fir,
     HighPass,
     MeanRemoval,
@@ -82,7 +81,7 @@ def test_whole_recordings_are_cancelled_linearly_without_gain(canceller, s, a):
 
 @pytest.mark.skipif(installed("numba") is None, reason="needs radhar[fast]")
 @pytest.mark.parametrize("canceller", [c for c in WHOLE if isinstance(c, HighPass)], ids=repr)
-@pytest.mark.parametrize("shape", [(8, 2 * TILE + 1), (2, 5, 20)])
+@pytest.mark.parametrize("shape", [(8, 500), (2, 5, 20)])
 def test_compiled_it_filters_alike(monkeypatch, canceller, shape):
     """Many rows of many pulses, as scipy filters them one by one."""
     s = np.random.default_rng(2).standard_normal((*shape, 2)).view(complex)[..., 0]

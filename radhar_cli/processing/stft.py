@@ -93,7 +93,7 @@ class Stft:
         """sum |X|^2 over channels and rows, or (sum |X|)^2 [some frames, N], rising frequency."""
         for block in self.blocks:
             each = self._shown(block)
-            total = np.zeros((each.shape[1], self.size), np.float32 if self.single else float)
+            total: Float | None = None
             for channel in self.signal.x:
                 for x, shown in zip(channel, each, strict=True):
                     some = np.flatnonzero(shown)
@@ -104,8 +104,16 @@ class Stft:
                     size = self.transform(x, frames, self.frames.window, magnitudes=True)
                     if not self.magnitudes:
                         size *= size
-                    size[~shown[first:last]] = 0  # a gate may come back
-                    total[first:last] += size
+                    if total is None and some.size == shown.size:
+                        total = size
+                        continue
+                    if total is None:
+                        total = np.zeros((shown.size, self.size), size.dtype)
+                    if some.size == len(size):  # the usual case: frames without a gap
+                        total[first:last] += size
+                    else:
+                        total[some] += size[some - first]
+            assert total is not None, "a gate shows at least one row of every frame"
             if self.magnitudes:
                 total *= total
             yield np.fft.fftshift(total, axes=1)

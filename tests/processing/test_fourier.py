@@ -27,7 +27,7 @@ def library(request, monkeypatch):
 
 
 def forget():
-    fourier._transform.cache_clear()
+    fourier._planned.cache_clear()
 
 
 def frames_of(count: int, length: int, dtype=np.complex128) -> np.ndarray:

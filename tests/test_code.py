@@ -16,6 +16,7 @@ PACKAGE = ROOT / "radhar_cli"
 PACKAGES = (
     "arrays",
     "errors",
+    "accelerators",
     "interrupts",
     "rounding",
     "registry",

@@ -6,7 +6,7 @@ import typer
 
 from radhar_cli.commands.tell import tell
 
-LIBRARIES = ("numpy", "scipy", "h5py", "Pillow", "isal", "numba", "torch")
+LIBRARIES = ("numpy", "scipy", "h5py", "Pillow", "isal", "numba", "pyfftw", "torch")
 
 
 def _print(asked: bool) -> None:

@@ -4,6 +4,7 @@ import hashlib
 import json
 from typing import Any
 
+from radhar_cli.accelerators import installed
 from radhar_cli.build_version import build_version
 from radhar_cli.config.identity import config_hash, flat_document, resolved
 from radhar_cli.config.schema import AnyConfig
@@ -18,8 +19,6 @@ def versions() -> dict[str, str]:
     import PIL
     import scipy
 
-    from radhar_cli.echo.compiled import numba_version
-
     return {
         "radhar": build_version(),
         "numpy": np.__version__,
@@ -27,7 +26,8 @@ def versions() -> dict[str, str]:
         "h5py": h5py.__version__,
         "pillow": PIL.__version__,
         "isal": isal.__version__,
-        "numba": numba_version() or "none",
+        "numba": installed("numba") or "none",
+        "pyfftw": installed("pyfftw") or "none",
         **({} if own_digest() is None else {"own": f"{own_digest()}"}),
     }
 

@@ -6,13 +6,12 @@ too, which a processor computes for eight paths or more at once.
 """
 
 from collections.abc import Callable
-from functools import cache, lru_cache
-from importlib.metadata import PackageNotFoundError, version
-from typing import Any
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from radhar_cli.accelerators import installed, machine_code
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.half_band_sum import HalfBandTable
 from radhar_cli.echo.interpolation import (
@@ -26,44 +25,15 @@ from radhar_cli.echo.interpolation import (
 )
 from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.phase_recurrence import nodes, runs
-from radhar_cli.errors import MachineError
 
 TERMS = 4  # coefficients of a cubic
 LANES = 16  # paths per SIMD batch; a remainder would be computed one by one
 MIN_TERMS = 2**19  # terms of a sum; with fewer, numba takes longer to load than some 300 sums save
 
 
-@cache
-def numba_version() -> str | None:
-    """The version of numba that is installed, if it is."""
-    try:
-        return version("numba")
-    except PackageNotFoundError:
-        return None
-
-
 def pays(terms: int) -> bool:
     """Whether a sum over paths and pulses of that many terms is made here."""
-    return terms >= MIN_TERMS and numba_version() is not None
-
-
-@cache
-def _machine_code(function: Callable[..., None]) -> Callable[..., None]:
-    """Compile a function, or take it from the cache beside this file or in the user's folder."""
-    try:
-        from numba import njit
-    except ImportError as error:
-        raise MachineError(
-            f"numba {numba_version()} does not work here ({error}); should be a version for NumPy "
-            f"{np.__version__}, or be removed"
-        ) from None
-    # Sums in any order, but not as if there were no NaN.
-    options: dict[str, Any] = {"fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy"}
-    try:
-        compiled: Callable[..., None] = njit(function, cache=True, **options)
-    except RuntimeError:  # no folder for the cache can be written
-        compiled = njit(function, **options)
-    return compiled
+    return terms >= MIN_TERMS and installed("numba") is not None
 
 
 def interpolated_sum(
@@ -78,9 +48,9 @@ def interpolated_sum(
     cycles, real, imag = np.empty(shape), *np.empty((2, *shape), np.float32)
     square = 0.5 * w.slope if w.residual_video_phase else 0.0
     scale = (w.f0, square, w.slope / w.adc_rate, 1 / unit, bool(w.n0 % 1))
-    _machine_code(_at_knots)(*paths[:2], some, scale, table.cubics, cycles, real, imag)
+    machine_code(_at_knots)(*paths[:2], some, scale, table.cubics, cycles, real, imag)
     total = np.zeros(shift.size * step, dtype=complex)
-    _machine_code(_add)(cycles, real, imag, shift, *_cubics(step), SINE, COSINE, total)
+    machine_code(_add)(cycles, real, imag, shift, *_cubics(step), SINE, COSINE, total)
     return total
 
 

@@ -10,7 +10,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from radhar_cli.accelerators import installed, machine_code
 from radhar_cli.arrays import Complex, Float
+
+MIN_SAMPLES = 2**19  # of a signal that numba filters, which takes some time to load
 
 
 class Canceller(ABC):
@@ -103,13 +106,36 @@ class HighPass(Canceller):
         return self.remove_mean
 
     def __call__(self, s: Complex) -> Complex:
+        sections = _butterworth(self.order, self.cutoff)
+        y = _filtered(sections, MeanRemoval()(s) if self.remove_mean else s)
+        if self.zero_phase:
+            y = _filtered(sections, y[..., ::-1])[..., ::-1]
+        return y
+
+
+def _filtered(sections: Float, x: Complex) -> Complex:
+    """Second-order sections from rest, along the pulses."""
+    if x.size < MIN_SAMPLES or installed("numba") is None:
         from scipy.signal import sosfilt  # slow to import
 
-        sections = _butterworth(self.order, self.cutoff)
-        y: Complex = sosfilt(sections, MeanRemoval()(s) if self.remove_mean else s)
-        if self.zero_phase:
-            y = sosfilt(sections, y[..., ::-1])[..., ::-1]
-        return y
+        return np.asarray(sosfilt(sections, x))
+    y = np.array(x.reshape(-1, x.shape[-1]).T, np.result_type(x, sections), order="C")
+    machine_code(_filter_rows)(y, sections)
+    return np.ascontiguousarray(y.T).reshape(x.shape)
+
+
+def _filter_rows(y: Complex, sections: Float) -> None:
+    """Filter y [pulses, rows], all rows at a time: each pulse of one waits for the last."""
+    state = np.zeros((len(sections), 2, y.shape[1]), y.dtype)
+    for m in range(len(y)):
+        for s in range(len(sections)):
+            b0, b1, b2, _, a1, a2 = sections[s]
+            for r in range(y.shape[1]):
+                v = y[m, r]
+                w = b0 * v + state[s, 0, r]
+                state[s, 0, r] = b1 * v - a1 * w + state[s, 1, r]
+                state[s, 1, r] = b2 * v - a2 * w
+                y[m, r] = w
 
 
 @lru_cache(maxsize=8)

@@ -1,6 +1,7 @@
 """Fourier synchrosqueezed transform: STFT coefficients moved to their instantaneous frequency."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 
@@ -8,8 +9,8 @@ from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.stft import Stft
 
 
-def synchrosqueeze(v: Complex, slope: Complex, least: float) -> tuple[Float, Float]:
-    """T[l, k], real and imaginary: V[l, k] added up at bin k + round(Im(-V'/V) L/(2 pi)) modulo L.
+def synchrosqueeze(v: Complex, slope: Complex, least: float) -> Complex:
+    """T[l, k], V[l, k] added up at bin k + round(Im(-V'/V) L/(2 pi)) modulo L; V is lost.
 
     V, and V' with the window's slope, are [frames, L]. Both have their phase referenced to sample
     L//2 of the frame, so that sum_k T = L g[L//2] x[l hop + L//2] where nothing is dropped, as are
@@ -20,22 +21,22 @@ def synchrosqueeze(v: Complex, slope: Complex, least: float) -> tuple[Float, Flo
     power += v.imag**2
     dropped = power < max(least**2, float(np.finfo(power.dtype).tiny))
     power[dropped] = 1
-    # Im(-V'/V) = Im(V conj V')/|V|^2
-    k = slope.real * v.imag
-    k -= slope.imag * v.real
-    k /= power
+    turn = slope.conj()
+    turn *= v
+    k = turn.imag / power  # Im(-V'/V) = Im(V conj V')/|V|^2
     k *= length / (2 * np.pi)
     k += 0.5
     np.floor(k, out=k)
-    k += np.arange(length)
-    k -= length * np.floor(k / length)
-    np.clip(k, 0, length - 1, out=k)  # of shifts beyond the digits of a double
-    k += length * np.arange(frames)[:, None]
-    to = k.astype(np.intp).ravel()
-    v = np.where(dropped, 0, v).ravel()
-    real = np.bincount(to, v.real, minlength=v.size).reshape(frames, length)
-    imag = np.bincount(to, v.imag, minlength=v.size).reshape(frames, length)
-    return real.astype(float, copy=False), imag.astype(float, copy=False)
+    np.clip(k, -(2.0**52), 2.0**52, out=k)  # shifts beyond the digits of a double
+    to = k.astype(np.intp)
+    to += np.arange(length)
+    beyond = to.view(np.uintp) >= length  # or less than 0
+    to[beyond] %= length
+    to += length * np.arange(frames)[:, None]
+    v[dropped] = 0
+    squeezed = np.zeros(v.size, v.dtype)
+    np.add.at(squeezed, to.ravel(), v.ravel())
+    return squeezed.reshape(v.shape)
 
 
 def power_blocks(stft: Stft, threshold: float, single: bool = False) -> Iterator[Float]:
@@ -47,23 +48,16 @@ def power_blocks(stft: Stft, threshold: float, single: bool = False) -> Iterator
     """
     rows, frames = stft.signal.x[:, 0], stft.frames
 
-    def coefficients(block: slice) -> list[Complex]:
-        return [stft.transform(x, block, frames.window) for x in rows]
+    @lru_cache(maxsize=1)  # of which there is often but one
+    def coefficients(number: int) -> list[Complex]:
+        return [stft.transform(x, stft.blocks[number], frames.window) for x in rows]
 
-    kept = [coefficients(block) for block in stft.blocks[:1]] if len(stft.blocks) == 1 else None
-    least = 0.0
-    if threshold:
-        passes = kept or map(coefficients, stft.blocks)
-        least = threshold * max(float(np.abs(v).max()) for block in passes for v in block)
+    passes = map(coefficients, range(len(stft.blocks) if threshold else 0))
+    least = threshold * max((float(np.abs(v).max()) for block in passes for v in block), default=0)
     for number, block in enumerate(stft.blocks):
-        total: Float | None = None
-        each = kept[number] if kept else coefficients(block)
+        each = coefficients(number)
+        total = np.zeros(each[0].shape, np.float32 if single else float)
         for x, v in zip(rows, each, strict=True):
-            power, imag = synchrosqueeze(v, stft.transform(x, block, frames.window_slope), least)
-            power *= power
-            imag *= imag
-            power += imag
-            total = power if total is None else total + power
-        assert total is not None
-        kind = np.float32 if single else each[0].real.dtype
-        yield np.fft.fftshift(total.astype(kind), axes=1)
+            t = synchrosqueeze(v, stft.transform(x, block, frames.window_slope), least)
+            total += t.real**2 + t.imag**2
+        yield np.fft.fftshift(total, axes=1)

@@ -6,10 +6,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy.fft
 
 from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.errors import RadharError
+from radhar_cli.processing.fourier import fill_in_spectra
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate
 from radhar_cli.processing.power_map import Axis
@@ -75,33 +75,33 @@ class Stft:
         count, most = self.starts.size, max(1, BLOCK_COEFFICIENTS // self.size)
         return [slice(first, min(first + most, count)) for first in range(0, count, most)]
 
-    def transform(self, row: Complex, frames: slice, window: Float) -> Complex:
-        """X [some frames, N] of a row [M] of the signal, with a window [L]."""
+    def transform(
+        self, row: Complex, frames: slice, window: Float, magnitudes: bool = False
+    ) -> Any:
+        """X [some frames, N], or |X|, of a row [M] of the signal, with a window [L]."""
         starts, length = self.starts[frames], self.frames.length
         dtype: Any = np.complex64 if self.single else np.complex128
         x = (row[starts[0] : starts[-1] + length] * 2.0**-self.exponent).astype(dtype)
         cut = np.lib.stride_tricks.sliding_window_view(x, length)
         gapless = starts[-1] - starts[0] == (starts.size - 1) * self.frames.hop
         cut = cut[:: self.frames.hop] if gapless else cut[starts - starts[0]]
-        g, middle = window.astype(cut.real.dtype), length // 2
-        # Sample L//2 comes first: that refers the phase to it.
-        framed = np.zeros((len(cut), self.size), dtype)
-        np.multiply(cut[:, middle:], g[middle:], out=framed[:, : length - middle])
-        np.multiply(cut[:, :middle], g[:middle], out=framed[:, self.size - middle :])
-        return np.asarray(scipy.fft.fft(framed, axis=1, overwrite_x=True))
+        found = np.empty((len(cut), self.size), x.real.dtype if magnitudes else dtype)
+        fill_in_spectra(found, cut, window)
+        return found
 
     def power_blocks(self) -> Iterator[Float]:
         """sum |X|^2 over channels and rows, or (sum |X|)^2 [some frames, N], rising frequency."""
         for block in self.blocks:
-            total: Float | None = None
             each = self._shown(block)
+            total: Float | None = None
             for channel in self.signal.x:
                 for x, shown in zip(channel, each, strict=True):
                     some = np.flatnonzero(shown)
                     if not some.size:
                         continue
-                    first, last = block.start + int(some[0]), block.start + int(some[-1]) + 1
-                    size = np.abs(self.transform(x, slice(first, last), self.frames.window))
+                    first, last = int(some[0]), int(some[-1]) + 1
+                    frames = slice(block.start + first, block.start + last)
+                    size = self.transform(x, frames, self.frames.window, magnitudes=True)
                     if not self.magnitudes:
                         size *= size
                     if total is None and some.size == shown.size:
@@ -110,9 +110,9 @@ class Stft:
                     if total is None:
                         total = np.zeros((shown.size, self.size), size.dtype)
                     if some.size == len(size):  # the usual case: frames without a gap
-                        total[some[0] : some[-1] + 1] += size
+                        total[first:last] += size
                     else:
-                        total[some] += size[some - some[0]]
+                        total[some] += size[some - first]
             assert total is not None, "a gate shows at least one row of every frame"
             if self.magnitudes:
                 total *= total

@@ -18,10 +18,17 @@ def noise_variance(signal_power: float, snr_db: float) -> float:
 def circular_gaussian(
     rng: np.random.Generator, shape: tuple[int, ...], single: bool = False
 ) -> Complex:
-    """Unit-variance circular Gaussian numbers: real and imaginary parts of variance 1/2."""
-    pairs = rng.standard_normal((*shape, 2), np.float32 if single else np.float64)
-    pairs *= np.sqrt(0.5)
-    z: Complex = pairs.view(np.complex64 if single else np.complex128)[..., 0]
+    """Unit-variance circular Gaussian numbers: real and imaginary parts of variance 1/2.
+
+    They are sqrt(-log u) exp(j 2 pi v) of uniform u and v (Box and Muller), with the digits of
+    float32, of which logarithms and sines are made many at a time.
+    """
+    bits = rng.integers(2**64, size=shape, dtype=np.uint64)
+    u, v = (half.astype(np.float32) * 2.0**-32 for half in (bits >> 32, bits & 0xFFFFFFFF))
+    size, angle = np.sqrt(-np.log(u + 2.0**-33)), 2 * np.pi * v  # u may be 0
+    z: Complex = np.empty(shape, np.complex64 if single else np.complex128)
+    np.multiply(size, np.cos(angle), out=z.real)
+    np.multiply(size, np.sin(angle), out=z.imag)
     return z
 
 
@@ -35,10 +42,7 @@ def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Com
     if look.spans is not None and fast.white:
         v = np.zeros((rank, look.count), complex)
         for row, span in zip(v, look.spans, strict=True):
-            rng.standard_normal(out=row[span].view(float))
-        return fast.colour(v, sigma * np.sqrt(0.5))
-    if look.spans is not None:
-        v = circular_gaussian(rng, (rank, look.count))
+            row[span] = circular_gaussian(rng, row[span].shape)
     elif look.count == 1 or reach == 0 or np.all(np.diff(look.pulses) > reach):
         v = circular_gaussian(rng, (look.count, rank)).T
         if reach:

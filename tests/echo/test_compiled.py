@@ -1,6 +1,5 @@
 """The sum that numba compiles, against that of NumPy and against double precision."""
 
-import sys
 from dataclasses import asdict
 
 import numpy as np
@@ -9,18 +8,17 @@ import reference as ref
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.dataset.identity import identity_hash, versions
+from radhar_cli.accelerators import installed
 from radhar_cli.echo import compiled, direct
 from radhar_cli.echo.direct import DirectEcho, Settings
 from radhar_cli.echo.half_band_sum import half_band_table
 from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, shifts
 from radhar_cli.echo.knots import Spacing
 from radhar_cli.echo.paths import Paths
-from radhar_cli.errors import MachineError
 from radhar_cli.processing.canceller import NO_CANCELLER
 from radhar_cli.radar.waveform import Waveform
 
-needs_numba = pytest.mark.skipif(compiled.numba_version() is None, reason="needs radhar[fast]")
+needs_numba = pytest.mark.skipif(installed("numba") is None, reason="needs radhar[fast]")
 OVERSAMPLING = 16
 
 
@@ -91,7 +89,7 @@ class TestSum:
         radar = Waveform(**asdict(ref.Radar(adc_rate=1e6, duration=duration)))
         echo = [DirectEcho(source, radar, -80.0, canceller=NO_CANCELLER) for _ in range(2)]
         found, _ = echo[0].slow_time()
-        monkeypatch.setattr(compiled, "numba_version", lambda: None)
+        monkeypatch.setattr(compiled, "installed", lambda library: None)
         right, _ = echo[1].slow_time()
         assert np.array_equal(found, right) == (250 * radar.n_pulses < compiled.MIN_TERMS)
         assert ref.error_db(found, right) < -100
@@ -111,39 +109,3 @@ def test_sines_are_right_to_single_precision():
     cosine = sum(float(c) * r ** (2 * k) for k, c in enumerate(compiled.COSINE))
     assert np.abs(sine - np.sin(2 * np.pi * r)).max() < 5e-7
     assert np.abs(cosine - np.cos(2 * np.pi * r)).max() < 5e-7
-
-
-def test_numba_is_part_of_the_identity(monkeypatch):
-    """Shards of machines with and without it are not mixed."""
-    found = []
-    for version in (None, "0.61.0", "0.62.0"):
-        monkeypatch.setattr(compiled, "numba_version", lambda version=version: version)
-        assert versions()["numba"] == (version or "none")
-        found.append(identity_hash({"keys": {}, "versions": versions()}))
-    assert len(set(found)) == 3
-
-
-def test_numba_that_does_not_work_is_named(monkeypatch):
-    monkeypatch.setattr(compiled, "numba_version", lambda: "0.1")
-    monkeypatch.setitem(sys.modules, "numba", None)
-    with pytest.raises(MachineError, match=r"numba 0\.1 does not work here .*; should be"):
-        compiled._machine_code.__wrapped__(compiled._add)
-
-
-@needs_numba
-def test_without_a_folder_for_the_cache_it_is_compiled_all_the_same(monkeypatch):
-    import numba
-
-    def njit(function, cache=False, **options):
-        if cache:
-            raise RuntimeError("cannot cache function: no locator available")
-        return numba.jit(function, nopython=True, **options)
-
-    monkeypatch.setattr(numba, "njit", njit)
-    total = np.zeros(1)
-
-    def fill(total):
-        total[:] = 3.0
-
-    compiled._machine_code.__wrapped__(fill)(total)
-    assert total == [3.0]

@@ -55,8 +55,8 @@ def rescaled(v: np.ndarray, exponent: int) -> np.ndarray:
 def squeezed(x: np.ndarray, threshold: float = 1e-3) -> np.ndarray:
     """T [frames, L] in the scale of x."""
     (v, exponent), (slope, _) = (transformed(x, g) for g in (FRAMES.window, FRAMES.window_slope))
-    real, imag = fsst.synchrosqueeze(v, slope, threshold * float(np.abs(v).max()))
-    return rescaled(real + 1j * imag, exponent)
+    least = threshold * float(np.abs(v).max())
+    return rescaled(fsst.synchrosqueeze(v, slope, least), exponent)
 
 
 def range_power(bins: np.ndarray) -> np.ndarray:

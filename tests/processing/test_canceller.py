@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.signal import butter, lfilter
 
+from radhar_cli.accelerators import installed, machine_code
+from radhar_cli.processing import canceller as canceller_module
 from radhar_cli.processing.canceller import (
     FIRST_DIFFERENCE,
     NO_CANCELLER,
@@ -75,6 +77,27 @@ def test_whole_recordings_are_cancelled_linearly_without_gain(canceller, s, a):
     assert np.linalg.norm(y) <= np.linalg.norm(s) * (1 + 1e-9) + scale
     assert np.array_equal(canceller(s[0]), y[0])
     assert canceller.lost == canceller.delay == 0
+
+
+@pytest.mark.skipif(installed("numba") is None, reason="needs radhar[fast]")
+@pytest.mark.parametrize("canceller", [c for c in WHOLE if isinstance(c, HighPass)], ids=repr)
+@pytest.mark.parametrize("shape", [(8, 500), (2, 5, 20)])
+def test_compiled_it_filters_alike(monkeypatch, canceller, shape):
+    """Many rows of many pulses, as scipy filters them one by one."""
+    s = np.random.default_rng(2).standard_normal((*shape, 2)).view(complex)[..., 0]
+    right, calls = canceller(s), []
+
+    def noted(function):
+        calls.append(function)
+        return machine_code(function)
+
+    monkeypatch.setattr(canceller_module, "MIN_SAMPLES", s.size)
+    monkeypatch.setattr(canceller_module, "machine_code", noted)
+    assert np.abs(canceller(s) - right).max() < 1e-9 * np.abs(s).max()
+    assert len(calls) == 1 + canceller.zero_phase
+    calls.clear()
+    canceller(s[..., :-1])
+    assert not calls
 
 
 @pytest.mark.parametrize("canceller", [c for c in WHOLE if c.removes_static], ids=repr)

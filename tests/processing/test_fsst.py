@@ -18,8 +18,7 @@ def squeezed(x: np.ndarray, frames: Frames, threshold: float = 1e-3) -> np.ndarr
     stft = Stft(signal(x), frames)
     (block,) = stft.blocks
     v, slope = (stft.transform(x, block, g) for g in (frames.window, frames.window_slope))
-    real, imag = fsst.synchrosqueeze(v, slope, threshold * np.abs(v).max())
-    return np.ldexp(real, stft.exponent) + 1j * np.ldexp(imag, stft.exponent)
+    return fsst.synchrosqueeze(v, slope, threshold * np.abs(v).max()) * 2.0**stft.exponent
 
 
 def power_map(x: np.ndarray, frames: Frames) -> np.ndarray:

@@ -29,6 +29,10 @@ MAX_VALUE, MAX_ADVICE = 120, 500  # characters of value and advice in a message
 
 _CHANNELS = "is not there: channels of a board come with radar.cfg (docs/guide/boards.md)"
 _PEOPLE = "is not there: `people` has others in a scene (docs/guide/scenes.md)"
+_UNMEASURED = (
+    *("squat", "reach_deg", "free_arm", "kneel_s", "look_deg", "recline_from"),
+    *("step_asymmetry", "speed_ripple", "speed_ripple_asymmetry"),
+)
 ABSENT = {
     **dict.fromkeys(("receivers", "transmitters", "channels", "antennas", "mimo"), _CHANNELS),
     **dict.fromkeys(("persons", "targets", "subjects"), _PEOPLE),
@@ -37,6 +41,9 @@ ABSENT = {
     "doppler_angle": "is not there: boards have range_doppler and range_azimuth",
     **dict.fromkeys(("spectrogram", "micro_doppler", "doppler_time"), "is called stft"),
     "range_time": "is called rtm",
+    "rise_overlap": "is now a dwell_s below 0",
+    **dict.fromkeys(("stride_jitter", "width_jitter_m"), "now follows speed_variation"),
+    **dict.fromkeys(_UNMEASURED, "is not there any more: nothing measured depends on it"),
 }
 
 

@@ -275,6 +275,10 @@ BROKEN = [
     Broken("activities: [S8, walking]", '1: activities = ["S8", "walking"]', "each once"),
     Broken("activities: []", "1: activities = []", "at least one"),
     Broken("maps: [stft, stft]", '1: maps = ["stft", "stft"]', "each map once"),
+    Broken(
+        "motion: {rise_overlap: 0.2}", "1: motion.rise_overlap = 0.2", "is now a dwell_s below 0"
+    ),
+    Broken("motion: {squat: 1}", "1: motion.squat = 1", "nothing measured depends on it"),
     Broken("maps: [point_cloud]", '1: maps.0 = "point_cloud"', "is called points"),
     Broken("maps: [range_doppler]", '1: maps = ["range_doppler"]', "the board that makes them"),
     Broken("receivers: 4", "1: receivers = 4", "come with radar.cfg"),

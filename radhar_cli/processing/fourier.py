@@ -12,7 +12,7 @@ from radhar_cli.accelerators import installed, load
 from radhar_cli.arrays import Complex, Float
 
 COEFFICIENTS = 2**15  # of frames transformed at once, which stay in a processor's cache, by FFTW
-PLANNING = Lock()  # FFTW forgets in no thread while it plans in another
+PLANNING = Lock()  # one thread at a time forgets wisdom and plans
 
 
 def fill_in_spectra(found: Float | Complex, frames: Complex, window: Float) -> None:
@@ -23,7 +23,7 @@ def fill_in_spectra(found: Float | Complex, frames: Complex, window: Float) -> N
     for start in range(0, len(frames), rows):
         some, put = frames[start : start + rows], found[start : start + rows]
         if fast:
-            enough = -(-len(some) // 8) * 8  # for fewer plans
+            enough = min(-(-len(some) // 8) * 8, rows)  # for fewer plans
             framed, transform = _planned(enough, size, length, frames.dtype, get_ident())
         else:
             framed = np.zeros((len(some), size), frames.dtype)

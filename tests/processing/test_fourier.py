@@ -108,3 +108,17 @@ load("pyfftw").FFTW
 assert "dask" not in sys.modules
 """
     subprocess.run([sys.executable, "-c", program], check=True)
+
+
+@needs_fftw
+def test_long_frames_are_planned_one_by_one(monkeypatch):
+    """Each of them fills the cache; more would only be thrown away."""
+    planned, counts = fourier._planned, []
+
+    def noted(count: int, *of):
+        counts.append(count)
+        return planned(count, *of)
+
+    monkeypatch.setattr(fourier, "_planned", noted)
+    spectra(frames_of(3, 100), COEFFICIENTS)
+    assert counts == [1, 1, 1]

@@ -43,7 +43,7 @@ LEAST_SNR_DB = -80.0  # of a raw sample; compression and windows gain less than 
 REACH_M = 1.0  # distance of a segment's surface from its joints, at most
 GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
-USUAL_DB = -80.0  # the tolerance at whose knots scenes are checked
+USUAL_DB = -80.0  # tolerance at whose knots a person alone is checked
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MAX_ATTEMPTS = 1000
 TORSOS_APART_M = 0.5
@@ -154,8 +154,9 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     body = body_of(person, motion) if scene.config.body.scatterers == "segments" else None
     gate = processing.gate_m if processing.range_sum == "gated" else None
     flags = Flags.RUNS_OUT if getattr(motion, "runs_out", False) else Flags(0)
-    near = list[Approach]()
-    for asked, places, pulses in _grid(motion, w):
+    near, c = list[Approach](), scene.config
+    shared = not c.people and c.room.faces is None and c.radar.cfg is None
+    for asked, places, pulses in _grid(motion, w, shared):
         if body is not None and isinstance(body.motion, Landmarks):  # which its echo asks for too
             body.motion.landmark_positions(asked)
         t, p = asked[places], motion.positions(asked)[..., places]
@@ -189,7 +190,7 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
 
 
 class _Asked(OfMotion):
-    """A source without paths that keeps the times it is asked for."""
+    """A source without paths that records the times at which it is evaluated."""
 
     wall = None
     t: Float
@@ -202,15 +203,18 @@ class _Asked(OfMotion):
         return Paths(*np.empty((2, 0, t.size)))
 
 
-def _grid(motion: Motion, w: Waveform) -> Iterator[tuple[Float, Index | slice, Index]]:
-    """(times for which to ask the motion, which of them to look at, their pulses), whatever the
-    engine: knots, at which the echo will ask too if it can, and of which the last may come after
-    the last pulse.
+def _grid(
+    motion: Motion, w: Waveform, shared: bool
+) -> Iterator[tuple[Float, Index | slice, Index]]:
+    """(times at which to evaluate a motion, which of them to check, their pulses).
+
+    `shared` are the times at which the direct engine evaluates it too, whatever the engine, so that
+    the same scenes are drawn; the last to be checked may come after the last pulse.
     """
     step = max(1, int(w.prf / max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)))
     usual = settings(first_aim(USUAL_DB), w, motion.highest_frequency)
     knots = widest_step(w, usual.spacing.per_second)
-    if GatedEcho.min_step <= knots <= step and w.n_pulses <= CHUNK_KNOTS * knots:
+    if shared and GatedEcho.min_step <= knots <= step and w.n_pulses <= CHUNK_KNOTS * knots:
         asked = _Asked(motion)
         count = knots_of(asked, w, knots, (0, w.n_pulses)).shift.size
         each = np.append(np.arange(0, count, step // knots), count)

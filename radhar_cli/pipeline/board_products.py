@@ -68,7 +68,7 @@ class Skeletons(NamedTuple):
     names: tuple[str, ...]  # of the joints
 
 
-def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
+def board_products(c: Config) -> Iterator[Product]:
     """Rows of the table that a config with `radar.cfg` has."""
     seen = ("scene", "motions", "board", "wall", *(("room",) if c.room.reflectors else ()))
     still = c.processing.clutter == "mean"
@@ -126,7 +126,6 @@ def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
             maps_sheet,
             size=c.image.size_px,
             dynamic_range_db=c.image.dynamic_range_db,
-            entropy=entropy,
         )
         yield Product(f"image:{name}", (name,), sheet, "sheet of frames")
     shown = ("cloud", "skeletons", "motions")

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain, repeat
-from math import ceil, inf, nan
+from math import ceil, inf
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -99,8 +99,8 @@ def signal_of(map_name: str) -> str:
     return f"signal_{suffix}" if suffix else "signal"
 
 
-def plan_images(config: Config, entropy: bool = True) -> Plan:
-    """The plan of a data set: the image of every map, with or without entropy, by signal."""
+def plan_images(config: Config) -> Plan:
+    """The plan of a data set: the image of every map, by signal."""
     own = {product.name for product in own_products()}
     of_signals = [name for name in config.maps if name in MAP_NAMES and name not in own]
     maps = sorted(of_signals, key=lambda name: SIGNALS.index(signal_of(name)))
@@ -112,11 +112,11 @@ def plan_images(config: Config, entropy: bool = True) -> Plan:
         asked.append("signal")
     if config.output.column_labels:
         asked.append("motions")
-    return plan(products(config, entropy), asked, ["scene"])
+    return plan(products(config), asked, ["scene"])
 
 
-def products(config: Config, entropy: bool = True) -> dict[str, Product]:
-    """Every product there could be under a config, by name; images with or without entropy.
+def products(config: Config) -> dict[str, Product]:
+    """Every product there could be under a config, by name.
 
     Raises:
         ConfigError: a product of a user's own would replace one that a board does not have.
@@ -132,8 +132,8 @@ def products(config: Config, entropy: bool = True) -> dict[str, Product]:
                     f"product {own.name}: has no effect with radar.cfg; should be 'channels' or "
                     "'cube'"
                 )
-        echo = board_products(config, entropy)
-    rows = (*_physics(config), *_signals(config), *_maps(config, entropy), *echo, *own_products())
+        echo = board_products(config)
+    rows = (*_physics(config), *_signals(config), *_maps(config), *echo, *own_products())
     found = {row.name: row for row in rows}
     if config.radar.output == "real" and config.radar.waveform == "cw":
         made = found["signal"]
@@ -144,7 +144,7 @@ def products(config: Config, entropy: bool = True) -> dict[str, Product]:
 
 def products_of_signals(config: AnyConfig) -> dict[str, Product]:
     """Every product of a recorded signal, by name."""
-    rows = (*_signals(config), *_maps(config, entropy=True), *_gate(config), *own_products())
+    rows = (*_signals(config), *_maps(config), *_gate(config), *own_products())
     return {row.name: row for row in rows}
 
 
@@ -508,7 +508,7 @@ def _gate(c: AnyConfig) -> Iterator[Product]:
         yield Product("gate", needs, gate, place)
 
 
-def _maps(c: AnyConfig, entropy: bool) -> Iterator[Product]:
+def _maps(c: AnyConfig) -> Iterator[Product]:
     size, masks = c.image.size_px, ("cfar",) if c.image.kind == "cfar" else ()
 
     def rtm(profiles: Signal) -> PowerMap:
@@ -523,20 +523,20 @@ def _maps(c: AnyConfig, entropy: bool) -> Iterator[Product]:
     def map_image(power_map: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
         if power_map.real is not None:
             grey = signed_levels(power_map.real, size, c.image.clipped)
-            return MapImage(grey, power_map.entropy if entropy else nan, power_map.extent)
-        small = partial(reduced_map, power_map.power, size, entropy=entropy)
+            return MapImage(grey, power_map.entropy, power_map.extent)
+        small = partial(reduced_map, power_map.power, size)
         return _image(c, cfar, small, power_map.extent, binary_exponent(power_map.power))
 
     yield Product("rtm", ("range_profiles",), rtm, "power of the range profiles")
     if masks:
         yield Product("cfar", ("scene",), lambda s: cfar_of(s.config), "threshold of the masks")
     for name in ("rtm", *(product.name for product in own_products())):
-        yield Product(f"image:{name}", (name, *masks), map_image, f"its {_shape(c, entropy)}")
+        yield Product(f"image:{name}", (name, *masks), map_image, f"its {_shape(c)}")
     for name, of in ("frames", frames_of), ("fsst_frames", fsst_frames_of):
         make = lambda w, of=of: of(c, w.duration, w.prf, w.f0)  # noqa: E731
         yield Product(name, ("waveform",), make, f"of the {'FSST' if 'fsst' in name else 'STFT'}")
     for signal in SIGNALS:
-        yield from _doppler_maps(c, signal, entropy)
+        yield from _doppler_maps(c, signal)
 
 
 class DopplerPower(NamedTuple):
@@ -548,7 +548,7 @@ class DopplerPower(NamedTuple):
     columns: Axis
 
 
-def _doppler_maps(c: AnyConfig, signal: str, entropy: bool) -> Iterator[Product]:
+def _doppler_maps(c: AnyConfig, signal: str) -> Iterator[Product]:
     """STFT and FSST of a signal, whole in float64, and their images from float32."""
     suffix = signal.removeprefix("signal")
     masks = ("cfar",) if c.image.kind == "cfar" else ()
@@ -568,8 +568,8 @@ def _doppler_maps(c: AnyConfig, signal: str, entropy: bool) -> Iterator[Product]
         yield Product(
             f"image:{kind}{suffix}",
             (*masks, *needs),
-            partial(_doppler_image, c, power, single, entropy),
-            f"power of the {does}{', in float32' * single}; its {_shape(c, entropy)}",
+            partial(_doppler_image, c, power, single),
+            f"power of the {does}{', in float32' * single}; its {_shape(c)}",
         )
 
 
@@ -595,9 +595,8 @@ def _doppler_power(
     return DopplerPower((block[:, kept] for block in power), stft.exponent, rows, stft.time)
 
 
-def _shape(c: AnyConfig, entropy: bool) -> str:
-    shape = "CFAR mask" if c.image.kind == "cfar" else "image"
-    return f"{shape} and entropy" if entropy else shape
+def _shape(c: AnyConfig) -> str:
+    return f"{'CFAR mask' if c.image.kind == 'cfar' else 'image'} and entropy"
 
 
 def image_of(config: AnyConfig, power_map: PowerMap) -> MapImage:
@@ -636,16 +635,14 @@ def _doppler_map(make: MakePower, *given: Any) -> PowerMap:
     return PowerMap(power.T, doppler.rows, doppler.columns)
 
 
-def _doppler_image(
-    c: AnyConfig, make: MakePower, single: bool, entropy: bool, *given: Any
-) -> MapImage:
+def _doppler_image(c: AnyConfig, make: MakePower, single: bool, *given: Any) -> MapImage:
     cfar, given = (given[0], given[1:]) if c.image.kind == "cfar" else (None, given)
     doppler = make(single, *given)
     again = (make(single, *given).blocks for _ in repeat(None))
     passes = chain([doppler.blocks], again)
 
     def small(of: Callable[[Float], Float] | None) -> Reduced:
-        return reduced(next(passes), doppler.columns.values.size, c.image.size_px, of, entropy)
+        return reduced(next(passes), doppler.columns.values.size, c.image.size_px, of)
 
     extent = (*doppler.columns.edges, *doppler.rows.edges)
     return _image(c, cfar, small, extent, 2 * doppler.exponent)

@@ -1,7 +1,7 @@
 """Sheets of frames: one image a sample of a board's maps, points and skeletons, for looking."""
 
 from itertools import pairwise, product
-from math import ceil, nan, sqrt
+from math import ceil, sqrt
 from typing import TypeAlias
 
 import numpy as np
@@ -31,9 +31,7 @@ def _tiles(frames: int, size: Size) -> tuple[Index, list[tuple[slice, slice]]]:
     return shown, list(product(high, wide))[: shown.size]
 
 
-def maps_sheet(
-    maps: FrameMaps, size: Size, dynamic_range_db: float, entropy: bool = True
-) -> MapImage:
+def maps_sheet(maps: FrameMaps, size: Size, dynamic_range_db: float) -> MapImage:
     """Frames side by side, in decibels below the peak of all of them; row 0 is the farthest."""
     shown, places = _tiles(len(maps.power), size)
     cells = np.zeros(size, np.float32)
@@ -43,8 +41,7 @@ def maps_sheet(
         if min(shape) > 0:
             cells[rows, columns] = reduced([power.T], power.shape[1], shape, None, False).cells
     extent = (*maps.columns.edges, *maps.rows.edges)
-    bits = entropy_bits(maps.power) if entropy else nan
-    return MapImage(levels(cells, dynamic_range_db), bits, extent)
+    return MapImage(levels(cells, dynamic_range_db), entropy_bits(maps.power), extent)
 
 
 def cloud_sheet(

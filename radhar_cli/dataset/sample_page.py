@@ -26,7 +26,11 @@ MOST = 50  # samples of a page
 
 
 def chosen_rows(data: Dataset, samples: Sequence[str]) -> list[int]:
-    """Rows of samples CLASS/INDEX, or of the first of each class, stationary people last."""
+    """Rows of samples CLASS/INDEX, or of the first of each class, stationary people last.
+
+    Raises:
+        FolderError: there is no such sample, or there are too many.
+    """
     classes = sorted(Rows.of(data.config).classes(), key=lambda part: part[0].slug == "stationary")
     if len(samples) > MOST:
         raise FolderError(f"--sample: {len(samples)} samples; a page holds {MOST} at most")
@@ -95,7 +99,7 @@ def _times(board: Board, frames: int) -> NDArray[Any]:
 
 
 def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] = ()) -> Any:
-    """A stored array [n, *shape] of numbers; another one is refused."""
+    """A stored array [n, *shape] of numbers; FolderError of another."""
     values = np.atleast_1d(data.products[name][row])
     there = values.shape[1:]
     wanted = tuple(n or there[at] if at < len(there) else n for at, n in enumerate(shape))

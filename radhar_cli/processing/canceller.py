@@ -13,7 +13,7 @@ import numpy as np
 from radhar_cli.accelerators import installed, machine_code
 from radhar_cli.arrays import Complex, Float
 
-MIN_SAMPLES = 2**19  # of a signal that numba filters, which takes some time to load
+MIN_SAMPLES = 2**19  # with fewer, numba takes longer to load than it saves
 
 
 class Canceller(ABC):
@@ -125,7 +125,7 @@ def _filtered(sections: Float, x: Complex) -> Complex:
 
 
 def _filter_rows(y: Complex, sections: Float) -> None:
-    """Filter y [pulses, rows], all rows at a time: each pulse of one waits for the last."""
+    """Filter y [pulses, rows] in place, pulse by pulse, as each needs the one before."""
     state = np.zeros((len(sections), 2, y.shape[1]), y.dtype)
     for m in range(len(y)):
         for s in range(len(sections)):

@@ -10,7 +10,7 @@ from radhar_cli.processing.stft import Stft
 
 
 def synchrosqueeze(v: Complex, slope: Complex, least: float) -> Complex:
-    """T[l, k], V[l, k] added up at bin k + round(Im(-V'/V) L/(2 pi)) modulo L; V is lost.
+    """T[l, k]: V[l, k] added up at bin k + round(Im(-V'/V) L/(2 pi)) modulo L; overwrites V.
 
     V, and V' with the window's slope, are [frames, L]. Both have their phase referenced to sample
     L//2 of the frame, so that sum_k T = L g[L//2] x[l hop + L//2] where nothing is dropped, as are

@@ -20,8 +20,8 @@ def circular_gaussian(
 ) -> Complex:
     """Unit-variance circular Gaussian numbers: real and imaginary parts of variance 1/2.
 
-    They are sqrt(-log u) exp(j 2 pi v) of uniform u and v (Box and Muller), with the digits of
-    float32, of which logarithms and sines are made many at a time.
+    sqrt(-log u) exp(j 2 pi v) of uniform u and v (Box and Muller), computed in float32, whose
+    logarithms and sines NumPy vectorises.
     """
     bits = rng.integers(2**64, size=shape, dtype=np.uint64)
     u, v = (half.astype(np.float32) * 2.0**-32 for half in (bits >> 32, bits & 0xFFFFFFFF))

@@ -24,7 +24,7 @@ _HIP = JOINTS.index("hip")
 def sampled(motion: Motion, t: Float) -> Float:
     """Positions [frames, 15, 3] (m) at times t: thirteen joints, then right and left hip joint.
 
-    Where a motion knows no hip joints they are at the hip; one of other joints is refused.
+    Where a motion knows no hip joints they are at the hip. ConfigError of other joints.
     """
     if motion.names != JOINTS:
         raise ConfigError("only motions of the thirteen joints can be written as BVH")

@@ -219,7 +219,7 @@ def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> S
 
 
 def map_names(chosen: list[str]) -> tuple[str, ...]:
-    """The maps of these names, in our order; an unknown one is refused."""
+    """The maps of these names, in our order; ConfigError of an unknown one."""
     names, known = [name.strip() for name in chosen], (*MAP_NAMES, *FRAMES)
     for name in names:
         if name not in known:

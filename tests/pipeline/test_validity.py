@@ -489,7 +489,8 @@ def test_the_echo_needs_no_other_instants_than_the_check(monkeypatch, scatterers
     record(scene, ["echo", "torso_track"])
     assert checked.size > 1000 > max(t.size for t in asked[1:])
     # The grid is no coarser than what the motion needs, and ends with the recording.
-    each = next(module._grid(scene.people[0].held["motion"], waveform_of(scene)))[2]
+    motion, shared = scene.people[0].held["motion"], True
+    each = next(module._grid(motion, waveform_of(scene), shared))[2]
     assert np.diff(each).max() <= waveform_of(scene).prf / 120
     assert each[0] == 0
     assert each[-1] >= waveform_of(scene).n_pulses - 1

@@ -49,7 +49,8 @@ def draw(settings: list[dict[str, Any]], title: str, path: Path) -> None:
         right[near] = place[0]
     for near, names in named.items():
         place = right[near], near[0]
-        engine.annotate("; ".join(names), place, (8, -3), textcoords="offset points", fontsize=8)
+        engine.annotate("; ".join(names), place, (-3, 7), textcoords="offset points", fontsize=8)
+    engine.margins(y=0.12)
     engine.set(xscale="log", xlabel="time of a sample, relative to the default")
     engine.set(ylabel="error of the slow-time signal (dB), worst scene")
     engine.set_xticks([1, 2, 5, 10, 20, 50], ["1", "2", "5", "10", "20", "50"])

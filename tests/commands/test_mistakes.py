@@ -1,6 +1,7 @@
 """Mistakes on the command line: status 2, one line that says what would be right, nothing made."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -81,6 +82,7 @@ def place(small_set, tmp_path_factory):
 @pytest.mark.parametrize("words", MISTAKES)
 def test_a_mistake_is_one_line(words, place, monkeypatch):
     monkeypatch.chdir(place)
+    shutil.rmtree("x", ignore_errors=True)  # which another mistake may have made
     done = radhar(*words.split())
     said = [line for line in done.stderr.splitlines() if not line.startswith("reading ")]
     assert (done.returncode, len(said)) == (2, 1), done.stderr

@@ -5,11 +5,13 @@ from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from radhar_cli.errors import MachineError
+
+Routine: TypeAlias = Callable[..., Any]
 
 
 @cache
@@ -39,13 +41,21 @@ def load(library: str) -> Any:
 
 
 @cache
-def machine_code(function: Callable[..., None]) -> Callable[..., None]:
-    """Compile a function, or take it from the cache beside its file or in the user's folder."""
+def machine_code(function: Routine, *called: tuple[Routine, Routine]) -> Routine:
+    """Compile a function, or take it from the cache beside its file or in the user's folder.
+
+    Of pairs of functions that it calls, the first is compiled into it as the second is written.
+    All are in its file: the age of that tells whether the cache is up to date.
+    """
     njit = load("numba").njit
     # Sums in any order, but not as if there were no NaN.
     options: dict[str, Any] = {"fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy"}
+    inlined: Any = options | {"forceinline": True}  # else loops with calls are not vectorised
+    for one, instead in called:
+        within = load("numba.extending").overload(one, strict=False, jit_options=inlined)
+        within(lambda *_, instead=instead: instead)
     try:
-        compiled: Callable[..., None] = njit(function, cache=True, **options)
+        compiled: Routine = njit(function, cache=True, **options)
     except RuntimeError:  # no folder for the cache can be written
         compiled = njit(function, **options)
     return compiled

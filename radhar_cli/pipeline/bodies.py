@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from radhar_cli.echo import compiled
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion, Only, remembered
 from radhar_cli.motion.reflectors import Reflectors
@@ -126,7 +127,8 @@ def body_paths(
         _tapered(draw_points(count, person.own_stream(f"body/{number}/{one.name}")))
         for one, count in zip(body.segments, counts, strict=True)
     )
-    return SegmentPaths(body, points, *seen, config.body.shadowing, kept)
+    fast = compiled.pays(sum(counts[s] for s in kept) * waveform.n_pulses)
+    return SegmentPaths(body, points, *seen, config.body.shadowing, kept, fast)
 
 
 def _tapered(points: Points) -> Points:

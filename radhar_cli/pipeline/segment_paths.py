@@ -12,13 +12,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from radhar_cli.accelerators import machine_code
 from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.motion.segments import Placed, Segment, cross, place, soft_unit
+from radhar_cli.motion.segments import SOFTNESS, Placed, Segment, place
 from radhar_cli.pipeline.motion_paths import OfMotion
-from radhar_cli.radar.ellipsoid import View, cross_section, shadow, square_height
+from radhar_cli.radar import ellipsoid
+from radhar_cli.radar.ellipsoid import Frame, View, square_height
 from radhar_cli.radar.propagation import Antennas, amplitude, leg
+from radhar_cli.radar.room import Point
 from radhar_cli.radar.transmission import pass_wall
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
@@ -29,8 +32,8 @@ JITTER = 0.7  # standard deviation along it, over the distance between points
 RATE_STEP_S = 1e-3
 RATES_PER_SECOND, MAX_RATES = 25.0, 8192
 BLOCK = 2048  # times per block, which then fits the cache
-TINY = np.finfo(float).tiny
-FORWARD = 1e-6  # least |u_tx + u_rx|^2: scattering forwards has no aspect
+EVERY = slice(None)
+SQUARES = [0, 1, 2, 3, 8, 9], [4, 5, 6, 7, 8, 9]  # rows of what is seen, for both legs
 
 
 class Points(NamedTuple):
@@ -39,15 +42,6 @@ class Points(NamedTuple):
     along: Float  # from the middle, -1/2 to 1/2 of the length [n]
     across: Float  # in two directions [2, n], m
     share: Float  # of the amplitude [n]; squares add up to 1
-
-    @property
-    def coefficients(self) -> Float:
-        """[n, 6]: what makes |w + x d + y e + z f|^2 of |w|^2, w d, w e, w f, |d|^2, |e|^2 = |f|^2.
-
-        w is the way to the middle of a segment, d that along it, e and f are across.
-        """
-        x, (y, z) = self.along, self.across
-        return np.stack([np.ones_like(x), 2 * x, 2 * y, 2 * z, x * x, y * y + z * z], axis=1)
 
 
 def draw_points(count: int, rng: np.random.Generator) -> Points:
@@ -85,11 +79,11 @@ class Body:
 
     def clearance(self, antenna: tuple[float, float, float], t: Float) -> Float:
         """Way [S, M] (m) from an antenna to the nearest point of each segment, below 0 in it."""
-        frames = SegmentAxes.of(self.at(t))
-        seen = frames.seen_from(antenna)
-        aside = seen.ways[:, 2] / seen.distance
-        view = View(seen.ways[:, 1] / (seen.distance * frames.length), aside, np.ones(1))
-        height = square_height(view, self.radii, 0.5 * frames.length, self.flatness)
+        frame = frame_of(self.at(t))
+        seen = ellipsoid.seen_from(frame, antenna)
+        aside = seen.aside / seen.distance
+        view = View(seen.along / (seen.distance * frame.length), aside, np.ones(1))
+        height = square_height(view, self.radii, 0.5 * frame.length, self.flatness)
         clear: Float = seen.distance - np.sqrt(height)
         return clear
 
@@ -126,6 +120,7 @@ class SegmentPaths(OfMotion):
     shadowing: bool  # whether trunk and thighs hide what is behind them
     # numbers of the segments whose paths are wanted; the others hide these all the same
     kept: tuple[int, ...]
+    compiled: bool = False  # whether numba makes them, in air and where both legs go the same way
 
     @property
     def motion(self) -> Motion:  # type: ignore[override]
@@ -133,27 +128,57 @@ class SegmentPaths(OfMotion):
         return self.body.motion
 
     @cached_property
-    def _coefficients(self) -> list[Float]:
-        return [points.coefficients for points in self.points]
+    def _table(self) -> Float:
+        """[I, 7]: coefficients of the squared delay of each point (s^2), and of its amplitude.
+
+        The first are of |w|^2, w d, w e, w f, |d|^2, |e|^2 = |f|^2 for |w + x d + y e + z f|^2: w
+        is the way to the middle of a segment, d that along it, e and f are across.
+        """
+        some = [self.points[s] for s in self.kept]
+        x, share = (np.concatenate([one[part] for one in some]) for part in (0, 2))
+        y, z = np.concatenate([one.across for one in some], axis=1)
+        one, wavelength = np.ones(x.size), SPEED_OF_LIGHT / self.fc
+        share = share * amplitude(one, one, REFLECTANCE * one, self.antennas.gain, wavelength)
+        rows = np.stack([one, 2 * x, 2 * y, 2 * z, x * x, y * y + z * z]) / SPEED_OF_LIGHT**2
+        return np.vstack([rows, share]).T.copy()
+
+    @cached_property
+    def _sizes(self) -> Float:
+        """Radius (m), flatness and number of points of each segment [3, S, 1]."""
+        counts = np.array([[float(points.share.size)] for points in self.points])
+        return np.stack([self.body.radii, self.body.flatness, counts])
+
+    @cached_property
+    def _first(self) -> Index:
+        """Number of the first point of each segment, and of all points [S + 1]."""
+        kept = np.isin(np.arange(len(self.points)), self.kept)
+        return np.cumsum([0, *(kept * self._sizes[2, :, 0])]).astype(np.intp)
 
     def places(self, t: Float) -> tuple[Float, Index]:
         """Middles [3, S, M] (m) of the segments, and that of each path [I]."""
-        placed, counts = self.body.at(t), [self.points[s].share.size for s in self.kept]
+        placed = self.body.at(t)
         middles: Float = 0.5 * (placed.start + placed.end)[:, list(self.kept)]
-        return middles, np.repeat(np.arange(len(counts)), counts)
+        return middles, np.repeat(np.arange(len(self.kept)), np.diff(self._first)[list(self.kept)])
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s), segment by segment."""
-        placed = self.body.at(t)
+        placed, ways = self.body.at(t), self.antennas.ways
+        delay, strength = np.empty((2, self._first[-1], t.size))
+        if self.compiled and self.wall is None and ways[0] == ways[1]:
+            sizes, hide = self._sizes[:, :, 0].T.copy(), np.array(self._occluders, np.intp)
+            scene, made = self._seen_at(self._middle), (delay, strength)
+            fill = machine_code(ellipsoid.fill_paths, *ellipsoid.CALLED)
+            fill(tuple(placed), scene, sizes, hide, self._first, self._table, made)
+            if (field := self.antennas.field(0.5 * (placed.start + placed.end))) is not None:
+                strength *= np.repeat(field, np.diff(self._first), axis=0)
+            return Paths(delay, strength)
         # What stands still does so to the last digit only if it is computed once.
         still = np.logical_and.reduce([_constant(part) for part in placed])
-        count = sum(self.points[s].share.size for s in self.kept)
-        delay, strength = np.empty((2, count, t.size))
-        cosine = np.empty((2, count, t.size)) if self.wall and self.wall.layers else None
+        cosine = np.empty((2, len(delay), t.size)) if self.wall and self.wall.layers else None
         for first in range(0, t.size, BLOCK):
             some = slice(first, first + BLOCK)
             self._fill(
-                SegmentAxes.of(Placed(*(part[..., some] for part in placed))),
+                Placed(*(part[..., some] for part in placed)),
                 still,
                 delay[:, some],
                 strength[:, some],
@@ -162,133 +187,71 @@ class SegmentPaths(OfMotion):
         through = Through.of(self.wall.layers, cosine) if self.wall is not None else None
         return Paths(delay, strength, through)
 
+    @property
+    def _middle(self) -> Point:
+        x, y, z = (0.5 * np.add(self.antennas.tx, self.antennas.rx)).tolist()
+        return x, y, z
+
+    def _seen_at(self, place: Point) -> tuple[Float, float, float]:
+        """What `ellipsoid.see` has of the scene where shadows are seen from a place (m)."""
+        places = np.array([self.antennas.tx, self.antennas.rx, place]).T.copy()
+        return places, SPEED_OF_LIGHT / self.fc, SOFTNESS
+
+    @property
+    def _occluders(self) -> list[int]:
+        """Numbers of the segments that hide others."""
+        return [o for o, one in enumerate(self.body.segments) if one.occludes and self.shadowing]
+
+    def _seen(self, placed: Placed, place: Point) -> tuple[Float, Float]:
+        """Frames [11, S, M], and how they are seen [12, S, M], with shadows seen from a place."""
+        block, scene = np.concatenate(placed), self._seen_at(place)
+        frames, seen = np.empty((11, *block.shape[1:])), np.empty((12, *block.shape[1:]))
+        ellipsoid.see(block, scene, self._sizes, frames, seen, EVERY)
+        for o in self._occluders:
+            own, radius = seen[10, o].copy(), self.body.radii[o, 0]
+            ellipsoid.shade(frames, seen, frames[:, o], radius, scene[1], EVERY)
+            seen[10, o] = own
+        return frames, seen
+
     def _fill(
-        self,
-        frames: "SegmentAxes",
-        still: Bool,
-        delay: Float,
-        strength: Float,
-        cosine: Float | None,
+        self, placed: Placed, still: Bool, delay: Float, strength: Float, cosine: Float | None
     ) -> None:
         """Fill in delays and amplitudes [I, block] of all points, and angles at a layered wall."""
-        tx, rx = (frames.seen_from(antenna) for antenna in (self.antennas.tx, self.antennas.rx))
-        # The sum of the unit vectors of both legs.
-        square = 2 + 2 * _dot(tx.way, rx.way) / (tx.distance * rx.distance)
-        view = View(
-            (tx.ways[:, 1] / tx.distance + rx.ways[:, 1] / rx.distance) / frames.length,
-            tx.ways[:, 2] / tx.distance + rx.ways[:, 2] / rx.distance,
-            np.maximum(square, FORWARD, out=square),
-        )
-        half, radii, flatness = 0.5 * frames.length, self.body.radii, self.body.flatness
-        height = square_height(view, radii, half, flatness) / view.square
-        sigma = cross_section(height, radii, half, REFLECTANCE)
-        wavelength = SPEED_OF_LIGHT / self.fc
-        a = amplitude(tx.distance, rx.distance, sigma, self.antennas.gain, wavelength)
-        if (field := self.antennas.field(frames.centre)) is not None:
-            a *= field
-        if self.shadowing and self.antennas.ways[0] == self.antennas.ways[1]:
-            a *= self._light(frames, 0.5 * (tx.way + rx.way), wavelength)
-        elif self.shadowing:
-            light = (self._light(frames, one.way, wavelength) for one in (tx, rx))
-            a *= np.sqrt(np.multiply(*light))
-        # The n-th part of a segment is an ellipsoid of its own, with its own nearest point.
-        parts = np.array([[points.share.size] for points in self.points])
-        nearer = np.sqrt(square_height(view, radii, half / parts, flatness)) / SPEED_OF_LIGHT
-        ways = np.stack([tx.ways, rx.ways]) / SPEED_OF_LIGHT**2
-        first = 0
+        if self.antennas.ways[0] == self.antennas.ways[1]:
+            frames, seen = self._seen(placed, self._middle)
+        else:
+            frames, seen = self._seen(placed, self.antennas.tx)
+            seen[10] = np.sqrt(seen[10] * self._seen(placed, self.antennas.rx)[1][10])
+        if (field := self.antennas.field(frames[:3])) is not None:
+            seen[10] *= field
+        frame = frame_of(placed) if self.wall is not None else None
         for s in self.kept:
-            points = self.points[s]
-            some = slice(first, first + points.share.size)
-            first = some.stop
-            seconds = self._coefficients[s] @ (ways[:, s, :, :1] if still[s] else ways[:, s])
-            np.sqrt(np.maximum(seconds, 0, out=seconds), out=seconds)
-            np.subtract(seconds[0] + seconds[1], nearer[s], out=delay[some])
-            np.multiply(points.share[:, None], a[s], out=strength[some])
-            if self.wall is not None:
-                p, given = frames.positions(s, points), (self.antennas, self.wall, self.fc)
+            some = slice(self._first[s], self._first[s + 1])
+            at = seen[:, s, :1] if still[s] else seen[:, s]
+            seconds = [self._table[some, :6] @ at[rows] for rows in SQUARES]
+            tx, rx = (np.sqrt(np.maximum(one, 0, out=one), out=one) for one in seconds)
+            np.subtract(tx + rx, seen[11, s], out=delay[some])
+            np.multiply(self._table[some, 6:], seen[10, s], out=strength[some])
+            if self.wall is not None and frame is not None:
+                p, given = positions(frame, s, self.points[s]), (self.antennas, self.wall, self.fc)
                 angles = pass_wall(p, *given, delay[some], strength[some])
                 if cosine is not None:
                     cosine[:, some] = angles
 
-    def _light(self, frames: "SegmentAxes", way: Float, wavelength: float) -> Float:
-        """Field left [S, M] by the segments that hide others, seen along ways [3, S, M] (m)."""
-        distance, left = np.sqrt(_dot(way, way)), np.ones(way.shape[1:])
-        for o, one in enumerate(self.body.segments):
-            if not one.occludes:
-                continue
-            axis, radius = frames.axis[:, o, None], self.body.radii[o]
-            stretch = (2 / frames.length[o]) ** 2 - 1 / radius**2
-            # Lengths in which the occluder is a ball of radius 1.
-            apart = frames.centre[:, o, None] - frames.centre
-            ray, gap = _dot(way, axis), _dot(apart, axis)
-            long = distance * distance / radius**2 + ray * ray * stretch
-            near = _dot(apart, way) / radius**2 + ray * gap * stretch
-            clearance = _dot(apart, apart) / radius**2 + gap * gap * stretch - near * near / long
-            dimmed = shadow(clearance, distance - distance[o], radius, wavelength)
-            dimmed[o] = 1
-            left *= dimmed
-        return left
+
+def frame_of(placed: Placed) -> Frame:
+    """Segments as frames of reference, all numbers of which are arrays [S, M]."""
+    start, end, beside = map(tuple, placed)
+    return ellipsoid.frame_of(start, end, beside, SOFTNESS)
 
 
-class SegmentAxes(NamedTuple):
-    """Segments as frames of reference."""
-
-    # centre, way: middle, and way from start to end [3, S, M], m
-    centre: Float
-    way: Float
-    length: Float  # [S, M], m
-    axis: Float  # unit vector along [3, S, M]
-    # left, up: at right angles to it and to each other, as long as each other [3, S, M]
-    left: Float
-    up: Float
-
-    @classmethod
-    def of(cls, placed: Placed) -> "SegmentAxes":
-        way = placed.end - placed.start
-        length = np.sqrt(_dot(way, way))
-        axis = way / np.maximum(length, TINY)
-        left = soft_unit(placed.beside - _dot(placed.beside, axis) * axis)
-        centre = placed.start + 0.5 * way
-        return cls(centre, way, np.maximum(length, TINY), axis, left, cross(axis, left))
-
-    def seen_from(self, antenna: tuple[float, float, float]) -> "_Seen":
-        """Where the segments are from an antenna's place."""
-        way = self.centre - np.array(antenna)[:, None, None]
-        square = _dot(way, way)
-        ways = np.empty((square.shape[0], 6, square.shape[1]))
-        ways[:, 0] = square
-        for row, other in enumerate((self.way, self.left, self.up), 1):
-            ways[:, row] = _dot(way, other)
-        ways[:, 4] = self.length * self.length
-        ways[:, 5] = _dot(self.left, self.left)
-        return _Seen(way, np.sqrt(np.maximum(square, TINY)), ways)
-
-    def positions(self, s: int, points: Points) -> Float:
-        """Positions [3, n, M] (m) of the points of segment s."""
-        y, z = points.across[:, :, None]
-        p: Float = self.centre[:, s, None] + points.along[:, None] * self.way[:, s, None]
-        p += y * self.left[:, s, None]
-        p += z * self.up[:, s, None]
-        return p
-
-
-class _Seen(NamedTuple):
-    """Segments seen from an antenna."""
-
-    way: Float  # to their centres [3, S, M], m
-    distance: Float  # of these [S, M], m
-    # products that the squared distances of points are made of [S, 6, M], m^2:
-    # `Points.coefficients`
-    ways: Float
+def positions(frame: Frame, s: int, points: Points) -> Float:
+    """Positions [3, n, M] (m) of the points of segment s."""
+    x, (y, z) = points.along[:, None], points.across[:, :, None]
+    axes = zip(frame.centre, frame.way, frame.left, frame.up, strict=True)
+    return np.stack([c[s] + x * along[s] + y * left[s] + z * up[s] for c, along, left, up in axes])
 
 
 def _constant(p: Float) -> Bool:
     same: Bool = (p == p[..., :1]).all(axis=(0, 2))
     return same
-
-
-def _dot(a: Float, b: Float) -> Float:
-    product: Float = a[0] * b[0]
-    product += a[1] * b[1]
-    product += a[2] * b[2]
-    return product

@@ -6,59 +6,271 @@ sigma = |Gamma|^2 pi a^2 b^2 c^2/h^4 (Mahafza, Radar Systems Analysis and Design
 simple objects", ellipsoid), from the point that is h nearer than the centre. Here a = r f aside and
 b = r/f, r the mean radius across and f the flatness, 1 for an ellipsoid of revolution.
 Seen from two antennas, the bisector of the legs takes the place of the line of sight.
+
+Every formula is of numbers, one ellipsoid at one instant, or of arrays. `fill_paths` is the loop
+over numbers that `accelerators.py` compiles; what it calls is in this file, so that no change of a
+formula leaves old machine code in use.
 """
 
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.arrays import Float, Index
+from radhar_cli.light import SPEED_OF_LIGHT
 
 LEFT_IN_SHADOW = 0.03  # field deep in the shadow of a body, relative to none
 PENUMBRA = 0.4  # width of the edge of a shadow over sqrt(wavelength * 1 m)
 BEHIND, BEHIND_WIDTH = 0.06, 0.03  # start of a shadow behind its occluder, and transition, m
+# Added to |u_tx + u_rx|^2, as scattering forwards has no aspect, and to lengths squared (m^2).
+FORWARD, SMALLEST = 1e-9, 1e-30
+BLOCK = 128  # instants at once in `fill_paths`: a processor's SIMD lanes many times over
+
+Number: TypeAlias = Any  # or an array of them
+Vector: TypeAlias = tuple[Number, Number, Number]
+
+
+class Frame(NamedTuple):
+    """An ellipsoid as a frame of reference: left and up are at right angles to the axis and to each
+    other, as long as each other."""
+
+    # centre, way: middle, and way from start to end, m
+    centre: Vector
+    way: Vector
+    length: Number  # m
+    axis: Vector  # unit vector along
+    left: Vector
+    up: Vector
+
+
+class Seen(NamedTuple):
+    """An ellipsoid seen from an antenna: the way to its centre, and products with it, m and m^2."""
+
+    way: Vector
+    distance: Number
+    square: Number  # of the distance
+    along: Number  # of the way and the frame's
+    aside: Number  # of the way and left
+    above: Number  # of the way and up
 
 
 class View(NamedTuple):
     """A vector towards the observer, of any length."""
 
     # along, aside: its components along the axis, and across where flat bodies are wide
-    along: Float
-    aside: Float
-    square: Float  # of its length
+    along: Number
+    aside: Number
+    square: Number  # of its length
 
 
-def square_height(
-    view: View, radius: Float | float, half: Float | float, flatness: Float | float = 1.0
-) -> Float:
+def dot(a: Vector, b: Vector) -> Number:
+    """a b."""
+    product = a[0] * b[0]
+    product += a[1] * b[1]
+    product += a[2] * b[2]
+    return product
+
+
+def frame_of(start: Vector, end: Vector, beside: Vector, softness: float) -> Frame:
+    """The frame of an ellipsoid between two ends (m), its left the side that `beside` is on.
+
+    Left fades, as v/sqrt(|v|^2 + softness^2), where that direction is along the ellipsoid.
+    """
+    way = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+    length = np.sqrt(dot(way, way) + SMALLEST)
+    axis = x, y, z = way[0] / length, way[1] / length, way[2] / length
+    part = dot(beside, axis)
+    left = beside[0] - part * x, beside[1] - part * y, beside[2] - part * z
+    size = np.sqrt(dot(left, left) + softness * softness)
+    left = u, v, w = left[0] / size, left[1] / size, left[2] / size
+    centre = start[0] + 0.5 * way[0], start[1] + 0.5 * way[1], start[2] + 0.5 * way[2]
+    return Frame(centre, way, length, axis, left, (y * w - z * v, z * u - x * w, x * v - y * u))
+
+
+def seen_from(frame: Frame, antenna: Vector) -> Seen:
+    """An ellipsoid as an antenna at a place (m) sees it."""
+    at = frame.centre
+    way = at[0] - antenna[0], at[1] - antenna[1], at[2] - antenna[2]
+    square, along = dot(way, way), dot(way, frame.way)
+    distance = np.sqrt(square + SMALLEST)
+    return Seen(way, distance, square, along, dot(way, frame.left), dot(way, frame.up))
+
+
+def echo_of(
+    frame: Frame, tx: Seen, rx: Seen, radius: Number, flatness: Number, parts: Number
+) -> tuple[Number, Number]:
+    """sqrt(sigma)/(R_tx R_rx) for |Gamma| = 1; and by how much (m) both legs together are shorter
+    to the surface of the n-th part of an ellipsoid than to its middle."""
+    legs = tx.distance * rx.distance
+    view = View(
+        (tx.along / tx.distance + rx.along / rx.distance) / frame.length,
+        tx.aside / tx.distance + rx.aside / rx.distance,
+        2 + FORWARD + 2 * dot(tx.way, rx.way) / legs,
+    )
+    half = 0.5 * frame.length
+    height = square_height(view, radius, half, flatness) / view.square
+    nearer = np.sqrt(square_height(view, radius, half / parts, flatness))
+    return np.sqrt(cross_section(height, radius, half, 1.0)) / legs, nearer
+
+
+def square_height(view: View, radius: Number, half: Number, flatness: Number = 1.0) -> Number:
     """h^2 (m^2), times the square of the viewing vector's length; semi-axes in m, f 1 or more."""
     along, aside = view.along * view.along, view.aside * view.aside
-    depth = radius / flatness
-    height: Float = depth * depth * (view.square - along - aside) + half * half * along
-    height += (radius * flatness) ** 2 * aside
+    depth, width = radius / flatness, radius * flatness
+    height = depth * depth * (view.square - along - aside) + half * half * along
+    height += width * width * aside
     return height
 
 
 def cross_section(
-    square_height: Float, radius: Float | float, half: Float | float, reflectance: float
-) -> Float:
+    square_height: Number, radius: Number, half: Number, reflectance: float
+) -> Number:
     """sigma = |Gamma|^2 pi r^4 c^2/h^4, m^2, r across (mean), c along, h for a unit vector."""
     size = pi * reflectance * radius**4 * half**2
     return size / (square_height * square_height)
 
 
-def shadow(clearance: Float, behind: Float, radius: Float | float, wavelength: float) -> Float:
+def clearance(
+    end: Vector, way: Vector, distance: Number, occluder: tuple[Vector, Vector, Number, Number]
+) -> Number:
+    """(Distance of a ray from the centre of an occluder over the way to its surface there)^2.
+
+    Of the ray are the end, the way and its length; of the occluder centre, axis, length and radius.
+    """
+    at, axis, length, radius = occluder
+    apart = at[0] - end[0], at[1] - end[1], at[2] - end[2]
+    # In lengths in which the occluder is a ball of radius 1.
+    across = 1 / (radius * radius)
+    stretch = 4 / (length * length) - across
+    ray, gap = dot(way, axis), dot(apart, axis)
+    long = distance * distance * across + ray * ray * stretch
+    near = dot(apart, way) * across + ray * gap * stretch
+    return dot(apart, apart) * across + gap * gap * stretch - near * near / long
+
+
+def shadow(clearance: Number, behind: Number, radius: Number, wavelength: float) -> Number:
     """Field left (1) of a path whose ray passes an occluder and ends `behind` (m) it.
 
     A logistic edge of width w, half the field at the edge, a tenth at 2.2 w behind it: as a knife
-    edge 0.4 m in front has it, w = 2.5 cm at 77 GHz and 15 cm at 2 GHz. `clearance` is (distance of
-    the ray from the occluder's centre over the way to its surface there)^2: 1 at the edge.
+    edge 0.4 m in front has it, w = 2.5 cm at 77 GHz and 15 cm at 2 GHz. At a `clearance` of 1.
     """
     edge = 2 * PENUMBRA * np.sqrt(wavelength)
     # 1/(1 + exp(-x)) = (1 + tanh(x/2))/2, in a third of the time of scipy.special.expit
-    covered = 1 + np.tanh((1 - clearance) * (radius / (2 * edge)))
-    left: Float = covered * (1 + np.tanh((behind - BEHIND) / (2 * BEHIND_WIDTH)))
+    covered = rise((1 - clearance) * (radius / (2 * edge)))
+    left = covered * rise((behind - BEHIND) / (2 * BEHIND_WIDTH))
     left *= (LEFT_IN_SHADOW - 1) / 4
     left += 1
     return left
+
+
+def rise(x: Float) -> Float:
+    """1 + tanh(x)."""
+    return 1 + np.tanh(x)
+
+
+def rise_of_number(x: float) -> float:
+    """1 + tanh(x) = 2/(1 + exp(-2 x)) to 1e-10, of products alone, for as many x at once."""
+    r = max(-36.0, min(36.0, -2 * x)) / 128
+    e = 1 + r / 6 * (1 + r / 7 * (1 + r / 8 * (1 + r / 9 * (1 + r / 10))))
+    e = 1 + r * (1 + r / 2 * (1 + r / 3 * (1 + r / 4 * (1 + r / 5 * e))))
+    for _ in range(7):
+        e *= e
+    return 2 / (1 + e)
+
+
+def fill_paths(
+    ends: tuple[Float, Float, Float],
+    scene: tuple[Float, float, float],
+    sizes: Float,
+    occluders: Index,
+    first: Index,
+    points: Float,
+    made: tuple[Float, Float],
+) -> None:
+    """Fill in delays and amplitudes [I, M] of the points of S ellipsoids, seen through air.
+
+    Args:
+        ends: starts, ends, and directions beside them [3, S, M], m.
+        scene: places of transmitter, receiver, and between [3, 3], wavelength, softness, m, m, 1.
+        sizes: radius (m), flatness and number of parts [S, 3].
+        occluders: which of them throw shadows.
+        first: number of the first point of each, and I [S + 1].
+        points: what makes squared delays (s^2) of the products that `Seen` has, and what makes
+            amplitudes of sqrt(sigma)/(R_tx R_rx) [I, 7].
+        made: delays (s) and amplitudes.
+    """
+    # Loops are over whole blocks, so that every instant is computed in the same way.
+    frames, seen = np.empty((first.size - 1, 11, BLOCK)), np.empty((first.size - 1, 12, BLOCK))
+    block = np.empty((9, BLOCK))
+    for start in range(0, ends[0].shape[2], BLOCK):
+        count = min(BLOCK, ends[0].shape[2] - start)
+        for s in range(first.size - 1):
+            for row in range(9):
+                block[row, :count] = ends[row // 3][row % 3, s, start : start + count]
+                block[row, count:] = block[row, count - 1]
+            size = sizes[s, 0], sizes[s, 1], sizes[s, 2]
+            for m in range(BLOCK):
+                see(block, scene, size, frames[s], seen[s], m)
+        for s in range(first.size - 1):
+            for o in occluders:
+                if o != s and first[s] < first[s + 1]:
+                    for m in range(BLOCK):
+                        shade(frames[s], seen[s], frames[o], sizes[o, 0], scene[1], m)
+            for i in range(first[s], first[s + 1]):
+                _spread(seen[s], points[i], block)
+                made[0][i, start : start + count] = block[0, :count]
+                made[1][i, start : start + count] = block[1, :count]
+
+
+def see(
+    block: Float,
+    scene: tuple[Float, float, float],
+    size: Number,
+    frames: Float,
+    seen: Float,
+    m: int | slice,
+) -> None:
+    """Fill in frames [11, ...] of ellipsoids, and how they are seen [12, ...], at instants m."""
+    frame = frame_of(_at(block, m), _at(block[3:], m), _at(block[6:], m), scene[2])
+    tx, rx = seen_from(frame, _at(scene[0], 0)), seen_from(frame, _at(scene[0], 1))
+    both = seen_from(frame, _at(scene[0], 2))
+    seen[0, m], seen[1, m], seen[2, m], seen[3, m] = tx.square, tx.along, tx.aside, tx.above
+    seen[4, m], seen[5, m], seen[6, m], seen[7, m] = rx.square, rx.along, rx.aside, rx.above
+    seen[8, m], seen[9, m] = frame.length * frame.length, dot(frame.left, frame.left)
+    seen[10, m], nearer = echo_of(frame, tx, rx, size[0], size[1], size[2])
+    seen[11, m] = nearer / SPEED_OF_LIGHT
+    frames[0, m], frames[1, m], frames[2, m] = frame.centre
+    frames[3, m], frames[4, m], frames[5, m] = frame.axis
+    frames[6, m], frames[7, m], frames[8, m] = both.way
+    frames[9, m], frames[10, m] = both.distance, frame.length
+
+
+def shade(
+    one: Float, seen: Float, other: Float, radius: float, wavelength: float, m: int | slice
+) -> None:
+    """Weaken echoes of ellipsoids where another is in their way, at instants m."""
+    occluder = _at(other, m), _at(other[3:], m), other[10, m], radius
+    clear = clearance(_at(one, m), _at(one[6:], m), one[9, m], occluder)
+    seen[10, m] *= shadow(clear, one[9, m] - other[9, m], radius, wavelength)
+
+
+def _spread(seen: Float, point: Float, made: Float) -> None:
+    """Fill in delays and amplitudes of a point [2, BLOCK]."""
+    c0, c1, c2, c3 = point[0], point[1], point[2], point[3]
+    c4, c5, share = point[4], point[5], point[6]
+    for m in range(BLOCK):
+        same = c4 * seen[8, m] + c5 * seen[9, m]
+        a = c0 * seen[0, m] + c1 * seen[1, m] + c2 * seen[2, m] + c3 * seen[3, m] + same
+        b = c0 * seen[4, m] + c1 * seen[5, m] + c2 * seen[6, m] + c3 * seen[7, m] + same
+        made[0, m] = np.sqrt(max(a, 0.0)) + np.sqrt(max(b, 0.0)) - seen[11, m]
+        made[1, m] = share * seen[10, m]
+
+
+def _at(rows: Float, m: int | slice) -> Vector:
+    return rows[0, m], rows[1, m], rows[2, m]
+
+
+_SAME: tuple[Any, ...] = (dot, frame_of, seen_from, echo_of, square_height, cross_section)
+_SAME += (clearance, shadow, see, shade, _spread, _at)
+CALLED = (*zip(_SAME, _SAME, strict=True), (rise, rise_of_number))  # by `fill_paths`

@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from radhar_cli.radar.ellipsoid import View, cross_section, shadow, square_height
+from radhar_cli.radar.ellipsoid import (
+    View,
+    cross_section,
+    rise,
+    rise_of_number,
+    shadow,
+    square_height,
+)
 
 ASPECTS = np.cos(np.linspace(0, np.pi, 19))  # components of the line of sight along the axis
 SIZES = st.floats(0.01, 1.0)
@@ -85,3 +92,8 @@ def test_a_trunk_hides_at_77_GHz_what_passes_around_it_at_2():
 def test_a_shadow_has_no_infinities():
     far = np.array([-1e12, 0.0, 1e12])
     assert np.isfinite(shadow(np.array([[0.0], [1e30]]), far, 0.14, FC77)).all()
+
+
+def test_the_compiled_edge_of_a_shadow():
+    x = np.linspace(-40, 40, 2001)
+    assert [rise_of_number(one) for one in x] == pytest.approx(rise(x), abs=1e-10)

@@ -6,6 +6,8 @@ draw and two distributions of the same field stay comparable sample by sample.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import erfc, sqrt
+from statistics import NormalDist
 from typing import Annotated, Any, TypeAlias
 
 from pydantic import (
@@ -110,17 +112,15 @@ class Normal(Distribution):
         return min(max(self.normal[0], low), high)
 
     def quantile(self, u: float) -> float:
-        from scipy.special import ndtr, ndtri
-
         mean, sd = self.normal
         low, high = self.support
         if sd == 0:
             return self.nominal
         a, b = (low - mean) / sd, (high - mean) / sd
-        if a > 0:  # keep the precision of the far upper tail
-            z = -float(ndtri(ndtr(-a) + (ndtr(-b) - ndtr(-a)) * u))
-        else:
-            z = float(ndtri(ndtr(a) + (ndtr(b) - ndtr(a)) * u))
+        side = -1 if a > 0 else 1  # keep the precision of the far upper tail
+        start, end = (0.5 * erfc(-side * z / sqrt(2)) for z in (a, b))
+        p = start + (end - start) * u
+        z = side * NormalDist().inv_cdf(p) if 0 < p < 1 else b if u > 0.5 else a
         return min(max(mean + sd * z, low), high)
 
 

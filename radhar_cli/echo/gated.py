@@ -16,7 +16,6 @@ from math import ceil, inf
 from typing import Any, ClassVar
 
 import numpy as np
-import scipy.fft
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.accuracy import Settings, probed_pulses, relative_db
@@ -183,6 +182,8 @@ class GatedEcho(DirectEcho):
 
 def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[Any]) -> Float:
     """Coefficients [P, K] of D(k/N_FFT - u) = sum_p c_p T_p((u - middle)/half), P at least 2."""
+    import scipy.fft  # slow to import
+
     double = real == np.float64
     count = ceil((np.pi * w.n_adc * half + MORE_NODES[double]) / 8) * 8
     angle = np.pi * (np.arange(count) + 0.5) / count

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-import scipy.fft
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.look import weights
@@ -41,8 +40,8 @@ class HalfBandTable:
         d = weights(waveform)
         # exp(-j 2 pi (n - n0) u) = exp(+j 2 pi n0 u) exp(-j 2 pi n u)
         reference = np.exp(2j * np.pi * waveform.n0 * np.arange(size) / size)
-        value = scipy.fft.fft(d, size) * reference
-        slope = scipy.fft.fft(-2j * np.pi * n * d, size) * reference / size
+        value = np.fft.fft(d, size) * reference
+        slope = np.fft.fft(-2j * np.pi * n * d, size) * reference / size
         sign = np.exp(2j * np.pi * waveform.n0)
         value_next, slope_next = np.roll(value, -1), np.roll(slope, -1)
         value_next[-1] *= sign

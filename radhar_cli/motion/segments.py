@@ -9,7 +9,6 @@ from math import sqrt
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
-from scipy.special import expit
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.protocol import Motion
@@ -179,7 +178,7 @@ def _foot(knee: Float, ankle: Float, left: Float, scale: float) -> Float:
     """Direction [3, M] from ankle to toes: at right angles to the shank, flat near the floor."""
     foot = soft_unit(cross(unit(ankle - knee), left))
     middle, width = 0.5 * (FLAT_BELOW + BENT_ABOVE) * scale, (BENT_ABOVE - FLAT_BELOW) * scale
-    foot[2] *= expit((ankle[2] - middle) / (0.12 * width))
+    foot[2] *= 0.5 + 0.5 * np.tanh((ankle[2] - middle) / (0.24 * width))
     return soft_unit(foot)
 
 

@@ -6,7 +6,6 @@ from threading import Lock, get_ident
 from typing import Any
 
 import numpy as np
-import scipy.fft
 
 from radhar_cli.accelerators import installed, load
 from radhar_cli.arrays import Complex, Float
@@ -26,6 +25,8 @@ def fill_in_spectra(found: Float | Complex, frames: Complex, window: Float) -> N
             enough = min(-(-len(some) // 8) * 8, rows)  # for fewer plans
             framed, transform = _planned(enough, size, length, frames.dtype, get_ident())
         else:
+            import scipy.fft  # slow to import
+
             framed = np.zeros((len(some), size), frames.dtype)
             transform = partial(scipy.fft.fft, framed, axis=1, overwrite_x=True)
         # Sample L//2 comes first: that refers the phase to it.

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.fft
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.power_map import Axis
@@ -33,6 +32,8 @@ def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
 
     Beats have the sign exp(-j 2 pi K tau t), so the kernel is the conjugate one.
     """
+    import scipy.fft  # slow to import
+
     weighted = cube * (window / window.sum()).astype(cube.real.dtype)
     if (board.signs < 0).any():
         weighted *= board.signs[:, None].astype(cube.real.dtype)
@@ -44,6 +45,8 @@ def doppler_spectrum(x: Complex, board: Board, window: Float, remove_mean: bool)
 
     Doppler is as FFTs have it: 0 first, approaching positive.
     """
+    import scipy.fft  # slow to import
+
     if remove_mean:
         x = x - x.mean(axis=1, keepdims=True)
     weights = (window / window.sum()).astype(x.real.dtype)[:, None, None]
@@ -55,7 +58,7 @@ def without_turns(x: Complex, board: Board) -> Complex:
 
     A chirp that comes k/n_TX of a loop later has turned by 2 pi d k/(N_D n_TX) in Doppler bin d.
     """
-    d = scipy.fft.fftfreq(board.n_doppler)[:, None]
+    d = np.fft.fftfreq(board.n_doppler)[:, None]
     turned = np.exp(-2j * np.pi * d * board.turns)[..., None]
     compensated: Complex = x * turned.astype(x.dtype)
     return compensated

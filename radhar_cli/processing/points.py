@@ -7,7 +7,6 @@ z up of the radar, Doppler positive approaching.
 from typing import NamedTuple
 
 import numpy as np
-import scipy.fft
 
 from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.processing.frame_maps import doppler_spectrum, longest_rows, range_spectrum
@@ -156,6 +155,8 @@ def _angles(
 
     A list for each symbol.
     """
+    import scipy.fft  # slow to import
+
     row, upper, aside, above = elevation_pair(board)
     spectra = scipy.fft.fft(symbols[:, row], BINS)
     upwards = scipy.fft.fft(symbols[:, upper], BINS) if upper else None

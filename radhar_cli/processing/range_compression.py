@@ -1,7 +1,6 @@
 """Range compression with the conjugate kernel."""
 
 import numpy as np
-import scipy.fft
 
 from radhar_cli.arrays import Complex
 from radhar_cli.radar.waveform import Waveform
@@ -14,7 +13,7 @@ def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None))
     to mid-chirp (docs/physics/model.md, "Where in the chirp the Doppler is read").
     """
     # The transform runs along contiguous memory where s is the transpose of [M, N_ADC].
-    kept: Complex = scipy.fft.ifft(s.T, waveform.n_fft, axis=1, norm="forward").T
+    kept: Complex = np.fft.ifft(s.T, waveform.n_fft, axis=1, norm="forward").T
     kept = kept[: waveform.n_bins][bins]
     if waveform.n0:
         k = np.arange(waveform.n_bins)[bins, None]

@@ -6,7 +6,6 @@ middle of the shadow it is 0.8 dB stronger to 10 dB weaker (tests/radar/test_per
 """
 
 import numpy as np
-from scipy.special import expit
 
 from radhar_cli.arrays import Float
 
@@ -29,6 +28,8 @@ def light_past(
 
     The person stands at `place` [3, 1, M] (m), whose height is not used; `top` is the stature, m.
     """
+    from scipy.special import expit  # slow to import
+
     way = p[:2] - np.reshape(antenna[:2], (2, 1, 1))
     to = place[:2] - np.reshape(antenna[:2], (2, 1, 1))
     length = np.maximum(np.hypot(*way), np.finfo(float).tiny)

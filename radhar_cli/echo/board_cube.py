@@ -7,7 +7,8 @@ chirp begins.
 """
 
 from collections.abc import Sequence
-from math import factorial, inf, log10, pi
+from math import ceil, inf, log10, pi
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebvander
@@ -24,6 +25,10 @@ PROBES = 48
 NODES = 4
 MARGIN_DB = 20.0
 MOST_TERMS = 24
+# Polynomials more than the largest turn has radians, in double and in single precision; the least
+# turn; and by how many times the largest change within a frame the polynomials reach beyond the
+# turns, as derivatives grow towards the ends.
+MORE_NODES, LEAST_TURN, MARGIN = (32, 16), 1e-9, 5
 
 
 def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, float]:
@@ -48,14 +53,17 @@ def fast_cube(
 ) -> tuple[Complex, float, float]:
     """Samples as `exact_cube`, P_s, and the measured error relative to the cube, dB.
 
-    Within a frame delays differ little from their mean tau_0, and with u = n - (N - 1)/2
+    Of the delays of a frame tau_m is the middle, and x = (tau - tau_m)/h lies within -1 and 1. With
+    u = n - (N - 1)/2 a beat is a sum of few Chebyshev polynomials, and those change little with a
+    path from its mean place x_0:
 
-        exp(-j 2 pi K (tau - tau_0) u/fs) = sum_q (-j y)^q/q! (u/u_N)^q,
+        exp(-j 2 pi K h x u/fs) = sum_p c_p(u) T_p(x),
+        T_p(x) = sum_q T_p^(q)(x_0) (x - x_0)^q/q!,
 
-    y = 2 pi K (tau - tau_0) u_N/fs: the sum over the paths is one product of matrices a frame. The
-    number of terms follows from the largest y and the tolerance. Paths are asked for at NODES
-    instants of a frame, some milliseconds, and are cubic between them; some chirps are compared
-    with the exact sum.
+    so that the sum over the paths is two products of matrices a frame, the larger one with real
+    numbers. The number of terms q follows from the spread of x and the tolerance. Paths are asked
+    for at NODES instants of a frame, some milliseconds, and are cubic between them; some chirps are
+    compared with the exact sum.
     """
     single = tolerance_db >= SINGLE_DB
     dtype = np.complex64 if single else np.complex128
@@ -78,18 +86,26 @@ def fast_cube(
             a = at_nodes[:, f] @ between
             power += float(np.einsum("ivl,ivl->", a, a))
             a = (a * board.signs[:, None]).astype(np.float32 if single else float)
-            tau0 = tau.mean(axis=1, keepdims=True)
-            y = ((2 * pi * rate * half) * (tau - tau0)).astype(a.dtype)
-            terms = _terms(y[:, ::16], tolerance_db)
+            middle = (tau.max() + tau.min()) / 2
+            turn = (2 * pi * rate * half) * (tau - middle)
+            mean = turn.mean(axis=1, keepdims=True)
+            turn -= mean
+            whole = np.rint(mean / (2 * pi * half))  # cycles a sample, which no sample shows
+            mean -= 2 * pi * half * whole
+            change = max(float(np.abs(turn).max()), LEAST_TURN)
+            most = float(np.abs(mean).max()) + MARGIN * change
+            terms = _terms(turn[:, ::16], tolerance_db)
+            x = (turn / change).astype(a.dtype)
             left = np.empty((terms, *tau.shape), dtype)
-            left[0] = unit_phasor(board.centre * tau, dtype)
+            left[0] = unit_phasor(board.centre * tau - half * whole, dtype)
             left[0] *= a.reshape(tau.shape)
             for q in range(1, terms):
-                np.multiply(left[q - 1], y, out=left[q])
-            base = unit_phasor(rate * tau0 * u, dtype)
-            right = np.array([(-1j * u / half) ** q / factorial(q) for q in range(terms)], dtype)
-            right = np.multiply(right[:, None], base).reshape(-1, board.samples)
-            s = left.reshape(len(right), -1).T @ right
+                np.multiply(left[q - 1], x, out=left[q])
+            polynomials, right = _expanded(mean[:, 0], change, most, terms, u / half, dtype)
+            right = right * unit_phasor(rate * middle * u)
+            polynomials = polynomials.astype(a.dtype).reshape(len(right), -1)
+            sums = polynomials @ left.reshape(-1, tau.shape[1]).view(a.dtype)
+            s = sums.view(dtype).T @ right.astype(dtype)
             cube[first + f] = s.reshape(board.channels, board.loops, -1).swapaxes(0, 1)
     power /= board.frames * board.loops * board.channels
     return cube, power, measured_db(cube, channels, board)
@@ -103,6 +119,26 @@ def _within_frame(loops: int) -> tuple[Float, Float]:
     x, asked = chebpts1(NODES), np.arange(loops) / half - 1
     weights: Float = np.linalg.solve(chebvander(x, NODES - 1).T, chebvander(asked, NODES - 1).T)
     return half * (1 + x), weights
+
+
+def _expanded(
+    turn: Float, change: float, most: float, terms: int, v: Float, dtype: Any
+) -> tuple[Float, Complex]:
+    """(change/most)^q T_p^(q)(turn/most)/q! [P, q, I] and c_p [P, N] of exp(-j turn v), v [N]."""
+    import scipy.fft  # slow to import
+
+    count = ceil(most) + MORE_NODES[dtype == np.complex64]
+    x, scale = turn / most, change / most
+    given = np.zeros((count, terms, x.size))
+    given[0, 0], given[1, 0], given[1, 1:2] = 1, x, scale
+    for p in range(2, count):  # T_p = 2 x T_(p-1) - T_(p-2), and its derivatives
+        np.multiply(2 * x, given[p - 1], out=given[p])
+        given[p] -= given[p - 2]
+        given[p, 1:] += 2 * scale * given[p - 1, :-1]
+    values = unit_phasor(most / (2 * pi) * chebpts1(count)[::-1, None] * v, dtype)
+    coefficients = scipy.fft.dct(values, axis=0) / count
+    coefficients[0] /= 2
+    return given, coefficients
 
 
 def _terms(y: Float, tolerance_db: float) -> int:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from radhar_cli.echo.accuracy import SPARE_DB
 from radhar_cli.echo.board_cube import exact_cube, fast_cube, measured_db
+from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
 from tests.boards import MARS, channels
 
@@ -58,6 +59,16 @@ def test_any_shape_of_frames(samples: int, loops: int, frames: int, distance: fl
     assert cube.shape == (frames, loops, 12, samples)
     assert measured <= -60
     assert np.abs(cube - exact).max() <= 2e-2 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("samples", [99, 100])
+def test_beats_that_turn_by_more_than_a_cycle_a_sample(samples: int) -> None:
+    board = replace(MARS, samples=samples)
+    far = SPEED_OF_LIGHT * board.adc_rate / (2 * board.slope)  # a cycle a sample
+    p = [(2, 0, 0), (2 + 0.4 * far, 1, 0), (2 + 1.3 * far, 0, 1), (2 + 3.7 * far, 0, 0)]
+    sources = channels(board, p, [(1, 0, 0)] * 4, np.linalg.norm(p, axis=1) ** 2)
+    _, _, measured = fast_cube(sources, board, -80)
+    assert measured <= -80
 
 
 def test_receivers_fed_the_other_way_round_change_their_sign() -> None:

@@ -94,21 +94,14 @@ def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, st
     symbols = symbols * np.exp(-2j * np.pi * turn)
     if lsb > 0:
         symbols = np.trunc(symbols.real) + 1j * np.trunc(symbols.imag)
-    angles = _angles(symbols, board, detection.second_peak, lsb > 0)
-    first = [(n, *found[0]) for n, found in enumerate(angles)]
-    second = [(n, *one) for n, found in enumerate(angles) for one in found[1:]]
-    second = second[: MAX_POINTS - len(first)]
-    rows = []
-    for n, intensity, right, up in first + second:
-        r = max(ranges[n] * board.range_step - detection.bias, 0.0)
-        x_right, z = r * right, r * up
-        y_ahead = np.sqrt(max(r * r - x_right * x_right - z * z, 0.0))
-        place = np.array([y_ahead, -x_right, z])
-        if lsb > 0:
-            place = np.round(place / XYZ_STEP) * XYZ_STEP
-        about = (-signed[n] * step, intensity, snr[doppler[n], ranges[n]], ranges[n], -signed[n])
-        rows.append((*place, *about))
-    points = np.array(rows, float).reshape(-1, len(COLUMNS))
+    n, intensity, right, up = _angles(symbols, board, detection.second_peak, lsb > 0)
+    r = np.maximum(ranges[n] * board.range_step - detection.bias, 0)
+    aside, z = r * right, r * up
+    places = np.stack([np.sqrt(np.maximum(r * r - aside * aside - z * z, 0)), -aside, z])
+    if lsb > 0:
+        places = np.round(places / XYZ_STEP) * XYZ_STEP
+    about = -signed[n] * step, intensity, snr[doppler[n], ranges[n]], ranges[n], -signed[n]
+    points = np.stack([*places, *about], axis=1)
     return points[_in_view(points, detection)]
 
 
@@ -150,38 +143,29 @@ def _peaks(d: Float, grouping: tuple[bool, bool]) -> Bool:
 
 def _angles(
     symbols: Complex, board: Board, second: float | None, whole: bool
-) -> list[list[tuple[float, float, float]]]:
-    """(intensity, right, up) of the first peak over angle of symbols [n, virtual], and of a second.
-
-    A list for each symbol.
-    """
+) -> tuple[Index, Float, Float, Float]:
+    """Symbol, intensity, right and up [n] of the first peak over angle of symbols [n, virtual], and
+    of second ones."""
     import scipy.fft  # slow to import
 
     row, upper, aside, above = elevation_pair(board)
     spectra = scipy.fft.fft(symbols[:, row], BINS)
-    upwards = scipy.fft.fft(symbols[:, upper], BINS) if upper else None
     heights = np.abs(spectra) / len(row)
     heights = np.floor(heights) if whole else heights
-    found = []
-    for n, (a, m) in enumerate(zip(spectra, heights, strict=True)):
-        peaks = [int(m.argmax())]
-        if second is not None:
-            rest = m.copy()
-            rest[_flanks(m, peaks[0])] = -1
-            other = int(rest.argmax())
-            least = second * m[peaks[0]]
-            if rest[other] > (np.floor(least) if whole else least):
-                peaks.append(other)
-        each = []
-        for b in peaks:
-            right = 2 * (b if b < BINS // 2 else b - BINS) / BINS
-            up = 0.0
-            if upwards is not None:
-                turn = np.angle(a[b] * np.conj(upwards[n, b])) / np.pi
-                up = ((float(turn) + aside * right + 1) % 2 - 1) / above
-            each.append((float(m[b]), right, up))
-        found.append(each)
-    return found
+    n = np.arange(len(symbols))
+    bins = heights.argmax(axis=1)
+    if second is not None:
+        rest = np.where(_flanks(heights, bins), -1, heights)
+        least, other = second * heights[n, bins], rest.argmax(axis=1)
+        more = np.flatnonzero(rest[n, other] > (np.floor(least) if whole else least))
+        more = more[: MAX_POINTS - n.size]
+        n, bins = np.concatenate([n, more]), np.concatenate([bins, other[more]])
+    right = 2 * np.where(bins < BINS // 2, bins, bins - BINS) / BINS
+    up = np.zeros(n.size)
+    if upper:
+        turn = np.angle(spectra[n, bins] * scipy.fft.fft(symbols[:, upper], BINS)[n, bins].conj())
+        up = ((turn / np.pi + aside * right + 1) % 2 - 1) / above
+    return n, heights[n, bins], right, up
 
 
 def elevation_pair(board: Board) -> tuple[list[int], list[int], float, float]:
@@ -201,15 +185,16 @@ def elevation_pair(board: Board) -> tuple[list[int], list[int], float, float]:
     return row, upper, float(places[upper[0], 0] - left), float(near - up)
 
 
-def _flanks(m: Float, peak: int) -> Index:
-    """Bins of a peak and of what falls off monotonously to both sides of it; angles close."""
-    bins, heights = [peak], m.tolist()
+def _flanks(m: Float, peak: Index) -> Bool:
+    """Bins [n, angle] of a peak of each row [n], and of what falls off to both sides; angles close."""
+    kept: Bool = np.arange(m.shape[1]) == peak[:, None]
     for way in (-1, 1):
-        at = peak
-        while len(bins) < len(heights) and heights[(at + way) % len(heights)] <= heights[at]:
-            at = (at + way) % len(heights)
-            bins.append(at)
-    return np.array(bins)
+        at = (peak[:, None] + way * np.arange(m.shape[1])) % m.shape[1]
+        heights = np.take_along_axis(m, at, axis=1)
+        falls = np.logical_and.accumulate(heights[:, 1:] <= heights[:, :-1], axis=1)
+        n, after = np.nonzero(falls)
+        kept[n, at[n, after + 1]] = True
+    return kept
 
 
 def _in_view(points: Float, detection: Detection) -> Bool:

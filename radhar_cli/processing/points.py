@@ -186,7 +186,7 @@ def elevation_pair(board: Board) -> tuple[list[int], list[int], float, float]:
 
 
 def _flanks(m: Float, peak: Index) -> Bool:
-    """Bins [n, angle] of a peak of each row [n], and of what falls off to both sides; angles close."""
+    """Bins [n, angle] of the peak of each row [n] and of what falls off beside it; angles close."""
     kept: Bool = np.arange(m.shape[1]) == peak[:, None]
     for way in (-1, 1):
         at = (peak[:, None] + way * np.arange(m.shape[1])) % m.shape[1]

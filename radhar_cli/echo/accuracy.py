@@ -29,7 +29,7 @@ PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.1, 0.05
 TABLE_DB = -48.0
 SINGLE_DB = -115.0  # error of the recurrence in float32
 # Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
-MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 30.0, -220.0
+MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 10.0, -220.0
 COARSEST_DB = -60.0  # tolerance above which farther knots save no time (docs/results/tradeoff.md)
 PROBES = 48
 
@@ -40,6 +40,7 @@ class Settings(NamedTuple):
     spacing: Spacing  # of the knots
     table_oversampling: int  # points of the table of G per fast-time sample
     single: bool  # whether phasors between knots are single precision
+    cubic: bool  # whether phases between knots are cubics, which err less than single precision
 
 
 def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Settings:
@@ -53,6 +54,7 @@ def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Set
             min(PHASE_CHANGE * coarse, 0.25),
         ),
         min(4 * 2 ** max(0, ceil((TABLE_DB - aim_db) / 24)), finest_table),
+        aim_db >= SINGLE_DB,
         aim_db >= SINGLE_DB,
     )
 

@@ -1,6 +1,6 @@
 """The sum over paths from their knots in two loops, compiled by numba where that is installed.
 
-The same sum as `direct` makes with NumPy in single precision, of the same polynomials, within
+The same sum as `direct` makes with NumPy of cubic phases, of the same polynomials, within
 rounding. It is faster as nothing but the sum is stored, and as sines and cosines are polynomials
 too, which a processor computes for eight paths or more at once.
 """
@@ -45,33 +45,35 @@ def interpolated_sum(
     segment's stencil.
     """
     w, shape = table.waveform, (paths.delay.shape[1], some.size)
-    cycles, real, imag = np.empty(shape), *np.empty((2, *shape), np.float32)
+    cycles, real, imag = np.empty(shape), *np.empty((2, *shape), table.cubics[0].real.dtype)
     square = 0.5 * w.slope if w.residual_video_phase else 0.0
     scale = (w.f0, square, w.slope / w.adc_rate, 1 / unit, bool(w.n0 % 1))
     machine_code(_at_knots)(*paths[:2], some, scale, table.cubics, cycles, real, imag)
     total = np.zeros(shift.size * step, dtype=complex)
-    machine_code(_add)(cycles, real, imag, shift, *_cubics(step), SINE, COSINE, total)
+    to_phase, x = _cubics(step)
+    given = (part.astype(real.dtype) for part in (to_phase, x))
+    series = (tuple(part.astype(real.dtype)) for part in (SINE, COSINE))
+    machine_code(_add)(cycles, real, imag, shift, to_phase, *given, *series, total)
     return total
 
 
-def _fitted(function: Callable[[Float], Float], power: int) -> tuple[np.float32, ...]:
+def _fitted(function: Callable[[Float], Float], power: int) -> Float:
     """Coefficients c_k of function(2 pi r) = sum c_k r^(2 k + power), for |r| <= 1/2."""
     r = np.sqrt(0.126 * (1 - np.cos(np.pi * (np.arange(64) + 0.5) / 64)))
     fit = Polynomial.fit(r * r, function(2 * np.pi * r) / r**power, 6)
-    return tuple(fit.convert().coef.astype(np.float32))
+    return fit.convert().coef.astype(float)
 
 
 SINE, COSINE = _fitted(np.sin, 1), _fitted(np.cos, 0)
 
 
 @lru_cache(maxsize=128)
-def _cubics(step: int) -> tuple[Float, Float, Float]:
+def _cubics(step: int) -> tuple[Float, Float]:
     """Cubics of the runs of a segment, through Chebyshev points of each.
 
     Returns:
         from the knots of a stencil with shift -REACH .. REACH to the coefficients of x^k
-        [runs, 2 REACH + 1, TERMS, TAPS], in double and in single precision; and x at the pulses
-        of a run [length], -1 to 1.
+        [runs, 2 REACH + 1, TERMS, TAPS]; and x at the pulses of a run [length], -1 to 1.
     """
     length, differences = runs(step, TERMS - 1)
     at, x = nodes(TERMS - 1, length), np.linspace(-1, 1, length)
@@ -80,7 +82,7 @@ def _cubics(step: int) -> tuple[Float, Float, Float]:
     for run, shift in np.ndindex(found.shape[:2]):
         values = lagrange_basis(NODES, (run * length + at) / step).T
         found[run, shift] = np.linalg.pinv(powers) @ values @ shifted_weights(shift - REACH)
-    return found, found.astype(np.float32), x.astype(np.float32)
+    return found, x
 
 
 def _at_knots(
@@ -103,8 +105,8 @@ def _at_knots(
             whole = np.floor(turn * tau)
             place = (turn * tau - whole) * value.size
             cell = min(max(int(place), 0), value.size - 1)
-            s = np.float32(place - cell)
-            a = np.float32(amplitude[some[i], k] * per_unit)
+            s = real.dtype.type(place - cell)
+            a = real.dtype.type(amplitude[some[i], k] * per_unit)
             if alternating and whole % 2 != 0:
                 a = -a
             g = value[cell] + s * (slope[cell] + s * (curve[cell] + s * cube[cell]))
@@ -120,8 +122,8 @@ def _add(
     to_phase: Float,
     to_envelope: Float,
     x: Float,
-    sine: tuple[np.float32, ...],
-    cosine: tuple[np.float32, ...],
+    sine: tuple[np.floating, ...],
+    cosine: tuple[np.floating, ...],
     total: Complex,
 ) -> None:
     """Fill in the sum at the pulses of all segments but those that are EXACT."""
@@ -155,7 +157,7 @@ def _add(
             start = segment * step + run * length
             for m in range(min(length, step - run * length)):
                 t = x[m]
-                total_re = total_im = np.float32(0)
+                total_re = total_im = x.dtype.type(0)
                 for i in range(re.shape[1]):
                     r = phase[0, i] + t * (phase[1, i] + t * (phase[2, i] + t * phase[3, i]))
                     r -= np.rint(r)

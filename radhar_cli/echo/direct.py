@@ -39,8 +39,7 @@ from radhar_cli.radar.waveform import Waveform
 # Values at work at once, which stay in the cache: at knots and at pulses; of phasors, of which some
 # twenty follow from each; and at knots from which those follow.
 BLOCK, PHASORS, CHUNK = 2**15, 2**13, 2**20
-# Of the phase between knots in single precision: a cubic errs less than its rounding.
-SINGLE_DEGREE = 3
+CUBIC = 3  # degree of phases between knots
 SINGLE_ROUNDING_DB = -132.0  # rounding of slowly turning phasors in float32
 SAMPLED = 64
 
@@ -85,7 +84,7 @@ class DirectEcho:
         Raises:
             AccuracyError: the tolerance is below what float64 leaves of this signal.
         """
-        aim, best = first_aim(self.tolerance_db), 0.0
+        aim, best, refine = first_aim(self.tolerance_db), 0.0, REFINE_DB
         chosen, motion = self._settings(aim), self._motion
         while True:
             chosen = chosen._replace(single=chosen.single and self._single_will_do(motion))
@@ -96,11 +95,11 @@ class DirectEcho:
             best = min(best, error)
             if error <= self.tolerance_db - SPARE_DB:
                 y *= unit
-                return y, Accuracy(motion.step, *chosen[1:], error)
+                return y, Accuracy(motion.step, *chosen[1:3], error)
             if aim == MIN_AIM_DB:
                 raise AccuracyError(best + SPARE_DB)
-            aim = max(aim - max(REFINE_DB, error - self.tolerance_db), MIN_AIM_DB)
-            chosen = self._settings(aim)._replace(single=False)
+            aim = max(aim - max(refine, error - self.tolerance_db), MIN_AIM_DB)
+            chosen, refine = self._settings(aim), 3 * REFINE_DB
             motion = self._resolved(chosen.spacing)
 
     @cached_property
@@ -112,7 +111,7 @@ class DirectEcho:
 
     def _settings(self, aim_db: float) -> Settings:
         chosen = settings(aim_db, self.waveform, self.source.highest_frequency)
-        return chosen._replace(single=chosen.single and not self.double)
+        return chosen._replace(single=False, cubic=False) if self.double else chosen
 
     def _error(self, y: Complex, exact: Callable[[Float], Paths], unit: float) -> float:
         return measured_db(y, exact, self.waveform, self.canceller, unit)
@@ -151,7 +150,7 @@ class DirectEcho:
     ) -> None:
         """Add the sum of the paths at the pulses of these knots to y, some paths at a time."""
         moving, w = np.flatnonzero(kept), self.waveform
-        fast = chosen.single and compiled.pays(moving.size * w.n_pulses)
+        fast = chosen.cubic and compiled.pays(moving.size * w.n_pulses)
         count = max(1, (BLOCK if knots.step == 1 else CHUNK) // knots.paths.delay.shape[1])
         for start in range(0, moving.size, count):
             some = moving[start : start + count]
@@ -159,13 +158,13 @@ class DirectEcho:
                 y += _phasor_sum(*self._terms(knots.paths, some, unit, chosen))
                 continue
             if fast:
-                table = half_band_table(w, chosen.table_oversampling, single=True)
+                table = half_band_table(w, chosen.table_oversampling, chosen.single)
                 dense = compiled.interpolated_sum(
                     knots.paths, some, unit, table, knots.shift, knots.step
                 )
             else:
                 terms = self._terms(knots.paths, some, unit, chosen)
-                dense = _interpolated_sum(*terms, knots.shift, knots.step)
+                dense = _interpolated_sum(*terms, knots.shift, knots.step, chosen.cubic)
             if knots.exact_pulses.size:
                 exact = self._terms(knots.exact, some, unit, chosen)
                 dense[knots.exact_pulses - knots.pulses[0]] = _phasor_sum(*exact)
@@ -189,12 +188,14 @@ class DirectEcho:
         return cycles, envelope
 
 
-def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int) -> Complex:
+def _interpolated_sum(
+    cycles: Float, envelope: Complex, shift: Index, step: int, cubic: bool
+) -> Complex:
     """sum_i envelope exp(-j 2 pi cycles) at the pulses [segments * step], in envelope's precision.
 
     Both are given at the knots [BEFORE + segments + AFTER, I].
     """
-    degree = SINGLE_DEGREE if envelope.dtype == np.complex64 else TAPS - 1
+    degree = CUBIC if cubic else TAPS - 1
     to_nodes, to_pulses = _weights(step, degree)
     to_nodes, weights = to_nodes.astype(envelope.real.dtype), to_pulses.astype(envelope.dtype)
     total = np.empty((shift.size, step), dtype=complex)

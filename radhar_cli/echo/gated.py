@@ -20,7 +20,7 @@ import numpy as np
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.accuracy import Settings, probed_pulses, relative_db
 from radhar_cli.echo.beat import start_phase
-from radhar_cli.echo.direct import SINGLE_DEGREE, DirectEcho
+from radhar_cli.echo.direct import CUBIC, DirectEcho
 from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.interpolation import (
     AFTER,
@@ -217,7 +217,7 @@ def _interpolated_sum(
     [P, ...]; coefficients are c_p of the bins [P, K].
     """
     dtype = complex_of(envelope)
-    degree = SINGLE_DEGREE if dtype == np.complex64 else TAPS - 1
+    degree = CUBIC if dtype == np.complex64 else TAPS - 1
     turning = phasors_between_knots(stencils(cycles, shift), step, degree, dtype)
     both = np.concatenate([turning.real, turning.imag]).transpose(1, 2, 0)  # [segments, I, 2 step]
     knots = envelope.transpose(1, 0, 2)

@@ -322,7 +322,7 @@ def test_an_envelope_in_single_precision_is_a_cubic(step):
     at = np.arange(12.0)[:, None] - direct.BEFORE
     cubic = lambda x: 1 + 0.2 * x - 0.03 * x**2 + 1j * 0.004 * x**3  # noqa: E731
     knots = np.hstack([cubic(at), 0 * at + 1]).astype(np.complex64)
-    found = direct._interpolated_sum(0.25 + 0 * knots.real, knots, np.array([0, 1, -1]), step)
+    found = direct._interpolated_sum(0.25 + 0 * knots.real, knots, np.array([0, 1, -1]), step, True)
     right = -1j * (cubic(np.arange(3 * step) / step) + 1)
     assert np.abs(found - right).max() < 2e-5
 

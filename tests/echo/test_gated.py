@@ -60,7 +60,7 @@ def test_few_polynomials_of_range_give_every_bin(single, error_db, samples, data
     count = data.draw(st.integers(1, w.n_bins - first))
     echo = GatedEcho(WALK, w, -80.0, bins=slice(first, first + count))
     k = np.arange(first, first + count)
-    found = echo.at_pulses(Settings(Spacing(1, 1, 1), 1, single), paths, k, 1.0)
+    found = echo.at_pulses(Settings(Spacing(1, 1, 1), 1, single, single), paths, k, 1.0)
     right = exact_bins(paths, w)
     scale = samples * np.sqrt(np.mean((paths.amplitude**2).sum(axis=0)))
     error = np.sqrt(np.mean(np.abs(found - right[first : first + count]) ** 2))

@@ -28,8 +28,9 @@ PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.1, 0.05
 # Cubic Hermite cells err by the fourth power of their width: -48 dB at 4 a fast-time sample.
 TABLE_DB = -48.0
 SINGLE_DB = -115.0  # error of the recurrence in float32
+CUBIC_DB = -140.0  # of a cubic phase over 20 pulses, which may err by -120 dB in a few places
 # Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
-MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 10.0, -220.0
+MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 30.0, -220.0
 COARSEST_DB = -60.0  # tolerance above which farther knots save no time (docs/results/tradeoff.md)
 PROBES = 48
 
@@ -40,7 +41,7 @@ class Settings(NamedTuple):
     spacing: Spacing  # of the knots
     table_oversampling: int  # points of the table of G per fast-time sample
     single: bool  # whether phasors between knots are single precision
-    cubic: bool  # whether phases between knots are cubics, which err less than single precision
+    cubic: bool  # whether phases between knots are cubics over 20 pulses or fewer
 
 
 def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Settings:
@@ -55,7 +56,7 @@ def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Set
         ),
         min(4 * 2 ** max(0, ceil((TABLE_DB - aim_db) / 24)), finest_table),
         aim_db >= SINGLE_DB,
-        aim_db >= SINGLE_DB,
+        aim_db >= CUBIC_DB,
     )
 
 

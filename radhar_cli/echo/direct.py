@@ -18,6 +18,7 @@ from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import (
     MIN_AIM_DB,
     REFINE_DB,
+    SINGLE_DB,
     SPARE_DB,
     AccuracyError,
     Settings,
@@ -84,7 +85,7 @@ class DirectEcho:
         Raises:
             AccuracyError: the tolerance is below what float64 leaves of this signal.
         """
-        aim, best, refine = first_aim(self.tolerance_db), 0.0, REFINE_DB
+        aim, best = first_aim(self.tolerance_db), 0.0
         chosen, motion = self._settings(aim), self._motion
         while True:
             chosen = chosen._replace(single=chosen.single and self._single_will_do(motion))
@@ -98,8 +99,8 @@ class DirectEcho:
                 return y, Accuracy(motion.step, *chosen[1:3], error)
             if aim == MIN_AIM_DB:
                 raise AccuracyError(best + SPARE_DB)
-            aim = max(aim - max(refine, error - self.tolerance_db), MIN_AIM_DB)
-            chosen, refine = self._settings(aim), 3 * REFINE_DB
+            aim = max(aim - max(REFINE_DB, error - self.tolerance_db), MIN_AIM_DB)
+            chosen = self._settings(aim)
             motion = self._resolved(chosen.spacing)
 
     @cached_property
@@ -111,7 +112,8 @@ class DirectEcho:
 
     def _settings(self, aim_db: float) -> Settings:
         chosen = settings(aim_db, self.waveform, self.source.highest_frequency)
-        return chosen._replace(single=False, cubic=False) if self.double else chosen
+        strict = self.double or first_aim(self.tolerance_db) < SINGLE_DB
+        return chosen._replace(single=False, cubic=False) if strict else chosen
 
     def _error(self, y: Complex, exact: Callable[[Float], Paths], unit: float) -> float:
         return measured_db(y, exact, self.waveform, self.canceller, unit)

@@ -60,10 +60,8 @@ class Stft:
     @cached_property
     def exponent(self) -> int:
         """Binary exponent of the largest real or imaginary part of the signal, which is finite."""
-        x = self.signal.x
-        largest = float(
-            np.max([abs(f(part)) for part in (x.real, x.imag) for f in (np.min, np.max)])
-        )
+        parts = np.ascontiguousarray(self.signal.x).view(self.signal.x.real.dtype)
+        largest = float(max(abs(parts.min()), abs(parts.max())))
         if not np.isfinite(largest):
             raise RadharError(f"the signal should be finite; its largest part is {largest}")
         # 2^-exponent must be a double itself; denormal signals keep their digits at 2^1022.

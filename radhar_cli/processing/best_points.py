@@ -8,7 +8,6 @@ reference cells has the distribution F(2 V, 2 V R) of V channels, from which the
 from functools import partial
 
 import numpy as np
-from scipy.special import fdtri
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.frame_maps import spectra, without_turns
@@ -44,11 +43,12 @@ def best_points(
 
 def _frame_points(x: Complex, board: Board, pfa: float, step: float, bias: float) -> Float:
     """Points [n, 8] of a spectrum [Doppler, virtual, range]: peaks over range, Doppler, azimuth."""
-    power = (
-        (x.real.astype(float) ** 2 + x.imag.astype(float) ** 2).mean(axis=1).T
-    )  # [range, Doppler]
-    from scipy.ndimage import maximum_filter  # slow to import
+    # Both are slow to import.
+    from scipy.ndimage import maximum_filter
+    from scipy.special import fdtri
 
+    square = x.real.astype(float) ** 2 + x.imag.astype(float) ** 2
+    power = square.mean(axis=1).T  # [range, Doppler]
     noise, cells = _noise(power)
     factor = 1 / fdtri(2 * board.channels * cells, 2 * board.channels, pfa)  # F that pfa exceeds
     hit = (power > factor * noise) & (power > 0)

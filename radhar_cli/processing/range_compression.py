@@ -1,5 +1,7 @@
 """Range compression with the conjugate kernel."""
 
+from typing import Any
+
 import numpy as np
 
 from radhar_cli.arrays import Complex
@@ -12,10 +14,11 @@ def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None))
     The conjugate kernel puts a target at range bin k = R/range_step; n0 = N_ADC/2 refers the bins
     to mid-chirp (docs/physics/model.md, "Where in the chirp the Doppler is read").
     """
-    import scipy.fft  # slow to import
-
+    ifft: Any = np.fft.ifft
+    if s.dtype == np.complex64:  # which scipy transforms faster, but it is slow to import
+        from scipy.fft import ifft
     # The transform runs along contiguous memory where s is the transpose of [M, N_ADC].
-    kept: Complex = scipy.fft.ifft(s.T, waveform.n_fft, axis=1, norm="forward").T
+    kept: Complex = ifft(s.T, waveform.n_fft, axis=1, norm="forward").T
     kept = kept[: waveform.n_bins][bins]
     if waveform.n0:
         k = np.arange(waveform.n_bins)[bins, None]

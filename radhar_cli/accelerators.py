@@ -5,6 +5,7 @@ from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
+from threading import Lock
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from radhar_cli.errors import MachineError
 
 Routine: TypeAlias = Callable[..., Any]
+_LOADING = Lock()
 
 
 @cache
@@ -25,19 +27,21 @@ def installed(library: str) -> str | None:
 
 def load(library: str) -> Any:
     """Import one that is installed; a MachineError says that it does not work here."""
-    # pyfftw imports both where it finds them: 0.2 s for what is not used here.
-    hidden = {"dask", "scipy.fftpack"} - sys.modules.keys()
-    sys.modules.update(dict.fromkeys(hidden))  # type: ignore[arg-type]
-    try:
-        return import_module(library)
-    except ImportError as error:
-        raise MachineError(
-            f"{library} {installed(library)} does not work here ({error}); should be a version for "
-            f"NumPy {np.__version__}, or be removed"
-        ) from None
-    finally:
-        for name in hidden:
-            del sys.modules[name]
+    with _LOADING:
+        # pyfftw imports both where it finds them: 0.2 s for what is not used here. Meanwhile no
+        # other thread can.
+        hidden = {"dask", "scipy.fftpack"} - sys.modules.keys()
+        sys.modules.update(dict.fromkeys(hidden))  # type: ignore[arg-type]
+        try:
+            return import_module(library)
+        except ImportError as error:
+            raise MachineError(
+                f"{library} {installed(library)} does not work here ({error}); should be a version "
+                f"for NumPy {np.__version__}, or be removed"
+            ) from None
+        finally:
+            for name in hidden:
+                sys.modules.pop(name, None)
 
 
 @cache

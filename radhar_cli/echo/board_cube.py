@@ -7,7 +7,7 @@ chirp begins.
 """
 
 from collections.abc import Sequence
-from math import ceil, inf, log10, pi
+from math import ceil, inf, isnan, log10, pi
 from typing import Any
 
 import numpy as np
@@ -22,13 +22,15 @@ from radhar_cli.radar.board import Board
 BLOCK_FRAMES = 16
 SINGLE_DB = -100.0  # tolerances below need double precision
 PROBES = 48
-NODES = 4
+NODES = 6
 MARGIN_DB = 20.0
 MOST_TERMS = 24
-# Polynomials more than the largest turn has radians, in double and in single precision; the least
-# turn; and by how many times the largest change within a frame the polynomials reach beyond the
-# turns, as derivatives grow towards the ends.
-MORE_NODES, LEAST_TURN, MARGIN = (32, 16), 1e-9, 5
+# Polynomials of turns of up to x radians number x + c (x + 15)^(1/3), as the coefficients J_p(x)
+# fall off beyond p = x; c in double and in single precision.
+MORE_NODES = 12.5, 6.5
+# Least turn, rad; and by how many times the largest change within a frame the polynomials reach
+# beyond the turns, as derivatives grow towards the ends.
+LEAST_TURN, MARGIN = 1e-9, 5
 
 
 def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, float]:
@@ -62,8 +64,8 @@ def fast_cube(
 
     so that the sum over the paths is two products of matrices a frame, the larger one with real
     numbers. The number of terms q follows from the spread of x and the tolerance. Paths are asked
-    for at NODES instants of a frame, some milliseconds, and are cubic between them; some chirps are
-    compared with the exact sum.
+    for at NODES instants of a frame, some milliseconds, and are polynomials between them; some
+    chirps are compared with the exact sum.
     """
     single = tolerance_db >= SINGLE_DB
     dtype = np.complex64 if single else np.complex128
@@ -93,9 +95,10 @@ def fast_cube(
             whole = np.rint(mean / (2 * pi * half))  # cycles a sample, which no sample shows
             mean -= 2 * pi * half * whole
             change = max(float(np.abs(turn).max()), LEAST_TURN)
-            most = float(np.abs(mean).max()) + MARGIN * change
             terms = _terms(turn[:, ::16], tolerance_db)
             x = (turn / change).astype(a.dtype)
+            change = min(change, MOST_TERMS)  # beyond which the error shows
+            most = float(np.abs(mean).max()) + MARGIN * change
             left = np.empty((terms, *tau.shape), dtype)
             left[0] = unit_phasor(board.centre * tau - half * whole, dtype)
             left[0] *= a.reshape(tau.shape)
@@ -127,7 +130,7 @@ def _expanded(
     """(change/most)^q T_p^(q)(turn/most)/q! [P, q, I] and c_p [P, N] of exp(-j turn v), v [N]."""
     import scipy.fft  # slow to import
 
-    count = ceil(most) + MORE_NODES[dtype == np.complex64]
+    count = ceil(most + MORE_NODES[dtype == np.complex64] * (most + 15) ** (1 / 3))
     x, scale = turn / most, change / most
     given = np.zeros((count, terms, x.size))
     given[0, 0], given[1, 0], given[1, 1:2] = 1, x, scale
@@ -168,4 +171,6 @@ def measured_db(cube: Complex, channels: Sequence[PathSource], board: Board) -> 
             exact = beat_matrix(delay, a, board.waveform).T * board.signs[v]
             error += float((np.abs(cube[at] - exact) ** 2).sum())
             total += float((np.abs(exact) ** 2).sum())
+    if isnan(error):
+        return inf
     return 10 * log10(error / total) if error > 0 and total > 0 else -inf

@@ -100,7 +100,7 @@ class DirectEcho:
             if aim == MIN_AIM_DB:
                 raise AccuracyError(best + SPARE_DB)
             aim = max(aim - max(REFINE_DB, error - self.tolerance_db), MIN_AIM_DB)
-            chosen = self._settings(aim)
+            chosen = self._settings(aim)._replace(single=False)
             motion = self._resolved(chosen.spacing)
 
     @cached_property

@@ -170,7 +170,10 @@ def rise(x: Float) -> Float:
 
 
 def rise_of_number(x: float) -> float:
-    """1 + tanh(x) = 2/(1 + exp(-2 x)) to 1e-10, of products alone, for as many x at once."""
+    """1 + tanh(x) = 2/(1 + exp(-2 x)) to 1e-10, of products alone, for as many x at once.
+
+    Of NaN it is 0.
+    """
     r = max(-36.0, min(36.0, -2 * x)) / 128
     e = 1 + r / 6 * (1 + r / 7 * (1 + r / 8 * (1 + r / 9 * (1 + r / 10))))
     e = 1 + r * (1 + r / 2 * (1 + r / 3 * (1 + r / 4 * (1 + r / 5 * e))))

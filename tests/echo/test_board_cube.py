@@ -71,6 +71,22 @@ def test_beats_that_turn_by_more_than_a_cycle_a_sample(samples: int) -> None:
     assert measured <= -80
 
 
+@pytest.mark.parametrize("samples", [80, 256, 512])
+@pytest.mark.parametrize("tolerance", [-80.0, -140.0])
+def test_scatterers_far_apart_need_no_exact_sum(samples: int, tolerance: float) -> None:
+    board = replace(MARS, samples=samples, loops=8)
+    p = np.array([(1 + i, 0.1 * i, 0) for i in range(7)])
+    sources = channels(board, p, [(1, 0, 0)] * 7, (p**2).sum(axis=1))
+    assert fast_cube(sources, board, tolerance)[2] <= tolerance - SPARE_DB
+
+
+@pytest.mark.parametrize("speed", [100.0, 3000.0])
+def test_what_jumps_within_a_frame_is_not_taken_for_right(speed: float) -> None:
+    p = np.random.default_rng(1).normal((5, 0, 0), 0.3, (20, 3))
+    sources = channels(MARS, p, [(speed, 0, 0)] * 20, np.ones(20))
+    assert fast_cube(sources, MARS, -80)[2] > -80
+
+
 def test_receivers_fed_the_other_way_round_change_their_sign() -> None:
     board = replace(MARS, array=DEVICES["IWR6843ISK-ODS"])
     same = replace(board, array=replace(board.array, rx_sign=(1.0,) * 4))

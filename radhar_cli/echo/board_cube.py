@@ -27,7 +27,7 @@ MARGIN_DB = 20.0
 MOST_TERMS = 24
 # Polynomials of turns of up to x radians number x + c (x + 15)^(1/3), as the coefficients J_p(x)
 # fall off beyond p = x; c in double and in single precision.
-MORE_NODES = 12.5, 6.5
+MORE_NODES = 12.5, 5.0
 # Least turn, rad; and by how many times the largest change within a frame the polynomials reach
 # beyond the turns, as derivatives grow towards the ends.
 LEAST_TURN, MARGIN = 1e-9, 5

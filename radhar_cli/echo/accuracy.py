@@ -6,7 +6,7 @@ pulses.
 """
 
 from collections.abc import Callable
-from math import ceil, inf, isnan, log10
+from math import ceil, inf, log10
 from typing import NamedTuple
 
 import numpy as np
@@ -116,8 +116,6 @@ def probed_pulses(power: Float) -> tuple[Index, Float, float]:
 def relative_db(squares: Float, density: Float, total: float) -> float:
     """Squared errors at some pulses, as an error of all relative to their power, in dB."""
     relative = float((squares / density).sum()) / total
-    if isnan(relative):
-        return inf
     return 10 * log10(relative) if relative > 0 else -inf
 
 

@@ -482,6 +482,7 @@ PEOPLE = {  # of which people: config, settings beside it
     "77 GHz, segments": ("human/free_space_77GHz", ()),
     "Glasgow, gate of 21 bins": ("measured/glasgow_5p8GHz", ()),
     "MMRGait, gate, segments": ("measured/mmrgait_77GHz", ()),
+    "IWR1443, 60 frames": ("boards/iwr1443", ()),
 }
 PEOPLE_SAMPLES = 24
 
@@ -494,9 +495,13 @@ def people(rounds: int, against: Path | None = None) -> dict[str, Any]:
     print("\nscenes to images, ms of processor time a sample, and the largest stages")
     results: dict[str, Any] = {}
     for label, (config, more) in PEOPLE.items():
-        found: dict[str, list[dict[str, float]]] = {name: [] for name in trees}
+        # Older trees have no boards.
+        having = {
+            n: tree for n, tree in trees.items() if (tree / f"configs/{config}.yaml").exists()
+        }
+        found: dict[str, list[dict[str, float]]] = {name: [] for name in having}
         for _ in range(rounds):
-            for name, tree in trees.items():
+            for name, tree in having.items():
                 done = subprocess.run(
                     [*program, f"configs/{config}.yaml", str(PEOPLE_SAMPLES), *more],
                     env=os.environ | one_thread | {"PYTHONPATH": str(tree)},
@@ -512,7 +517,7 @@ def people(rounds: int, against: Path | None = None) -> dict[str, Any]:
             most = sorted(stages, key=stages.__getitem__, reverse=True)[1:6]
             line = ", ".join(f"{stage} {stages[stage]:.1f}" for stage in most)
             print(f"  {label:<26}{name:>8}{stages['total']:8.1f}   {line}", flush=True)
-        if against:
+        if "against" in having:
             pairs = zip(found["against"], found["this"], strict=True)
             each = [old["total"] / new["total"] for old, new in pairs]
             results[label]["ratio"] = median(each)

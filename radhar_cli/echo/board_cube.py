@@ -11,11 +11,13 @@ from math import ceil, inf, isnan, log10, pi
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebpts1, chebvander
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.chebyshev import coefficients
+from radhar_cli.echo.interpolation import lagrange_basis
 from radhar_cli.echo.paths import PathSource
+from radhar_cli.echo.phase_recurrence import nodes
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.radar.board import Board
 
@@ -55,11 +57,11 @@ def fast_cube(
 ) -> tuple[Complex, float, float]:
     """Samples as `exact_cube`, P_s, and the measured error relative to the cube, dB.
 
-    Of the delays of a frame tau_m is the middle, and x = (tau - tau_m)/h lies within -1 and 1. With
-    u = n - (N - 1)/2 a beat is a sum of few Chebyshev polynomials, and those change little with a
-    path from its mean place x_0:
+    In half a chirp a beat turns by y = 2 pi K (tau - tau_m) u_N/fs, tau_m the middle of a frame's
+    delays, u_N = (N - 1)/2. With x = y/Y, Y the largest of all, and u = n - u_N it is a sum of few
+    Chebyshev polynomials, and those change little while a path is near its mean place x_0:
 
-        exp(-j 2 pi K h x u/fs) = sum_p c_p(u) T_p(x),
+        exp(-j Y x u/u_N) = sum_p c_p(u) T_p(x),
         T_p(x) = sum_q T_p^(q)(x_0) (x - x_0)^q/q!,
 
     so that the sum over the paths is two products of matrices a frame, the larger one with real
@@ -69,67 +71,63 @@ def fast_cube(
     """
     single = tolerance_db >= SINGLE_DB
     dtype = np.complex64 if single else np.complex128
-    half = max(board.samples - 1, 1) / 2
-    rate, u = board.slope / board.adc_rate, np.arange(board.samples) - half
     cube = np.empty((board.frames, board.loops, board.channels, board.samples), dtype)
-    power, (nodes, between) = 0.0, _within_frame(board.loops)
+    at, power = nodes(NODES - 1, board.loops), 0.0
+    between = lagrange_basis(at, np.arange(float(board.loops)))
     for first in range(0, board.frames, BLOCK_FRAMES):
         some = slice(first, min(first + BLOCK_FRAMES, board.frames))
         begin = board.chirp_times(some)[:, 0]
         seen = [
-            source((begin[:, k, None] + board.loop * nodes).ravel())
+            source((begin[:, k, None] + board.loop * at).ravel())
             for source, (k, _) in zip(channels, board.pairs, strict=True)
         ]
-        shape = (-1, len(begin), nodes.size)
+        shape = (-1, len(begin), at.size)
         delay = np.stack([paths.delay.reshape(shape) for paths in seen], axis=2)
         at_nodes = np.stack([paths.amplitude.reshape(shape) for paths in seen], axis=2)
         for f in range(len(begin)):
             tau = (delay[:, f] @ between).reshape(len(delay), -1)  # [I, virtual loop]
             a = at_nodes[:, f] @ between
             power += float(np.einsum("ivl,ivl->", a, a))
-            a = (a * board.signs[:, None]).astype(np.float32 if single else float)
-            middle = (tau.max() + tau.min()) / 2
-            turn = (2 * pi * rate * half) * (tau - middle)
-            mean = turn.mean(axis=1, keepdims=True)
-            turn -= mean
-            whole = np.rint(mean / (2 * pi * half))  # cycles a sample, which no sample shows
-            mean -= 2 * pi * half * whole
-            change = max(float(np.abs(turn).max()), LEAST_TURN)
-            terms = _terms(turn[:, ::16], tolerance_db)
-            x = (turn / change).astype(a.dtype)
-            change = min(change, MOST_TERMS)  # beyond which the error shows
-            most = float(np.abs(mean).max()) + MARGIN * change
-            left = np.empty((terms, *tau.shape), dtype)
-            left[0] = unit_phasor(board.centre * tau - half * whole, dtype)
-            left[0] *= a.reshape(tau.shape)
-            for q in range(1, terms):
-                np.multiply(left[q - 1], x, out=left[q])
-            polynomials, right = _expanded(mean[:, 0], change, most, terms, u / half, dtype)
-            right = right * unit_phasor(rate * middle * u)
-            polynomials = polynomials.astype(a.dtype).reshape(len(right), -1)
-            sums = polynomials @ left.reshape(-1, tau.shape[1]).view(a.dtype)
-            s = sums.view(dtype).T @ right.astype(dtype)
+            a = (a * board.signs[:, None]).reshape(tau.shape)
+            s = _frame_sum(tau, a.astype(np.float32 if single else float), board, tolerance_db)
             cube[first + f] = s.reshape(board.channels, board.loops, -1).swapaxes(0, 1)
     power /= board.frames * board.loops * board.channels
     return cube, power, measured_db(cube, channels, board)
 
 
-def _within_frame(loops: int) -> tuple[Float, Float]:
-    """Instants within a frame, in loops, and what each weighs in every loop [NODES, loops]."""
-    if loops <= NODES:
-        return np.arange(loops, dtype=float), np.eye(loops)
-    half = (loops - 1) / 2
-    x, asked = chebpts1(NODES), np.arange(loops) / half - 1
-    weights: Float = np.linalg.solve(chebvander(x, NODES - 1).T, chebvander(asked, NODES - 1).T)
-    return half * (1 + x), weights
+def _frame_sum(tau: Float, a: Float, board: Board, tolerance_db: float) -> Complex:
+    """Samples [virtual loop, N] of paths of delays (s) and amplitudes [I, virtual loop] of a frame,
+    in the precision of the amplitudes."""
+    dtype, half = np.result_type(a.dtype, np.complex64), max(board.samples - 1, 1) / 2
+    rate, u = board.slope / board.adc_rate, np.arange(board.samples) - half
+    middle = (tau.max() + tau.min()) / 2
+    turn = (2 * pi * rate * half) * (tau - middle)
+    mean = turn.mean(axis=1, keepdims=True)
+    turn -= mean
+    whole = np.rint(mean / (2 * pi * half))  # cycles a sample, which no sample shows
+    mean -= 2 * pi * half * whole
+    change = max(float(np.abs(turn).max()), LEAST_TURN)
+    terms = _terms(turn[:, ::16], tolerance_db)
+    x = (turn / change).astype(a.dtype)
+    change = min(change, MOST_TERMS)  # beyond which the error shows
+    most = float(np.abs(mean).max()) + MARGIN * change
+    left = np.empty((terms, *tau.shape), dtype)
+    left[0] = unit_phasor(board.centre * tau - half * whole, dtype)
+    left[0] *= a
+    for q in range(1, terms):
+        np.multiply(left[q - 1], x, out=left[q])
+    polynomials, right = _expanded(mean[:, 0], change, most, terms, u / half, dtype)
+    right = right * unit_phasor(rate * middle * u)
+    polynomials = polynomials.astype(a.dtype).reshape(len(right), -1)
+    sums = polynomials @ left.reshape(-1, tau.shape[1]).view(a.dtype)
+    samples: Complex = sums.view(dtype).T @ right.astype(dtype)
+    return samples
 
 
 def _expanded(
     turn: Float, change: float, most: float, terms: int, v: Float, dtype: Any
 ) -> tuple[Float, Complex]:
     """(change/most)^q T_p^(q)(turn/most)/q! [P, q, I] and c_p [P, N] of exp(-j turn v), v [N]."""
-    import scipy.fft  # slow to import
-
     count = ceil(most + MORE_NODES[dtype == np.complex64] * (most + 15) ** (1 / 3))
     x, scale = turn / most, change / most
     given = np.zeros((count, terms, x.size))
@@ -138,10 +136,8 @@ def _expanded(
         np.multiply(2 * x, given[p - 1], out=given[p])
         given[p] -= given[p - 2]
         given[p, 1:] += 2 * scale * given[p - 1, :-1]
-    values = unit_phasor(most / (2 * pi) * chebpts1(count)[::-1, None] * v, dtype)
-    coefficients = scipy.fft.dct(values, axis=0) / count
-    coefficients[0] /= 2
-    return given, coefficients
+    cycles = most / (2 * pi) * v
+    return given, coefficients(lambda x: unit_phasor(x[:, None] * cycles, dtype), count)
 
 
 def _terms(y: Float, tolerance_db: float) -> int:

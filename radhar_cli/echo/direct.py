@@ -96,7 +96,7 @@ class DirectEcho:
             best = min(best, error)
             if error <= self.tolerance_db - SPARE_DB:
                 y *= unit
-                return y, Accuracy(motion.step, *chosen[1:3], error)
+                return y, Accuracy(motion.step, chosen.table_oversampling, chosen.single, error)
             if aim == MIN_AIM_DB:
                 raise AccuracyError(best + SPARE_DB)
             aim = max(aim - max(REFINE_DB, error - self.tolerance_db), MIN_AIM_DB)

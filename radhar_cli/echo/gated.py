@@ -20,6 +20,7 @@ import numpy as np
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.accuracy import Settings, probed_pulses, relative_db
 from radhar_cli.echo.beat import start_phase
+from radhar_cli.echo.chebyshev import coefficients
 from radhar_cli.echo.direct import CUBIC, DirectEcho
 from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.interpolation import (
@@ -182,14 +183,9 @@ class GatedEcho(DirectEcho):
 
 def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[Any]) -> Float:
     """Coefficients [P, K] of D(k/N_FFT - u) = sum_p c_p T_p((u - middle)/half), P at least 2."""
-    import scipy.fft  # slow to import
-
     double = real == np.float64
     count = ceil((np.pi * w.n_adc * half + MORE_NODES[double]) / 8) * 8
-    angle = np.pi * (np.arange(count) + 0.5) / count
-    values = kernel(middle + half * np.cos(angle), k, w.n_adc, w.n_fft)
-    c = scipy.fft.dct(values, axis=0) / count
-    c[0] /= 2
+    c = coefficients(lambda x: kernel(middle + half * x, k, w.n_adc, w.n_fft), count)
     kept = np.flatnonzero(np.abs(c).max(axis=1) > SMALLEST[double] * w.n_adc)
     return c[: max(2, int(kept.max(initial=0)) + 1)].astype(real)
 

@@ -1,5 +1,12 @@
-"""The drawn numbers of a scene as columns: SI for dataset.h5, config units for scenes.csv."""
+"""The drawn numbers of a scene as columns: SI for dataset.h5, config units for scenes.csv.
 
+A column is named after the last part of its key, without the unit: `motion.speed_mps` is `speed`.
+Where two keys of a config end alike, or a table has a column of that name already, the section
+stands before it: `radar_dwell` and `motion_dwell`. Should these be alike too, the names are the
+keys themselves, which are unique and hold a dot, which no other name does.
+"""
+
+from collections import Counter
 from collections.abc import Sequence
 from math import nan, pi
 from typing import NamedTuple
@@ -23,11 +30,15 @@ class Field(NamedTuple):
     factor: float
 
 
+# Columns of the tables of samples that are no numbers of a scene.
+TAKEN = frozenset(("subject", "index", "label", "labels", "image"))
 # Sections whose columns are named after them.
 PREFIXES = {"wall": "wall", "image.cfar": "cfar", "radar.beam": "beam", "room.box_m": "room"}
 PREFIXES |= {f"room.faces.{name}": name for name in FacesConfig.model_fields}
 # And those of lists, with the number in the list.
 LISTS = {"room.reflectors": "reflector", "receiver.tones": "tone", "wall.layers": "layer"}
+# Lists of places, whose axes are (left, up).
+PLACES = {"radar.array.tx": "array_tx", "radar.array.rx": "array_rx"}
 # The one number of a scene that is measured, not drawn.
 ERROR = Field("error_db", "error_db", "dB", 1.0)
 
@@ -54,12 +65,32 @@ def fields(config: AnyConfig) -> tuple[Field, ...]:
         keys.insert(keys.index("subject.height_m") + 1, "subject.weight_kg")
     keys += keys_of_people(config)
     measured = (ERROR,) if config.has_error else ()
-    return (*(_field(key) for key in keys), *measured)
+    return (*_uniquely_named([_field(key) for key in keys]), *measured)
 
 
 def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> Float:
     """Numbers [fields] in the units of the config keys, NaN where one does not apply."""
     return np.array([error_db if f is ERROR else number_at(scene, f.key) for f in columns])
+
+
+def _uniquely_named(columns: list[Field]) -> list[Field]:
+    """The columns, those whose names are taken or alike with longer names."""
+    for longer in (_name_with_section, lambda field: field.key):
+        counts = Counter([ERROR.name, *TAKEN, *(field.name for field in columns)])
+        columns = [
+            field._replace(name=longer(field)) if counts[field.name] > 1 else field
+            for field in columns
+        ]
+    return columns
+
+
+def _name_with_section(field: Field) -> str:
+    """The name of a column with the section of its key before it."""
+    whose, key = "", field.key
+    if key.startswith("people."):
+        _, number, key = key.split(".", 2)
+        whose = f"people_{int(number) + 1}_"
+    return f"{whose}{key.partition('.')[0]}_{field.name.removeprefix(whose)}"
 
 
 def _field(key: str) -> Field:
@@ -78,9 +109,11 @@ def _field(key: str) -> Field:
     unit = _UNITS.get(suffix, "1")
     stem = stem if suffix in _UNITS else name
     listed, _, number = section.rpartition(".")
+    ends: Sequence[str] = "xyz"
     if listed in LISTS:
         stem = f"{LISTS[listed]}_{number}_{stem}"
-    ends: Sequence[str] = "xyz"
+    if section in PLACES:
+        stem, ends = f"{PLACES[section]}_{name}", ("left", "up")
     if section == "room.box_m":
         ends, unit = ("from", "to"), "m"
     parts = (PREFIXES.get(section), stem, ends[int(axis)] if axis else None)

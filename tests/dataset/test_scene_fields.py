@@ -2,12 +2,15 @@
 
 from math import pi
 
+import boards
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
-from radhar_cli.dataset.scene_fields import fields, values
+from radhar_cli.dataset.scene_fields import TAKEN, fields, values
 from radhar_cli.scene import draw_scene, numbers, scene_numbers
 
 EVERYTHING = Config(motion={"model": "paper"}, wall={})
@@ -83,3 +86,97 @@ def test_the_table_is_in_config_units_with_nan_where_a_number_does_not_apply():
     speed = [field.key for field in columns].index("motion.speed_mps")
     assert np.isnan(table[0, speed])
     assert table[1, speed] == 1.5
+
+
+# What may be chosen of every section, and with it other numbers. Slugs of classes are the
+# beginnings of names that keys have.
+WAVEFORMS = (
+    {},
+    {"waveform": "sfcw", "steps": 20, "dwell_s": 2e-6},
+    {"waveform": "cw"},
+    {"waveform": "impulse", "profile_m": [0.3, 6], "profile_samples": 512, "carrier_hz": 2e9},
+    {"beam": {}},
+    {"cfg": boards.CFG, "device": "IWR1443BOOST", "half_power_deg": [30, 20]},
+    {"cfg": boards.CFG, "array": {"tx": [[0, 0], [2, 0], [4, 1]], "rx": [[0, 0], [1, 0]] * 2}},
+)
+SLUGS = ("grab", "seat", "rise", "walk", "lane", "timing_grab", "people_1", "layer_0", "radar")
+SLUGS += ("array_tx_0", "motion", "subject", "error", "x_duration", "x")
+CLASS = (
+    {"sequence": ["squatting"] * 2, "durations_s": [2, 2]},
+    ["one.bvh"],
+    {"files": ["a.npz", "b.npz"]},
+)
+FACES = {"floor": "concrete", "left": {"eps_r": 4}, "back": {"eps_r": 5, "loss_tangent": 0.1}}
+ROOMS = (
+    {},
+    {"reflectors": [{}, {"residual_m": 0.001}]},
+    {"back_wall_m": 40},
+    {"faces": FACES, "box_m": {"x": [-1, 40], "y": [-20, 20]}},
+)
+WALLS = (None, {}, {"echoes": "exact", "layers": [{"eps_r": 4}, {"material": "brick"}]})
+
+
+@st.composite
+def documents(draw):
+    """Configs that cross what other numbers come with."""
+    radar, wall = draw(st.sampled_from(WAVEFORMS)), draw(st.sampled_from(WALLS))
+    board, impulse = "cfg" in radar, radar.get("waveform") == "impulse"
+    exact = bool(wall) and not board
+    tones = [] if board or impulse else draw(st.sampled_from(([], [{"doppler_hz": 9}] * 2)))
+    processing = {"range_sum": "gated"} if board or impulse else {}
+    people = st.sampled_from(({"activity": "grabbing"}, {"activity": {"choice": ["S8", "S9"]}}, {}))
+    return {
+        "classes": draw(st.dictionaries(st.sampled_from(SLUGS), st.sampled_from(CLASS))),
+        "radar": radar,
+        "people": draw(st.lists(people, max_size=3)),
+        "wall": None if board and wall else wall,
+        "room": {} if wall is not None else draw(st.sampled_from(ROOMS)),
+        "receiver": {"tones": tones, "noise_corner_hz": 9.0 if tones else 0.0},
+        "snr_db": None if board else 30.0,
+        "engine": {"kind": "cube" if exact and not impulse else "direct"},
+        "maps": draw(st.sampled_from((["rtm"], ["stft"]))) if "waveform" not in radar else ["stft"],
+        "processing": processing,
+        "image": {"kind": draw(st.sampled_from(("decibel", "cfar")))},
+        "split": {"by": "subject", "subjects": 5} if draw(st.booleans()) else {},
+    }
+
+
+@settings(max_examples=60)
+@given(documents())
+def test_names_differ_whatever_is_chosen(document):
+    columns = fields(Config.model_validate(document))
+    names = [field.name for field in columns]
+    assert len(set(names)) == len(names)
+    assert len({field.key for field in columns}) == len(names)
+    assert TAKEN.isdisjoint(names)
+
+
+SFCW = {"waveform": "sfcw", "steps": 20, "dwell_s": 2e-6}
+
+
+def keys_of(**document):
+    return {field.name: field.key for field in fields(Config.model_validate(document))}
+
+
+def test_names_that_two_keys_share_have_the_section_before_them():
+    alone = keys_of(activities=["walking"], radar=SFCW)
+    assert alone["dwell"] == "radar.dwell_s"
+    assert keys_of(activities=["grabbing"])["dwell"] == "motion.dwell_s"
+    both = keys_of(activities=["walking", "grabbing"], radar=SFCW)
+    assert "dwell" not in both
+    assert (both["radar_dwell"], both["motion_dwell"]) == ("radar.dwell_s", "motion.dwell_s")
+
+
+def test_a_class_called_grab_shares_no_name_with_the_grabbing_of_the_twelve():
+    named = keys_of(classes={"grab": ["a.bvh"]}, activities=["grabbing", "grab"])
+    assert "grab_start" not in named
+    assert named["timing_grab_start"] == "timing.grab_start_s"
+    assert named["classes_grab_start"] == "classes.grab.start"
+    assert named["grab_mirror"] == "classes.grab.mirror"
+
+
+def test_elements_of_an_array_are_named_after_their_row_and_axis():
+    array = {"tx": [[0, 0], [2, 0], [4, 1]], "rx": [[0, 0], [1, 0]] * 2}
+    named = keys_of(radar={"cfg": boards.CFG, "array": array}, duration_s=0.5)
+    assert named["array_tx_2_up"] == "radar.array.tx.2.1"
+    assert named["array_rx_3_left"] == "radar.array.rx.3.0"

@@ -24,8 +24,8 @@ from radhar_cli.config.schema import (
     SequenceConfig,
     WallConfig,
     class_activities,
-    elevations,
     for_activity,
+    why_no_map,
 )
 from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
@@ -65,9 +65,10 @@ def problems(c: Config) -> Iterator[Problem]:
     if c.radar.cfg is not None:
         yield from _board_problems(c)
     else:
-        frames = [name for name in (*c.maps, *c.output.products) if name in BOARD_PRODUCTS]
-        if frames:
-            yield Problem("maps", frames, "should have the board that makes them: radar.cfg")
+        of_boards = [name for name in c.output.products if name in BOARD_PRODUCTS]
+        if of_boards:
+            right = "should have the board that makes them: radar.cfg"
+            yield Problem("output.products", of_boards, right)
         yield from _step_problems(c)
         yield from _impulse_problems(c)
     yield from _processing_problems(c)
@@ -109,7 +110,20 @@ def measured_problems(c: MeasuredConfig) -> Iterator[Problem]:
     yield from _processing_problems(c)
 
 
+def map_problem(c: AnyConfig, names: Iterable[str]) -> Problem | None:
+    """The maps that the radar of a config cannot make, why, and those that it makes."""
+    reasons = {name: why for name in names if (why := why_no_map(c, name)) is not None}
+    if not reasons:
+        return None
+    possible = [name for name in (*MAP_NAMES, *FRAME_MAPS) if why_no_map(c, name) is None]
+    right = f"should be some of {', '.join(possible)}"
+    return Problem("maps", list(reasons), f"{right}: {'; '.join(dict.fromkeys(reasons.values()))}")
+
+
 def _processing_problems(c: AnyConfig) -> Iterator[Problem]:
+    names = c.maps if isinstance(c, Config) else [one for one in c.maps if one in MAP_NAMES]
+    if (of_maps := map_problem(c, names)) is not None:
+        yield of_maps
     if c.radar.cfg is None:
         yield from _waveform_problems(c)
         yield from _signal_problems(c)
@@ -130,12 +144,6 @@ def _step_problems(c: Config) -> Iterator[Problem]:
         right = f"should be iq with radar.waveform: {radar.waveform}; cw alone can be real"
         yield Problem("radar.output", "real", right)
     if radar.waveform == "cw":
-        if "rtm" in c.maps:
-            right = "should be maps of Doppler: radar.waveform: cw has no range"
-            yield Problem("maps", list(c.maps), right)
-        if radar.output == "real" and (wrong := [n for n in c.maps if "compensated" in n]):
-            right = "should be others with radar.output: real, which has no sign of the Doppler"
-            yield Problem("maps", wrong, right)
         if c.processing.range_sum == "gated":
             right = "should be coherent with radar.waveform: cw, which has no range"
             yield Problem("processing.range_sum", "gated", right)
@@ -153,7 +161,7 @@ def _step_problems(c: Config) -> Iterator[Problem]:
 
 def _impulse_problems(c: Config) -> Iterator[Problem]:
     """What goes with an impulse radar alone, and what does not go with it."""
-    radar, processing, of = c.radar, c.processing, "with radar.waveform: impulse"
+    radar, of = c.radar, "with radar.waveform: impulse"
     if radar.waveform != "impulse":
         if radar.profile_m is not None:
             right = f"should be null with radar.waveform: {radar.waveform}"
@@ -175,11 +183,6 @@ def _impulse_problems(c: Config) -> Iterator[Problem]:
         yield Problem("radar.profile_samples", radar.profile_samples, right)
     if c.engine.kind == "cube":
         yield Problem("engine.kind", "cube", f"should be direct {of}, which has no beat")
-    if wrong := [name for name in c.maps if name in MAP_NAMES and name not in ("rtm", "stft")]:
-        yield Problem("maps", wrong, f"should be stft and rtm {of}, whose samples are real")
-    if "stft" in c.maps and processing.range_sum != "gated":
-        right = f"should be gated {of}, whose samples have no mean over range"
-        yield Problem("processing.range_sum", processing.range_sum, right)
     if c.image.kind == "signed" and c.maps != ("rtm",):
         yield Problem("maps", list(c.maps), "should be [rtm] with image.kind: signed")
     if c.output.slow_time:
@@ -255,9 +258,6 @@ def _board_problems(c: Config) -> Iterator[Problem]:
     if clutter not in ("mean", "none"):
         right = "should be mean (of each frame) or none with radar.cfg"
         yield Problem("processing.clutter", clutter, right)
-    if "range_elevation" in c.maps and len(elevations(c)) < 2:
-        right = "should not have range_elevation: all elements of the array lie in one row"
-        yield Problem("maps", "range_elevation", right)
     if c.receiver.tones or support(c.receiver.noise_corner_hz)[1] > 0:
         right = "should have neither with radar.cfg: they are of one channel"
         yield Problem("receiver", "tones, noise_corner_hz", right)
@@ -417,13 +417,6 @@ def _gate_problems(c: AnyConfig) -> Iterator[Problem]:
     processing = c.processing
     if processing.range_sum != "gated":
         return
-    fsst = [name for name in c.maps if name.startswith("fsst")]
-    if fsst and c.radar.waveform != "impulse":  # which says so itself
-        right = (
-            "should be stft maps and rtm with processing.range_sum: gated, which adds up powers of "
-            "bins: the fsst moves coefficients by their phase"
-        )
-        yield Problem("maps", fsst, right)
     within = processing.gate_m
     half_band = _waveform(c, "bandwidth_hz").half_band_range  # the least
     if isinstance(within, tuple):

@@ -108,6 +108,7 @@ class Section(BaseModel):
 
 
 T = TypeVar("T")
+S = TypeVar("S", bound=Section)
 
 
 def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
@@ -1391,14 +1392,13 @@ class Config(Section):
         for name, value in changed.pop("", {}).items():
             object.__setattr__(self, name, value)
         for name, values in changed.items():
-            object.__setattr__(self, name, getattr(self, name).model_copy(update=values))
+            object.__setattr__(self, name, _with_defaults(getattr(self, name), values))
         if self.people:
             filled = tuple(self._filled_person(n) for n in range(1, len(self.people) + 1))
             object.__setattr__(self, "people", filled)
         if self.motion.model == "paper" and self.processing.window_s is None:
-            processing = self.processing.model_copy()  # which does not say that it was given
-            object.__setattr__(processing, "window_s", PAPER_WINDOW * nominal(self.duration_s))
-            object.__setattr__(self, "processing", processing)
+            window = {"window_s": PAPER_WINDOW * nominal(self.duration_s)}
+            object.__setattr__(self, "processing", _with_defaults(self.processing, window))
         return self
 
     def of_person(self, number: int) -> "Config":
@@ -1555,6 +1555,13 @@ class ProcessedConfig(Config):
     """A config with radar and length of the recording that it processes, and checked for that."""
 
 
+def _with_defaults(section: S, values: Mapping[str, Any]) -> S:
+    """A section with defaults of other keys' making, which do not count as given."""
+    filled = section.model_copy(update=dict(values))
+    object.__setattr__(filled, "__pydantic_fields_set__", set(section.model_fields_set))
+    return filled
+
+
 def _fill_from_cfg(c: Config, changed: dict[str, dict[str, Any]]) -> None:
     """Note what the .cfg of a board gives, and the defaults of boards, of what was not given."""
     from radhar_cli.errors import CaptureError
@@ -1609,27 +1616,54 @@ def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
 
 
 def possible_maps(config: Config) -> tuple[str, ...]:
-    """The maps that there can be: no FSST of a gate, whose bins are summed without their phase.
+    """The maps that the radar of a config makes, and the cube of a board.
 
-    Of a board range, Doppler, its frames and the cube.
+    Without those of a board whose frames are shorter than the filter of the denoised maps.
     """
-    gated = config.processing.range_sum == "gated"
-    if config.radar.waveform == "impulse":
-        return ("rtm", "stft") if gated else ("rtm",)
-    if config.radar.waveform == "cw":
-        real = config.radar.output == "real"
-        absent = "compensated" if real else "rtm"
-        return tuple(name for name in MAP_NAMES if name != "rtm" and absent not in name)
-    if config.radar.cfg is None:
-        return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
-    flat = {"range_elevation"} if len(elevations(config)) < 2 else set()
-    signals = MAP_NAMES if not gated else ("rtm", "stft")
-    return tuple(name for name in (*signals, *FRAME_MAPS, "cube") if name not in flat)
+    names: tuple[str, ...] = (*MAP_NAMES, *FRAME_MAPS, "cube")
+    if config.radar.cfg is not None and config.processing.savgol.frame > config.radar.header.loops:
+        names = tuple(name for name in names if "denoised" not in name)
+    return tuple(name for name in names if why_no_map(config, name) is None)
 
 
-def elevations(config: Config) -> set[float]:
-    """Heights of the virtual elements of a board, half wavelengths."""
-    array, board = config.radar.elements, config.radar.header
-    assert array is not None
-    rows = (array.tx[t][1] + array.rx[r][1] for t in board.order for r in board.receivers)
-    return {round(row, 6) for row in rows}
+def why_no_map(config: "AnyConfig", name: str) -> str | None:
+    """Why the radar of a config cannot make a map of that name, or the cube; None if it can."""
+    radar, gated = config.radar, config.processing.range_sum == "gated"
+    if name in (*FRAME_MAPS, "cube"):
+        if radar.cfg is None:
+            return f"{name} is of the frames of a board (radar.cfg, docs/guide/boards.md)"
+        if name != "range_elevation" or _has_elevation(radar):
+            return None
+        return "all elements of the array lie in one row"
+    if name not in MAP_NAMES:  # of a user's own
+        return None
+    if radar.waveform == "cw" and name == "rtm":
+        return "radar.waveform: cw has no range"
+    if radar.waveform == "cw" and radar.output == "real" and "compensated" in name:
+        return "radar.output: real has no sign of the Doppler"
+    if radar.waveform == "impulse" and name not in ("rtm", "stft"):
+        return "radar.waveform: impulse takes real samples"
+    if radar.waveform == "impulse" and name == "stft" and not gated:
+        return (
+            "the real samples of radar.waveform: impulse have no mean over range; "
+            "stft needs processing.range_sum: gated"
+        )
+    if gated and name.startswith("fsst"):
+        cause = "processing.range_sum: gated"
+        if radar.cfg is not None and "range_sum" not in config.processing.model_fields_set:
+            cause += ", the default of boards,"
+        return f"{cause} adds up powers of bins, and the fsst moves coefficients by their phase"
+    return None
+
+
+def _has_elevation(radar: RadarConfig) -> bool:
+    """Whether the virtual elements of a board lie at more than one height.
+
+    A board that lacks elements which its .cfg names is refused elsewhere.
+    """
+    array, board = radar.elements, radar.header
+    if array is None:
+        return True
+    up_tx = [array.tx[n][1] for n in board.order if n < len(array.tx)]
+    up_rx = [array.rx[n][1] for n in board.receivers if n < len(array.rx)]
+    return len({round(tx + rx, 6) for tx in up_tx for rx in up_rx}) != 1

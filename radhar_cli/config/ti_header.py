@@ -9,6 +9,7 @@ starts later than the ramp: carrier = start frequency + slope times that.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
 
@@ -293,6 +294,7 @@ class BoardHeader:
     period_s: float  # from frame to frame
     detection: Detection  # of its point cloud
     unknown: tuple[str, ...]  # commands that say nothing here
+    not_simulated: tuple[str, ...]  # commands that switch on what is not simulated
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -355,6 +357,7 @@ def board_header(text: str, where: str = "radar.cfg") -> BoardHeader:
         period_s=device.period_ms * 1e-3,
         detection=detection,
         unknown=unknown,
+        not_simulated=_not_simulated(text),
     )
 
 
@@ -364,7 +367,35 @@ _IGNORED = {
     *("measureRangeBiasAndRxChanPhase", "lvdsStreamCfg", "calibData", "configDataPort"),
     *("bpmCfg", "extendedMaxVelocity", "nearFieldCfg"),
 }
+# {command: which of its last words switch it on; a sub-frame may stand in front}
+_SWITCHES = {
+    "extendedMaxVelocity": slice(-1, None),
+    "bpmCfg": slice(-3, -2),
+    "nearFieldCfg": slice(-3, -2),
+    "calibDcRangeSig": slice(-4, -3),
+    "measureRangeBiasAndRxChanPhase": slice(-3, -2),
+    "profileCfg": slice(5, 7),  # lower transmit power, and turned phases
+}
 _BY_DEFAULT = Cfar(CASO, 8, 4, False, 15.0)
+
+
+def _not_simulated(text: str) -> tuple[str, ...]:
+    """Commands, each once, that switch on what neither a cube nor its points have."""
+    found = dict[str, None]()
+    for line in text.splitlines():
+        command, *words = line.partition("%")[0].split() or [""]
+        if any(
+            float(word) != 0 for word in words[_SWITCHES.get(command, slice(0))] if _is_number(word)
+        ):
+            found[command] = None
+    return tuple(found)
+
+
+def _is_number(word: str) -> bool:
+    try:
+        return isfinite(float(word))
+    except ValueError:
+        return False
 
 
 def _detection(text: str, where: str, channels: int) -> tuple[Detection, tuple[str, ...]]:

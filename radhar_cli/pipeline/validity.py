@@ -354,8 +354,12 @@ def _cure(config: Config, check: SceneCheck) -> str:
 
 def config_warnings(config: Config) -> list[str]:
     """Say which keys and lines of a .cfg have no effect, and which interference lines alias."""
-    cfg = config.radar.header.unknown if config.radar.cfg is not None else ()
-    lines = [f"radar.cfg: {command} is not known and has no effect" for command in cfg]
+    lines = list[str]()
+    if config.radar.cfg is not None:
+        header = config.radar.header
+        lines = [f"radar.cfg: {one} is not known and has no effect" for one in header.unknown]
+        off = "switches on what is not simulated: it has no effect"
+        lines += [f"radar.cfg: {one} {off}" for one in header.not_simulated]
     return unused_keys(config) + tone_warnings(config) + lines + _opaque(config) + _folded(config)
 
 

@@ -1,5 +1,6 @@
 """Simulate one scene: every map, every signal, the truth behind them."""
 
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -8,6 +9,7 @@ import numpy as np
 
 from radhar_cli.activity import Activity, activity_named
 from radhar_cli.arrays import Complex
+from radhar_cli.config.checks import map_problem
 from radhar_cli.config.reading import ABSENT, as_config
 from radhar_cli.config.schema import FRAME_MAPS, MAP_NAMES, Config, possible_maps
 from radhar_cli.echo.beat import beat_matrix
@@ -142,15 +144,8 @@ def simulate(
     activity = activity_of(activity, config)
     possible = possible_maps(config)
     maps = possible if maps is None else maps
-    absent = [name for name in maps if name in FRAMES and name not in possible]
-    if absent:
-        why = "is of boards: the config has no radar.cfg (docs/guide/boards.md)"
-        raise ConfigError(f"{absent[0]} {why}")
-    if not set(maps) <= set(possible):
-        raise ConfigError(
-            "there is no fsst with processing.range_sum: gated, which sums bins without their "
-            f"phase; maps are {', '.join(possible)}"
-        )
+    if (problem := map_problem(config, maps)) is not None:
+        raise ConfigError(f"maps = {json.dumps(problem.value)}: {problem.right}")
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
     scene = scene_of(config, activity, index, nominal)
     warnings = scene_warnings(scene)

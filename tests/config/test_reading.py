@@ -280,7 +280,7 @@ BROKEN = [
     ),
     Broken("motion: {squat: 1}", "1: motion.squat = 1", "nothing measured depends on it"),
     Broken("maps: [point_cloud]", '1: maps.0 = "point_cloud"', "is called points"),
-    Broken("maps: [range_doppler]", '1: maps = ["range_doppler"]', "the board that makes them"),
+    Broken("maps: [range_doppler]", '1: maps = ["range_doppler"]', "of the frames of a board"),
     Broken("receivers: 4", "1: receivers = 4", "come with radar.cfg"),
     Broken("people: 2", "1: people = 2", "should be a list"),
     Broken("radar:\n  device: IWR6843", '2: radar.device = "IWR6843"', "IWR6843ISK-ODS"),

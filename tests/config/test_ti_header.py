@@ -58,6 +58,29 @@ def test_lines_that_nobody_knows_are_named() -> None:
 
 
 @pytest.mark.parametrize(
+    ("off", "on"),
+    [
+        ("extendedMaxVelocity -1 0", "extendedMaxVelocity -1 1"),
+        ("extendedMaxVelocity 0", "extendedMaxVelocity 1"),
+        ("bpmCfg -1 0 0 1", "bpmCfg -1 1 0 1"),
+        ("nearFieldCfg -1 0 0 0", "nearFieldCfg -1 1 0 0"),
+        ("calibDcRangeSig -1 0 -5 8 256", "calibDcRangeSig -1 1 -5 8 256"),
+        ("measureRangeBiasAndRxChanPhase 0 1.5 0.2", "measureRangeBiasAndRxChanPhase 1 1.5 0.2"),
+    ],
+)
+def test_what_is_switched_on_and_not_simulated_is_named_once(off: str, on: str) -> None:
+    assert board_header(f"{CFG}{off}\n").not_simulated == ()
+    header = board_header(f"{CFG}{on}\n{on}\n")
+    assert (header.not_simulated, header.unknown) == ((on.split()[0],), ())
+
+
+def test_less_power_than_the_transmitters_have_is_named() -> None:
+    less = CFG.replace("7 40 0 0 100", "7 40 6 0 100")
+    assert board_header(less).not_simulated == ("profileCfg",)
+    assert board_header(CFG).not_simulated == ()
+
+
+@pytest.mark.parametrize(
     ("old", "new", "said"),
     [
         ("adcCfg 2 1", "adcCfg 2 2", "adcCfg 2 2: should be 2 1"),

@@ -205,7 +205,7 @@ def test_what_a_board_cannot_do_is_said_in_a_line(path: Path, override: str) -> 
 
 @pytest.mark.parametrize("name", ["range_doppler", "points"])
 def test_frames_without_a_board_are_refused(name: str) -> None:
-    with pytest.raises(ValueError, match=r"should have the board that makes them: radar\.cfg"):
+    with pytest.raises(ValueError, match=r"of the frames of a board \(radar\.cfg"):
         Config(maps=(name,))
 
 

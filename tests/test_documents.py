@@ -22,7 +22,7 @@ from capture.dca1000_file import Radar, body, echo, words
 from command_line import ROOT, radhar
 from documents import PAGES, Block, blocks
 from learning.patterns import tree
-from recorded import frames, write_bvh, write_npz
+from recorded import frames, write_amc, write_bvh, write_npz
 from shell import Answer, Call, run_shell
 from torch.utils.data import DataLoader
 from typer.main import get_command
@@ -107,7 +107,7 @@ def network(path: Path) -> None:
 
 def movement(path: Path) -> None:
     path.parent.mkdir(exist_ok=True)
-    write = {".bvh": write_bvh, ".npz": write_npz}[path.suffix]
+    write = {".bvh": write_bvh, ".amc": write_amc, ".npz": write_npz}[path.suffix]
     write(path, frames("punching", 4.0))
 
 
@@ -158,8 +158,8 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     },
     "motion_files.md": {
         "wave/one.bvh": movement,
-        "cmu/02_01.bvh": movement,
-        "cmu/02_02.bvh": movement,
+        "cmu/02_01.amc": movement,
+        "cmu/02_02.amc": movement,
         "beds/low.npz": movement,
     },
     "output.md": {"CONFIG": few_samples, "datasets/mine": data_set},

@@ -36,7 +36,7 @@ def simulate(
     ] = None,
     nominal: Nominal = False,
     motion: Annotated[
-        Path | None, typer.Option("--motion", help="Play this motion file (.bvh, .npz).")
+        Path | None, typer.Option("--motion", help="Play this motion file (.bvh, .amc, .npz).")
     ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,

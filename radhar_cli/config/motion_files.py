@@ -36,10 +36,11 @@ def with_files(config: Config, folder: Path, refuse: Refuse) -> Config:
 
 def _found(slug: str, one: FilesConfig, root: Path, refuse: Refuse) -> FilesConfig:
     key = f"classes.{slug}.files"
+    skeleton = None if one.skeleton is None else root / one.skeleton
     files: dict[str, str] = {}
     for path, known in sorted(_expanded(one, root, key, refuse)):
         try:
-            checksum = read_motion(root / path).checksum
+            checksum = read_motion(root / path, skeleton).checksum
         except MotionFileError as error:
             raise refuse(key, path, str(error)) from None
         if known not in ("", checksum):
@@ -75,7 +76,7 @@ def with_folder(config: Config, folder: Path) -> Config:
     for slug, one in config.classes.items():
         if not isinstance(one, FilesConfig):
             continue
-        for path in one.files:
+        for path in (*one.files, *([one.skeleton] if one.skeleton else [])):
             if not (root / path).resolve().is_relative_to(root):
                 raise FolderError(
                     f"--motion {folder}: the class {slug!r} names {path}, which lies outside; "
@@ -93,6 +94,8 @@ def alone(config: Config, slug: str) -> Config:
             number = (one.file or 0) if name == slug else 0
             path, checksum = [*one.files.items()][number]
             whole = str(Path(config.motion.folder or "", path))
-            one = one.model_copy(update={"files": {whole: checksum}, "file": 0})
+            skeleton = one.skeleton and str(Path(config.motion.folder or "", one.skeleton))
+            update = {"files": {whole: checksum}, "file": 0, "skeleton": skeleton}
+            one = one.model_copy(update=update)
         classes[name] = one
     return config.model_copy(update={"classes": classes})

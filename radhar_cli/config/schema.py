@@ -588,10 +588,12 @@ Share01 = Annotated[Number, within(0, 1)]
 
 
 class FilesConfig(Section):
-    """A class whose motion is recorded: BVH or npz files; a list of them is enough."""
+    """A class whose motion is recorded: BVH, AMC or npz files; a list of them is enough."""
 
     files: dict[str, str]
     """{path: SHA-256}; a list of paths and patterns when it is written."""
+    skeleton: Annotated[str, Field(max_length=MAX_PATH_LENGTH)] | None = None
+    """The ASF of AMC files, where it is not beside them."""
     joints: dict[str, Annotated[str, Field(min_length=1, max_length=100)]] = {}
     """{our joint: the file's}, where the tables of names do not know it."""
     up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None

@@ -52,11 +52,12 @@ def file_motion(person: Person) -> FileMotion:
 def _clip(one: FilesConfig, folder: Path, path: str, checksum: str) -> Clip:
     """The clip of a file, kept for the next scene that uses it."""
     joints = tuple(sorted(one.joints.items()))
-    key = (folder, path, checksum, joints, one.up, one.unit_m, one.rate_hz, one.low_pass_hz)
+    how = (joints, one.up, one.unit_m, one.rate_hz, one.low_pass_hz)
+    key = (folder, path, checksum, one.skeleton, *how)
     if key in _clips:
         _clips.move_to_end(key)
         return _clips[key]
-    read = read_motion(folder / path)
+    read = read_motion(folder / path, folder / one.skeleton if one.skeleton else None)
     if checksum and read.checksum != checksum:
         raise MotionFileError(f"{read.path}: is not the file it was: its SHA-256 is another")
     clip = clip_of(

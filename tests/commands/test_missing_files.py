@@ -22,6 +22,7 @@ OTHERS = [
     ["generate", "c.yaml", "--recordings", "manifest.csv"],
     ["simulate", "x.yaml"],
     ["simulate", "c.yaml", "--motion", "x.bvh"],
+    ["simulate", "c.yaml", "--motion", "x.amc"],
     ["convert", "x.h5", "--to", "parquet"],
     ["merge", "x.parts"],
 ]

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from command_line import radhar
 from learning.patterns import BASE, split_tree, trained, tree
+from recorded import frames, write_amc
 from small import small_config
 
 SIMULATE, GENERATE = "simulate small.yaml -a S8 -o x", "generate c.yaml -o x"
@@ -28,7 +29,7 @@ MISTAKES = {
     f"{SIMULATE} --joint rite_hand": "'right_hand'",
     f"{SIMULATE} --maps sftf": "did you mean",
     f"{SIMULATE} --set engine.kind=cubic": "engine.kind",
-    "simulate small.yaml -o x --motion broken.bvh": "is not a BVH file",
+    "simulate small.yaml -o x --motion broken.amc": "needs its skeleton",
     "simulate small.yaml -o x --motion none.bvh": "none.bvh",
     "preview none": "no such file",
     "inspect none": "no such file",
@@ -65,14 +66,14 @@ MISTAKES = {
 
 @pytest.fixture(scope="module")
 def place(small_set, tmp_path_factory):
-    """A folder with configs, a data set, trees, a run and a broken motion."""
+    """A folder with configs, a data set, trees, a run and a motion without its skeleton."""
     folder = tmp_path_factory.mktemp("mistakes")
     small_config(folder)
     (folder / "c.yaml").write_text("base: small.yaml\n")
     (folder / "set").symlink_to(small_set)
     (folder / "names.yaml").write_text("walkin: walking\n")
     (folder / "train.json").write_text(json.dumps(BASE))
-    (folder / "broken.bvh").write_text("hello\n")
+    write_amc(folder / "broken.amc", frames(seconds=0.5)).with_suffix(".asf").unlink()
     split_tree(folder / "tree", 2, 1)
     tree(folder / "alone", ("walking",), {"train": 2, "val": 1})
     trained(folder / "tree", folder / "run", epochs=1)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from command_line import ok, radhar
 from listener import Listener
-from recorded import frames, write_bvh, write_npz
+from recorded import frames, write_amc, write_bvh, write_npz
 from small import fingerprint
 
 from radhar_cli.config import load_config
@@ -28,7 +28,7 @@ radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
 motion: {model: human, range_m: {uniform: [4, 5]}, angle_deg: 180}
 activities: [walking, kicking, wave, rise]
 classes:
-  rise: {files: [rise.bvh], section_s: [0.2, 2.5], past_end: rest}
+  rise: {files: [rise.amc], section_s: [0.2, 2.5], past_end: rest}
   walking: [walks/*.bvh]
   wave: [wave.npz]
 maps: [stft]
@@ -45,7 +45,7 @@ def place(tmp_path_factory):
     for number in range(3):
         write_bvh(folder / f"walks/{number}.bvh", walk[5 * number :], 60.0)
     write_npz(folder / "wave.npz", frames("punching", 2.5, 60.0), 60.0)
-    write_bvh(folder / "rise.bvh", frames("standing_up", 2.0))
+    write_amc(folder / "rise.amc", frames("standing_up", 2.0))
     (folder / "set.yaml").write_text(CONFIG)
     build(load_config(folder / "set.yaml"), folder / "out", 1, Listener())
     return folder

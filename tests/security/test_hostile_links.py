@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from recorded import frames, write_bvh
+from recorded import frames, write_amc, write_bvh
 
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.windows import with_recordings
@@ -63,9 +63,16 @@ def motion_file_of_a_pattern(folder: Path) -> Case:
     return path, lambda: load_config(folder / "c.yaml")
 
 
+def skeleton_beside_an_amc(folder: Path) -> Case:
+    (folder / "walk").mkdir()
+    write_amc(folder / "walk/1.amc", frames(seconds=0.3))
+    (folder / "c.yaml").write_text("duration_s: 1\nclasses: {wave: [walk/1.amc]}\n")
+    return folder / "walk/1.asf", lambda: load_config(folder / "c.yaml")
+
+
 CASES = [
     *(next_file_of_a_capture, recording_of_a_manifest, image_of_a_tree),
-    *(image_to_train_on, motion_file_of_a_pattern),
+    *(image_to_train_on, motion_file_of_a_pattern, skeleton_beside_an_amc),
 ]
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from recorded import frames, write_bvh, write_npz
+from recorded import frames, write_amc, write_bvh, write_npz
 from security.bounded import answers, limited, refused
 from security.mutations import mutate_file
 
@@ -75,16 +75,47 @@ HOSTILE: dict[str, tuple[str, Callable[[], bytes]]] = {
         lambda: HEAD + b"}\nMOTION\nFrames: 1\nFrame Time: 0.01\n" + b"0 " * 5_000_000,
     ),
     "nulls": ("x.bvh", lambda: bytes(1000)),
+    "an AMC of nulls": ("x.amc", lambda: bytes(1000)),
+    "a frame without end": ("x.amc", lambda: b"1\n" + b"root\n" * 30_000_000),
+    "many bones in a frame": ("x.amc", lambda: b"1\n" + b"a%d 0\n" * 150_000),
+    "one endless line of an AMC": ("x.amc", lambda: b"1\nroot " + b"0 " * 50_000_000),
+    "numbers of frames": ("x.amc", lambda: b"1\n" * 5_000_000),
+    "a frame's number without end": ("x.amc", lambda: b"1" * 5_000_000 + b"\nroot 0\n"),
+    "no tree": ("x.asf", lambda: b":hierarchy\nroot " + b"root " * 200_000),
+    "a large skeleton": ("x.asf", lambda: b" " * 2_000_000),
+    "a bone of many numbers": (
+        "x.asf",
+        lambda: b":bonedata\nbegin\nname a\ndirection " + b"1 " * 500_000 + b"\nend\n",
+    ),
+    "a steering bone": ("x.asf", lambda: b":hierarchy\nroot \x1b[2J\n"),
+    "many sections": ("x.asf", lambda: b":a\n" * 300_000),
+    "many bones": (
+        "x.asf",
+        lambda: (
+            b":bonedata\n"
+            + b"".join(b"name b%d\ndirection 1 0 0\nlength 1\nend\n" % n for n in range(20_000))
+        ),
+    ),
 }
+SKELETON = b":root\norder rx\n:bonedata\nname a\ndirection 1 0 0\nlength 1\nend\n"
+SKELETON += b":hierarchy\nroot a\n"
+
+
+def written(folder: Path, name: str) -> Path:
+    """The motion file of a case; an AMC has a skeleton beside it, and an ASF an AMC."""
+    file, data = HOSTILE[name]
+    (folder / "x.asf").write_bytes(SKELETON)
+    (folder / "x.amc").write_bytes(b"1\nroot 0\n")
+    (folder / file).write_bytes(data())
+    return folder / (file if file != "x.asf" else "x.amc")
 
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_files_are_refused(name: str, tmp_path: Path) -> None:
-    file, data = HOSTILE[name]
-    (tmp_path / file).write_bytes(data())
+    path = written(tmp_path, name)
     with limited(), pytest.raises(MotionFileError) as error:
-        clip_of(read_motion(tmp_path / file).recording())
-    assert str(error.value).startswith(str(tmp_path / file))
+        clip_of(read_motion(path).recording())
+    assert str(error.value).startswith(str(tmp_path / HOSTILE[name][0]))
     assert len(str(error.value)) < 2000
     assert "\n" not in str(error.value)
 
@@ -100,11 +131,11 @@ def test_no_pipe_no_device_and_nothing_too_large(tmp_path: Path) -> None:
 
 
 def test_the_program_refuses_them_in_one_line(tmp_path: Path) -> None:
-    for name, (file, data) in HOSTILE.items():
+    for name in HOSTILE:
         folder = tmp_path / name.replace(" ", "_")
         folder.mkdir()
-        (folder / file).write_bytes(data())
-        (folder / "x.yaml").write_text(f"duration_s: 1\nclasses: {{wave: [{file}]}}\n")
+        path = written(folder, name)
+        (folder / "x.yaml").write_text(f"duration_s: 1\nclasses: {{wave: [{path.name}]}}\n")
     words = ["--activity", "wave", "-o", tmp_path / "out"]
     cases = {
         name: ["simulate", tmp_path / name.replace(" ", "_") / "x.yaml", *words] for name in HOSTILE
@@ -122,6 +153,8 @@ def test_damage_is_refused_or_does_no_harm(tmp_path: Path, first: int, count: in
     whole = {
         "x.bvh": write_bvh(tmp_path / "x.bvh", p).read_bytes(),
         "x.npz": write_npz(tmp_path / "x.npz", p).read_bytes(),
+        "x.amc": write_amc(tmp_path / "x.amc", p).read_bytes(),
+        "x.asf": (tmp_path / "x.asf").read_bytes(),
     }
     found = {"refused": 0, "read": 0}
     for case in range(first, first + count):
@@ -130,7 +163,8 @@ def test_damage_is_refused_or_does_no_harm(tmp_path: Path, first: int, count: in
         (tmp_path / name).write_bytes(mutate_file(rng, whole[name]))
         try:
             with limited():
-                clip = clip_of(read_motion(tmp_path / name).recording("x"))
+                used = tmp_path / name.replace(".asf", ".amc")
+                clip = clip_of(read_motion(used).recording("x"))
         except RadharError as error:
             found["refused"] += 1
             long = str(error)

@@ -57,6 +57,8 @@ class Bvh:
     start: int
     line: int
 
+    unit, at_bone_ends = None, False
+
     @property
     def names(self) -> tuple[str, ...]:
         return tuple(joint.name for joint in self.joints)

@@ -84,7 +84,7 @@ def clip_of(
     legs = np.linalg.norm(p[:, len(JOINTS) :] - p[:, _KNEES], axis=2)
     legs += np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
     units = float(np.median(legs)) / LEG  # the stature in units of the file
-    stature = _stature(units, unit, file.where)
+    stature = _stature(units, unit, file.unit, file.where)
     _refuse_jumps(file, p, rate, (stature if stature == stature else 1.75) / units)
     up = up or _up(file, wanted, p)
     p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)
@@ -93,7 +93,8 @@ def clip_of(
     return Clip(file.where, p, rate, own_hips, stature)
 
 
-def _stature(units: float, unit: float | None, where: str) -> float:
+def _stature(units: float, unit: float | None, of_file: float | None, where: str) -> float:
+    """Stature of the person, m, in the unit given, or else the first that makes a person."""
     low, high = STATURES
     if not 1e-9 < units < 1e9:
         raise wrong(where, f"has legs of {units * LEG:.3g} units")
@@ -107,9 +108,9 @@ def _stature(units: float, unit: float | None, where: str) -> float:
                 f"{stature:.3g} m; should be {low} to {high} m: unit_m",
             )
         return stature
-    for one in UNITS.values():
-        if low <= units * one <= high:
-            return units * one
+    for candidate in (*([of_file] if of_file else []), *UNITS.values()):
+        if low <= units * candidate <= high:
+            return units * candidate
     raise wrong(
         where,
         f"has legs of {units * LEG:.4g} units, which make a person of {low} to {high} m in none of "

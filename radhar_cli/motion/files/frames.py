@@ -45,14 +45,15 @@ def _line_by_line(piece: bytes, first: int, columns: int, where: str) -> Float:
             continue
         place, row = f"{where}:{line}", numbers(text)
         if row is None or not np.isfinite(row).all():
-            raise wrong(place, f"{_odd(text)!r} should be a number")
+            raise wrong(place, f"{odd_word(text)!r} should be a number")
         if row.size != columns:
             raise wrong(place, f"has {row.size} numbers; its joints have {columns} channels")
         rows.append(row)
     return np.concatenate(rows)
 
 
-def _odd(text: bytes) -> str:
+def odd_word(text: bytes) -> str:
+    """The first word of a text that is no finite number, as messages show it."""
     for word in text.split():
         value = numbers(word)
         if value is None or value.size != 1 or not np.isfinite(value).all():

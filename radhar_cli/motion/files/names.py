@@ -1,7 +1,8 @@
 """Which of a file's joints are the thirteen: names of CMU, Mixamo, Blender, mocapbank, Kinect, ...
 
-A joint is where its bone begins (Mixamo's `RightArm` is the shoulder). "RightShoulder" is the
-clavicle in Mixamo and the joint in mocapbank: arms come first.
+In BVH and npz a joint is where its bone begins (Mixamo's `RightArm` is the shoulder); in ASF it is
+where its bone ends (`rclavicle` ends at the shoulder). "RightShoulder" is the clavicle in Mixamo
+and the joint in mocapbank: arms come first.
 """
 
 import re
@@ -15,7 +16,7 @@ HIP_JOINTS = ("right_hip_joint", "left_hip_joint")
 WANTED = (*JOINTS, *HIP_JOINTS)
 
 # Words of each joint, the better first, without side, prefix, case and punctuation.
-_WORDS: dict[str, tuple[str, ...]] = {
+_BEGINS: dict[str, tuple[str, ...]] = {
     "torso": (
         *("thorax", "spine2", "spine1", "chest2", "upperchest", "chest", "spinechest"),
         *("spinemid", "spine003", "spine002", "spine001", "spine", "torso"),
@@ -29,6 +30,17 @@ _WORDS: dict[str, tuple[str, ...]] = {
     "knee": ("knee", "shin", "calf", "lowerleg", "lowleg", "tibia", "leg"),
     "ankle": ("ankle", "foot"),
 }
+_ENDS: dict[str, tuple[str, ...]] = {
+    "torso": ("thorax", "upperback"),
+    "head": ("head",),
+    "hip": ("root",),
+    "shoulder": ("clavicle",),
+    "elbow": ("humerus",),
+    "hand": ("wrist", "radius"),
+    "hip_joint": ("hipjoint",),
+    "knee": ("femur",),
+    "ankle": ("tibia",),
+}
 _PREFIX = re.compile(r"^(?:.*:|bip\d+|mixamorig\d*)")
 
 
@@ -41,6 +53,7 @@ def joint_numbers(file: MotionRecording, own: Mapping[str, str]) -> list[int | N
         MotionFileError: one of the thirteen is not there.
     """
     numbers = {_plain(name): n for n, name in reversed([*enumerate(file.names)])}
+    table = _ENDS if file.at_bone_ends else _BEGINS
     found: dict[str, int | None] = {}
     for joint in WANTED:
         if joint in own:
@@ -49,7 +62,7 @@ def joint_numbers(file: MotionRecording, own: Mapping[str, str]) -> list[int | N
                 raise wrong(file.where, f"has no joint {own[joint]!r} (joints.{joint}); {hint}")
             found[joint] = file.names.index(own[joint])
             continue
-        words = _written(joint)
+        words = _written(joint, table)
         found[joint] = next((numbers[word] for word in words if word in numbers), None)
     for side, joint in zip(("right", "left"), HIP_JOINTS, strict=True):
         knee = found[f"{side}_knee"]
@@ -66,12 +79,13 @@ def joint_numbers(file: MotionRecording, own: Mapping[str, str]) -> list[int | N
     return [found[joint] for joint in WANTED]
 
 
-def _written(joint: str) -> list[str]:
+def _written(joint: str, table: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """Every plain name that a joint may have."""
     side, _, part = joint.partition("_")
-    if part not in _WORDS:
-        return list(_WORDS[joint])
+    if part not in table:
+        return list(table[joint])
     forms = (side + "{}", "{}" + side, side[0] + "{}", "{}" + side[0])
-    return [form.format(word) for word in _WORDS[part] for form in forms]
+    return [form.format(word) for word in table[part] for form in forms]
 
 
 def _plain(name: str) -> str:

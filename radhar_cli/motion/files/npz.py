@@ -42,7 +42,7 @@ class Npz:
     rate: float
     values: NDArray[Any]
 
-    rest = None
+    rest, unit, at_bone_ends = None, None, False
 
     @property
     def parents(self) -> tuple[int | None, ...]:

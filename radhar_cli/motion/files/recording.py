@@ -24,6 +24,8 @@ class MotionRecording(Protocol):
         parents: number of the joint that each hangs on, None for a root.
         rest: positions [J, 3] of the skeleton without rotations; None where the file has none.
         rate: frames per second; None where the file does not say.
+        unit: length of a file unit, m; None where the file does not say.
+        at_bone_ends: the joint of a name is where its bone ends, as in ASF; else where it begins.
     """
 
     @property
@@ -36,6 +38,10 @@ class MotionRecording(Protocol):
     def rest(self) -> Float | None: ...
     @property
     def rate(self) -> float | None: ...
+    @property
+    def unit(self) -> float | None: ...
+    @property
+    def at_bone_ends(self) -> bool: ...
 
     def positions(self, joints: Sequence[int]) -> Float:
         """Positions [frames, len(joints), 3] of some joints; MotionFileError of what is wrong."""

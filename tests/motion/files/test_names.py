@@ -15,9 +15,11 @@ class Rig:
 
     names: tuple[str, ...]
     parents: tuple[int | None, ...]
+    at_bone_ends: bool = False
     where: str = "x"
     rest: Float | None = None
     rate: float | None = 30.0
+    unit: float | None = None
 
     def positions(self, joints: object) -> Float:
         raise NotImplementedError
@@ -119,6 +121,44 @@ def test_the_usual_rigs(rig: str) -> None:
     assert lefts.isdisjoint({n for joint, n in mine.items() if not joint.startswith("left")})
     hips = [n for joint, n in mine.items() if joint.endswith("hip_joint")]
     assert all(n is not None for n in hips)
+
+
+def test_cmu_bones_are_named_by_their_ends() -> None:
+    names = ["root", "lhipjoint", "lfemur", "ltibia", "lfoot", "ltoes", "rhipjoint", "rfemur"]
+    names += ["rtibia", "rfoot", "rtoes", "lowerback", "upperback", "thorax", "lowerneck", "head"]
+    names += both("{l}clavicle", "{l}humerus", "{l}radius", "{l}wrist", "{l}hand")
+    parents = [
+        None,
+        0,
+        1,
+        2,
+        3,
+        4,
+        0,
+        6,
+        7,
+        8,
+        9,
+        0,
+        11,
+        12,
+        13,
+        14,
+        13,
+        16,
+        17,
+        18,
+        19,
+        13,
+        21,
+        22,
+    ]
+    found = joint_numbers(Rig(tuple(names), (*parents, 23, 24), at_bone_ends=True), {})
+    mine = {joint: names[n] for joint, n in zip(WANTED, found, strict=True) if n is not None}
+    assert [mine[joint] for joint in ASKED] == [
+        *("thorax", "head", "root", "rclavicle", "rhumerus", "rwrist", "rfemur", "rtibia")
+    ]
+    assert mine["left_hip_joint"] == "lhipjoint"
 
 
 def test_other_names_need_a_table() -> None:

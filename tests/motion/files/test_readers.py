@@ -1,4 +1,4 @@
-"""BVH against transforms written out one by one, and our motions there and back."""
+"""BVH and ASF/AMC against transforms written out one by one, and our motions there and back."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from recorded import frames, write_bvh, write_npz
+from recorded import frames, write_amc, write_bvh, write_npz
 
 import radhar_cli.motion.files.frames
 from radhar_cli.arrays import Float
@@ -80,12 +80,15 @@ def in_metres(file: MotionRecording, unit: float) -> Float:
     "activity",
     ["stationary", "punching", "kicking", "grabbing", "standing_up", "falling_to_walking"],
 )
-def test_round_trips(activity: str, tmp_path: Path) -> None:
-    """Through BVH every joint is reproduced to 1e-6 m; a fallen person too."""
+def test_bvh_and_amc_round_trips(activity: str, tmp_path: Path) -> None:
+    """Through BVH and AMC every joint is reproduced to 1e-6 m; a fallen person too."""
     p = frames(activity, 2.0)
     bvh = read_motion(write_bvh(tmp_path / "x.bvh", p)).recording()
     assert np.abs(in_metres(bvh, 0.01) - p).max() < 1e-6
     assert bvh.rate == 120
+    amc = read_motion(write_amc(tmp_path / "x.amc", p)).recording()
+    assert amc.unit == pytest.approx(0.0254 / 0.45)
+    assert np.abs(in_metres(amc, 0.0254 / 0.45) - p).max() < 1e-6
     npz = read_motion(write_npz(tmp_path / "x.npz", p)).recording()
     assert np.array_equal(npz.positions(range(len(WANTED))), p)
 
@@ -94,8 +97,9 @@ def test_block_borders_do_not_matter(tmp_path: Path, monkeypatch: pytest.MonkeyP
     """Pieces of text are read as one; empty lines and CR LF do not matter."""
     monkeypatch.setattr(radhar_cli.motion.files.frames, "BLOCK", 5000)
     p = frames(seconds=0.5)
-    bvh = write_bvh(tmp_path / "x.bvh", p)
+    bvh, amc = write_bvh(tmp_path / "x.bvh", p), write_amc(tmp_path / "x.amc", p)
     assert np.abs(in_metres(read_motion(bvh).recording(), 0.01) - p).max() < 1e-6
+    assert np.abs(in_metres(read_motion(amc).recording(), 0.0254 / 0.45) - p).max() < 1e-6
     lines = bvh.read_text().split("\n")
     lines.insert(-20, "")
     bvh.write_text("\r\n".join(lines) + "\r\n\r\n", newline="")
@@ -108,3 +112,17 @@ def test_frame_times_are_rounded_rates(written: str, rate: float, tmp_path: Path
     lines = path.read_text().split("\n")
     text = "\n".join(f"Frame Time: {written}" if "Frame T" in line else line for line in lines)
     assert read_bvh(text.encode(), "x").rate == rate
+
+
+def test_cmu_keeps_one_skeleton_a_subject(tmp_path: Path) -> None:
+    path = write_amc(tmp_path / "02_01.amc", frames(seconds=0.5))
+    path.with_suffix(".asf").rename(tmp_path / "02.ASF")
+    assert read_motion(path).skeleton is not None
+    (tmp_path / "02.ASF").rename(tmp_path / "02.asf")
+    assert read_motion(path).skeleton is not None
+    (tmp_path / "02.asf").rename(tmp_path / "other.asf")
+    assert read_motion(path).skeleton is not None
+    (tmp_path / "third.asf").write_text("")
+    with pytest.raises(Exception, match=r"needs its skeleton beside it, 02_01\.asf or 02\.asf; or"):
+        read_motion(path)
+    assert read_motion(path, tmp_path / "other.asf").recording().names[0] == "root"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from recorded import frames, write_bvh, write_npz
+from recorded import frames, write_amc, write_bvh, write_npz
 
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import clip_of
@@ -109,6 +109,69 @@ def test_broken_bvh_is_refused(name: str, tmp_path: Path) -> None:
     assert "\n" not in str(refused.value)
 
 
+BROKEN_AMC = {
+    "a bone is missing": (
+        ".amc",
+        in_line(9, lambda line: ""),
+        r"x\.amc:4: its first frame should have the bone '\w+' once",
+    ),
+    "an unknown bone": (".amc", changed("thorax", "tail"), r"x\.amc:4: the skeleton has no bone"),
+    "a frame is missing": (
+        ".amc",
+        changed(r"^7$", "8"),
+        r"x\.amc:\d+: frame 8 should be frame 7: frames are missing",
+    ),
+    "an infinite angle": (
+        ".amc",
+        in_line(30, changed(r"\S+$", "inf")),
+        r"x\.amc:30: 'inf' should be a number",
+    ),
+    "no frames": (
+        ".amc",
+        changed(r"^1\n[\s\S]*", ""),
+        r"x\.amc: is not an AMC file: it has no line with the number",
+    ),
+    "angles in turns": (
+        ".asf",
+        changed("angle deg", "angle turns"),
+        r".*x\.asf:\d+: angle should be deg or rad",
+    ),
+    "nothing that moves": (
+        ".asf",
+        lambda text: re.sub(r"dof .*|order .*", "", text),
+        r".*x\.amc:\d+: the skeleton has no bone 'thorax' that moves",
+    ),
+    "no hierarchy": (
+        ".asf",
+        changed(r":hierarchy[\s\S]*", ""),
+        r".*x\.asf: is not an ASF file: it has no :hierarchy",
+    ),
+    "a bone twice": (".asf", changed("name head", "name thorax"), r".*x\.asf:\d+: the bone 'tho"),
+    "a bone without length": (
+        ".asf",
+        changed(r"    length \S+\n", ""),
+        r".*x\.asf:\d+: length should have 1 number",
+    ),
+    "a length of nothing": (
+        ".asf",
+        changed("length 0.45", "length 0"),
+        r".*x\.asf:\d+: a length of 0 should be above 0",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN_AMC)
+def test_broken_amc_is_refused(name: str, tmp_path: Path) -> None:
+    suffix, change, message = BROKEN_AMC[name]
+    path = write_amc(tmp_path / "x.amc", frames(seconds=0.5))
+    broken = path.with_suffix(suffix)
+    broken.write_text(change(broken.read_text()))
+    with pytest.raises(MotionFileError) as refused:
+        clip_of(read_motion(path).recording("x.amc"))
+    assert re.match(message, str(refused.value)), refused.value
+    assert "\n" not in str(refused.value)
+
+
 def test_broken_npz_is_refused(tmp_path: Path) -> None:
     p, path = frames(seconds=0.5), tmp_path / "x.npz"
     hole, few = p.copy(), p[:5]
@@ -141,7 +204,8 @@ def test_unknown_motion_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "x.fbx").write_text("")
     (tmp_path / "x.bvh").mkdir()
     for name, message in (
-        ("x.fbx", "should be one of .bvh, .npz"),
+        ("x.fbx", "should be one of .bvh, .amc, .npz"),
+        ("x.asf", "name its .amc files"),
         ("x.bvh", "is a folder"),
         ("y.bvh", "no such file"),
     ):

@@ -200,9 +200,6 @@ def _people_problems(c: Config) -> Iterator[Problem]:
         right = "should be empty with motion.model: paper, where one person is the sample"
         yield Problem("people", len(c.people), right)
         return
-    if c.people and c.radar.cfg is not None and c.snr_db is not None:
-        right = "should be null with radar.cfg and people: a board's noise is thermal"
-        yield Problem("snr_db", c.snr_db, right)
     for number, one in enumerate(c.people, 1):
         key = f"people.{number - 1}"
         if one.motion.model != "human":
@@ -524,9 +521,6 @@ def _room_problems(c: Config) -> Iterator[Problem]:
     if room.back_wall_m is not None:
         right = "should be null with room.faces, of which back is one"
         yield Problem("room.back_wall_m", room.back_wall_m, right)
-    if radar.cfg is not None and c.snr_db is not None:
-        right = "should be null with radar.cfg and room.faces: a board's noise is thermal"
-        yield Problem("snr_db", c.snr_db, right)
     if room.box_m is None:
         for name in ("tx_m", "rx_m") if radar.cfg is None else ("position_m",):
             if support(getattr(radar, name)[2])[0] <= 0:

@@ -14,8 +14,8 @@ from radhar_cli.dataset.column_labels import column_labels
 from radhar_cli.dataset.layout import COLUMN_LABEL, LABELS, PERSON_LABEL
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError
+from radhar_cli.pipeline.fallback import EchoAccuracy, Fallback
 from radhar_cli.pipeline.plan import Plan
-from radhar_cli.pipeline.products import EchoAccuracy, Fallback
 from radhar_cli.pipeline.run import run
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.image import levels

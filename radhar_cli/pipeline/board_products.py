@@ -9,13 +9,14 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.config.schema import Config
-from radhar_cli.echo.accuracy import SPARE_DB
-from radhar_cli.echo.board_cube import exact_cube, fast_cube
+from radhar_cli.echo.accuracy import AccuracyError
+from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion, remembered
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.pipeline.bodies import sources_of, together
+from radhar_cli.pipeline.fallback import EchoAccuracy, fall_back
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.pipeline.physics import (
     board_of,
@@ -27,6 +28,7 @@ from radhar_cli.pipeline.physics import (
     ways_of,
 )
 from radhar_cli.pipeline.plan import Product
+from radhar_cli.pipeline.products import snr_of_other_paths, snr_paths
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.canceller import NO_CANCELLER, MeanRemoval
 from radhar_cli.processing.frame_maps import range_angle, range_doppler
@@ -52,11 +54,7 @@ class Echo(NamedTuple):
 
     cube: Complex  # samples [frame, loop, virtual, sample]
     power: float  # P_s of a sample, mean over frames, loops and channels
-    error_db: float  # of the fast sum, measured; -inf of the exact one
-
-    def accuracy(self) -> Accuracy:
-        """As the direct engine's."""
-        return Accuracy(1, 1, self.cube.dtype == np.complex64, self.error_db)
+    accuracy: EchoAccuracy  # measured error of the fast sum, or why the exact one was made
 
 
 class Skeletons(NamedTuple):
@@ -76,10 +74,18 @@ def board_products(c: Config) -> Iterator[Product]:
     yield Product("board", ("scene",), lambda s: board_of(s.radar, s.seconds), "array and chirps")
     yield Product("channels", seen, channels, "paths of every virtual channel")
     made = "sums in matrix products" if c.engine.kind == "direct" else "exact sums"
-    yield Product("echo", ("channels", "board"), partial(_echo, c), f"raw samples, {made}")
-    yield Product("accuracy", ("echo",), Echo.accuracy, "its measured error")
-    yield Product("signal_power", ("echo",), lambda echo: echo.power, "P_s, for snr_db")
-    yield Product("noise_sigma", ("echo", "board", "scene"), _sigma, "of a raw sample")
+    inputs: tuple[str, ...] = ("channels", "board", "scene")
+    yield Product("echo", inputs, partial(_echo, c), f"raw samples, {made}")
+    yield Product("accuracy", ("echo",), lambda echo: echo.accuracy, "its measured error")
+    if snr_of_other_paths(c):
+        inputs = ("scene", "motions", "board", "wall")
+        does = "paths of the own person in every channel, for the SNR"
+        yield Product("snr_channels", inputs, partial(_snr_channels, c), does)
+        yield Product("signal_power", ("snr_channels", "board"), mean_power, "P_s, for snr_db")
+    else:
+        yield Product("signal_power", ("echo",), lambda echo: echo.power, "P_s, for snr_db")
+    inputs = ("board", "scene", *(("signal_power",) if c.snr_db is not None else ()))
+    yield Product("noise_sigma", inputs, _sigma, "of a raw sample")
     needs = ("echo", "noise_sigma", "board", "scene")
     yield Product("cube", needs, _received, "raw samples with noise and channel errors")
     make = partial(range_doppler, remove_mean=still)
@@ -154,19 +160,32 @@ def channels(
     ]
 
 
-def _echo(c: Config, sources: list[PathSource], board: Board) -> Echo:
+def _snr_channels(
+    c: Config, scene: Scene, motions: tuple[Motion, ...], board: Board, wall: Wall | None
+) -> list[PathSource]:
+    """The paths of every virtual channel whose power is P_s."""
+    own = (remembered(motions[0]),)
+    return [
+        snr_paths(c, scene, own, board.antennas(k, r), wall, board.seen_as) for k, r in board.pairs
+    ]
+
+
+def _echo(c: Config, sources: list[PathSource], board: Board, scene: Scene) -> Echo:
+    accuracy: EchoAccuracy = Accuracy(1, 1, False, -inf)
     if c.engine.kind == "direct":
-        cube, power, error_db = fast_cube(sources, board, c.engine.tolerance_db)
-        if error_db <= c.engine.tolerance_db - SPARE_DB:
-            return Echo(cube, power, error_db)
+        try:
+            cube, power, error_db = fast_cube(sources, board, c.engine.tolerance_db)
+            return Echo(cube, power, Accuracy(1, 1, cube.dtype == np.complex64, error_db))
+        except AccuracyError as error:
+            accuracy = fall_back(c, scene, error)
     cube, power = exact_cube(sources, board)
-    return Echo(cube, power, -inf)
+    return Echo(cube, power, accuracy)
 
 
-def _sigma(echo: Echo, board: Board, scene: Scene) -> float:
+def _sigma(board: Board, scene: Scene, power: float = 0.0) -> float:
     """Standard deviation of the noise of a raw sample, for unit transmit power; 0 without noise."""
     if scene.snr_db is not None:
-        return sqrt(noise_variance(echo.power, scene.snr_db))
+        return sqrt(noise_variance(power, scene.snr_db))
     figure = scene.receiver.noise_figure_db
     if figure is None:
         return 0.0

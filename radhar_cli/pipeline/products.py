@@ -14,13 +14,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain, repeat
-from math import ceil, inf
+from math import inf
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
-from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, AnyConfig, Config
+from radhar_cli.config.schema import MAP_NAMES, AnyConfig, Config
 from radhar_cli.echo.accuracy import AccuracyError, first_aim, settings
 from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.echo.exact import beat_at, exact_echo, signal_power
@@ -31,6 +31,7 @@ from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.bodies import sources_of, together
+from radhar_cli.pipeline.fallback import EchoAccuracy, fall_back
 from radhar_cli.pipeline.motion_paths import TorsoPath
 from radhar_cli.pipeline.physics import (
     antennas_of,
@@ -82,15 +83,6 @@ SMALLEST_POWER = float(np.finfo(float).tiny)  # below it squares lose their digi
 SINGLE_RANGE_DB = 70.0  # of images in float32, in which a pixel in 1e5 differs by a level
 # In the order in which few are held at once: each follows the one it is made from.
 SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
-
-
-class Fallback(NamedTuple):
-    """The cube made the echo instead of the direct engine; says why."""
-
-    reason: str
-
-
-EchoAccuracy: TypeAlias = Accuracy | Fallback
 
 
 def signal_of(map_name: str) -> str:
@@ -156,8 +148,7 @@ def _physics(c: Config) -> Iterator[Product]:
         wall: Wall | None,
         w: Waveform,
     ) -> PathSource:
-        through = None if c.snr_reference == "free_space" else wall
-        return together(sources_of(scene, motions[:1], antennas, through, w, mirrored=False))
+        return snr_paths(c, scene, motions, antennas, wall, w)
 
     def torso_track(
         motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
@@ -179,7 +170,7 @@ def _physics(c: Config) -> Iterator[Product]:
         yield Product("room", ("scene",), reflectors_of, "what stands in the room")
     parts = f"delay and amplitude of every {c.body.scatterers.removesuffix('s')}, {walled}"
     yield Product("paths", ("scene", *seen, *room), lambda *g: together(sources_of(*g)), parts)
-    if _snr_of_other_paths(c):
+    if snr_of_other_paths(c):
         yield Product("snr_paths", ("scene", *seen), of_people, "paths of people, for the SNR")
     yield Product("torso_track", seen, torso_track, "delay of the torso at every pulse")
 
@@ -191,11 +182,24 @@ def _knots_per_second(c: Config, source: PathSource, w: Waveform) -> float:
     return per_second if w.prf >= least * per_second else inf
 
 
-def _snr_of_other_paths(c: Config) -> bool:
+def snr_of_other_paths(c: Config) -> bool:
     """Whether the SNR refers to another echo than the simulated: no wall, no room, nobody else."""
     no_wall = c.wall is not None and c.snr_reference == "free_space"
     others = c.room.reflectors or c.people or c.room.faces
     return no_wall or bool(others) or c.room.back_wall_m is not None
+
+
+def snr_paths(
+    c: Config,
+    scene: Scene,
+    motions: tuple[Motion, ...],
+    antennas: Antennas,
+    wall: Wall | None,
+    w: Waveform,
+) -> PathSource:
+    """The paths whose power is P_s: of the sample's own person, straight there and back."""
+    through = None if c.snr_reference == "free_space" else wall
+    return together(sources_of(scene, motions[:1], antennas, through, w, mirrored=False))
 
 
 def _echo(c: Config) -> Iterator[Product]:
@@ -352,7 +356,7 @@ def _direct(c: Config) -> Iterator[Product]:
     does = "range profiles at the pulses that the range-time map shows"
     yield Product("range_profiles", SEEN, range_profiles, does)
     made = "gated" if _gated(c) else "direct"  # from the knots that are there anyway
-    if _snr_of_other_paths(c):
+    if snr_of_other_paths(c):
         yield Product("signal_power", ("snr_paths", "waveform"), power, "P_s, for snr_db")
     else:
         yield Product("signal_power", (made,), DirectEcho.signal_power, "P_s, for snr_db")
@@ -396,20 +400,9 @@ def _echo_of(c: Config, echo: DirectEcho, scene: Scene) -> tuple[Complex, EchoAc
     try:
         return echo.rows()
     except AccuracyError as error:
-        if c.engine.fallback == "refuse":
-            raise SceneError(_refusal(scene.name, c.engine.tolerance_db, error)) from None
+        fallback = fall_back(c, scene, error)
         static = not echo.canceller.removes_static
-        return exact_echo(echo.source, [echo.look], static=static)[0], Fallback(str(error))
-
-
-def _refusal(name: str, tolerance_db: float, error: AccuracyError) -> str:
-    what = f"sample {name}: engine.tolerance_db = {tolerance_db:g}: "
-    if error.limit_db > MAX_TOLERANCE_DB:
-        return what + f"no tolerance can be kept here ({error}); set engine.fallback: cube"
-    return what + (
-        f"should be {ceil(error.limit_db)} or more, which is what the direct engine reaches here, "
-        "or engine.fallback: cube"
-    )
+        return exact_echo(echo.source, [echo.look], static=static)[0], fallback
 
 
 def _exact(c: Config) -> Iterator[Product]:
@@ -436,7 +429,7 @@ def _exact(c: Config) -> Iterator[Product]:
         look = Look.of_all("range_signals", bins, _taps(seen.canceller))
         return _exactly(c, seen, [look])[0]
 
-    power_of = "snr_paths" if _snr_of_other_paths(c) else "paths"
+    power_of = "snr_paths" if snr_of_other_paths(c) else "paths"
     yield Product("signal_power", (power_of, "waveform"), signal_power, "P_s, for snr_db")
     yield Product("beat_cube", SEEN, beat_cube, "the whole beat matrix, cancelled, compressed")
     yield Product(
@@ -457,7 +450,7 @@ def _impulse(c: Config) -> Iterator[Product]:
         look = Look.of_all("profiles", ProfileSamples(w))
         return received(r.astype(complex), look, receiver, canceller)
 
-    power_of = "snr_paths" if _snr_of_other_paths(c) else "paths"
+    power_of = "snr_paths" if snr_of_other_paths(c) else "paths"
     does = "real samples over range, a pulse at its delay for every path"
     yield Product("profiles", ("paths", "waveform"), impulse_echo, does)
     yield Product("signal_power", (power_of, "waveform"), impulse_power, "P_s, for snr_db")

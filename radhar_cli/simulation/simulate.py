@@ -20,9 +20,10 @@ from radhar_cli.echo.static_returns import StaticReturn, leakage, near_face_dist
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
 from radhar_cli.motion.protocol import Motion, Only
 from radhar_cli.pipeline.bodies import sources_of
+from radhar_cli.pipeline.fallback import EchoAccuracy, Fallback
 from radhar_cli.pipeline.physics import motion_of, reflectors_of
 from radhar_cli.pipeline.plan import Product
-from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback, signal_of
+from radhar_cli.pipeline.products import SIGNALS, signal_of
 from radhar_cli.pipeline.run import Results, record
 from radhar_cli.pipeline.validity import BLACK, MIN_DISTANCE_M, draw_valid_scene, scene_warnings
 from radhar_cli.processing.power_map import PowerMap

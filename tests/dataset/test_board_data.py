@@ -123,3 +123,14 @@ def test_a_line_of_the_cfg_that_nobody_knows_is_warned_of(folder: Path) -> None:
     )
     assert made.returncode == 0
     assert "warning: radar.cfg: quantumCfg is not known and has no effect" in made.stderr
+
+
+def test_a_data_set_says_how_many_samples_the_cube_made(folder: Path, tmp_path: Path) -> None:
+    tight = ("--set", "engine.tolerance_db=-300", "--set", "duration_s=0.2", "--jobs", "1")
+    cube = ("--set", "engine.fallback=cube")
+    made = radhar("generate", folder / "config.yaml", "-o", tmp_path / "tight", *tight, *cube)
+    assert made.returncode == 0
+    assert "4 of 4 recordings: computed by the cube (engine.fallback)" in made.stderr
+    refused = radhar("generate", folder / "config.yaml", "-o", tmp_path / "refused", *tight)
+    assert refused.returncode == 2
+    assert "engine.tolerance_db = -300: should be " in refused.stderr

@@ -1,5 +1,6 @@
 """Boards through a config: cube, noise, poses, skeletons, Doppler maps, and what is refused."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +10,13 @@ import pytest
 from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.errors import ConfigError
+from radhar_cli.errors import ConfigError, SceneError
+from radhar_cli.pipeline.fallback import Fallback
 from radhar_cli.pipeline.physics import board_of
 from radhar_cli.pipeline.run import record
 from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.simulation.scene_file import describe
+from radhar_cli.simulation.simulate import simulate
 from tests.boards import CFG, MARS
 
 C = 299792458.0
@@ -102,6 +106,56 @@ def test_snr_is_of_a_raw_sample(path: Path) -> None:
     assert np.mean(np.abs(noise) ** 2) == pytest.approx(found["noise_sigma"] ** 2, rel=0.02)
 
 
+OTHERS = {
+    "reflector": "room={reflectors: [{position_m: [2, 1, 1], rcs_dbsm: 10, residual_m: 0}]}",
+    "faces": "room={box_m: {x: [-0.2, 4], y: [-2, 2], height: 2.6}, faces: {floor: metal}}",
+    "people": "people=[{activity: punching, motion: {range_m: 1.2, cross_range_m: 1}}]",
+    "wall": "wall={center_m: [1, 0, 1.25]}",
+}
+
+
+@pytest.mark.parametrize("engine", ["direct", "cube"])
+@pytest.mark.parametrize("what", OTHERS)
+def test_snr_refers_to_the_own_person_alone(path: Path, what: str, engine: str) -> None:
+    """As of one channel: neither a room nor other people nor, in free space, a wall add noise."""
+    snr = "snr_db=20", f"engine.kind={engine}"
+    alone = made(path, "noise_sigma", overrides=snr)["noise_sigma"]
+    found = made(path, "noise_sigma", "signal_power", "echo", overrides=(*snr, OTHERS[what]))
+    assert found["noise_sigma"] == pytest.approx(alone, rel=1e-6)
+    assert found["echo"].power != pytest.approx(found["signal_power"], rel=1e-3)
+
+
+def test_received_snr_takes_the_loss_of_the_wall_with_it(path: Path) -> None:
+    through = made(
+        *(path, "signal_power", "echo"),
+        overrides=("snr_db=20", "snr_reference=received", OTHERS["wall"]),
+    )
+    assert through["signal_power"] == pytest.approx(through["echo"].power, rel=1e-9)
+
+
+TIGHT, CUBE = "engine.tolerance_db=-300", "engine.fallback=cube"
+
+
+def test_a_board_falls_back_to_the_cube_and_says_so(path: Path) -> None:
+    found = made(path, "accuracy", "echo", overrides=(QUIET, TIGHT, CUBE))
+    assert isinstance(found["accuracy"], Fallback)
+    exact = made(path, "echo", overrides=(QUIET, "engine.kind=cube"))["echo"]
+    np.testing.assert_array_equal(found["echo"].cube, exact.cube)
+    simulation = simulate(scene_of(path, QUIET, TIGHT, CUBE).config, maps=("points",))
+    assert describe(simulation)["engine"] == "cube (fallback)"
+    assert any("computed by the cube (engine.fallback)" in one for one in simulation.warnings)
+
+
+def test_a_board_refuses_to_fall_back_and_names_a_tolerance_that_holds(path: Path) -> None:
+    with pytest.raises(SceneError, match=r"or engine\.fallback: cube") as caught:
+        made(path, "cube", overrides=(QUIET, TIGHT, "engine.fallback=refuse"))
+    limit = re.search(r"should be (-\d+) or more", str(caught.value))
+    assert limit
+    held = f"engine.tolerance_db={limit[1]}", "engine.fallback=refuse"
+    accuracy = made(path, "accuracy", overrides=(QUIET, *held))["accuracy"]
+    assert accuracy.error_db <= float(limit[1])
+
+
 def test_channels_have_noise_of_their_own(path: Path) -> None:
     found = made(path, "cube", "echo", overrides=("snr_db=0",))
     noise = (found["cube"] - found["echo"].cube).transpose(2, 0, 1, 3).reshape(12, -1)
@@ -169,8 +223,8 @@ def test_doppler_maps_of_a_board(path: Path, names: tuple[str, ...], range_sum: 
 
 
 def test_a_wall_and_a_room_are_seen_by_boards_too(path: Path) -> None:
-    free = made(path, "signal_power")["signal_power"]
-    wall = made(path, "signal_power", overrides=("wall={center_m: [1, 0, 1.25]}",))["signal_power"]
+    free = made(path, "echo")["echo"].power
+    wall = made(path, "echo", overrides=(OTHERS["wall"],))["echo"].power
     assert wall < 0.7 * free
     assert "room" in made(path, "room", "cube", overrides=("room={reflectors: [{}]}",))
 

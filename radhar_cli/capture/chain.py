@@ -95,9 +95,12 @@ def maps_of(
         if config.radar.cfg is not None:  # whose samples have no half band
             waveform = replace(board_of(Numbers(config.radar)).waveform, centred=centred)
         x = filled(bins_of_part(recording, waveform, chosen, first, last), lost)
-        track = track_torso(without_static(x), segments, waveform)
+        profiles = recording.info.holds == "profiles"
+        seen = analytic(x) if profiles and recording.samples.parts == 1 else x
+        track = track_torso(without_static(seen), segments, waveform)
         notes += [] if track else ["nothing moves: no torso was found"]
-        x *= unit_phasor(np.arange(waveform.n_bins)[:, None] * (waveform.n0 / waveform.n_fft))
+        if not profiles:
+            x *= unit_phasor(np.arange(waveform.n_bins)[:, None] * (waveform.n0 / waveform.n_fft))
         signal = Signal(x, segments, waveform.f0, waveform.range_axis())
     # What is global to a recording is done here; difference and windows cross no gap.
     canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, prf)
@@ -168,18 +171,34 @@ def _refuse_too_much(
         )
 
 
+def analytic(profiles: Complex) -> Complex:
+    """Real range profiles [receiver, K, M] as analytic ones, whose Doppler has a sign.
+
+    cos(2 pi fm (2 R/c - tau)) along the range R becomes exp(+j 2 pi fm (2 R/c - tau)).
+    """
+    from scipy.signal import hilbert
+
+    found: Complex = hilbert(profiles.real, axis=1)
+    return found
+
+
 def bins_of_part(
     recording: Recording, w: Waveform, chosen: Sequence[int], first: int, last: int
 ) -> Complex:
-    """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start."""
+    """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start.
+
+    Range profiles are their own bins.
+    """
     _refuse_too_much(recording, w.n_bins, len(chosen), first, last)
     w = replace(w, centred=False)
     x = np.empty((len(chosen), w.n_bins, last - first), dtype=complex)
-    step = max(PIECE_SAMPLES // (w.n_fft * recording.info.receivers), 1)
+    profiles, across = recording.info.holds == "profiles", max(w.n_fft, w.n_bins)
+    step = max(PIECE_SAMPLES // (across * recording.info.receivers), 1)
     for at in range(first, last, step):
         beat = recording.beat(at, min(at + step, last))
         for row, number in enumerate(chosen):
-            x[row, :, at - first : at - first + beat.shape[2]] = range_compression(beat[number], w)
+            bins = beat[number] if profiles else range_compression(beat[number], w)
+            x[row, :, at - first : at - first + beat.shape[2]] = bins
     return x
 
 
@@ -198,20 +217,27 @@ def _windows(
     usual = int(np.median(lengths))
     length = min(wanted.length, usual)
     needed = config.processing.savgol.frame if any("denoised" in n for n in names) else 0
-    if length < max(MIN_FRAME_PULSES, needed):
+    if length < MIN_FRAME_PULSES:
         raise CaptureError(
             f"{recording.path}: stretches of {usual + canceller.lost} pulses without a gap are too "
-            f"short for a Doppler map; should have {max(MIN_FRAME_PULSES, needed) + canceller.lost}"
+            f"short for a Doppler map; should have {MIN_FRAME_PULSES + canceller.lost}"
+        )
+    if usual < needed:
+        raise CaptureError(
+            f"{recording.path}: processing.savgol.frame = {needed}: should be at most {usual}, the "
+            "pulses of a stretch without a gap after the clutter filter"
         )
     if length < wanted.length:
         notes.append(
             f"windows have the {length} pulses of a frame, not {wanted.length} "
             "(processing.window_s)"
         )
-    short = np.count_nonzero(lengths < length)
+    least = max(length, needed)
+    short = np.count_nonzero(lengths < least)
     if short:
-        notes.append(f"{short} stretches are shorter than a window and are left out")
-        signal = signal.stretches(length + canceller.lost)
+        what = "a window" if length == least else "the filter of the denoised maps"
+        notes.append(f"{short} stretches are shorter than {what} and are left out")
+        signal = signal.stretches(least + canceller.lost)
     fine = fsst_frames_of(config, duration, signal.prf, signal.f0)
     return signal, tuple(Frames(length, min(one.hop, length)) for one in (wanted, fine))
 

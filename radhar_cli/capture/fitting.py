@@ -132,6 +132,8 @@ def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float]:
     waveform, seconds = None, []
     for path in paths:
         with Recording(path) as recording:
+            if recording.info.holds == "profiles":
+                raise CaptureError(f"{path}: holds range profiles; should be samples of chirps")
             one = recording.info.waveform()
             pairs = ((getattr(one, n), getattr(waveform or one, n)) for n in RADAR.values())
             if any(abs(here / there - 1) > 1e-3 for here, there in pairs):

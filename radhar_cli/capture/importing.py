@@ -24,6 +24,7 @@ from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.config.ti_header import read_header
 from radhar_cli.errors import CaptureError
+from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 
@@ -253,32 +254,39 @@ def _info(
 
 def write_simulated(
     out: Path,
-    beat: Complex,
+    beat: Complex | Float,
     waveform: Waveform,
     label: Label,
     segments: PulseTimes | None = None,
     delays: Sequence[float] = (0.0,),
 ) -> RecordingInfo:
-    """Write simulated samples as a recording.
+    """Write simulated samples as a recording: of chirps, of range profiles, or of slow time.
 
     Args:
-        beat: [receiver, N_ADC, M].
+        beat: [receiver, N_ADC, M]; real numbers are stored as such.
+        waveform: of one sample a pulse the recording is slow time, of an impulse radar profiles.
         segments: of the pulses; None has no gap.
         delays: of each receiver's pulses, s.
     """
     receivers, samples, pulses = beat.shape
     segments = segments or PulseTimes.even(pulses, waveform.prf)
+    across: dict[str, Any] = {}
+    if isinstance(waveform, Impulse):
+        across = {"bandwidth_hz": waveform.bandwidth, "samples": samples}
+        across |= {"first_range_m": waveform.profile[0], "range_step_m": waveform.range_step}
+    elif samples > 1:
+        band = waveform.slope * samples / waveform.adc_rate
+        across = {"bandwidth_hz": band, "adc_rate_hz": waveform.adc_rate, "samples": samples}
     info = RecordingInfo(
-        carrier_hz=waveform.fc,
+        carrier_hz=waveform.fc if "adc_rate_hz" in across else waveform.f0,
         prf_hz=waveform.prf,
-        bandwidth_hz=waveform.slope * samples / waveform.adc_rate,
-        adc_rate_hz=waveform.adc_rate,
-        samples=samples,
+        **across,
         receivers=receivers,
         pulses=pulses,
         receiver_delay_s=[*delays],
         labels=[label],
         source=SourceNote(format="simulated"),
     )
-    values = np.ascontiguousarray(beat).view(beat.real.dtype).reshape(*beat.shape, 2)
-    return write_recording(out, info, values.dtype, 2, [(0, values)], segments)
+    parts = 2 if np.iscomplexobj(beat) else 1
+    values = np.ascontiguousarray(beat).view(beat.real.dtype).reshape(*beat.shape, parts)
+    return write_recording(out, info, values.dtype, parts, [(0, values)], segments)

@@ -1,12 +1,13 @@
 """The recording file: the samples that one radar received (docs/guide/measured.md).
 
 Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc tau + K tau t)).
+Range profiles are samples over range, real ones of an impulse radar; slow time is a sample a pulse.
 """
 
 import json
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from radhar_cli.capture.source import Parts
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
+from radhar_cli.radar.impulse import impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.replacing import replacing
@@ -58,12 +60,16 @@ class SourceNote(_Part):
 class RecordingInfo(_Part):
     """The attribute `recording` of a recording file."""
 
-    carrier_hz: Hertz  # at the first sample of a chirp; of slow time, the frequency of its Doppler
+    # at the first sample of a chirp; of profiles and slow time, the frequency of their Doppler
+    carrier_hz: Hertz
     prf_hz: Hertz  # pulses per second of one receiver within a segment
-    # of a chirp; None of slow time
+    # of a chirp or a profile; None of slow time, adc_rate_hz of profiles too
     bandwidth_hz: Hertz | None = None
     adc_rate_hz: Hertz | None = None
     samples: Annotated[int, Field(ge=2, le=2**24)] | None = None
+    # where the samples of range profiles lie; None of chirps and slow time
+    first_range_m: Annotated[float, Field(ge=0, le=1e7)] | None = None
+    range_step_m: Annotated[float, Field(gt=0, le=1e7)] | None = None
     # shape of the samples
     receivers: Annotated[int, Field(ge=1, le=2**16)]
     pulses: Whole
@@ -73,10 +79,32 @@ class RecordingInfo(_Part):
     labels: Annotated[list[Label], Field(max_length=10_000)] = []
     source: SourceNote
 
+    @property
+    def holds(self) -> Literal["beat", "profiles", "slow_time"]:
+        """What the samples are, and the name of their dataset."""
+        if self.samples is None:
+            return "slow_time"
+        return "beat" if self.range_step_m is None else "profiles"
+
     def waveform(self, fft_length: int | None = None, centred: bool = True) -> Waveform:
-        """The waveform; `duration` leaves out the gaps."""
-        if self.samples is None or self.adc_rate_hz is None or self.bandwidth_hz is None:
+        """The waveform; `duration` leaves out the gaps.
+
+        Raises:
+            CaptureError: the recording is slow time, which has no ranges.
+        """
+        if self.samples is None or self.bandwidth_hz is None:
             raise CaptureError("the recording is slow time, which has no ranges")
+        if self.first_range_m is not None and self.range_step_m is not None:
+            last = self.first_range_m + self.samples * self.range_step_m
+            return impulse(
+                self.carrier_hz - self.bandwidth_hz / 2,
+                self.bandwidth_hz,
+                self.prf_hz,
+                self.pulses / self.prf_hz,
+                (self.first_range_m, last),
+                self.samples,
+            )
+        assert self.adc_rate_hz is not None  # as _info has seen to
         return Waveform(
             fc=self.carrier_hz,
             bandwidth=self.bandwidth_hz,
@@ -122,9 +150,9 @@ def write_recording(
             replacing(path, exclusive=exclusive) as unfinished,
             new_hdf5(unfinished, path) as (file, check),
         ):
-            name = "slow_time" if info.samples is None else "beat"
-            data = file.create_dataset(name, shape[kept], dtype, chunks=chunks[kept])
-            data.attrs["axes"] = ["receiver", "fast time", "pulse"][kept]
+            data = file.create_dataset(info.holds, shape[kept], dtype, chunks=chunks[kept])
+            across = "range" if info.holds == "profiles" else "fast time"
+            data.attrs["axes"] = ["receiver", across, "pulse"][kept]
             for first, values in pieces:
                 block = np.ascontiguousarray(values, dtype=number).view(dtype)[..., 0]
                 stop = first + block.shape[2]
@@ -189,8 +217,7 @@ class Recording(Closing):
             if version != SCHEMA_VERSION:
                 raise FolderError(f"{path}: schema_version = {version}: should be {SCHEMA_VERSION}")
             self.info = info = _info(self._file.json("recording"), path)
-            name = "slow_time" if info.samples is None else "beat"
-            self.samples = self._file.samples(name)
+            self.samples = self._file.samples(info.holds)
             shape = (info.receivers, info.samples or 1, info.pulses)[:: 1 if info.samples else 2]
             where, number = self.samples.where, self.samples.number
             if self.samples.shape != shape:
@@ -250,11 +277,19 @@ def _info(document: Any, path: Path) -> RecordingInfo:
         first = error.errors(include_url=False)[0]
         key = ".".join(map(str, first["loc"]))
         raise FolderError(f"{path}: attribute recording: {key}: {first['msg']}") from None
-    chirp = (info.samples, info.bandwidth_hz, info.adc_rate_hz)
-    if len(info.receiver_delay_s) != info.receivers or (None in chirp and any(chirp)):
+    of_chirps, of_profiles = (info.adc_rate_hz,), (info.first_range_m, info.range_step_m)
+    of_both = (info.samples, info.bandwidth_hz)
+    there, absent = {
+        "slow_time": ((), (*of_both, *of_chirps, *of_profiles)),
+        "beat": ((*of_both, *of_chirps), of_profiles),
+        "profiles": ((*of_both, *of_profiles), of_chirps),
+    }[info.holds]
+    fits = None not in there and all(one is None for one in absent)
+    if len(info.receiver_delay_s) != info.receivers or not fits:
         raise FolderError(
-            f"{path}: attribute recording: should have samples, bandwidth_hz and adc_rate_hz "
-            "together, and a delay of every receiver"
+            f"{path}: attribute recording: should have samples and bandwidth_hz together, with "
+            "adc_rate_hz of chirps, or with first_range_m and range_step_m of range profiles; and "
+            "a delay of every receiver"
         )
     if 16 * info.receivers * (info.samples or 1) > MAX_PULSE:
         raise FolderError(

@@ -108,7 +108,7 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
     for part in segments.slices:
         for at in range(part.start, part.stop - length + 1, hop):
             frame = bins[:, :, at : at + length]
-            frame = hann_in_range(frame) if waveform.n_fft == waveform.n_adc else frame
+            frame = hann_in_range(frame) if waveform.orthogonal else frame
             power = np.square(np.abs(scipy.fft.fft(frame * window, axis=2))).sum(axis=0)
             # Approaching is positive Doppler, receding positive velocity: the axis is reversed.
             power = np.fft.fftshift(power, axes=1)[:, ::-1]

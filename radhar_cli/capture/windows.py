@@ -93,7 +93,7 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
     if are_images(manifest):
         return _with_images(config, manifest)
     parts, sums = read_manifest(manifest), dict[str, str]()
-    lengths, radar = dict[str, float](), dict[str, float]()
+    lengths, radar = dict[str, float](), dict[str, Any]()
     document = _shared(config)
     given = document["recordings"]
     checked = [{**part, "start_s": part["start_s"] or 0.0, "stop_s": 0.0} for part in parts]
@@ -109,10 +109,10 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
                 own = radar_of(recording.info)
             radar = radar or own
             for key in radar | own:
-                ours, theirs = own.get(key, 0.0), radar.get(key, 0.0)
-                if abs(ours - theirs) > SAME * theirs:
-                    told = f"should be {theirs:.10g}, as in {parts[0]['file']}: one radar"
-                    raise ConfigError(f"{manifest}: {name}: {key} = {ours:.10g}: {told}")
+                ours, theirs = own.get(key), radar.get(key)
+                if not _same(ours, theirs):
+                    told = f"should be {_written(theirs)}, as in {parts[0]['file']}: one radar"
+                    raise ConfigError(f"{manifest}: {name}: {key} = {_written(ours)}: {told}")
             with path.open("rb") as file:
                 sums[name] = hashlib.file_digest(file, "sha256").hexdigest()
         start, stop = part["start_s"] or 0.0, part["stop_s"]
@@ -124,7 +124,7 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
             )
         part["start_s"], part["stop_s"] = start, stop
     document["recordings"] = {**given, "parts": parts, "sha256": sums}
-    document["radar"] |= radar
+    document["radar"] = as_recorded(document["radar"], radar)
     return _whole(config, document, manifest)
 
 
@@ -161,17 +161,51 @@ def _whole(config: Config, document: dict[str, Any], manifest: Path) -> Measured
     return validated(MeasuredConfig, document, str(manifest), *config._places)
 
 
-def radar_of(info: RecordingInfo) -> dict[str, float]:
+def _same(one: Any, other: Any) -> bool:
+    """Whether two values of a key of `radar:` are the same, but for rounding."""
+    if isinstance(one, float) and isinstance(other, float):
+        return abs(one - other) <= SAME * abs(other)
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(_same, one, other))
+    return bool(one == other)
+
+
+def _written(value: Any) -> str:
+    """A value of a key of `radar:` in a message."""
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
+
+
+def radar_of(info: RecordingInfo) -> dict[str, Any]:
     """Keys of `radar:` that a recording says."""
     # Slow time has the frequency of the carrier.
-    known = {"carrier_hz": info.carrier_hz, "prf_hz": info.prf_hz, "bandwidth_hz": 1e3}
-    if info.samples is not None and info.adc_rate_hz is not None and info.bandwidth_hz is not None:
+    known: dict[str, Any] = {"carrier_hz": info.carrier_hz, "prf_hz": info.prf_hz}
+    known["bandwidth_hz"] = 1e3
+    if info.holds == "beat":
+        assert info.samples is not None
+        assert info.adc_rate_hz is not None
         known |= {
             "bandwidth_hz": info.bandwidth_hz,
             "adc_rate_hz": info.adc_rate_hz,
             "chirp_s": info.samples / info.adc_rate_hz,
         }
+    elif info.holds == "profiles":
+        assert info.bandwidth_hz is not None
+        w = info.waveform()
+        known |= {
+            "waveform": "impulse",
+            "carrier_hz": w.fc,
+            "bandwidth_hz": w.bandwidth,
+            "profile_m": [info.first_range_m, w.half_band_range],
+            "profile_samples": info.samples,
+        }
     return known
+
+
+def as_recorded(radar: dict[str, Any], recorded: dict[str, Any]) -> dict[str, Any]:
+    """The section `radar` of a config with what its recordings say (`radar_of`) in its place."""
+    if radar["waveform"] == "impulse" and "waveform" not in recorded:
+        radar = radar | {"waveform": "fmcw", "profile_m": None}
+    return radar | recorded
 
 
 def _split(config: Config, parts: Sequence[dict[str, Any]], manifest: Path) -> dict[str, Any]:

@@ -39,7 +39,7 @@ def process(
     from radhar_cli.capture.board_frames import OF_FRAMES, frames_of_recording
     from radhar_cli.capture.chain import maps_of, pulses_between
     from radhar_cli.capture.recording import Recording
-    from radhar_cli.capture.windows import radar_of
+    from radhar_cli.capture.windows import as_recorded, radar_of
     from radhar_cli.config import resolved
     from radhar_cli.config.reading import load_config, validated
     from radhar_cli.config.schema import ConfigOfRecordings, ProcessedConfig
@@ -61,7 +61,8 @@ def process(
         info, gaps = opened.info, len(opened.segments) - 1
         first, last, _ = pulses_between(opened, start, stop)
         given = resolved(fixed) | {"duration_s": (last - first) / info.prf_hz}
-        given |= {"maps": signals or ("rtm",), "radar": given["radar"] | radar_of(info)}
+        radar = as_recorded(given["radar"], radar_of(info))
+        given |= {"maps": signals or ("rtm",), "radar": radar}
         validated(ProcessedConfig, given, str(config), *loaded._places)
         made = maps_of(opened, fixed, signals, start, stop, receiver)
         if frames:

@@ -56,7 +56,8 @@ def problems(c: Config) -> Iterator[Problem]:
         return
     if isinstance(c, ProcessedConfig):  # windows are shortened, or refused, where gaps are known
         lengths = ("duration_s", "processing.window_s", "processing.savgol.frame")
-        yield from (one for one in _processing_problems(c) if one.key not in lengths)
+        mistakes = (*_profile_problems(c), *_processing_problems(c))
+        yield from (one for one in mistakes if one.key not in lengths)
         return
     if not c.chosen_activities:
         yield Problem("classes", {}, "should have files of each class with motion.model: file")
@@ -107,6 +108,7 @@ def measured_problems(c: MeasuredConfig) -> Iterator[Problem]:
     if c.split.subjects is not None and (None in named or c.split.subjects != len(named)):
         right = f"should be the number of persons, {len(named - {None})}; every part names one"
         yield Problem("split.subjects", c.split.subjects, right)
+    yield from _profile_problems(c)
     yield from _processing_problems(c)
 
 
@@ -161,6 +163,23 @@ def _step_problems(c: Config) -> Iterator[Problem]:
 
 def _impulse_problems(c: Config) -> Iterator[Problem]:
     """What goes with an impulse radar alone, and what does not go with it."""
+    yield from _profile_problems(c)
+    if c.radar.waveform != "impulse":
+        return
+    radar, of = c.radar, "with radar.waveform: impulse"
+    if c.engine.kind == "cube":
+        yield Problem("engine.kind", "cube", f"should be direct {of}, which has no beat")
+    if c.output.slow_time:
+        yield Problem("output.slow_time", True, f"should be false {of}: there is no sum over range")
+    if radar.residual_video_phase:
+        yield Problem("radar.residual_video_phase", True, f"should be false {of}")
+    for key in ("receiver.noise_corner_hz", "receiver.tones"):
+        if at(c, key) not in (0, ()):
+            yield Problem(key, at(c, key), f"should be left out {of}, whose samples are real")
+
+
+def _profile_problems(c: AnyConfig) -> Iterator[Problem]:
+    """Keys that do not fit range profiles, or chirps, simulated or recorded."""
     radar, of = c.radar, "with radar.waveform: impulse"
     if radar.waveform != "impulse":
         if radar.profile_m is not None:
@@ -181,17 +200,8 @@ def _impulse_problems(c: Config) -> Iterator[Problem]:
         fewest = ceil((radar.profile_m[1] - radar.profile_m[0]) / finest)
         right = f"should be {fewest} or more: steps of {step:.3g} m are coarser than {finest:.3g} m"
         yield Problem("radar.profile_samples", radar.profile_samples, right)
-    if c.engine.kind == "cube":
-        yield Problem("engine.kind", "cube", f"should be direct {of}, which has no beat")
     if c.image.kind == "signed" and c.maps != ("rtm",):
         yield Problem("maps", list(c.maps), "should be [rtm] with image.kind: signed")
-    if c.output.slow_time:
-        yield Problem("output.slow_time", True, f"should be false {of}: there is no sum over range")
-    if radar.residual_video_phase:
-        yield Problem("radar.residual_video_phase", True, f"should be false {of}")
-    for key in ("receiver.noise_corner_hz", "receiver.tones"):
-        if at(c, key) not in (0, ()):
-            yield Problem(key, at(c, key), f"should be left out {of}, whose samples are real")
 
 
 def _people_problems(c: Config) -> Iterator[Problem]:

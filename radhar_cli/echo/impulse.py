@@ -4,11 +4,12 @@ Through a layered wall it is Re of the integral of P(f) S(f) exp(j 2 pi f t) ove
 echo S(f) of `dispersion.py` at even frequencies.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import TypeAlias
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index
+from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.dispersion import beat_of, power_of
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.radar.impulse import Impulse
@@ -17,6 +18,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 CHUNK = 2**10  # pulses at once
 REACH = 9.0  # of a pulse to both sides, in s: exp(-REACH^2/2) is 3e-18
 LONGEST = 2.0  # times the end of the range axis, up to which echoes do not fold
+Transfer: TypeAlias = Callable[[Float], Complex]  # at frequencies, Hz
 BAND = 64  # frequencies within 10 dB of the middle, over which a wall's loss is averaged
 
 
@@ -33,6 +35,24 @@ def impulse_power(source: PathSource, waveform: Impulse) -> float:
     band = Waveform(waveform.fc, waveform.bandwidth, 1e-6, BAND * 1e6, 1.0, 1.0)
     chunks = _chunks(source, waveform)
     return sum(float(power_of(paths, band).sum()) for _, paths in chunks) / 2 / waveform.n_pulses
+
+
+def steady_profile(
+    delay: float, amplitude: float, waveform: Impulse, reflected: Transfer | None = None
+) -> Float:
+    """r [samples, 1] of a path that does not move.
+
+    Args:
+        delay: of the path, s.
+        amplitude: for unit transmit power, without what is reflected.
+        waveform: the radar.
+        reflected: the reflection at frequencies [N] (Hz), [N]; None is 1 at all of them.
+    """
+    one = Paths(np.array([[delay]]), np.array([[amplitude]]))
+    if reflected is None:
+        return _pulses(one, waveform)
+    stepped = waveform.stepped(waveform.profile[1] * LONGEST)
+    return _summed(beat_of(one, stepped) * reflected(stepped.frequencies())[:, None], waveform)
 
 
 def _chunks(source: PathSource, waveform: Impulse) -> Iterator[tuple[slice, Paths]]:
@@ -57,9 +77,13 @@ def _pulses(paths: Paths, waveform: Impulse) -> Float:
 
 def _spectral(paths: Paths, waveform: Impulse) -> Float:
     """r [samples, M] from the echo at even frequencies, by a sum over them."""
-    stepped = waveform.stepped(waveform.profile[1] * LONGEST)
-    f = stepped.frequencies()
+    return _summed(beat_of(paths, waveform.stepped(waveform.profile[1] * LONGEST)), waveform)
+
+
+def _summed(echo: Complex, waveform: Impulse) -> Float:
+    """r [samples, M] of an echo S [N, M] at the frequencies of `stepped`."""
+    f = waveform.stepped(waveform.profile[1] * LONGEST).frequencies()
     t = 2 * waveform.range_axis() / SPEED_OF_LIGHT
     back = np.exp(2j * np.pi * np.outer(t, f)) * (waveform.spectrum(f) * (f[1] - f[0]))
-    r: Float = (back @ beat_of(paths, stepped)).real
+    r: Float = (back @ echo).real
     return r

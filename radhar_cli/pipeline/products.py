@@ -491,7 +491,8 @@ def _gate(c: AnyConfig) -> Iterator[Product]:
 
     if not _gated(c):
         return
-    yield Product("range_axis", ("waveform",), Waveform.range_axis, "ranges of the bins")
+    ranges = lambda w: w.range_axis()  # noqa: E731 - an impulse radar's begins elsewhere
+    yield Product("range_axis", ("waveform",), ranges, "ranges of the bins")
     if isinstance(within, tuple):
         place = f"range bins from {within[0]:g} to {within[1]:g} m"
         yield Product("gate", ("range_axis",), lambda ranges: gate_of(c, ranges, None), place)

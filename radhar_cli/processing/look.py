@@ -101,7 +101,7 @@ class RangeBins(FastTime):
     @property
     def white(self) -> bool:
         """A transform is orthogonal unless it is padded."""
-        return self.waveform.n_fft == self.waveform.n_adc
+        return self.waveform.orthogonal
 
     @property
     def rank(self) -> int:

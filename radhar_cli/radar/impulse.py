@@ -60,6 +60,11 @@ class Impulse(Waveform):
         turn = pi * self.width * (f - self.f0)
         return self.width * sqrt(2 * pi) * np.exp(-2 * turn * turn)
 
+    @property
+    def orthogonal(self) -> bool:
+        """False: neighbouring samples are of one pulse."""
+        return False
+
     def stepped(self, reach: float) -> Waveform:
         """Frequencies that hold its spectrum, so close that echoes up to a range (m) do not fold.
 
@@ -70,3 +75,24 @@ class Impulse(Waveform):
         steps = int((high - low) / step) + 1
         first, band = low + step / 2, steps * step
         return Waveform(first, band, 1e-6, steps * 1e6, self.prf, self.duration)
+
+
+def impulse(
+    fc: float,
+    bandwidth: float,
+    prf: float,
+    duration: float,
+    profile: tuple[float, float],
+    samples: int,
+) -> Impulse:
+    """An impulse radar, without the chirp that other waveforms have.
+
+    Args:
+        fc: lower end of the band, Hz.
+        bandwidth: at -10 dB, Hz.
+        prf: pulses per second, Hz.
+        duration: of a recording, s.
+        profile: where the range axis begins and ends, m.
+        samples: of a profile.
+    """
+    return Impulse(fc, bandwidth, 2e-9, 1e9, prf, duration, profile=profile, samples=samples)

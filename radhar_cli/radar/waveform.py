@@ -56,6 +56,11 @@ class Waveform:
         return self.n_fft // 2
 
     @property
+    def orthogonal(self) -> bool:
+        """Whether range bins are those of a transform that is not padded."""
+        return self.n_fft == self.n_adc
+
+    @property
     def n0(self) -> float:
         """Phase reference in the chirp, in fast-time samples."""
         return self.n_adc / 2 if self.centred else 0.0

@@ -2,19 +2,21 @@
 
 import json
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from radhar_cli.activity import Activity, activity_named
-from radhar_cli.arrays import Complex
+from radhar_cli.arrays import Complex, Float
 from radhar_cli.config.checks import map_problem
 from radhar_cli.config.reading import ABSENT, as_config
 from radhar_cli.config.schema import FRAME_MAPS, MAP_NAMES, Config, possible_maps
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.exact import beat_blocks
+from radhar_cli.echo.impulse import steady_profile
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.static_returns import StaticReturn, leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
@@ -23,12 +25,15 @@ from radhar_cli.pipeline.bodies import sources_of
 from radhar_cli.pipeline.fallback import EchoAccuracy, Fallback
 from radhar_cli.pipeline.physics import motion_of, reflectors_of
 from radhar_cli.pipeline.plan import Product
-from radhar_cli.pipeline.products import SIGNALS, signal_of
+from radhar_cli.pipeline.products import SIGNALS, received, signal_of
 from radhar_cli.pipeline.run import Results, record
 from radhar_cli.pipeline.validity import BLACK, MIN_DISTANCE_M, draw_valid_scene, scene_warnings
+from radhar_cli.processing.look import Look, ProfileSamples
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.radar.board import Board
+from radhar_cli.radar.impulse import Impulse
+from radhar_cli.radar.layers import Layers
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
@@ -67,7 +72,8 @@ class Simulation:
         warnings: what lies outside the limits of the model, in words.
         seconds: {product: time it took}.
         accuracy: settings and error of the direct engine; None for the cube.
-        beat: raw echo [N_ADC, M] with static leakage and wall return, with `raw`.
+        beat: raw echo [N_ADC, M] with static leakage and wall return, with `raw`; of an impulse
+            radar its real profiles [samples, M].
         board: the board, or None.
         frames: of a board: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
             `points_person` if asked for.
@@ -87,7 +93,7 @@ class Simulation:
     warnings: list[str]
     seconds: dict[str, float]
     accuracy: Accuracy | None = None
-    beat: Complex | None = None
+    beat: Complex | Float | None = None
     board: Board | None = None
     frames: dict[str, Any] = field(default_factory=dict)
     others: list[Other] = field(default_factory=list)
@@ -162,7 +168,8 @@ def simulate(
     asked = [*signals, *maps, *frames, "waveform", "antennas", "wall"] + ["board"] * board
     asked += ["accuracy"] if config.engine.kind == "direct" else []
     asked += ["raw_echo"] if raw and not board else []
-    recorded = record(scene, asked, [RAW_ECHO], motions=(kept, *(others if joint is None else ())))
+    more = [RAW_PROFILES if config.radar.waveform == "impulse" else RAW_ECHO]
+    recorded = record(scene, asked, more, motions=(kept, *(others if joint is None else ())))
     radar = {name: recorded[name] for name in ("antennas", "wall", "waveform")}
     accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):
@@ -231,8 +238,10 @@ def raw_echo(
     antennas: Antennas,
     wall: Wall | None,
     receiver: tuple[Impairment, ...],
-) -> Complex:
+) -> Complex | Float:
     """s_noisy[n, m] [N_ADC, M] as an ADC would record it: body, noise, leakage and wall echo.
+
+    Of a receiver of real samples (`radar.output`) it is the in-phase channel.
 
     Raises:
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
@@ -241,19 +250,53 @@ def raw_echo(
     beat = np.concatenate(list(blocks), axis=1)
     beat += _steady_beat(leakage(antennas), waveform)
     if wall is not None:
-        distance = near_face_distance(antennas, wall)
-        if distance < MIN_DISTANCE_M:
-            raise SceneError(
-                f"{scene.name}: the near face of the wall (wall.center_m, wall.size_m) "
-                f"is {distance * 100:.3g} cm from the middle of radar.tx_m and radar.rx_m; its "
-                f"echo in a raw recording holds from {MIN_DISTANCE_M * 100:g} cm on"
-            )
+        _refuse_near_face(scene, antennas, wall)
         echo = _steady_beat(wall_echo(antennas, wall, waveform), waveform)
         if wall.layers is not None:
-            reflected = wall.layers.scattered(waveform.frequencies(), np.ones(())).reflected
-            echo *= reflected[:, None]
+            echo *= _reflection(wall.layers, waveform.frequencies())[:, None]
         beat += echo
-    return beat
+    return beat.real if scene.config.radar.output == "real" else beat
+
+
+def raw_profiles(
+    scene: Scene,
+    profiles: Float,
+    waveform: Impulse,
+    antennas: Antennas,
+    wall: Wall | None,
+    receiver: tuple[Impairment, ...],
+) -> Float:
+    """Profiles [samples, M] of an impulse radar as recorded: body, noise, leakage and wall echo.
+
+    Raises:
+        SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
+    """
+    look = Look.of_all("profiles", ProfileSamples(waveform))
+    r: Float = received(profiles.astype(complex), look, receiver).x[0].real
+    r = r + steady_profile(*leakage(antennas), waveform)
+    if wall is not None:
+        _refuse_near_face(scene, antennas, wall)
+        layers = wall.layers
+        reflected = None if layers is None else partial(_reflection, layers)
+        r += steady_profile(*wall_echo(antennas, wall, waveform), waveform, reflected)
+    return r
+
+
+def _reflection(layers: Layers, f: Float) -> Complex:
+    """R of a wall at frequencies f (Hz), at right angles."""
+    reflected: Complex = layers.scattered(f, np.ones(())).reflected
+    return reflected
+
+
+def _refuse_near_face(scene: Scene, antennas: Antennas, wall: Wall) -> None:
+    """Raise SceneError of a wall whose near face is within 5 cm of the antennas' midpoint."""
+    distance = near_face_distance(antennas, wall)
+    if distance < MIN_DISTANCE_M:
+        raise SceneError(
+            f"{scene.name}: the near face of the wall (wall.center_m, wall.size_m) "
+            f"is {distance * 100:.3g} cm from the middle of radar.tx_m and radar.rx_m; its "
+            f"echo in a raw recording holds from {MIN_DISTANCE_M * 100:g} cm on"
+        )
 
 
 def _steady_beat(one: StaticReturn, waveform: Waveform) -> Complex:
@@ -265,6 +308,12 @@ RAW_ECHO = Product(
     ("scene", "paths", "waveform", "antennas", "wall", "receiver"),
     raw_echo,
     "beat matrix as recorded, static returns included",
+)
+RAW_PROFILES = Product(
+    "raw_echo",
+    ("scene", "profiles", "waveform", "antennas", "wall", "receiver"),
+    raw_profiles,
+    "range profiles as recorded, static returns included",
 )
 
 

@@ -76,6 +76,89 @@ def test_a_simulated_recording_gives_the_maps_of_its_scene(
             assert apart(one, other) < (0.1 if "gate" in str(overrides) else 1e-6), name
 
 
+CW = "radar={waveform: cw, carrier_hz: 24e9, prf_hz: 1000}"
+REAL = "radar={waveform: cw, output: real, carrier_hz: 24e9, prf_hz: 1000}"
+IMPULSE = [
+    "radar={waveform: impulse, carrier_hz: 2e9, bandwidth_hz: 1e9, prf_hz: 200, "
+    "profile_m: [0.1, 6], profile_samples: 600}",
+    "engine.kind=direct",
+    "processing.range_sum=gated",
+    "maps=[rtm, stft]",
+]
+LAYERS = "wall={size_m: [null, 5, 2.5], echoes: exact, layers: [{eps_r: 4, thickness_m: 0.1}]}"
+
+
+@pytest.mark.parametrize(
+    ("holds", "overrides"),
+    [
+        ("slow_time", [CW]),
+        ("slow_time", [CW, "processing.clutter=highpass", "wall={}"]),
+        ("slow_time", [REAL, "receiver.tones=[{doppler_hz: 100}]"]),
+        ("profiles", IMPULSE),
+        ("profiles", [*IMPULSE, "wall={}", "processing.clutter=mean"]),
+        ("profiles", [*IMPULSE, LAYERS, "processing.gate_m=[1, 5]"]),
+    ],
+    ids=["cw", "cw-wall", "cw-real", "impulse", "impulse-wall", "impulse-layers"],
+)
+def test_radars_without_chirps_are_recorded_too(
+    tmp_path: Path, holds: str, overrides: list[str]
+) -> None:
+    """CW as slow time, impulses as range profiles; real samples are stored as such."""
+    config = config_of(tmp_path, "duration_s=1", "maps=[stft]", *overrides)
+    command = ("simulate", tmp_path / "scene.yaml", "--raw", "--no-figures", "-o", tmp_path)
+    sets = [word for one in ("duration_s=1", "maps=[stft]", *overrides) for word in ("--set", one)]
+    done = radhar(*command, *sets, "--seed", 3)
+    assert done.returncode == 0, done.stderr
+    with Recording(tmp_path / "recording.h5") as recording:
+        assert recording.info.holds == holds
+        assert recording.samples.parts == (2 if CW in overrides else 1)
+        static = recording.beat(0, 8).mean(axis=2)
+    names = [name for name in possible_maps(config) if "compensated" not in name]
+    found = processed(tmp_path / "recording.h5", config, *names).maps
+    with h5py.File(tmp_path / "scene.h5") as scene:
+        for name in names:
+            right, rows = scene[f"maps/{name}"][:], found[name].rows
+            assert np.allclose(rows.values, scene[f"axes/{name}/{rows.name}"][:])
+            gated = holds == "profiles" and name == "stft" and "gate_m" not in str(overrides)
+            off = np.abs(decibels(found[name].power, 40.0) - decibels(right, 40.0)).mean()
+            assert off < (0.1 if gated else 1e-4), name  # scene.h5 holds float32
+    assert np.abs(static).max() > 0.1  # the leakage of -10 dB
+
+
+def test_range_profiles_know_who_approaches(tmp_path: Path) -> None:
+    """Real samples have no sign of the Doppler; the track has, by the phase along the range."""
+    walk = ["motion={range_m: 5, angle_deg: 180}", "snr_db=40", "processing.gate_m=1"]
+    config = config_of(tmp_path, "duration_s=1.5", *IMPULSE, *walk)
+    scene = simulate(config, seed=3, raw=True)
+    assert scene.beat is not None
+    write_simulated(tmp_path / "r.h5", scene.beat[None], scene.waveform, Label(label="walking"))
+    track = processed(tmp_path / "r.h5", config, "rtm").track
+    assert track is not None
+    middle = slice(track.time.size // 4, -track.time.size // 4)
+    assert (track.velocity[middle] < -0.5).all()
+    torso = scene.truth.positions[:, scene.motion.names.index("torso")]
+    place = np.linalg.norm(torso - np.array([0.4, 0, 1.5]), axis=1)
+    right = np.interp(track.time, scene.truth.time, place)
+    assert np.abs(track.range - right)[middle].max() < 0.3
+
+
+def test_the_filter_of_denoised_maps_may_be_longer_than_a_window(tmp_path: Path) -> None:
+    config = config_of(
+        tmp_path,
+        "duration_s=1",
+        "processing.window_s=0.03",
+        "processing.savgol.frame=61",
+        "maps=[stft_denoised]",
+    )
+    scene = simulate(config, seed=3, raw=True)
+    assert scene.beat is not None
+    write_simulated(tmp_path / "r.h5", scene.beat[None], scene.waveform, Label(label="walking"))
+    found = processed(tmp_path / "r.h5", config, "stft_denoised").maps["stft_denoised"]
+    assert apart(found, scene.maps["stft_denoised"]) < 1e-6
+    with pytest.raises(CaptureError, match=r"processing\.savgol\.frame = 61: should be at most 49"):
+        processed(tmp_path / "r.h5", config, "stft_denoised", stop=0.05)
+
+
 def stft_of_frames(beat: Complex, times: np.ndarray, length: int) -> PowerMap:
     """The paper's chain written anew: difference, compression, sum, one Hann window a frame."""
     from radhar_cli.processing.power_map import Axis

@@ -7,11 +7,13 @@ the numbers of datasets, within limits of memory and time. It imports nothing of
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from math import ceil
 from typing import Any
 
 import h5py
 
-MEMORY, SECONDS = 2 * 2**30, 10  # address space, CPU time of a run
+MEMORY = 2 * 2**30  # address space of this process, bytes
+SECONDS = 10  # CPU time of each file
 MAX_BYTES = 2**26  # of an attribute
 
 
@@ -75,15 +77,23 @@ def main() -> None:
     """Try the files named on standard input, each ended by a zero byte; print each one's number."""
     import resource
 
-    for kind, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CPU, SECONDS)):
-        with suppress(ValueError, OSError):  # a system without it, or with a stricter one
-            resource.setrlimit(kind, (most, resource.getrlimit(kind)[1]))
+    _limit(resource.RLIMIT_AS, MEMORY)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     for number, path in enumerate(sys.stdin.buffer.read().split(b"\0")[:-1]):
         sys.stdout.write(f"{number}\n")
         sys.stdout.flush()
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        _limit(resource.RLIMIT_CPU, ceil(used.ru_utime + used.ru_stime + SECONDS))
         with harmless(), h5py.File(path.decode(errors="surrogateescape"), "r") as file:
             walk(file)
+
+
+def _limit(kind: int, most: int) -> None:
+    """Set a soft limit of this process, on a system that has it and has no stricter one."""
+    import resource
+
+    with suppress(ValueError, OSError):
+        resource.setrlimit(kind, (most, resource.getrlimit(kind)[1]))
 
 
 if __name__ == "__main__":

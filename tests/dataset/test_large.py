@@ -14,11 +14,15 @@ from stub_shards import stub_shard
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import build as build_module
+from radhar_cli.dataset import hdf5_check
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table
+from radhar_cli.dataset.untrusted_hdf5 import try_files
+from radhar_cli.errors import FolderError, UnfinishedError
 
 ROWS, MANY, FEW, SIZE, BATCH = 150_000, 15_000, 9_000, 16, 32
 BYTES_A_ROW = 16
+SHARDS = 400
 
 
 def built(rows, folder, monkeypatch):
@@ -56,3 +60,65 @@ def test_the_master_of_150_000_rows_holds_a_few_bytes_a_row(tmp_path, monkeypatc
         assert file["maps/stft"].id.get_num_chunks() == ROWS
     with (tmp_path / "large/set/scenes.csv").open() as table:
         assert sum(1 for _ in table) == ROWS + 1
+
+
+# A quarter of a second on the way to each fortieth shard: more than a second in all.
+SLOW_WALK = """
+from itertools import count
+from time import process_time
+number, walk = count(), hdf5_check.walk
+def slow_walk(file):
+    end = process_time() + 0.25
+    if next(number) % 40 == 0:
+        while process_time() < end:
+            pass
+    walk(file)
+hdf5_check.walk = slow_walk
+"""
+ENDLESS_WALK = """
+def endless_walk(file):
+    while file.filename.endswith("1.h5"):
+        pass
+hdf5_check.walk = endless_walk
+"""
+
+
+def allow_a_second(folder, monkeypatch, more=""):
+    """Try HDF5 files within a second of CPU time."""
+    program = "from radhar_cli.dataset import hdf5_check\nhdf5_check.SECONDS = 1\n"
+    (folder / "check.py").write_text(f"{program}{more}\nhdf5_check.main()\n")
+    monkeypatch.setattr(hdf5_check, "__file__", str(folder / "check.py"))
+    monkeypatch.setattr(hdf5_check, "SECONDS", 1)
+
+
+def test_a_build_of_many_shards_resumes_near_its_end(tmp_path, monkeypatch):
+    """The time that HDF5 may take is a shard's, not that of all shards together."""
+    config = load_config(
+        small_config(tmp_path),
+        ["maps=[stft]", f"image.size_px={SIZE}", f"samples_per_class={SHARDS}"]
+        + ["activities=[walking]", "output.png=false"],
+    )
+    made: dict[int, bytes] = {}
+
+    def stop_at_the_last(batch):
+        if batch.stop == SHARDS:
+            raise UnfinishedError("killed")
+        return stub_shard(batch, SIZE, made)
+
+    monkeypatch.setattr(build_module, "run_batch", stop_at_the_last)
+    with pytest.raises(UnfinishedError, match="killed"):
+        build(config, tmp_path / "set", 1, Listener(), batch_size=1)
+    monkeypatch.setattr(build_module, "run_batch", lambda batch: stub_shard(batch, SIZE, made))
+    allow_a_second(tmp_path, monkeypatch, SLOW_WALK)
+    outcome = build(config, tmp_path / "set", 1, Listener(), batch_size=1)
+    assert (outcome.samples, outcome.made) == (SHARDS, 1)
+
+
+def test_a_file_that_takes_for_ever_is_refused_among_sound_ones(tmp_path, monkeypatch):
+    files = [tmp_path / f"{number}.h5" for number in range(3)]
+    for file in files:
+        h5py.File(file, "w").close()
+    allow_a_second(tmp_path, monkeypatch, ENDLESS_WALK)
+    with pytest.raises(FolderError, match="takes HDF5 more than 1 s to open") as caught:
+        try_files(files)
+    assert str(caught.value).startswith(f"{files[1]}: cannot be read")

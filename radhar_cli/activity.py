@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
+from radhar_cli.registry import load_extensions
+
 if TYPE_CHECKING:
     from radhar_cli.motion.protocol import Motion
 
@@ -142,7 +144,8 @@ def add_activity(
 
 
 def own_activities() -> tuple[Activity, ...]:
-    """The classes that `add_activity` made known."""
+    """The classes that `add_activity` made known, here or in a module of RADHAR_EXTENSIONS."""
+    load_extensions()
     return tuple(_OWN.values())
 
 
@@ -165,7 +168,8 @@ def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> 
     Raises:
         ValueError: no such activity; the message suggests the nearest name, or lists them all.
     """
-    known = _BY_NAME | _OWN | _by_name((classes or {}).values())
+    own = {activity.slug: activity for activity in own_activities()}
+    known = _BY_NAME | own | _by_name((classes or {}).values())
     wanted = name.strip().lower()
     if wanted in known:
         return known[wanted]

@@ -8,8 +8,6 @@ of any shape that `output.products` stores. One with the name of a row of the ta
 import the modules that RADHAR_EXTENSIONS names (`my_radar,my_maps`) before they read a config.
 """
 
-import hashlib
-import inspect
 import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -38,7 +36,7 @@ def add_product(product: Any) -> None:
 
 def own_products() -> tuple[Any, ...]:
     """The products that were added."""
-    _load()
+    load_extensions()
     return tuple(_PRODUCTS.values())
 
 
@@ -47,20 +45,6 @@ def know_products(own: Iterable[Any]) -> None:
     own = tuple(own)
     _PRODUCTS.clear()
     _PRODUCTS.update((product.name, product) for product in own)
-
-
-def own_digest() -> str | None:
-    """Digest of the names and sources of the products that were added; None without any."""
-    if not own_products():
-        return None
-    digest = hashlib.sha256()
-    for product in own_products():
-        try:
-            source = inspect.getsource(product.make)
-        except (OSError, TypeError):
-            source = ""  # made where no file is
-        digest.update(f"{product.name} {product.needs} {source}\0".encode())
-    return digest.hexdigest()[:12]
 
 
 @contextmanager
@@ -78,11 +62,24 @@ def is_known(name: str) -> bool:
     return _ANY.get() or any(product.name == name for product in own_products())
 
 
+def extensions() -> tuple[str, ...]:
+    """Names of the modules that RADHAR_EXTENSIONS names."""
+    names = (name.strip() for name in os.environ.get(VARIABLE, "").split(","))
+    return tuple(filter(None, names))
+
+
 @cache
-def _load() -> None:
-    for name in filter(None, os.environ.get(VARIABLE, "").split(",")):
+def load_extensions() -> None:
+    """Import the modules that RADHAR_EXTENSIONS names, once, which add products and activities.
+
+    Whoever asks which there are calls it first, so that no config is read without them.
+
+    Raises:
+        RadharError: one cannot be imported.
+    """
+    for name in extensions():
         try:
-            import_module(name.strip())
+            import_module(name)
         except Exception as error:
             why = f"{type(error).__name__}: {error}"
             raise RadharError(f"{VARIABLE}: {name} cannot be imported ({why})") from None

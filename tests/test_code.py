@@ -20,6 +20,7 @@ PACKAGES = (
     "interrupts",
     "rounding",
     "registry",
+    "code_digest",
     "build_version",
     "light",
     "plain_json",

@@ -95,8 +95,10 @@ def test_a_build_of_many_shards_resumes_near_its_end(tmp_path, monkeypatch):
     """The time that HDF5 may take is a shard's, not that of all shards together."""
     config = load_config(
         small_config(tmp_path),
-        ["maps=[stft]", f"image.size_px={SIZE}", f"samples_per_class={SHARDS}"]
-        + ["activities=[walking]", "output.png=false"],
+        [
+            *("maps=[stft]", f"image.size_px={SIZE}", f"samples_per_class={SHARDS}"),
+            *("activities=[walking]", "output.png=false"),
+        ],
     )
     made: dict[int, bytes] = {}
 

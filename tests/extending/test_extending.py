@@ -1,6 +1,8 @@
 """What the field adds next is added through public names, in about 20 lines each."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 from pathlib import Path
 
@@ -18,6 +20,7 @@ from radhar_cli.arrays import Complex, Float
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.schema import ToneConfig, possible_maps
 from radhar_cli.dataset.build import build
+from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.verify import verify
@@ -394,6 +397,32 @@ def test_a_data_set_is_read_where_its_products_are_not_known(tmp_path: Path) -> 
         Config.model_validate({"maps": ["range_speed"]})
 
 
+def scaled(factor: float, signal: Signal) -> Float:
+    return factor * np.abs(signal.x[0, 0])
+
+
+@dataclass(frozen=True)
+class Scaled:
+    factor: float
+
+    def __call__(self, signal: Signal) -> Float:
+        return scaled(self.factor, signal)
+
+
+@pytest.mark.usefixtures("own")
+@pytest.mark.parametrize(
+    "makes", [(partial(scaled, 1), partial(scaled, 2)), (Scaled(1), Scaled(2))]
+)
+def test_two_versions_of_a_product_are_two_data_sets(
+    makes: tuple[Callable[..., Float], ...],
+) -> None:
+    hashes = []
+    for make in (*makes, makes[0]):
+        registry.add_product(Product("scaled", ("signal",), make, ""))
+        hashes.append(identity_hash(identity(CONFIG)))
+    assert hashes[0] == hashes[2] != hashes[1]
+
+
 @pytest.mark.usefixtures("own")
 @pytest.mark.parametrize("name", ["antennas", "receiver"])
 def test_a_board_refuses_products_that_it_has_not(name: str) -> None:
@@ -445,6 +474,67 @@ def test_the_commands_import_modules_of_ones_own(
     broken = command_line.process("-m", "radhar_cli", *command)
     assert broken.returncode == 2
     assert "my_radar cannot be imported (SyntaxError: invalid syntax" in broken.stderr
+
+
+FAN = """
+from dataclasses import dataclass
+import numpy as np
+from radhar_cli.activity import add_activity
+
+@dataclass(frozen=True)
+class Fan:
+    place: float
+    names, parents, breakpoints, phases, highest_frequency = ("blade",), (None,), (), (), 2.0
+
+    def positions(self, t):
+        x = self.place + 0.3 * np.sin(4 * np.pi * t)
+        return np.stack([x, np.zeros_like(t), np.full_like(t, 1.5)])[:, None]
+
+    def cross_sections(self, t):
+        return np.array([[0.01]])
+
+    torso = positions
+
+def fan(person):
+    return Fan(person.motion.range_m)
+
+add_activity("fan", fan)
+"""
+
+
+def test_the_commands_know_activities_of_ones_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "my_fan.py").write_text(FAN)
+    config, data = tmp_path / "fan.yaml", tmp_path / "set"
+    config.write_text(
+        "activities: [walking, fan]\nsamples_per_class: 1\nduration_s: 1\n"
+        "radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}\n"
+        "motion: {range_m: 3.0}\nmaps: [stft]\nimage: {size_px: 32}\n"
+    )
+    monkeypatch.setenv("RADHAR_EXTENSIONS", "my_fan")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+
+    def run(*words: object) -> command_line.Done:
+        return command_line.process("-m", "radhar_cli", *words)
+
+    simulate = ("simulate", config, "--activity", "fan", "--no-figures", "-o", tmp_path / "scene")
+    for words in (
+        ("config", "show", config),
+        ("generate", config, "-o", data, "--jobs", 2),
+        simulate,
+        ("verify", data),
+        ("inspect", data),
+        ("preview", data, "-o", tmp_path / "preview.png"),
+    ):
+        done = run(*words)
+        assert done.returncode == 0, (words, done.stderr)
+    other = FAN.replace("0.3 *", "0.4 *")
+    (tmp_path / "my_fan.py").write_text(other)
+    refused = run("generate", config, "-o", data)
+    assert refused.returncode == 2
+    assert "versions.own" in refused.stderr
+    assert "Traceback" not in refused.stderr
 
 
 @pytest.fixture

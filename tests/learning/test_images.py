@@ -327,3 +327,48 @@ def test_persons_or_recordings_come_from_recorded_sets(tmp_path, named):
     persons = open_images(out, None, "gray").persons
     assert persons is not None
     assert set(persons) == (set("abc") if named else {f"file m.npz/{n}" for n in range(6)})
+
+
+OTHER_SCENES = [  # changes to SET, whose scenes then have other people or movements
+    (
+        "classes={sits: {sequence: [stationary, sitting_down], durations_s: [0.5, 1.2]}}",
+        "classes={sits: {sequence: [stationary, sitting_down], durations_s: [0.9, 1.2]}}",
+    ),
+    (
+        "people=[{activity: stationary, motion: {range_m: 9}}]",
+        "people=[{activity: stationary, motion: {range_m: 10}}]",
+    ),
+    (
+        "people=[{activity: stationary, motion: {range_m: 9}}]",
+        "people=[{activity: punching, motion: {range_m: 9}}]",
+    ),
+]
+FIXED = ("activities=[{}]", "samples_per_class=2", "subject.height_m=1.8", "maps=[stft]")
+
+
+def fingerprints(folder, *changes):
+    """Fingerprints of the scenes of SET with changes, by name."""
+    config = load_config(small_config(folder.parent, SET), list(changes))
+    build(config, folder, 1, Listener())
+    images = open_images(folder, None, "gray")
+    assert images.scenes is not None
+    return dict(zip(images.names, images.scenes, strict=True))
+
+
+@pytest.mark.parametrize("pair", OTHER_SCENES)
+def test_scenes_of_other_movements_or_people_are_not_the_same(tmp_path, pair):
+    slug = "sits" if "sits" in pair[0] else "punching"
+    fixed = [one.format(slug) for one in FIXED]
+    first, other = (
+        fingerprints(tmp_path / str(number), *fixed, changed) for number, changed in enumerate(pair)
+    )
+    assert first.keys() == other.keys()
+    assert not set(first.values()) & set(other.values())
+
+
+def test_a_scene_is_the_same_for_another_radar_and_beside_other_classes(tmp_path):
+    own, sits = OTHER_SCENES[0][0], "activities=[punching, sits]"
+    alone = fingerprints(tmp_path / "alone", "activities=[punching]")
+    assert len(set(alone.values())) == len(alone) == 4
+    beside = fingerprints(tmp_path / "beside", own, sits, "radar.bandwidth_hz=5e8", "snr_db=3")
+    assert {name: beside[name] for name in alone} == alone

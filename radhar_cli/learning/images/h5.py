@@ -24,7 +24,10 @@ from radhar_cli.learning.images.sequences import (
 )
 from radhar_cli.learning.settings import Auto, Kind
 
-_WHO_AND_HOW = ("subject.", "motion.", "timing.", "recordings.part", "recordings.start_s")
+_WHO_AND_HOW = (
+    *("subject.", "motion.", "timing.", "classes.", "people."),
+    *("recordings.part", "recordings.start_s"),
+)
 
 
 @dataclass
@@ -107,12 +110,23 @@ def _persons(data: Dataset) -> tuple[str, ...] | None:
 
 
 def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
-    """A fingerprint of who moved and how, in SI units; radar, wall and noise do not enter."""
+    """A fingerprint of who moved and how, in SI units; radar, wall and noise do not enter.
+
+    Numbers enter with their names where they apply, so that a scene has the same fingerprint in a
+    data set that has further classes or people in other scenes.
+    """
     fields = [field for field in data.fields if field.key.startswith(_WHO_AND_HOW)]
     fields.sort(key=lambda field: field.name)
     columns = [data.scene[field.name][:] for field in fields]
     table = np.stack(columns, axis=1) if columns else np.zeros((len(slugs), 0))
-    return tuple(
-        hashlib.blake2b(slug.encode() + row.tobytes(), digest_size=8).hexdigest()
-        for slug, row in zip(slugs, table, strict=True)
-    )
+    known = ~np.isnan(table)
+    patterns, pattern = np.unique(known, axis=0, return_inverse=True)
+    names = [" ".join(np.array([f.name for f in fields])[one].tolist()) for one in patterns]
+    prints = []
+    for row, slug in enumerate(slugs):
+        others = [] if data.person_label is None else data.person_label[row, 1:]
+        who = [slug, *(data.class_slugs[n] for n in others if n >= 0)]
+        text = f"{' '.join(who)}\n{names[pattern.flat[row]]}\n"
+        whole = text.encode() + table[row, known[row]].tobytes()
+        prints.append(hashlib.blake2b(whole, digest_size=8).hexdigest())
+    return tuple(prints)

@@ -124,7 +124,7 @@ def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
     names = [" ".join(np.array([f.name for f in fields])[one].tolist()) for one in patterns]
     prints = []
     for row, slug in enumerate(slugs):
-        others = [] if data.person_label is None else data.person_label[row, 1:]
+        others = () if data.person_label is None else tuple(data.person_label[row, 1:])
         who = [slug, *(data.class_slugs[n] for n in others if n >= 0)]
         text = f"{' '.join(who)}\n{names[pattern.flat[row]]}\n"
         whole = text.encode() + table[row, known[row]].tobytes()

@@ -101,7 +101,8 @@ def maps_of(
         notes += [] if track else ["nothing moves: no torso was found"]
         if not profiles:
             x *= unit_phasor(np.arange(waveform.n_bins)[:, None] * (waveform.n0 / waveform.n_fft))
-        signal = Signal(x, segments, waveform.f0, waveform.range_axis())
+        step = waveform.range_step
+        signal = Signal(x, segments, waveform.f0, waveform.range_axis(), range_step=step)
     # What is global to a recording is done here; difference and windows cross no gap.
     canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, prf)
     signal = signal.with_samples(without_static(signal.x)) if clutter == "mean" else signal

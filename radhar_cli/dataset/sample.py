@@ -84,13 +84,27 @@ def synthesise(scene: Scene, plan: Plan) -> Synthesised:
         motion = recording["motions"][0]
         labels = {name: column_labels(scene, motion, image) for name, image in images.items()}
     accuracy: EchoAccuracy | None = recording.products.get("accuracy")
-    slow_time = recording["signal"].x[0, 0] if scene.config.output.slow_time else None
+    slow_time = None
+    if scene.config.output.slow_time:
+        slow_time = _storable(recording["signal"].x[0, 0], scene.name)
     fell_back, error_db = isinstance(accuracy, Fallback), nan
     if isinstance(accuracy, Accuracy) and isfinite(accuracy.error_db):
         error_db = accuracy.error_db
     deepest = scene.config.image.dynamic_range_db
     own = {name: _array(recording[name], name, deepest) for name in scene.config.stored}
     return Synthesised(images, error_db, fell_back, labels, slow_time, own, labels_of(scene))
+
+
+def _storable(x: Complex, name: str) -> Complex:
+    """Slow time [M] of a sample, whose numbers complex64 can hold."""
+    largest, single = float(np.abs(x).max(initial=0.0)), np.finfo(np.float32)
+    if largest > 0 and not float(single.tiny) <= largest <= float(single.max):
+        raise SceneError(
+            f"sample {name}: output.slow_time: its largest value, {largest:.3g}, should be from "
+            f"{single.tiny:.3g} to {single.max:.3g}, which complex64 holds (wall.loss_tangent, "
+            "motion.range_m)"
+        )
+    return x
 
 
 def labels_of(scene: Scene) -> dict[str, NDArray[Any]]:
@@ -112,7 +126,8 @@ def _array(value: Any, name: str, dynamic_range_db: float) -> NDArray[Any]:
     """
     if isinstance(value, FrameMaps):
         return levels(value.power, dynamic_range_db)
-    array = np.asarray(getattr(value, "power", getattr(value, "x", value)))
+    value = getattr(value, "power", getattr(value, "x", value))
+    array = np.asarray(None if isinstance(value, (tuple, list, dict)) else value)
     if array.ndim == 0 or array.dtype.kind not in "iufc":
         raise SceneError(f"output.products: {name} is {type(value).__name__}; should be an array")
     return array

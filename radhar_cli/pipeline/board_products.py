@@ -291,7 +291,7 @@ def range_bins(cube: Complex, board: Board) -> Signal:
     for v in range(board.channels):
         s = cube[:, :, v].reshape(-1, board.samples).T * board.signs[v]
         x[v] = range_compression(s, w)
-    return Signal(x, board.pulses, w.f0, w.range_axis())
+    return Signal(x, board.pulses, w.f0, w.range_axis(), range_step=w.range_step)
 
 
 def torso_track(motions: tuple[Motion, ...], board: Board, wall: Wall | None) -> Float:

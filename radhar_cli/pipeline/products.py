@@ -274,7 +274,7 @@ def signal_of_look(x: Complex, look: Look) -> Signal:
     if not isinstance(look.fast, RangeBins):
         return Signal(x[None], times, w.f0)
     bins = look.fast.bins or slice(0, w.n_bins)
-    return Signal(x[None], times, w.f0, w.range_axis()[bins], bins.start)
+    return Signal(x[None], times, w.f0, w.range_axis()[bins], bins.start, w.range_step)
 
 
 def received(
@@ -508,11 +508,12 @@ def _maps(c: AnyConfig) -> Iterator[Product]:
     def rtm(profiles: Signal) -> PowerMap:
         x, ranges, gain = profiles.x, profiles.ranges, c.processing.range_gain_power
         assert ranges is not None
-        if gain > 0:
+        if gain > 0 and ranges[-1] > 0:  # of the one bin at range 0 it is 1
             x = x * ((ranges / ranges[-1]) ** gain)[:, None]
         power = (x.real**2 + x.imag**2).sum(axis=0)
         real = x[0].real if c.image.kind == "signed" else None
-        return PowerMap(power, Axis("range", "m", ranges), Axis("time", "s", profiles.t), real)
+        rows = Axis("range", "m", ranges, profiles.range_step)
+        return PowerMap(power, rows, Axis("time", "s", profiles.t, 1 / profiles.prf), real)
 
     def map_image(power_map: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
         if power_map.real is not None:

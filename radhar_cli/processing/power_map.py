@@ -15,11 +15,13 @@ class Axis:
     name: str  # frequency, range, time, ...
     unit: str  # Hz, m, s, ...
     values: Float = field(repr=False)  # of every row or column, evenly spaced, lowest first
+    cell: float = 0.0  # width of the cell of a single value; several have their spacing
 
     @property
     def edges(self) -> tuple[float, float]:
         """Outer edges of the first and the last cell."""
-        half = 0.5 * float(self.values[1] - self.values[0]) if self.values.size > 1 else 0.0
+        several = self.values.size > 1
+        half = 0.5 * (float(self.values[1] - self.values[0]) if several else self.cell)
         return float(self.values[0] - half), float(self.values[-1] + half)
 
 

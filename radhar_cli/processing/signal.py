@@ -33,6 +33,7 @@ class Signal:
     f0: float  # frequency at which the Doppler is read, Hz
     ranges: Float | None = None  # of the rows, m; None of a sum over range
     first: int = 0  # number of the first row's range bin, as a `Gate` counts them
+    range_step: float = 0.0  # from one range bin to the next, m; only a single one needs it said
 
     @property
     def pulses(self) -> int:

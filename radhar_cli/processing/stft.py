@@ -54,8 +54,9 @@ class Stft:
     @cached_property
     def time(self) -> Axis:
         """Middle of every frame, s."""
-        later = (self.frames.length - 1) / 2 / self.signal.prf
-        return Axis("time", "s", self.signal.times.times(self.starts) + later)
+        length, prf = self.frames.length, self.signal.prf
+        middles = self.signal.times.times(self.starts) + (length - 1) / 2 / prf
+        return Axis("time", "s", middles, length / prf)
 
     @cached_property
     def exponent(self) -> int:

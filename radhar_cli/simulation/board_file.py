@@ -13,6 +13,7 @@ from radhar_cli.pipeline.physics import kinds_of
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import COLUMNS, Cloud
 from radhar_cli.radar.board import Board
+from radhar_cli.simulation.single_precision import in_single
 
 AXES = "of the radar: x ahead, y left, z up, m"
 DOPPLER_SIGN = "positive approaching"
@@ -35,7 +36,7 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
         elif isinstance(one, Skeletons):
             _write_skeletons(file, one)
         elif name == "cube":
-            file["cube"] = one.astype(np.complex64)
+            file["cube"] = in_single(one)
             file["cube"].attrs["axes"] = ["frame", "loop", "virtual", "sample"]
             file["cube"].attrs["meaning"] = "raw samples for unit transmit power"
         elif name == "points_kind":
@@ -62,7 +63,7 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
 
 
 def _write_maps(file: h5py.File, name: str, maps: FrameMaps) -> None:
-    dataset = file.create_dataset(name, data=maps.power.astype(np.float32), compression="gzip")
+    dataset = file.create_dataset(name, data=in_single(maps.power), compression="gzip")
     dataset.attrs["axes"] = ["frame", maps.rows.name, maps.columns.name]
     dataset.attrs["meaning"] = "power for unit transmit power: a steady echo of amplitude a is a^2"
     for axis in (maps.rows, maps.columns):

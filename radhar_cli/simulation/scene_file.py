@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import h5py
-import numpy as np
 
 from radhar_cli import __version__
 from radhar_cli.config.identity import as_yaml, resolved
@@ -21,6 +20,7 @@ from radhar_cli.replacing import replacing, write_text
 from radhar_cli.scene import scene_numbers
 from radhar_cli.simulation.board_file import write_frames
 from radhar_cli.simulation.simulate import Simulation
+from radhar_cli.simulation.single_precision import in_single
 from radhar_cli.simulation.truth import Truth
 
 SCENE_FILE = "scene.h5"
@@ -50,9 +50,8 @@ def write_scene(simulation: Simulation, path: Path) -> None:
 
 def write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
     """Write /maps/<name> with its axes."""
-    most = np.finfo(np.float32).max
-    single = np.clip(power_map.shown, -most, most).astype(np.float32)
-    dataset = file.create_dataset(f"maps/{name}", data=single, compression="gzip")
+    stored = in_single(power_map.shown)
+    dataset = file.create_dataset(f"maps/{name}", data=stored, compression="gzip")
     for dimension, axis in enumerate((power_map.rows, power_map.columns)):
         scale = file.create_dataset(f"axes/{name}/{axis.name}", data=axis.values)
         scale.make_scale(f"{axis.name} ({axis.unit})")

@@ -122,7 +122,8 @@ def _say(simulation: "Simulation", written: list[Path]) -> None:
     if file is not None:
         tell(
             f"  motion: {file['path']}, {file['begin_s']:.2f} to {file['end_s']:.2f} s of its "
-            f"{file['lasts_s']:.2f} s; leg length of a person of {file['stature_m']:.2f} m"
+            f"{file['lasts_s']:.2f} s{', in a loop' if file['loops'] else ''}; {file['up']} is up; "
+            f"leg length of a person of {file['stature_m']:.2f} m"
         )
     shown = {"seconds": took, "warnings": simulation.warnings, "files": written}
     report(activity=one.slug, label=one.label, **shown)

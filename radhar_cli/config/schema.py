@@ -606,8 +606,8 @@ class FilesConfig(Section):
     """What of each file is used, from and to; null is all."""
     low_pass_hz: Annotated[float, Field(ge=0.1, le=1e3, strict=True)] | None = 8.0
     """Zero-phase low-pass of the positions; null is none."""
-    past_end: Literal["velocity", "rest"] = "velocity"
-    """What happens where a file is shorter than the recording."""
+    past_end: Literal["rest", "loop"] = "rest"
+    """Where a file is shorter than the recording: people come to rest, or go on in a loop."""
     file: Annotated[int, Field(ge=0, strict=True)] | None = None
     """Number of the one file that is used; null is drawn."""
     start: Share01 = uniform(0.0, 1.0)

@@ -46,7 +46,7 @@ from radhar_cli.errors import UnfinishedError
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.physics import kinds_of
-from radhar_cli.pipeline.validity import Flags, flagged, warnings
+from radhar_cli.pipeline.validity import FLAG_TYPE, Flags, flagged, warnings
 from radhar_cli.processing.points import COLUMNS
 from radhar_cli.progress import Progress
 from radhar_cli.replacing import replacing
@@ -152,7 +152,7 @@ def _copy_shards(
         start, stop, rows = shard.start, shard.stop, shard.stop - shard.start
         with UntrustedFile(shard.path, shard.read(own_hash)) as part:
             values = part.column("scene", np.float64, (rows, len(fields)))[:]
-            here = part.column("flags", np.uint8, (rows,))[:]
+            here = part.column("flags", FLAG_TYPE, (rows,))[:]
             for name, (dtype, shape) in large.items():
                 source = part.chunks(name, dtype, (rows, *shape))
                 chunks[name] += [source.stored(row) for row in range(rows)]

@@ -22,7 +22,7 @@ from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.dataset.workers import NO_PARENT
 from radhar_cli.errors import MachineError
 from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.validity import Flags, draw_valid_scene, warnings
+from radhar_cli.pipeline.validity import FLAG_TYPE, Flags, draw_valid_scene, warnings
 from radhar_cli.scene import Scene
 from radhar_cli.worker_process import prepare_process
 
@@ -77,7 +77,7 @@ def _write(batch: Batch) -> int:
     config, count, rows = batch.config, batch.stop - batch.start, Rows.of(batch.config)
     samples = []
     values = np.empty((count, len(scene_fields.fields(config))))
-    flags = np.empty(count, dtype=np.uint8)
+    flags = np.empty(count, dtype=FLAG_TYPE)
     for number, (made, found) in enumerate(_made(batch)):
         sample = made.sample
         if batch.table is not None:

@@ -16,7 +16,7 @@ from radhar_cli.dataset.shards import encode_shard
 from radhar_cli.dataset.workers import cores
 from radhar_cli.errors import RadharError
 from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.pipeline.validity import FLAG_TYPE, draw_valid_scene
 from radhar_cli.worker_process import prepare_process
 
 PROBES = 24
@@ -75,7 +75,7 @@ def estimate(config: Config, jobs: int) -> Estimate:
         if perf_counter() - start > PROBE_SECONDS:
             break
     done = len(samples)
-    flags = np.zeros(done, np.uint8)
+    flags = np.zeros(done, FLAG_TYPE)
     shard = encode_shard(
         config, identity_hash(identity(config)), 0, samples, np.stack(values), flags
     )

@@ -13,8 +13,9 @@ from typing import NamedTuple, TypeAlias
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Levels
+from radhar_cli.arrays import Float
 from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK, checksum_of, chunked, count_of
@@ -95,7 +96,7 @@ def encode_shard(
     start: int,
     samples: Sequence[Synthesised],
     scene_values: Float,
-    flags: Levels,
+    flags: NDArray[np.uint16],
 ) -> bytes:
     """The bytes of the shard of the rows from `start` on; a full disk is then one failed write.
 

@@ -8,6 +8,7 @@ from typing import Any
 from radhar_cli.config.schema import FilesConfig
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import Clip, clip_of
+from radhar_cli.motion.files.cycle import find_cycle
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.scene import Person
@@ -34,6 +35,9 @@ def file_motion(person: Person) -> FileMotion:
             f"{path}: lasts {clip.seconds:.3g} s; classes.{slug}.section_s begins at {begin:g} s"
         )
     seconds, speed = person.seconds, numbers.playback_speed
+    spare = end - begin - speed * seconds
+    cycle = find_cycle(clip, begin, end) if one.past_end == "loop" and spare < 0 else None
+    latest = cycle.period if cycle else max(0.0, spare)  # s after the beginning
     return FileMotion(
         clip=clip,
         stature=person.subject.height_m,
@@ -41,11 +45,11 @@ def file_motion(person: Person) -> FileMotion:
         start=(person.motion.range_m, person.motion.cross_range_m),
         heading=radians(person.motion.angle_deg),
         seconds=seconds,
-        begin=begin + numbers.start * max(0.0, end - begin - speed * seconds),
+        begin=begin + numbers.start * latest,
         end=end,
         speed=speed,
         mirrored=numbers.mirror >= 0.5,
-        rests=one.past_end == "rest",
+        cycle=cycle,
     )
 
 

@@ -18,6 +18,7 @@ from radhar_cli.echo.interpolation import BEFORE
 from radhar_cli.echo.knots import CHUNK_KNOTS, knots_of, widest_step
 from radhar_cli.echo.paths import Paths
 from radhar_cli.errors import SceneError
+from radhar_cli.motion.files.motion import SEAM
 from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.segments import Landmarks
@@ -40,6 +41,10 @@ from radhar_cli.scene import MAX_PLACES, Person, Scene, draw_scene, nominal_scen
 
 MIN_DISTANCE_M = 0.05
 LEAST_SNR_DB = -80.0  # of a raw sample; compression and windows gain less than that
+BODY_RADIUS_M = 0.2  # of the upper body about the torso, horizontally
+BEHIND_M = 1.0  # this far behind the radar nobody is meant to be
+HEAD_M = 0.2  # from the highest joint to the top of the head
+LOOKS_AHEAD = 0.5  # least horizontal share of the boresight of a radar that has a behind
 REACH_M = 1.0  # distance of a segment's surface from its joints, at most
 GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
@@ -53,8 +58,11 @@ GRID_CHUNK = 16384
 FLOOR_MARGIN_M = 1e-3  # for rounding, and the paper's ankles in the floor
 
 
+FLAG_TYPE = np.uint16
+
+
 class Flags(IntFlag):
-    """What there is to warn of in a scene; one byte in the files of a build."""
+    """What there is to warn of in a scene; FLAG_TYPE in the files of a build."""
 
     WALL = 1
     HALF_BAND = 2
@@ -64,6 +72,9 @@ class Flags(IntFlag):
     GATE = 32
     RUNS_OUT = 64
     BLACK = 128
+    SEAM = 256
+    RADAR = 512
+    BEHIND = 1024
 
 
 BLACK = (
@@ -77,9 +88,15 @@ _WORDING = {
     Flags.FALLBACK: "computed by the cube (engine.fallback)",
     Flags.FLOOR: "a scatterer goes below the floor",
     Flags.GATE: "the torso leaves the ranges of processing.gate_m",
-    Flags.RUNS_OUT: "the motion file ends before the recording while a joint moves; "
-    "joints go on at their last velocities (past_end: rest slows down instead; duration_s)",
+    Flags.RUNS_OUT: "the motion file ends before the recording while a joint moves: the person "
+    "stops within half a second and stays (past_end: loop goes on; duration_s, section_s)",
+    Flags.SEAM: f"the motion file is repeated though its end is unlike its beginning: joints slide "
+    f"more than {SEAM:g} m from one to the other (past_end: rest; section_s)",
     Flags.BLACK: BLACK,
+    Flags.RADAR: "a person walks through the radar: the torso comes within "
+    f"{BODY_RADIUS_M:g} m of an antenna (motion.range_m, motion.angle_deg, duration_s)",
+    Flags.BEHIND: f"a person walks past the radar, to more than {BEHIND_M:g} m behind it "
+    "(motion.range_m, motion.angle_deg, duration_s)",
 }
 
 
@@ -115,8 +132,9 @@ class SceneCheck:
                 f"({ANTENNA_KEYS[c.antenna]}) at t = {c.time:.3f} s; "
                 f"the model holds from {MIN_DISTANCE_M * 100:g} cm on"
             )
-        if Flags.WALL in self.flags:
-            return _WORDING[Flags.WALL]
+        for flag in (Flags.WALL, Flags.RADAR):
+            if flag in self.flags:
+                return _WORDING[flag]
         if Flags.HALF_BAND in self.flags:
             return "a scatterer leaves the range half-band"
         return None
@@ -153,9 +171,11 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     w, processing = waveform_of(scene), scene.config.processing
     body = body_of(person, motion) if scene.config.body.scatterers == "segments" else None
     gate = processing.gate_m if processing.range_sum == "gated" else None
-    flags = Flags.RUNS_OUT if getattr(motion, "runs_out", False) else Flags(0)
+    flags = Flags.RUNS_OUT if getattr(motion, "stops", False) else Flags(0)
+    flags |= Flags.SEAM if getattr(motion, "slides", False) else Flags(0)
     near, c = list[Approach](), scene.config
     shared = not c.people and c.room.faces is None and c.radar.cfg is None
+    ahead = list[Float]()
     for asked, places, pulses in _grid(motion, w, shared):
         if body is not None and isinstance(body.motion, Landmarks):  # which its echo asks for too
             body.motion.landmark_positions(asked)
@@ -164,6 +184,10 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
         tau = bistatic_delay(r_tx, r_rx)
         if p[2].min() < -FLOOR_MARGIN_M:
             flags |= Flags.FLOOR
+        torso = motion.torso(asked)[:, 0, places]
+        if _meets(torso, p[2].max(axis=0), antennas):
+            flags |= Flags.RADAR
+        ahead.append(_ahead(torso, antennas))
         if wall is not None:
             tau += through_wall_delay(p, antennas, wall)
             if wall.contains(p).any():
@@ -186,7 +210,31 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
             clear = (body.clearance(antenna, t) for antenna in (antennas.tx, antennas.rx))
             one = _nearest(tuple(segment.name for segment in body.segments), t, *clear)
             near.append(one._replace(distance=max(one.distance, 0.0)))
+    if min(part.min() for part in ahead) < -BEHIND_M and ahead[0][0] > 0:
+        flags |= Flags.BEHIND
     return SceneCheck(min(near), flags)
+
+
+def _meets(torso: Float, top: Float, antennas: Antennas) -> bool:
+    """Whether a body is where an antenna is: its torso [3, M] and its highest joint [M], m."""
+    for x, y, z in antennas.places:
+        near = np.hypot(torso[0] - x, torso[1] - y) < BODY_RADIUS_M
+        if (near & (top + HEAD_M > z)).any():
+            return True
+    return False
+
+
+def _ahead(torso: Float, antennas: Antennas) -> Float:
+    """How far a torso [3, M] is before the hindmost antenna [M], m; 1 where a radar looks down.
+
+    Antennas without a pattern look along x.
+    """
+    forward = np.array(antennas.aim.axes[0] if antennas.aim else (1.0, 0.0, 0.0))[:2]
+    if np.hypot(*forward) < LOOKS_AHEAD:
+        return np.ones(torso.shape[1])
+    nearest = min(forward @ np.array(place)[:2] for place in antennas.places)
+    ahead: Float = forward @ torso[:2] - nearest
+    return ahead
 
 
 class _Asked(OfMotion):

@@ -130,7 +130,9 @@ def _motion_file(motion: Motion) -> dict[str, Any] | None:
     return {
         "path": motion.clip.where,
         "begin_s": motion.begin,
-        "end_s": motion.begin + motion.speed * motion.seconds,
+        "end_s": motion.end_used,
+        "loops": motion.cycle is not None,
+        "up": motion.clip.up,
         "lasts_s": motion.clip.seconds,
         "stature_m": motion.clip.stature,
     }

@@ -413,7 +413,7 @@ def test_a_scatterer_at_an_antenna_stops_unless_redrawn(on_invalid: str) -> None
     cure = "on_invalid: redraw draws such scenes again"
     with pytest.raises(SceneError, match=rf"stationary/0: head comes to 1 cm .*; {cure}"):
         draw_valid_scene(config, STANDING, 0)
-    about = {**PERSON["motion"], "range_m": {"uniform": [1.92, 2.08]}}
+    about = {**PERSON["motion"], "range_m": {"uniform": [1.5, 2.5]}}
     config = with_antenna_at("S1", at, on_invalid="redraw", motion=about)
     attempts = [draw_valid_scene(config, STANDING, index)[0].attempt for index in range(8)]
     assert max(attempts) > 0
@@ -494,3 +494,41 @@ def test_the_echo_needs_no_other_instants_than_the_check(monkeypatch, scatterers
     assert np.diff(each).max() <= waveform_of(scene).prf / 120
     assert each[0] == 0
     assert each[-1] >= waveform_of(scene).n_pulses - 1
+
+
+def walker(model: str, **motion: Any) -> dict[str, Any]:
+    return {
+        "duration_s": 4,
+        "motion": {"model": model, "range_m": 2.5, "angle_deg": 180, "speed_mps": 1.3, **motion},
+        "activities": ["walking"],
+    }
+
+
+@pytest.mark.parametrize("model", ["human", "paper"])
+def test_who_walks_through_the_radar_is_found(model: str) -> None:
+    """From 2.5 m towards it for 4 s; beside it people are behind it then, away from it nothing."""
+    both = Flags.RADAR | Flags.BEHIND
+    towards, aside, away = (
+        check_scene(scene_of(Config(**walker(model, **how))))
+        for how in ({}, {"cross_range_m": 0.8}, {"angle_deg": 0})
+    )
+    assert towards.flags & both == both
+    assert str(towards.invalid).startswith("a person walks through the radar")
+    assert aside.flags & both == Flags.BEHIND
+    assert aside.invalid is None
+    assert not away.flags & both
+    high = {"tx_m": [0, 0.1, 2.6], "rx_m": [0, -0.1, 2.6]}
+    over = check_scene(scene_of(Config(**walker(model), radar=high)))
+    assert over.flags & both == Flags.BEHIND
+    down = {**high, "beam": {"azimuth_deg": 60, "elevation_deg": 60, "tilt_deg": 90}}
+    assert not check_scene(scene_of(Config(**walker(model), radar=down))).flags & both
+
+
+def test_who_walks_through_the_radar_is_drawn_again_or_refused() -> None:
+    config = Config(**walker("human", range_m={"uniform": [2.5, 9]}))
+    for index in range(8):
+        scene, flags = draw_valid_scene(config, WALKING, index)
+        assert not flags & Flags.RADAR
+        assert scene_numbers(scene)["motion.range_m"] > 4
+    with pytest.raises(SceneError, match=r"a person walks through the radar: .*motion\.range_m"):
+        draw_valid_scene(Config(**walker("human"), on_invalid="error"), WALKING, 0)

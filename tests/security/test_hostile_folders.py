@@ -193,7 +193,7 @@ def shard(folder: Path, change: Callable[[h5py.File], None]) -> None:
         file["sha256/stft"] = np.zeros(6, "S64")
         file["extent/stft"] = np.zeros((6, 4))
         file["scene"] = np.zeros((6, len(scene_fields.fields(config))))
-        file["flags"] = np.zeros(6, "u1")
+        file["flags"] = np.zeros(6, "u2")
         change(file)
     whose = identity_hash(identity(config))
     data = path.read_bytes()

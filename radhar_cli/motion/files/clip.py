@@ -43,7 +43,8 @@ class Clip:
     positions: Float  # [frames, 15, 3], over the stature; z is up, the lowest ankle at 0.039
     rate: float  # frames per second
     hip_joints: bool  # whether the file has them; else they are at the hip
-    stature: float  # of the recorded person by the legs, m; NaN where the unit is not known
+    stature: float  # of the recorded person by the legs, m
+    up: str = "z"  # axis of the file that points up
 
     @property
     def seconds(self) -> float:
@@ -85,12 +86,12 @@ def clip_of(
     legs += np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
     units = float(np.median(legs)) / LEG  # the stature in units of the file
     stature = _stature(units, unit, file.unit, file.where)
-    _refuse_jumps(file, p, rate, (stature if stature == stature else 1.75) / units)
+    _refuse_jumps(file, p, rate, stature / units)
     up = up or _up(file, wanted, p)
     p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)
     p = _smooth(p, rate, low_pass) / units
     p[..., 2] += ANKLE - p[:, _ANKLES, 2].min()
-    return Clip(file.where, p, rate, own_hips, stature)
+    return Clip(file.where, p, rate, own_hips, stature, up)
 
 
 def _stature(units: float, unit: float | None, of_file: float | None, where: str) -> float:

@@ -11,7 +11,8 @@ import numpy as np
 from radhar_cli.arrays import Float
 from radhar_cli.motion import skeleton
 from radhar_cli.motion.files.clip import Clip
-from radhar_cli.motion.human.minimum_jerk import minimum_jerk_integral
+from radhar_cli.motion.files.cycle import Cycle, carried, carried_often, carry_between
+from radhar_cli.motion.human.minimum_jerk import minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO
 
 if TYPE_CHECKING:
@@ -21,8 +22,10 @@ DEGREE = 5
 MARGIN = 0.25  # s beyond the recording, which echo engines may ask for
 MORE = 8  # frames
 TRAVEL = 0.5  # m; who goes less far is turned by where they face
+SEAM_POINTS = 33  # instants of a seam by which the next cycle is placed
 SLOWING = 0.5  # s, in which a motion that ends comes to rest
-NOTICED = 0.3  # m/s; slower joints may drift on after the end
+NOTICED = 0.3  # m/s; who is slower at the end of a file has come to rest there
+SEAM = 0.3  # m; a joint that is farther from where it goes on in the next cycle is warned of
 _OTHER = {"right": "left", "left": "right"}
 _SWAPPED = [  # number of each joint on the other side; hip joints last
     *(JOINTS.index("_".join(_OTHER.get(w, w) for w in name.split("_"))) for name in JOINTS),
@@ -49,8 +52,8 @@ class FileMotion:
     end: float | None = None  # second of the clip beyond which nothing of it is used
     speed: float = 1.0  # seconds of the clip a second
     mirrored: bool = False  # left and right are exchanged
-    # beyond the end people come to rest; else every joint goes on at its last velocity
-    rests: bool = False
+    # what is repeated where the file is too short; None: people come to rest at its end, and stay
+    cycle: Cycle | None = None
 
     names = JOINTS
     parents = PARENTS
@@ -68,26 +71,38 @@ class FileMotion:
         return seconds if self.end is None else min(self.end, seconds)
 
     @property
+    def end_used(self) -> float:
+        """Second of the clip beyond which the recording uses nothing of it."""
+        if self.cycle is not None:
+            return self.cycle.end
+        return min(self.begin + self.speed * self.seconds, self._last)
+
+    @property
     def _ends_within(self) -> bool:
         return self.begin + self.speed * self.seconds > self._last
 
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
-        """When the clip begins and ends, s: the acceleration jumps there."""
+        """When the clip begins, and when it slows down at its end, s: derivatives jump there."""
         ends = [-self.begin / self.speed]
-        if not (self.rests and self._ends_within):
+        if self.cycle is None and not self._ends_within:
             ends.append((self._last - self.begin) / self.speed)
-        else:
+        elif self.cycle is None:
             ends += [(self._last - self.begin + d) / self.speed for d in (-self._ease, self._ease)]
         return tuple(end for end in ends if -1 < end < self.seconds + 1)
 
     @property
-    def runs_out(self) -> bool:
-        """Whether the clip ends in the recording while a joint moves and does not come to rest."""
-        if self.rests or not self._ends_within:
+    def stops(self) -> bool:
+        """Whether the clip ends within the recording while a joint still moves."""
+        if self.cycle is not None or not self._ends_within:
             return False
         velocity = self._spline(self._last, nu=1).reshape(-1, 3)[: len(JOINTS)]
         return bool(np.linalg.norm(velocity, axis=1).max() * self.speed > NOTICED)
+
+    @property
+    def slides(self) -> bool:
+        """Whether the clip is repeated though its end is unlike its beginning."""
+        return self.cycle is not None and self.cycle.gap * self.stature > SEAM
 
     @property
     def _ease(self) -> float:
@@ -115,12 +130,22 @@ class FileMotion:
         return self._at(t, slice(0, len(self.landmarks)))
 
     def _at(self, t: Float, joints: slice) -> Float:
-        spline = self._splines(joints)
         u = self.begin + self.speed * t
-        if self.rests and self._ends_within:
+        if self.cycle is not None:
+            return self._repeated(u, self.cycle, joints).transpose(2, 1, 0)
+        if self._ends_within:
             # Playback slows down from 1 to 0 by a minimum-jerk step and stops at the end.
             width = 2 * self._ease
             u = u - width * minimum_jerk_integral((u - self._last + self._ease) / width)
+        return self._played(u, joints).transpose(2, 1, 0)
+
+    def _played(self, u: Float, joints: slice) -> Float:
+        """Positions [M, joints, 3] at seconds u [M] of the clip.
+
+        What engines ask for within MARGIN of a recording, beyond the ends of its clip, lies on
+        tangents.
+        """
+        spline = self._splines(joints)
         low, high = float(spline.t[0]), min(self._last, float(spline.t[-1]))
         inside = np.clip(u, low, high)
         p: Float = spline(inside)
@@ -128,7 +153,35 @@ class FileMotion:
         for at, where in ((low, beyond < 0), (high, beyond > 0)):
             if where.any():
                 p[where] += beyond[where, None] * spline(at, nu=1)
-        return p.reshape(t.size, -1, 3).transpose(2, 1, 0)
+        return p.reshape(u.size, -1, 3)
+
+    def _repeated(self, u: Float, cycle: Cycle, joints: slice) -> Float:
+        """Positions [M, joints, 3] at seconds u [M] of a clip whose cycle goes on and on."""
+        number = np.maximum(np.floor((u - cycle.begin) / cycle.period), 0).astype(int)
+        inside = u - number * cycle.period
+        p = self._played(inside, joints)
+        for times in range(1, int(number.max(initial=0)) + 1):
+            now = number == times
+            if not now.any():
+                continue
+            turn, shift = self._carry
+            p[now] = carried(p[now], *carried_often(turn, shift, times))
+            seam = now & (inside < cycle.begin + cycle.blend)
+            if seam.any():
+                before = self._played(inside[seam] + cycle.period, joints)
+                before = carried(before, *carried_often(turn, shift, times - 1))
+                share = minimum_jerk((inside[seam] - cycle.begin) / cycle.blend)[:, None, None]
+                p[seam] = (1 - share) * before + share * p[seam]
+        return p
+
+    @cached_property
+    def _carry(self) -> tuple[float, Float]:
+        """Turn (rad) and shift [2] (m) in the room from each cycle to the next."""
+        assert self.cycle is not None
+        seam = self.cycle.begin + np.linspace(0, self.cycle.blend, SEAM_POINTS)
+        every = slice(0, len(self.landmarks))
+        late = self._played(seam + self.cycle.period, every)
+        return carry_between(self._played(seam, every), late)
 
     @cached_property
     def _splines(self) -> "Callable[[slice], BSpline]":
@@ -150,15 +203,32 @@ class FileMotion:
         """Quintic spline of all joints [3 * 15] in the room, over seconds of the clip."""
         from scipy.interpolate import make_interp_spline
 
-        clip, first = self.clip, floor(self.begin * self.clip.rate)
+        clip, cycle = self.clip, self.cycle
+        begin, end = self.begin, min(self.begin + self.speed * self.seconds, self._last)
         margin = MORE + ceil(MARGIN * self.speed * clip.rate)
-        last = ceil(min(self.begin + self.speed * self.seconds, self._last) * clip.rate)
         count = len(clip.positions)
-        frames = slice(max(0, min(first, count) - margin), last + margin + 1)
-        ends = clip.positions[min(first, count - 1)], clip.positions[min(last, count - 1)]
+        first, last = (
+            min(floor(begin * clip.rate), count - 1),
+            min(ceil(end * clip.rate), count - 1),
+        )
+        ends = clip.positions[first], clip.positions[last]
+        if cycle is not None:
+            begin, end = min(cycle.begin, begin), cycle.end
+            ends = ends[0], self._one_cycle_later(ends[0], cycle)
+        low, high = floor(begin * clip.rate) - margin, ceil(end * clip.rate) + margin
+        frames = slice(max(0, min(low, count)), high + 1)
         p = self._placed(clip.positions[frames], *ends)
         t = np.arange(frames.start, frames.start + len(p)) / clip.rate
         return make_interp_spline(t, p.reshape(len(p), -1), k=DEGREE)
+
+    def _one_cycle_later(self, pose: Float, cycle: Cycle) -> Float:
+        """Where a pose [15, 3] of the clip is a cycle later, over the stature."""
+        clip = self.clip
+        begin, blend, period = (
+            round(s * clip.rate) for s in (cycle.begin, cycle.blend, cycle.period)
+        )
+        seam = slice(begin, begin + blend + 1), slice(begin + period, begin + period + blend + 1)
+        return carried(pose, *carry_between(*(clip.positions[frames] for frames in seam)))
 
     def _placed(self, p: Float, first: Float, last: Float) -> Float:
         """Positions [frames, 15, 3] of the clip where the person is in the room, m."""

@@ -10,11 +10,12 @@ from recorded import frames, write_bvh, write_npz
 from radhar_cli.arrays import Float
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import ANKLE, LEG, Clip, clip_of
+from radhar_cli.motion.files.cycle import find_cycle
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.npz import Npz
 from radhar_cli.motion.files.reading import read_motion
-from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.motion.skeleton import JOINTS, PARENTS
 
 ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
 HIP, HEAD = JOINTS.index("hip"), JOINTS.index("head")
@@ -119,24 +120,115 @@ def test_a_mirror_image_swaps_sides_and_speed_scales_time() -> None:
     np.testing.assert_allclose(np.diff(later), np.diff(shifted), atol=1e-6)
 
 
-def test_past_its_end_a_motion_goes_on_or_comes_to_rest() -> None:
+LINKS = [(j, parent) for j, parent in enumerate(PARENTS) if parent is not None]
+
+
+def link_lengths(p: Float) -> Float:
+    """Lengths [links, M] of positions [3, 13, M]."""
+    return np.stack([np.linalg.norm(p[:, j] - p[:, parent], axis=0) for j, parent in LINKS])
+
+
+def test_past_its_end_a_motion_comes_to_rest() -> None:
     one = clip(frames("walking", 2.0))
     t = np.linspace(0, 4, 4001)
-    on = mover(one, seconds=4.0)
-    assert on.runs_out
-    v = np.diff(on.positions(t), axis=2) * 1000
-    np.testing.assert_allclose(v[..., 2001:], np.repeat(v[..., -1:], 1999, axis=2), atol=1e-6)
-    assert np.abs(v[..., 1990] - v[..., 2010]).max() < 1.0  # no jump in the velocity
-    assert on.breakpoints == (-0.0, pytest.approx(2.0))
-    rests = mover(one, seconds=4.0, rests=True)
-    assert not rests.runs_out
-    p = rests.positions(t)
+    motion = mover(one, seconds=4.0)
+    assert motion.stops
+    p = motion.positions(t)
     np.testing.assert_allclose(p[..., 2251:], np.repeat(p[..., -1:], 1750, axis=2), atol=1e-9)
     assert np.abs(np.diff(p, 2, axis=2)).max() * 1e6 < 120  # m/s^2: no jolt
+    np.testing.assert_allclose(p[..., 4000], one.stature * _placed_last(one), atol=1e-6)
     early = t < 1.7
-    np.testing.assert_allclose(p[..., early], on.positions(t)[..., early], atol=1e-9)
-    still = mover(clip(frames("stationary", 2.0)), seconds=4.0)
-    assert not still.runs_out
+    np.testing.assert_allclose(p[..., early], mover(one).positions(t)[..., early], atol=1e-9)
+    lengths, right = link_lengths(p), link_lengths(mover(one).positions(t[:2000]))
+    assert lengths.max(axis=1) == pytest.approx(right.max(axis=1), abs=1e-3)
+    assert not mover(clip(frames("stationary", 2.0)), seconds=4.0).stops
+    assert not mover(one).stops
+
+
+def _placed_last(one: Clip) -> Float:
+    """The last frame [3, 13] of a walk along x from the origin, over the stature."""
+    return (mover(one).positions(np.array([one.seconds])) / one.stature)[..., 0]
+
+
+def looped(one: Clip, begin: float = 0.0, end: float | None = None, **how: object) -> FileMotion:
+    cycle = find_cycle(one, begin, one.seconds if end is None else end)
+    return mover(one, **{"begin": begin, "cycle": cycle, **how})
+
+
+def test_a_walk_in_a_loop_walks_on() -> None:
+    """2.7 s of a walk last for 20 s: as fast, straight on, in step, and nobody is torn apart."""
+    one = clip(frames("walking", 2.7))
+    motion = looped(one, seconds=20.0)
+    assert motion.cycle is not None
+    assert not motion.slides
+    t = np.linspace(0, 20, 20_001)
+    p = motion.positions(t)
+    hip = p[:, HIP]
+    speed = (hip[0, -1] - hip[0, 0]) / 20
+    source = mover(one).positions(np.array([0.0, 2.7]))[0, HIP]
+    assert speed == pytest.approx((source[1] - source[0]) / 2.7, rel=0.05)
+    assert np.ptp(hip[1]) < 0.15
+    v = np.diff(p, axis=2) * 1000
+    alone = np.diff(mover(one).positions(t[:2700]), axis=2) * 1000
+    assert np.linalg.norm(v, axis=0).max() < 1.1 * np.linalg.norm(alone, axis=0).max()
+    a, own = np.abs(np.diff(v, axis=2)).max() * 1e3, np.abs(np.diff(alone, axis=2)).max() * 1e3
+    assert a < 1.5 * own
+    lengths = link_lengths(p) / link_lengths(p[..., :1])
+    assert np.abs(lengths - 1).max() < 0.05
+    assert p[2, ANKLES].min() > 0.9 * ANKLE * one.stature
+    # the feet still stand: whichever is lower is slow most of the time
+    lower = p[2, ANKLES].argmin(axis=0)
+    slow = np.linalg.norm(np.take_along_axis(v[:, ANKLES], lower[None, None, 1:], axis=1), axis=0)
+    assert np.median(slow) < 0.15
+
+
+def test_a_loop_plays_the_file_between_its_seams() -> None:
+    one = clip(frames("walking", 2.7))
+    motion = looped(one, seconds=20.0)
+    cycle = motion.cycle
+    assert cycle is not None
+    assert 1.35 <= cycle.period <= 2.2 + 1e-9
+    for number in (0, 1, 5):
+        t = np.linspace(cycle.blend, cycle.period, 50)
+        p = motion.positions(t + number * cycle.period)
+        q = mover(one).positions(t)
+        # relative to the hip, since the next cycle begins where the last one ended
+        np.testing.assert_allclose(p - p[:, [HIP]], q - q[:, [HIP]], atol=5e-3)
+
+
+def test_a_loop_of_a_turn_turns_on() -> None:
+    """Somebody who goes a quarter of a circle in a file goes round in the loop."""
+    p, rate = frames("walking", 3.0), 120.0
+    distance = p[:, WANTED.index("hip"), 0]
+    angle, radius = distance / 2.0, 2.0
+    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    ahead = p[..., 0] - distance[:, None]
+    # about a centre 2 m to the left
+    across = p[..., 1] - radius
+    circle = np.stack([c * ahead - s * across, s * ahead + c * across, p[..., 2]], axis=2)
+    motion = looped(clip(circle, rate), seconds=30.0)
+    q = motion.positions(np.linspace(0, 30, 3001))[:2, HIP]
+    assert np.ptp(q[0]) == pytest.approx(4, abs=0.5)
+    assert np.ptp(q[1]) == pytest.approx(4, abs=0.5)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("heading", [0.0, 2.0])
+def test_a_loop_leads_where_it_should(heading: float, mirrored: bool) -> None:
+    one = clip(frames("walking", 2.7))
+    motion = looped(one, seconds=12.0, heading=heading, mirrored=mirrored, start=(3.0, 1.0))
+    p = motion.positions(np.array([0.0, 12.0]))[:2]
+    np.testing.assert_allclose(p[:, ANKLES, 0].mean(axis=1), [3, 1], atol=1e-9)
+    way = p[:, HIP, 1] - p[:, HIP, 0]
+    assert np.arctan2(way[1], way[0]) == pytest.approx(heading, abs=0.02)
+
+
+def test_a_loop_of_what_does_not_fit_is_warned_of() -> None:
+    """Somebody who has sat down is not where somebody stands who sits down."""
+    assert looped(clip(frames("sitting_down", 3.0)), seconds=10.0).slides
+    assert not looped(clip(frames("stationary", 3.0)), seconds=10.0).slides
+    with pytest.raises(MotionFileError, match=r"has 0\.25 s to repeat \(past_end: loop\)"):
+        looped(clip(frames("walking", 3.0)), 1.0, 1.25)
 
 
 @pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])

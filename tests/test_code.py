@@ -221,10 +221,7 @@ def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
 
 
 def test_noise_is_made_by_the_receiver_alone() -> None:
-    assert {p.name for p in files() if "noise_variance" in calls(p)} == {
-        "board_products.py",
-        "products.py",
-    }
+    assert {p.name for p in files() if "noise_variance" in calls(p)} == {"noise_law.py"}
     draw = {package(p) for p in files() if any(c.startswith("rng.") for c in calls(p))}
     assert not draw & {"motion", "radar", "echo", "processing", "simulation", "capture"}
 

@@ -3,17 +3,17 @@
 Checks, draws, warnings and the tables of docs/reference are made of them.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache
 from types import MappingProxyType
-from typing import Any, Literal, TypeVar, get_args, get_origin
+from typing import Any, Literal, TypeAlias, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from radhar_cli.config.number import MAX_NUMBER
+from radhar_cli.config.number import MAX_NUMBER, support
 
 A = TypeVar("A")
 
@@ -58,15 +58,88 @@ class Paper:
     names: str
 
 
-GIVEN = object()
+class Something(Enum):
+    """What a key has to say for another one to act, where no single value is meant."""
+
+    GIVEN = "one"
+    ABOVE_ZERO = "a number above 0"
+
+
+GIVEN, ABOVE_ZERO = Something
+ValueAt: TypeAlias = Callable[[str], Any]  # what stands under a dotted key of a config
 
 
 @dataclass(frozen=True)
-class Needs:
-    """The key has an effect only where another one has this value, or any (GIVEN)."""
+class ActsIf:
+    """The key acts only where another one has one of some values; all such annotations hold."""
 
     key: str
-    value: object
+    values: tuple[object, ...]
+
+    def __init__(self, key: str, *values: object) -> None:
+        object.__setattr__(self, "key", key)
+        object.__setattr__(self, "values", values)
+
+    def holds(self, value_at: ValueAt) -> bool:
+        """Whether the other key says so."""
+        value = value_at(self.key)
+        if GIVEN in self.values:
+            return value not in (None, (), {})
+        if ABOVE_ZERO in self.values:
+            return value is not None and support(value)[1] > 0
+        return value in self.values
+
+    def entry(self, value_at: ValueAt) -> str:
+        """What the other key says now."""
+        return entry(self.key, value_at(self.key))
+
+    @property
+    def right(self) -> str:
+        """What it should say."""
+        if GIVEN in self.values:
+            return f"{self.key}"
+        if ABOVE_ZERO in self.values:
+            return f"{self.key} above 0"
+        return f"{self.key}: {' or '.join(map(value_text, self.values))}"
+
+
+@dataclass(frozen=True)
+class ActsIfAny:
+    """The key acts only where one or more of these hold."""
+
+    choices: tuple[ActsIf, ...]
+
+    def __init__(self, *choices: ActsIf) -> None:
+        object.__setattr__(self, "choices", choices)
+
+    def holds(self, value_at: ValueAt) -> bool:
+        """Whether one of them does."""
+        return any(one.holds(value_at) for one in self.choices)
+
+    def entry(self, value_at: ValueAt) -> str:
+        """What their keys say now."""
+        return ", ".join(dict.fromkeys(one.entry(value_at) for one in self.choices))
+
+    @property
+    def right(self) -> str:
+        """What they should say."""
+        return " or ".join(one.right for one in self.choices)
+
+
+def entry(key: str, value: object) -> str:
+    """A key and its value as a config has them; of long texts and of sections the key alone."""
+    if isinstance(value, BaseModel) or (isinstance(value, str) and "\n" in value):
+        return key
+    return f"{key}: {value_text(value)}"
+
+
+def value_text(value: object) -> str:
+    """A value as YAML has it."""
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(value_text, value))}]"
+    if value is None or isinstance(value, bool):
+        return {None: "null", True: "true", False: "false"}[value]
+    return str(value)
 
 
 @dataclass(frozen=True)
@@ -104,6 +177,32 @@ def of_kind(kind: type[BaseModel], wanted: type[A]) -> tuple[tuple[str, A], ...]
         for one in found
         if isinstance(one, wanted)
     )
+
+
+@cache
+def conditions(kind: type[BaseModel], key: str) -> tuple[ActsIf | ActsIfAny, ...]:
+    """What has to hold for a dotted key to act, of the sections that it lies in first.
+
+    `radar.tx_m.0` is one of the numbers of `radar.tx_m`.
+    """
+    known, names, found = annotations(kind), key.split("."), list[ActsIf | ActsIfAny]()
+    for count in range(1, len(names) + 1):
+        about = known.get(".".join(names[:count]), ())
+        found += [one for one in about if isinstance(one, ActsIf | ActsIfAny)]
+    return tuple(found)
+
+
+def at(config: BaseModel, key: str) -> Any:
+    """What stands under a dotted key, such as `radar.tx_m.0`; None under what is null."""
+    place: Any = config
+    for name in key.split("."):
+        if isinstance(place, tuple):
+            place = place[int(name)]
+        elif isinstance(place, dict):
+            place = place[name]
+        elif place is not None:
+            place = getattr(place, name)
+    return place
 
 
 def section(field: FieldInfo) -> type[BaseModel] | None:

@@ -6,9 +6,8 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
-from radhar_cli.config.annotations import Limits, People, of_kind
+from radhar_cli.config.annotations import Limits, People, at, of_kind
 from radhar_cli.config.number import MAX_NUMBER, nominal, support
-from radhar_cli.config.paths import at
 from radhar_cli.config.schema import (
     FRAME_MAPS,
     MAP_NAMES,
@@ -173,6 +172,9 @@ def _impulse_problems(c: Config) -> Iterator[Problem]:
         yield Problem("output.slow_time", True, f"should be false {of}: there is no sum over range")
     if radar.residual_video_phase:
         yield Problem("radar.residual_video_phase", True, f"should be false {of}")
+    if c.snr_db is None and c.receiver.noise_figure_db is not None:
+        right = f"should be null {of}: how many pulses its samples are means of is not said; snr_db"
+        yield Problem("receiver.noise_figure_db", c.receiver.noise_figure_db, right)
     for key in ("receiver.noise_corner_hz", "receiver.tones"):
         if at(c, key) not in (0, ()):
             yield Problem(key, at(c, key), f"should be left out {of}, whose samples are real")
@@ -572,8 +574,11 @@ def _room_problems(c: Config) -> Iterator[Problem]:
 
 def _tone_problems(c: Config) -> Iterator[Problem]:
     extra = {"tones": c.receiver.tones, "noise_corner_hz": support(c.receiver.noise_corner_hz)[1]}
-    for key in [key for key, there in extra.items() if there and c.snr_db is None]:
-        right = f"should be a number: receiver.{key} is relative to the noise"
+    for key in [key for key, there in extra.items() if there and not c.has_noise]:
+        right = (
+            f"should be a number, or receiver.noise_figure_db be given: receiver.{key} is relative "
+            "to the noise"
+        )
         yield Problem("snr_db", None, right)
 
 

@@ -3,22 +3,10 @@
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar, cast
 
+from radhar_cli.config.annotations import at as at
 from radhar_cli.config.schema import Section
 
 T = TypeVar("T")
-
-
-def at(config: Section, key: str) -> Any:
-    """What stands under a dotted key, such as `radar.tx_m.0`; None under what is null."""
-    place: Any = config
-    for name in key.split("."):
-        if isinstance(place, tuple):
-            place = place[int(name)]
-        elif isinstance(place, dict):
-            place = place[name]
-        elif place is not None:
-            place = getattr(place, name)
-    return place
 
 
 def changed(value: T, parts: Mapping[str, Any]) -> T:

@@ -7,7 +7,7 @@ import ast
 import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from itertools import pairwise
 from math import floor, sqrt
 from pathlib import PurePosixPath
@@ -39,15 +39,19 @@ from radhar_cli.activity import (
     is_new_slug,
 )
 from radhar_cli.config.annotations import (
+    ABOVE_ZERO,
     GIVEN,
     PERSONAL,
     UNSTEADY,
+    ActsIf,
+    ActsIfAny,
     ByModel,
     Limits,
-    Needs,
     OnlyMaps,
     Paper,
     People,
+    at,
+    conditions,
     of_kind,
 )
 from radhar_cli.config.number import (
@@ -161,7 +165,9 @@ def for_activity(value: Any, activity: Activity) -> Any:
 
 Place: TypeAlias = tuple[Real, Real]
 HalfPower = Annotated[float, Field(ge=1, le=1000, strict=True)]
-_BOARD, BOOST = Needs("radar.cfg", GIVEN), "IWR1443BOOST"
+_BOARD, _NO_BOARD = ActsIf("radar.cfg", GIVEN), ActsIf("radar.cfg", None)
+_CHIRPS = ActsIf("radar.waveform", "fmcw", "sfcw")
+BOOST = "IWR1443BOOST"
 
 
 class ArrayConfig(Section):
@@ -205,17 +211,20 @@ class RadarConfig(Section):
     """Samples per second within a chirp."""
     chirp_s: Annotated[Positive, within(1e-12, 1e4, "s")] = 40e-6
     """Shorter than 1/prf_hz."""
-    tx_m: Vector = (0.4, -0.1, 1.5)
+    tx_m: Annotated[Vector, _NO_BOARD] = (0.4, -0.1, 1.5)
     """Transmitter: range, cross-range, height."""
-    rx_m: Vector = (0.4, 0.1, 1.5)
+    rx_m: Annotated[Vector, _NO_BOARD] = (0.4, 0.1, 1.5)
     """Receiver: range, cross-range, height."""
     antenna_gain_dbi: Annotated[Decibel, within(-150, 150, "dBi")] = 6.0
     """Of each antenna."""
-    antenna_isolation_db: Decibel = 10.0
+    antenna_isolation_db: Annotated[Decibel, _NO_BOARD] = 10.0
     """Only a raw echo shows the leakage."""
-    residual_video_phase: Flag = False
+    residual_video_phase: Annotated[Flag, _NO_BOARD] = False
     """Keep the term pi K tau^2."""
-    polarisation: Literal["vertical", "horizontal"] = "vertical"
+    polarisation: Annotated[
+        Literal["vertical", "horizontal"],
+        ActsIfAny(ActsIf("room.faces", GIVEN), ActsIf("wall.echoes", "exact")),
+    ] = "vertical"
     """Of the antennas' field, for room.faces and wall.echoes; horizontal is along y."""
     beam: BeamConfig | None = None
     """Where both antennas look; null radiates evenly. A board has radar.half_power_deg."""
@@ -223,7 +232,7 @@ class RadarConfig(Section):
     """sfcw: sweeps of steps, sampled once each; cw: one sample a pulse, at carrier_hz; impulse:
     Gaussian pulses from carrier_hz to carrier_hz + bandwidth_hz (-10 dB). Without adc_rate_hz and
     chirp_s; cw without bandwidth_hz."""
-    output: Annotated[Literal["iq", "real"], Needs("radar.waveform", "cw")] = "iq"
+    output: Annotated[Literal["iq", "real"], ActsIf("radar.waveform", "cw")] = "iq"
     """Of cw: real is the in-phase channel alone, whose Doppler is symmetric."""
     steps: Annotated[int, Field(ge=2, le=2**20, strict=True)] | None = None
     """Of a sweep of sfcw: frequencies carrier_hz + n bandwidth_hz/steps."""
@@ -232,17 +241,17 @@ class RadarConfig(Section):
     profile_m: tuple[Real, Real] | None = None
     """[from, to] of the range axis of impulse."""
     profile_samples: Annotated[
-        int, Field(ge=2, le=2**16, strict=True), Needs("radar.waveform", "impulse")
+        int, Field(ge=2, le=2**16, strict=True), ActsIf("radar.waveform", "impulse")
     ] = 256
     """Of that axis."""
     cfg: Annotated[str, Field(min_length=1, max_length=2**16)] | None = None
     """The .cfg of a TI board, which gives the waveform: a path from this file's folder on, or a
     known radar (docs/guide/boards.md). A config that is written has its text."""
-    device: Literal[tuple(DEVICES)] | None = None  # type: ignore[valid-type]
+    device: Annotated[Literal[tuple(DEVICES)] | None, _BOARD] = None  # type: ignore[valid-type]
     """The board that the .cfg runs on: its antenna array."""
-    array: ArrayConfig | None = None
+    array: Annotated[ArrayConfig | None, _BOARD] = None
     """Another array instead of a device's."""
-    position_m: Vector = (0.0, 0.0, 1.0)
+    position_m: Annotated[Vector, _BOARD] = (0.0, 0.0, 1.0)
     """Of a board: range, cross-range, height."""
     yaw_deg: Annotated[Angle, _BOARD] = 0.0
     """Of its boresight from the x axis, positive to the left."""
@@ -252,8 +261,10 @@ class RadarConfig(Section):
     """Half-power half-widths of an element in azimuth and elevation; null is the device's."""
     half_wavelength_m: Annotated[float | None, Field(gt=0, le=1, strict=True), _BOARD] = None
     """Unit of an array's places; null is c/(2 f_c), f_c the middle of what is sampled."""
-    transmit_power_dbm: Annotated[Decibel, Needs("snr_db", None)] = 12.0
-    """With receiver.noise_figure_db."""
+    transmit_power_dbm: Annotated[
+        Decibel, ActsIf("snr_db", None), ActsIf("receiver.noise_figure_db", GIVEN)
+    ] = 12.0
+    """Power that is sent, which thermal noise (receiver.noise_figure_db) is compared with."""
 
     @property
     def chirp_keys(self) -> dict[str, float]:
@@ -685,6 +696,9 @@ class LayerConfig(Section):
     """With eps_r."""
 
 
+_NO_LAYERS = ActsIf("wall.layers", None)
+
+
 class WallConfig(Section):
     """Centre, size along x, y, z, relative permittivity and loss tangent of the wall.
 
@@ -695,9 +709,9 @@ class WallConfig(Section):
     """Range, cross-range, height of its middle."""
     size_m: tuple[Size | None, Size, Size] = (0.24, 5.0, 2.5)
     """Extent in range, cross-range, height; of layers, whose depth is theirs, [null, y, z]."""
-    eps_r: Annotated[AtLeastOne, within(1, 1e6)] = 6.0
+    eps_r: Annotated[AtLeastOne, within(1, 1e6), _NO_LAYERS] = 6.0
     """Relative permittivity."""
-    loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.03
+    loss_tangent: Annotated[NotNegative, within(0, 1e12), _NO_LAYERS] = 0.03
     """Of its material."""
     rays: Annotated[
         Literal["straight", "plane", "refracted"] | None,
@@ -711,12 +725,12 @@ class WallConfig(Section):
     or impulse."""
     layers: Annotated[
         Annotated[tuple[LayerConfig, ...], Field(min_length=1, max_length=16)] | None,
-        Needs("wall.echoes", "exact"),
+        ActsIf("wall.echoes", "exact"),
     ] = None
     """Nearest first, with echoes: exact; null is one of size_m, eps_r and loss_tangent."""
 
 
-_SEGMENTS = Needs("body.scatterers", "segments")
+_SEGMENTS = ActsIf("body.scatterers", "segments")
 
 
 class BodyConfig(Section):
@@ -728,9 +742,11 @@ class BodyConfig(Section):
 
     scatterers: Literal["points", "segments", "surfaces"] = "points"
     """The 13 joints, ellipsoids between them, or surfaces that face the radar."""
-    points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True)] = 20
+    points_per_segment: Annotated[
+        int, Field(ge=1, le=1000, strict=True), ActsIf("body.scatterers", "segments", "surfaces")
+    ] = 20
     """Most points of a segment; of a surface there are 14 at most."""
-    shadowing: Annotated[Flag, _SEGMENTS] = True
+    shadowing: Annotated[Flag, ActsIfAny(_SEGMENTS, ActsIf("people", GIVEN))] = True
     """Of segments: trunk and thighs hide what is behind them. With `people`: each hides others."""
 
 
@@ -806,18 +822,20 @@ class FacesConfig(Section):
 class RoomConfig(Section):
     """What stands in the room, what its faces echo, or a wall behind people."""
 
-    box_m: Annotated[BoxConfig | None, Needs("room.faces", GIVEN)] = None
+    box_m: Annotated[BoxConfig | None, ActsIf("room.faces", GIVEN)] = None
     """Where the faces are."""
     faces: FacesConfig | None = None
     """Faces by way of which people are seen again; null is none."""
-    order: Annotated[int, Field(ge=0, le=2, strict=True), Needs("room.faces", GIVEN)] = 1
+    order: Annotated[int, Field(ge=0, le=2, strict=True), ActsIf("room.faces", GIVEN)] = 1
     """Most bounces of a path, on the ways there and back together."""
 
     reflectors: Annotated[tuple[ReflectorConfig, ...], Field(max_length=MAX_REFLECTORS)] = ()
     """Up to 32 of {position_m, rcs_dbsm, residual_m, highest_hz}; `[{}, {}]`: two default ones."""
     back_wall_m: Annotated[Number, within(0, 1e4, "m")] | None = None
     """Range of a rear wall, beyond people, which mirrors them (image source); null is none."""
-    back_wall_reflection_db: Annotated[Number, within(-120, 0, "dB")] = -8.0
+    back_wall_reflection_db: Annotated[
+        Number, within(-120, 0, "dB"), ActsIf("room.back_wall_m", GIVEN)
+    ] = -8.0
     """Its reflection loss, applied twice to the mirrored echo."""
 
 
@@ -843,14 +861,23 @@ class ToneConfig(Section):
 class ReceiverConfig(Section):
     """Noise that grows towards zero Doppler, and interference tones, beside the white noise."""
 
-    noise_corner_hz: Annotated[NotNegative, within(0, 1e7, "Hz")] = 0.0
+    noise_corner_hz: Annotated[
+        NotNegative, within(0, 1e7, "Hz"), ActsIf("receiver.noise_corner_hz", ABOVE_ZERO)
+    ] = 0.0
     """Doppler at which noise that grows towards zero equals the white noise; 0 is none."""
-    noise_slope_db: Annotated[NotNegative, within(1, 20, "dB per decade")] = 10.0
+    noise_slope_db: Annotated[
+        NotNegative,
+        within(1, 20, "dB per decade"),
+        ActsIf("receiver.noise_corner_hz", ABOVE_ZERO),
+    ] = 10.0
     """Slope of that noise, dB per decade."""
     tones: Annotated[tuple[ToneConfig, ...], Field(max_length=16)] = ()
     """Interference: up to 16 of {doppler_hz, level_db, on_s, off_s, both_sides}."""
-    noise_figure_db: Annotated[NotNegative, within(0, 100, "dB")] | None = None
-    """White noise of k T0 fs F instead of snr_db; of a board without snr_db 15 dB."""
+    noise_figure_db: Annotated[
+        Annotated[NotNegative, within(0, 100, "dB")] | None, ActsIf("snr_db", None)
+    ] = None
+    """F of thermal noise, k T0 fs F in a raw sample, where snr_db is null; null is no noise. Left
+    out, it is 15 dB of a board; given, it makes snr_db null unless that is given, too."""
     channel_gain_db: Annotated[NotNegative, within(0, 20, "dB"), _BOARD] = 0.0
     """Standard deviation of the virtual channels' gains."""
     channel_phase_deg: Annotated[NotNegative, within(0, 180, "degree"), _BOARD] = 0.0
@@ -898,8 +925,7 @@ MIN_WINDOW = 8
 PAPER_WINDOW = 0.1  # of the recording
 
 
-_GATED = Needs("processing.range_sum", "gated")
-_POINTS = OnlyMaps("points")
+_GATED = ActsIf("processing.range_sum", "gated")
 _SPECTRA = OnlyMaps("st")  # of stft and fsst
 
 
@@ -908,18 +934,20 @@ class ProcessingConfig(Section):
 
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
     """s[m + 1] - s[m], the paper's MTI; less the mean of the recording; the filter below."""
-    highpass: Annotated[HighpassConfig, Needs("processing.clutter", "highpass")] = HighpassConfig()
+    highpass: Annotated[HighpassConfig, ActsIf("processing.clutter", "highpass")] = HighpassConfig()
     range_sum: Annotated[Literal["coherent", "gated"], _SPECTRA] = "coherent"
     """The coherent sum of the kept bins, or STFTs of those in the gate, summed incoherently."""
     gate_m: Annotated[float | tuple[float, float], _GATED] = 1.0
     """How far (m) the gate reaches to both sides of the torso, or [from, to]: fixed ranges."""
     gate_sum: Annotated[Literal["power", "magnitude"], _GATED] = "power"
     """Powers are added up, or (sum of the magnitudes)^2."""
-    range_fft_length: Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None = None
+    range_fft_length: Annotated[
+        Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None, _NO_BOARD
+    ] = None
     """Even, at least the samples of a chirp; null is found."""
     range_gain_power: Annotated[float, Field(ge=0, le=8, strict=True), OnlyMaps("rtm")] = 0.0
     """p of the gain (R/largest R)^p of the rtm's range bins, after canceller and noise."""
-    range_reference: Literal["centre", "start"] = "centre"
+    range_reference: Annotated[Literal["centre", "start"], _NO_BOARD] = "centre"
     """Where in the chirp the phase is taken."""
     window_s: Annotated[float | None, Field(gt=0, le=1e7, strict=True), _SPECTRA] = None
     """The window; null: of paper a tenth of duration_s, else by the wavelength, as limbs need."""
@@ -987,7 +1015,7 @@ class CfarConfig(Section):
     """Threshold: the false alarm rate in exponentially distributed power."""
     domain: Literal["power", "decibel"] = "decibel"
     """What is averaged and compared."""
-    floor_db: Annotated[Decibel, within(0, 200, "dB"), Needs("image.cfar.domain", "decibel")] = (
+    floor_db: Annotated[Decibel, within(0, 200, "dB"), ActsIf("image.cfar.domain", "decibel")] = (
         uniform(10.0, 30.0)
     )
     """With decibels, where the map's median is put: the threshold is then a factor of decibels."""
@@ -998,13 +1026,13 @@ class CfarConfig(Section):
 class CloudConfig(Section):
     """How points are found in the frames of a board (docs/guide/boards.md)."""
 
-    chain: Annotated[Literal["best", "board"], _POINTS] = "best"
+    chain: Literal["best", "board"] = "best"
     """What the data allow, or what TI's firmware does with the .cfg."""
-    pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), Needs("cloud.chain", "best")] = 1e-5
+    pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), ActsIf("cloud.chain", "best")] = 1e-5
     """Rate of false alarms of a range-Doppler cell."""
-    quantise: Annotated[Flag, Needs("cloud.chain", "board")] = True
+    quantise: Annotated[Flag, ActsIf("cloud.chain", "board")] = True
     """Round as the firmware's fixed-point numbers do."""
-    doppler_carrier: Annotated[Literal["centre", "start"], _POINTS] = "centre"
+    doppler_carrier: Literal["centre", "start"] = "centre"
     """Frequency that the points' speeds refer to; TI's software takes that at which ramps start."""
 
 
@@ -1022,11 +1050,11 @@ class ImageConfig(Section):
     kind: Literal["decibel", "cfar", "signed"] = "decibel"
     """Grey levels; binary masks of what exceeds its background; or, of an impulse radar's rtm,
     samples with their sign, 0 in the middle."""
-    clipped: Annotated[float, Field(ge=0, lt=1, strict=True), Needs("image.kind", "signed")] = 0.02
+    clipped: Annotated[float, Field(ge=0, lt=1, strict=True), ActsIf("image.kind", "signed")] = 0.02
     """Share of the samples that are black or white."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
     """How far grey levels reach below the largest power (`kind: decibel`)."""
-    cfar: Annotated[CfarConfig, Needs("image.kind", "cfar")] = CfarConfig()
+    cfar: Annotated[CfarConfig, ActsIf("image.kind", "cfar")] = CfarConfig()
     colour_map: str = DEFAULT_COLOUR_MAP
     """Any Matplotlib name; of PNGs and figures, as dataset.h5 holds grey levels."""
     doppler_limits_mps: Annotated[
@@ -1078,7 +1106,7 @@ class SplitConfig(Section):
 MAX_TOLERANCE_DB = -6.0
 
 
-_DIRECT = Needs("engine.kind", "direct")
+_DIRECT = ActsIf("engine.kind", "direct")
 
 
 class EngineConfig(Section):
@@ -1320,10 +1348,16 @@ class Config(Section):
     """null is free space."""
     room: RoomConfig = RoomConfig()
     snr_db: Decibel | None = 30.0
-    """null is noiseless."""
+    """SNR of a raw sample; null: thermal noise by receiver.noise_figure_db, which a board has by
+    default, or none where that is null, too."""
     receiver: ReceiverConfig = ReceiverConfig()
-    snr_reference: Literal["free_space", "received"] = "free_space"
-    """Signal without the wall, or with its loss."""
+    snr_reference: Annotated[
+        Literal["free_space", "received"],
+        ActsIf("snr_db", GIVEN),
+        ActsIfAny(ActsIf("wall", GIVEN), ActsIf("radar.beam", GIVEN), ActsIf("radar.cfg", GIVEN)),
+    ] = "free_space"
+    """What snr_db is the SNR of: the echo as it would be without the wall, in the middle of the
+    antennas' beam; or as it is received, less what the wall and the beam take."""
     on_invalid: Annotated[
         Literal["keep", "redraw", "error"] | None,
         ByModel(human="redraw", paper="keep", file="redraw"),
@@ -1331,7 +1365,7 @@ class Config(Section):
     """A body that meets the wall, a scatterer that leaves the range half-band. One that comes
     within 5 cm of an antenna is drawn again with `redraw`, and refused otherwise."""
     processing: ProcessingConfig = ProcessingConfig()
-    cloud: CloudConfig = CloudConfig()
+    cloud: Annotated[CloudConfig, OnlyMaps("points")] = CloudConfig()
     image: ImageConfig = ImageConfig()
     maps: Maps = ("stft",)
     """Of `rtm`, `stft`, `fsst`; the latter two with `_denoised`, `_compensated`,
@@ -1386,6 +1420,8 @@ class Config(Section):
         wall = self.wall
         if wall is not None and wall.layers and "size_m" not in wall.model_fields_set:
             changed.setdefault("wall", {})["size_m"] = (None, *wall.size_m[1:])
+        if self.receiver.noise_figure_db is not None and "snr_db" not in self.model_fields_set:
+            changed.setdefault("", {})["snr_db"] = None
         if self.radar.cfg is not None:
             _fill_from_cfg(self, changed)
         for key, number in self.radar.chirp_keys.items():
@@ -1466,21 +1502,9 @@ class Config(Section):
 
     def depends_on(self, activity: Activity, key: str) -> bool:
         """Whether scenes of an activity depend on the number of this dotted key."""
-        if key in ("receiver.noise_corner_hz", "receiver.noise_slope_db"):
-            return support(self.receiver.noise_corner_hz)[1] > 0
-        if key.startswith(("radar.position_m", "radar.yaw", "radar.tilt", "receiver.channel_")):
-            return self.radar.cfg is not None
-        if key.startswith(("radar.tx_m", "radar.rx_m")):
-            return self.radar.cfg is None
-        if key in ("receiver.noise_figure_db", "radar.transmit_power_dbm"):
-            return self.receiver.noise_figure_db is not None and self.snr_db is None
-        if key in ("wall.eps_r", "wall.loss_tangent"):
-            return self.wall is not None and self.wall.layers is None
-        if key == "room.back_wall_reflection_db":
-            return self.room.back_wall_m is not None
-        if key.startswith("image.cfar."):
-            floor = key == "image.cfar.floor_db" and self.image.cfar.domain != "decibel"
-            return self.image.kind == "cfar" and not floor
+        value_at = partial(at, self)
+        if not all(one.holds(value_at) for one in conditions(Config, key)):
+            return False
         if key.startswith("classes."):
             return key.startswith(f"classes.{activity.slug}.")
         uses = _uses().get(key)
@@ -1490,6 +1514,11 @@ class Config(Section):
         if names is None or self.files_of(activity) is not None:
             return False
         return not names or not names.isdisjoint((activity.label, *activity.movements))
+
+    @property
+    def has_noise(self) -> bool:
+        """Whether a receiver adds noise to the echo."""
+        return self.snr_db is not None or self.receiver.noise_figure_db is not None
 
     def files_of(self, activity: Activity) -> FilesConfig | None:
         """The files of an activity, None where a model makes its motion."""
@@ -1503,6 +1532,7 @@ class MeasuredConfig(Section):
     # What else data sets are asked for: here are no other people, no noise, no further products.
     people: ClassVar[tuple[PersonConfig, ...]] = ()
     snr_db: ClassVar[None] = None
+    has_noise: ClassVar[bool] = False
     stored: ClassVar[tuple[str, ...]] = ()
     engine: ClassVar[EngineConfig] = EngineConfig()
 
@@ -1580,8 +1610,8 @@ def _fill_from_cfg(c: Config, changed: dict[str, dict[str, Any]]) -> None:
     changed.setdefault("radar", {}).update(radar)
     if "snr_db" not in c.model_fields_set:
         changed.setdefault("", {})["snr_db"] = None
-        if "noise_figure_db" not in c.receiver.model_fields_set:
-            changed.setdefault("receiver", {})["noise_figure_db"] = BOARD_NOISE_FIGURE_DB
+    if "noise_figure_db" not in c.receiver.model_fields_set:
+        changed.setdefault("receiver", {})["noise_figure_db"] = BOARD_NOISE_FIGURE_DB
     if "clutter" not in c.processing.model_fields_set:
         clutter = "mean" if board.detection.remove_mean else "none"
         changed.setdefault("processing", {})["clutter"] = clutter

@@ -198,6 +198,6 @@ def _limits(data: Dataset) -> list[str]:
     config, notes = data.config, [str(warning["message"]) for warning in data.warnings]
     if isinstance(config, MeasuredConfig):
         return [*notes, "config.yaml names files and persons as the recordings' manifest does"]
-    if config.snr_db is not None and config.processing.clutter in ("difference", "highpass"):
+    if config.has_noise and config.processing.clutter in ("difference", "highpass"):
         notes.append(_NOISE_TELLS)
     return [*notes, _SIMULATED]

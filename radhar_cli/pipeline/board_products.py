@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from math import inf, log10, sqrt
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.pipeline.bodies import sources_of, together
 from radhar_cli.pipeline.fallback import EchoAccuracy, fall_back
 from radhar_cli.pipeline.motion_paths import point_delay
+from radhar_cli.pipeline.noise import noise_products, snr_of_other_paths, snr_paths
 from radhar_cli.pipeline.physics import (
     board_of,
     detection_of,
@@ -28,7 +29,6 @@ from radhar_cli.pipeline.physics import (
     ways_of,
 )
 from radhar_cli.pipeline.plan import Product
-from radhar_cli.pipeline.products import snr_of_other_paths, snr_paths
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.canceller import NO_CANCELLER, MeanRemoval
 from radhar_cli.processing.frame_maps import range_angle, range_doppler
@@ -41,10 +41,9 @@ from radhar_cli.radar.board import Board
 from radhar_cli.radar.room import Way
 from radhar_cli.radar.wall import Wall
 from radhar_cli.randomness import NOISE, stream
-from radhar_cli.receiver.noise import circular_gaussian, noise_variance
+from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Scene
 
-BOLTZMANN_T0 = 1.380649e-23 * 290.0  # k T0, W/Hz
 VELOCITY_STEP_S = 1e-3
 NEAR_M = 0.5  # of a point from a joint of the person whose it is
 
@@ -84,9 +83,8 @@ def board_products(c: Config) -> Iterator[Product]:
         yield Product("signal_power", ("snr_channels", "board"), mean_power, "P_s, for snr_db")
     else:
         yield Product("signal_power", ("echo",), lambda echo: echo.power, "P_s, for snr_db")
-    inputs = ("board", "scene", *(("signal_power",) if c.snr_db is not None else ()))
-    yield Product("noise_sigma", inputs, _sigma, "of a raw sample")
-    needs = ("echo", "noise_sigma", "board", "scene")
+    yield from noise_products(c)
+    needs = ("echo", "noise", "board", "scene")
     yield Product("cube", needs, _received, "raw samples with noise and channel errors")
     make = partial(range_doppler, remove_mean=still)
     yield Product("range_doppler", ("cube", "board"), make, "range-Doppler maps of the frames")
@@ -182,18 +180,7 @@ def _echo(c: Config, sources: list[PathSource], board: Board, scene: Scene) -> E
     return Echo(cube, power, accuracy)
 
 
-def _sigma(board: Board, scene: Scene, power: float = 0.0) -> float:
-    """Standard deviation of the noise of a raw sample, for unit transmit power; 0 without noise."""
-    if scene.snr_db is not None:
-        return sqrt(noise_variance(power, scene.snr_db))
-    figure = scene.receiver.noise_figure_db
-    if figure is None:
-        return 0.0
-    thermal_db = 10 * log10(BOLTZMANN_T0 * board.adc_rate) + figure
-    return float(10 ** ((thermal_db - scene.radar.transmit_power_dbm + 30) / 20))
-
-
-def _received(echo: Echo, sigma: float, board: Board, scene: Scene) -> Complex:
+def _received(echo: Echo, noise: WhiteNoise, board: Board, scene: Scene) -> Complex:
     receiver = scene.receiver
     cube: Complex = echo.cube
     if receiver.channel_gain_db > 0 or receiver.channel_phase_deg > 0:
@@ -204,15 +191,7 @@ def _received(echo: Echo, sigma: float, board: Board, scene: Scene) -> Complex:
         gain_db, phase = gain_db * receiver.channel_gain_db, phase * receiver.channel_phase_deg
         errors = 10 ** (gain_db / 20) * np.exp(1j * np.radians(phase))
         cube = np.multiply(cube, errors[:, None], dtype=cube.dtype, casting="same_kind")
-    if sigma > 0:
-        rng = noise_stream(scene, "cube")
-        noisy: Complex = np.empty_like(echo.cube)
-        for frame, samples in enumerate(cube):
-            noisy[frame] = circular_gaussian(rng, samples.shape, single=True)
-            noisy[frame] *= np.float32(sigma)
-            noisy[frame] += samples
-        cube = noisy
-    return cube
+    return noise.added_to(cube, "cube") if noise.sigma > 0 else cube
 
 
 def _cloud(c: Config, cube: Complex, board: Board) -> Cloud:

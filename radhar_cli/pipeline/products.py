@@ -33,6 +33,7 @@ from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.bodies import sources_of, together
 from radhar_cli.pipeline.fallback import EchoAccuracy, fall_back
 from radhar_cli.pipeline.motion_paths import TorsoPath
+from radhar_cli.pipeline.noise import noise_products, snr_of_other_paths, snr_paths
 from radhar_cli.pipeline.physics import (
     antennas_of,
     canceller_of,
@@ -43,7 +44,6 @@ from radhar_cli.pipeline.physics import (
     gate_of,
     impairments_of,
     moving,
-    noise_stream,
     reflectors_of,
     wall_of,
     waveform_of,
@@ -75,11 +75,9 @@ from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.receiver.impairment import Impairment
-from radhar_cli.receiver.noise import WhiteNoise, noise_variance
 from radhar_cli.registry import own_products
 from radhar_cli.scene import Scene
 
-SMALLEST_POWER = float(np.finfo(float).tiny)  # below it squares lose their digits, or are 0
 SINGLE_RANGE_DB = 70.0  # of images in float32, in which a pixel in 1e5 differs by a level
 # In the order in which few are held at once: each follows the one it is made from.
 SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
@@ -119,7 +117,7 @@ def products(config: Config) -> dict[str, Product]:
         from radhar_cli.pipeline.board_products import board_products  # slow to import
 
         for own in own_products():
-            if own.name in ("antennas", "paths", "noise", "receiver"):
+            if own.name in ("antennas", "paths", "receiver"):
                 raise ConfigError(
                     f"product {own.name}: has no effect with radar.cfg; should be 'channels' or "
                     "'cube'"
@@ -182,26 +180,6 @@ def _knots_per_second(c: Config, source: PathSource, w: Waveform) -> float:
     return per_second if w.prf >= least * per_second else inf
 
 
-def snr_of_other_paths(c: Config) -> bool:
-    """Whether the SNR refers to another echo than the simulated: no wall, no room, nobody else."""
-    no_wall = c.wall is not None and c.snr_reference == "free_space"
-    others = c.room.reflectors or c.people or c.room.faces
-    return no_wall or bool(others) or c.room.back_wall_m is not None
-
-
-def snr_paths(
-    c: Config,
-    scene: Scene,
-    motions: tuple[Motion, ...],
-    antennas: Antennas,
-    wall: Wall | None,
-    w: Waveform,
-) -> PathSource:
-    """The paths whose power is P_s: of the sample's own person, straight there and back."""
-    through = None if c.snr_reference == "free_space" else wall
-    return together(sources_of(scene, motions[:1], antennas, through, w, mirrored=False))
-
-
 def _echo(c: Config) -> Iterator[Product]:
     yield Product("canceller", ("waveform",), lambda w: canceller_of(c, w.prf), _clutter(c))
     yield from _receiver(c)
@@ -228,22 +206,11 @@ def _clutter(c: Config) -> str:
 
 
 def _receiver(c: Config) -> Iterator[Product]:
-    def noise(scene: Scene, power: float, w: Waveform, channel: object) -> WhiteNoise:
-        if not SMALLEST_POWER <= power < inf:
-            raise SceneError(
-                f"{scene.name}: the echo's power is {power:g}; snr_db = {scene.snr_db:g} "
-                f"needs one from {SMALLEST_POWER:.3g} on (wall.loss_tangent, radar.carrier_hz, "
-                "motion.range_m), or should be null"
-            )
-        sigma = np.sqrt(noise_variance(power, scene.snr_db))
-        return WhiteNoise(float(sigma), partial(noise_stream, scene, channel=channel))
-
-    if c.snr_db is None:
-        yield Product("receiver", (), tuple, "nothing: snr_db is null")
+    if not c.has_noise:
+        yield Product("receiver", (), tuple, "nothing: no noise")
         return
     yield Product("channel", ("scene", "antennas"), channel_of, "whose noise it is")
-    needs = ("scene", "signal_power", "waveform", "channel")
-    yield Product("noise", needs, noise, "white noise, by snr_db")
+    yield from noise_products(c, "channel")
     yield Product(
         "receiver",
         ("scene", "noise", "waveform"),
@@ -548,7 +515,7 @@ def _doppler_maps(c: AnyConfig, signal: str) -> Iterator[Product]:
     suffix = signal.removeprefix("signal")
     masks = ("cfar",) if c.image.kind == "cfar" else ()
     # A mask compares cells with their neighbours, down to the noise, if there is any.
-    shallow = c.snr_db is not None if masks else c.image.dynamic_range_db <= SINGLE_RANGE_DB
+    shallow = c.has_noise if masks else c.image.dynamic_range_db <= SINGLE_RANGE_DB
     shallow = shallow and not c.output.power
     kinds: dict[str, tuple[tuple[str, ...], str]]
     kinds = {"stft": ((signal, "frames"), "STFT"), "fsst": ((signal, "fsst_frames"), "FSST")}

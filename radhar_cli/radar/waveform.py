@@ -71,6 +71,14 @@ class Waveform:
         return self.fc + self.slope * self.n0 / self.adc_rate
 
     @property
+    def sample_rate(self) -> float:
+        """Samples per second that noise is white up to: fs, or the PRF of one sample a pulse, Hz.
+
+        A receiver takes thermal noise from as many Hz.
+        """
+        return self.prf if self.n_adc == 1 else self.adc_rate
+
+    @property
     def range_step(self) -> float:
         """Spacing of the range bins, c fs/(2 K N_FFT), m."""
         return SPEED_OF_LIGHT * self.adc_rate / (2 * self.slope * self.n_fft)

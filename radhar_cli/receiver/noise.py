@@ -68,3 +68,15 @@ class WhiteNoise(Impairment):
         noisy = white_noise(look, look.memory["white noise"], self.sigma)
         noisy += x
         return noisy
+
+    def added_to(self, cube: Complex, name: str) -> Complex:
+        """Raw samples [frame, ...] with noise from the stream of a name, drawn frame by frame.
+
+        The same as `apply` of raw samples, in the precision of the cube.
+        """
+        rng, noisy = self.stream(name), np.empty_like(cube)
+        for frame, samples in enumerate(cube):
+            noisy[frame] = circular_gaussian(rng, samples.shape, single=True)
+            noisy[frame] *= np.float32(self.sigma)
+            noisy[frame] += samples
+        return noisy

@@ -13,7 +13,7 @@ from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import record, run
 from radhar_cli.tradeoff.settings import Scenes, Setting
 
-QUIET = "snr_db=null"
+QUIET = ("snr_db=null", "receiver.noise_figure_db=null")
 # How long a setting is timed in a round, at most this and one scene more.
 SECONDS = 0.6
 SSIM_WINDOW = 7
@@ -71,7 +71,7 @@ class SceneErrors:
 
     def of(self, setting: Setting) -> Errors:
         """How far the setting's data are from its reference, without noise."""
-        quiet = () if setting.noisy else (QUIET,)
+        quiet = () if setting.noisy else QUIET
         compared = self._sample((*setting.compared, *quiet))
         right = self._sample((*setting.exact, *quiet))
         return Errors(

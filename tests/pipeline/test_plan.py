@@ -24,7 +24,7 @@ OWN_HOP = {"processing": {"fsst_hop_pulses": 1}}
 # another product.
 SCENE = "waveform antennas wall motions paths canceller receiver"
 SIGNAL = f"{SCENE} direct echo accuracy signal"
-NOISE = "channel signal_power noise"
+NOISE = "channel signal_power noise_sigma noise"
 NOISY = f"{SIGNAL} {NOISE}"
 PROFILES = f"{SCENE} range_profiles rtm"
 NOISY_PROFILES = f"{PROFILES} direct {NOISE}"

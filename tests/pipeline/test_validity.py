@@ -281,12 +281,26 @@ def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
         ({"maps": ["rtm"], "processing": {"window_s": 0.2}}, "processing.window_s has no effect"),
         ({"body": {"shadowing": False}}, "body.shadowing has no effect"),
         ({"engine": {"kind": "cube", "tolerance_db": -60.0}}, "engine.tolerance_db has no effect"),
-        ({"snr_reference": "received"}, "snr_reference has no effect with wall: null"),
+        (
+            {"snr_reference": "received"},
+            "snr_reference has no effect with wall: null, radar.beam: null, radar.cfg: null; it "
+            "needs wall or radar.beam or radar.cfg",
+        ),
         (
             {"snr_reference": "received", "wall": {}, "snr_db": None},
             "snr_reference has no effect with snr_db: null",
         ),
-        ({"receiver": {"noise_slope_db": 12.0}}, "receiver.noise_slope_db has no effect"),
+        (
+            {"receiver": {"noise_slope_db": 12.0}},
+            "receiver.noise_slope_db has no effect with receiver.noise_corner_hz: 0.0; it needs "
+            "receiver.noise_corner_hz above 0",
+        ),
+        (
+            {"snr_db": 30, "receiver": {"noise_figure_db": 12.0}},
+            "receiver.noise_figure_db has no effect with snr_db: 30.0; it needs snr_db: null",
+        ),
+        ({"radar": {"position_m": [0, 1, 1]}}, "radar.position_m has no effect with radar.cfg"),
+        ({"cloud": {"pfa": 1e-4}}, "cloud has no effect with maps: [stft]"),
         ({"motion": {"gait_hz": 1.5}}, "motion.gait_hz has no effect with motion.model: human"),
         ({"timing": {"blend_s": 0.5}}, "timing.blend_s has no effect with motion.model: human"),
         (

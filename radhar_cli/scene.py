@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from functools import cached_property, lru_cache, partial
 from math import nan
 from typing import Any, TypeAlias
@@ -10,7 +11,7 @@ import numpy as np
 
 from radhar_cli.activity import Activity
 from radhar_cli.config.annotations import Mark, of_kind
-from radhar_cli.config.number import Distribution, Number, is_fixed, nominal, quantile
+from radhar_cli.config.number import Choice, Distribution, Number, is_fixed, nominal, quantile
 from radhar_cli.config.paths import at, changed, each_number
 from radhar_cli.config.schema import (
     FALLS,
@@ -382,6 +383,30 @@ def _fixed_and_drawn(same: ByIdentity, activity: Activity) -> tuple[Config, dict
 
     sections = {key: each_number(at(config, key), key, fix) for key in SCENE_KEYS}
     return changed(config, sections | {"activities": (activity.slug,)}), drawn
+
+
+class Redrawn(Enum):
+    """What is drawn again of a scene outside the model."""
+
+    NOTHING = "nothing"
+    NUMBERS = "numbers between bounds"
+    CHOICES = "one of a list, too"
+
+
+def redrawn(config: Config, activity: Activity) -> Redrawn:
+    """What another attempt at a scene of an activity may change."""
+    drawn = _fixed_and_drawn(ByIdentity(config), activity)[1]
+    again = [one for key, one in drawn.items() if key.startswith(REDRAWN) and key not in PERSONAL]
+    personal = [one for key, one in drawn.items() if key.startswith(REDRAWN) and key in PERSONAL]
+    again += personal if config.split.subjects is None else []
+    files = config.files_of(activity)
+    listed = files is not None and files.file is None and len(files.files) > 1
+    if listed or isinstance(config.motion.fall, Falls):
+        return Redrawn.CHOICES
+    if not again:
+        return Redrawn.NOTHING
+    chosen = any(isinstance(one, Choice) for one in again)
+    return Redrawn.CHOICES if chosen else Redrawn.NUMBERS
 
 
 def _fixed(config: Config, activity: Activity, draw: Callable[[str, Number], float]) -> Config:

@@ -1,7 +1,7 @@
 """Check scenes before any echo is computed: what lies outside the model, and what to warn of."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import IntFlag
 from math import log10
 from typing import Any, NamedTuple
@@ -39,7 +39,15 @@ from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, le
 from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.receiver.noise_law import Silent, Snr, Thermal
-from radhar_cli.scene import MAX_PLACES, Person, Scene, draw_scene, nominal_scene
+from radhar_cli.scene import (
+    MAX_PLACES,
+    Person,
+    Redrawn,
+    Scene,
+    draw_scene,
+    nominal_scene,
+    redrawn,
+)
 
 MIN_DISTANCE_M = 0.05
 LEAST_SNR_DB = -80.0  # of a raw sample; compression and windows gain less than that
@@ -53,6 +61,8 @@ GRID_PER_CYCLE = 40
 USUAL_DB = -80.0  # tolerance at whose knots a person alone is checked
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MAX_ATTEMPTS = 1000
+# Draws after which there are no more where none comes near, without and with lists to choose from.
+FAR_DRAWS, FAR_CHOICES = 50, 200
 TORSOS_APART_M = 0.5
 ROOM = "their motion.range_m and motion.cross_range_m should leave room"
 CHUNK = 65536
@@ -119,6 +129,10 @@ class SceneCheck:
     # WALL, a scatterer is inside the wall or outside the room; HALF_BAND, a delay lies beyond the
     # kept range bins; ALIASING, a Doppler lies beyond PRF/2; FLOOR, a height is below 0
     flags: Flags
+    # how far the worst scatterer is inside the wall or outside the room (WALL), and beyond the
+    # half-band (HALF_BAND), m; 0 where none is
+    inside_wall: float = 0.0
+    beyond_band: float = 0.0
 
     @property
     def too_close(self) -> bool:
@@ -141,6 +155,17 @@ class SceneCheck:
             return "a scatterer leaves the range half-band"
         return None
 
+    @property
+    def miss(self) -> tuple[str, float]:
+        """What makes an invalid scene so, and by how many metres."""
+        if self.too_close:
+            return "too close", MIN_DISTANCE_M - self.closest.distance
+        if Flags.WALL in self.flags:
+            return "wall", self.inside_wall
+        if Flags.RADAR in self.flags:  # by how much is not known
+            return "radar", 0.0
+        return "half-band", self.beyond_band
+
 
 def check_scene(scene: Scene) -> SceneCheck:
     """Check one scene on a grid of pulses dense enough for its motion."""
@@ -157,7 +182,7 @@ def _check_people(scene: Scene, people: tuple[Person, ...]) -> SceneCheck:
         p, start, antennas = room.positions(np.zeros(1)), np.zeros(1), antennas_of(scene)
         legs = leg(p, antennas.tx), leg(p, antennas.rx)
         closest = min(closest, _nearest(room.names, start, *legs))
-    return SceneCheck(closest, flags)
+    return replace(checks[0], closest=closest, flags=flags)
 
 
 def _checked(scene: Scene, person: Person) -> SceneCheck:
@@ -176,6 +201,7 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     flags = Flags.RUNS_OUT if getattr(motion, "stops", False) else Flags(0)
     flags |= Flags.SEAM if getattr(motion, "slides", False) else Flags(0)
     near, c = list[Approach](), scene.config
+    inside_wall = beyond_band = 0.0
     shared = not c.people and c.room.faces is None and c.radar.cfg is None
     ahead = list[Float]()
     for asked, places, pulses in _grid(motion, w, shared):
@@ -192,12 +218,13 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
         ahead.append(_ahead(torso, antennas))
         if wall is not None:
             tau += through_wall_delay(p, antennas, wall)
-            if wall.contains(p).any():
-                flags |= Flags.WALL
-        if box is not None and not box.holds(p):
-            flags |= Flags.WALL
-        if tau.max() * SPEED_OF_LIGHT / 2 >= w.half_band_range:
-            flags |= Flags.HALF_BAND
+            deepest = float(wall.depth(p).max())
+            if deepest >= 0:
+                flags, inside_wall = flags | Flags.WALL, max(inside_wall, deepest)
+        if box is not None and (outside := box.beyond(p)) > 0:
+            flags, inside_wall = flags | Flags.WALL, max(inside_wall, outside)
+        if (beyond := tau.max() * SPEED_OF_LIGHT / 2 - w.half_band_range) >= 0:
+            flags, beyond_band = flags | Flags.HALF_BAND, max(beyond_band, float(beyond))
         rate = np.abs(np.diff(tau)).max(axis=0, initial=0.0) / np.maximum(np.diff(t), 1e-300)
         if rate.max(initial=0.0) * w.f0 > w.prf / 2:
             flags |= Flags.ALIASING
@@ -214,7 +241,7 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
             near.append(one._replace(distance=max(one.distance, 0.0)))
     if min(part.min() for part in ahead) < -BEHIND_M and ahead[0][0] > 0:
         flags |= Flags.BEHIND
-    return SceneCheck(min(near), flags)
+    return SceneCheck(min(near), flags, inside_wall, beyond_band)
 
 
 def _meets(torso: Float, top: Float, antennas: Antennas) -> bool:
@@ -307,25 +334,50 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
 
     Raises:
         SceneError: a scatterer too close to an antenna (unless redrawn), any scene outside the
-            model under `on_invalid: error`, no valid scene in 1000 redraws, or no place for one of
-            `people`.
+            model under `on_invalid: error`, no valid scene in 1000 redraws, or as many as
+            `hopeless` takes, or no place for one of `people`.
     """
-    check: SceneCheck | None = None
-    for attempt in range(MAX_ATTEMPTS if config.on_invalid == "redraw" else 1):
-        scene = draw_scene(config, activity, index, attempt)
+    misses = list[tuple[str, float]]()
+    draws = DRAWS_OF[redrawn(config, activity)]
+    while True:
+        scene = draw_scene(config, activity, index, len(misses))
         check = _check_people(scene, scene.people[:1])
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
             return _with_others(config, scene, check.flags)
-    assert check is not None
+        misses.append(check.miss)
+        if len(misses) == MAX_ATTEMPTS or config.on_invalid != "redraw" or hopeless(misses, draws):
+            break
     why, cure = f"{check.invalid}{_drawn(scene.people[0])}", _cure(config, check)
     if config.on_invalid == "redraw":
+        counted = "1 draw, and nothing is drawn again" if draws == 1 else f"{len(misses)} draws"
         raise SceneError(
-            f"sample {activity.slug}/{index}: no scene inside the model in {MAX_ATTEMPTS} draws "
+            f"sample {activity.slug}/{index}: no scene inside the model in {counted} "
             f"(on_invalid: redraw); the last: {why}; {cure}"
         )
     raise SceneError(
         f"sample {activity.slug}/{index}: {why} (on_invalid: {config.on_invalid}); {cure}"
     )
+
+
+def hopeless(misses: Sequence[tuple[str, float]], draws: int) -> bool:
+    """Whether further draws of a scene are no use, as none so far came near the model.
+
+    So it is after some draws that are invalid by the same check, the best of which misses by more
+    than all of them differ; and at once where nothing is drawn again.
+
+    Args:
+        misses: of all draws, as `SceneCheck.miss` has them.
+        draws: so many, and multiples of it, are looked at.
+    """
+    if len(misses) % draws:
+        return False
+    sizes = [size for _, size in misses]
+    alike = len({kind for kind, _ in misses}) == 1
+    return draws == 1 or (alike and min(sizes) > max(sizes) - min(sizes))
+
+
+# Draws after which `hopeless` looks at them, by what is redrawn.
+DRAWS_OF = {Redrawn.NOTHING: 1, Redrawn.NUMBERS: FAR_DRAWS, Redrawn.CHOICES: FAR_CHOICES}
 
 
 def _with_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Flags]:

@@ -34,11 +34,14 @@ class Box(NamedTuple):
         ends = {"front": front, "back": back, "right": right, "left": left}
         return {**ends, "floor": 0.0, "ceiling": self.height}
 
-    def holds(self, p: Float) -> bool:
-        """Whether all positions p [3, ...] (m) are between the walls and below the ceiling."""
+    def beyond(self, p: Float) -> float:
+        """How far the farthest of positions p [3, ...] (m) is beyond a wall or the ceiling, m.
+
+        It is 0 or less where all are inside.
+        """
         x, y, z = p
-        beyond = (x < self.x[0]) | (x > self.x[1]) | (y < self.y[0]) | (y > self.y[1])
-        return not (beyond | (z > self.height)).any()
+        ends = (self.x[0] - x, x - self.x[1], self.y[0] - y, y - self.y[1], z - self.height)
+        return max(float(one.max()) for one in ends)
 
 
 class Face(NamedTuple):

@@ -58,6 +58,15 @@ class Wall:
             inside &= (p[axis] >= low) & (p[axis] <= high)
         return inside
 
+    def depth(self, p: Float) -> Float:
+        """How deep positions p [3, ...] lie in the slab, m; below 0 outside."""
+        sides = [
+            np.minimum(p[axis] - low, high - p[axis])
+            for axis, (low, high) in enumerate(self.bounds)
+        ]
+        nearest: Float = np.min(sides, axis=0)
+        return nearest
+
 
 class Crossing(NamedTuple):
     """One leg through the slab: chord (m) and number of faces crossed, [I, M] each."""

@@ -443,9 +443,44 @@ def test_a_band_that_is_too_short_for_people_says_so(monkeypatch: pytest.MonkeyP
 
 def test_no_valid_scene_ends_the_redraws(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MAX_ATTEMPTS", 3)
-    config = with_antenna_at("S1", np.array([2.0, 0.0, 1.51]), on_invalid="redraw")
-    with pytest.raises(SceneError, match=r"stationary/4: .* 3 draws .*head comes to 1 cm.*range_m"):
+    about = {**PERSON["motion"], "range_m": {"uniform": [1.99, 2.01]}}
+    config = with_antenna_at("S1", np.array([2.0, 0.0, 1.51]), on_invalid="redraw", motion=about)
+    with pytest.raises(SceneError, match=r"stationary/4: .* 3 draws .*head comes to .*range_m"):
         draw_valid_scene(config, STANDING, 4)
+
+
+def test_what_no_draw_can_change_is_drawn_once() -> None:
+    config = with_antenna_at("S1", np.array([2.0, 0.0, 1.51]), on_invalid="redraw")
+    with pytest.raises(SceneError, match=r"in 1 draw, and nothing is drawn again .*head comes to"):
+        draw_valid_scene(config, STANDING, 4)
+
+
+IN_THE_WALL = {"center_m": [3, 0, 1.25], "size_m": [4, 5, 2.5]}
+
+
+@pytest.mark.parametrize(
+    ("more", "draws", "why"),
+    [
+        ({"wall": {"eps_r": 1e6}}, 50, "half-band"),
+        ({"wall": IN_THE_WALL, "motion": {"range_m": 3}}, 50, "wall"),
+        ({"wall": IN_THE_WALL, "motion": {"range_m": {"choice": [2.9, 3]}}}, 200, "wall"),
+    ],
+)
+def test_hopeless_draws_end_early(more: dict[str, Any], draws: int, why: str) -> None:
+    """None of them comes near the model: each misses by more than they differ."""
+    config = Config.model_validate({"activities": ["punching"]} | more)
+    with pytest.raises(SceneError, match=rf"in {draws} draws .*{why}"):
+        draw_valid_scene(config, activity_named("punching"), 0)
+
+
+def test_a_scene_that_is_found_late_is_still_found() -> None:
+    """Some centimetres of 6 m leave room: misses differ by more than the best of them."""
+    wall = {"center_m": [4.1, 0, 1.25], "size_m": [5.8, 5, 2.5]}
+    motion = {"range_m": {"uniform": [1.5, 7.36]}, "angle_deg": 180}
+    config = Config.model_validate({"wall": wall, "motion": motion, "radar": {"prf_hz": 500}})
+    standing = activity_named("stationary")
+    attempts = [draw_valid_scene(config, standing, index)[0].attempt for index in range(6)]
+    assert max(attempts) > 50
 
 
 @pytest.mark.parametrize(

@@ -32,6 +32,7 @@ TITLES: Mapping[str, str] = {
     "fsst_compensated_denoised": "FSST, compensated, denoised",
 }
 ONE_ROW = 4
+MOST_COLUMNS = 4096  # of a map that is drawn, ten times the pixels of a panel
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,7 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
         cells = power_map.real
         most = float(np.quantile(np.abs(cells), 1 - image.clipped)) or 1.0
         look |= {"vmin": -most, "vmax": most}
+    cells = columns_that_show(cells)
     extent = (left, right, low / unit, high / unit)
     drawn = axes.imshow(cells, extent=extent, interpolation="antialiased", **look)
     axes.set_title(f"{TITLES[name]}   {power_map.entropy:.2f} bit", fontsize=9)
@@ -94,6 +96,16 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
     if shown.over is not None:
         shown.over(axes, name, unit)
     return drawn
+
+
+def columns_that_show(cells: Float) -> Float:
+    """Cells [rows, columns] in MOST_COLUMNS columns at most, each the mean of as many."""
+    every = -(-cells.shape[1] // MOST_COLUMNS)
+    if every == 1:
+        return cells
+    first = np.arange(0, cells.shape[1], every)
+    sums: Float = np.add.reduceat(cells, first, axis=1)
+    return sums / np.diff(np.append(first, cells.shape[1]))
 
 
 def _draw_truth(simulation: Simulation, axes: Axes, map_name: str, unit: float) -> None:

@@ -1,6 +1,6 @@
 """Points over bones, seen from several sides, still or as a film."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from PIL import Image
+from PIL import Image, ImageChops
+from PIL.GifImagePlugin import getdata, getheader
 
 from radhar_cli.arrays import Float
 from radhar_cli.replacing import replacing
@@ -18,6 +19,7 @@ Advance: TypeAlias = Callable[[int], object]
 # {view: (horizontal axis and its sign, vertical axis)} of points (ahead, left, up)
 VIEWS = {"from the radar": (1, -1.0, 2), "from the side": (0, 1.0, 2), "from above": (1, -1.0, 0)}
 KNEES = (9, 11)
+UNCHANGED = 255  # colours of a palette, and the number that stands for a pixel as it was
 LABELS = {0: "ahead (m)", 1: "right (m)", 2: "up (m)"}
 
 
@@ -114,17 +116,42 @@ class Film:
             artist.set_animated(True)
         canvas.draw()
         background = canvas.copy_from_bbox(self.figure.bbox)
-        frames: list[Image.Image] = []
-        palette: Image.Image | None = None
-        for frame in range(count):
-            canvas.restore_region(background)
-            show(frame)
-            for artist in moving:
-                self.figure.draw_artist(artist)
-            picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-            palette = palette or picture.quantize(256, Image.Quantize.MAXCOVERAGE)
-            frames.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
-            advance(1)
-        options: dict[str, Any] = {"append_images": frames[1:], "duration": frame_ms, "loop": 0}
-        with replacing(path) as unfinished:
-            frames[0].save(unfinished, format="GIF", save_all=True, **options)
+
+        def frames() -> Iterator[Image.Image]:
+            palette: Image.Image | None = None
+            for frame in range(count):
+                canvas.restore_region(background)
+                show(frame)
+                for artist in moving:
+                    self.figure.draw_artist(artist)
+                picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+                palette = palette or picture.quantize(UNCHANGED, Image.Quantize.MAXCOVERAGE)
+                yield picture.quantize(palette=palette, dither=Image.Dither.NONE)
+                advance(1)
+
+        with replacing(path) as unfinished, unfinished.open("wb") as file:
+            file.writelines(gif_blocks(frames(), frame_ms))
+
+
+def gif_blocks(frames: Iterator[Image.Image], frame_ms: int) -> Iterator[bytes]:
+    """A GIF that plays again and again, block by block; Pillow's `save` holds all frames at once.
+
+    Args:
+        frames: one or more pictures of the same palette of `UNCHANGED` colours.
+        frame_ms: duration of each.
+    """
+    last = next(frames)
+    yield from getheader(last, info={"loop": 0, "duration": frame_ms})[0]
+    changed, corner, duration = last, (0, 0), frame_ms  # what is still to be written
+    for frame in frames:
+        difference = ImageChops.subtract_modulo(frame, last)
+        box = difference.getbbox()
+        if box is None:  # the last one is shown for longer
+            duration += frame_ms
+            continue
+        yield from getdata(changed, corner, duration=duration, transparency=UNCHANGED)
+        changed, corner, duration, last = frame.crop(box), box[:2], frame_ms, frame
+        same = difference.crop(box).point([255, *[0] * 255], "1")
+        changed.paste(UNCHANGED, mask=same)
+    yield from getdata(changed, corner, duration=duration, transparency=UNCHANGED)
+    yield b";"

@@ -29,8 +29,10 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
     everybody += [(one.truth, one.motion) for one in simulation.others]
     alone = len(everybody) == 1
     middle = truth.positions.mean(axis=1) * (alone, alone, 0)
-    seen = np.concatenate([one.positions - middle[:, None] for one, _ in everybody], axis=1)
-    low, high = seen.min(axis=(0, 1)) - 0.1, seen.max(axis=(0, 1)) + 0.1
+    tracks = [joint for one, _ in everybody for joint in one.positions.swapaxes(0, 1)]
+    bounds = [((p - middle).min(axis=0), (p - middle).max(axis=0)) for p in tracks]
+    low = np.min([least for least, _ in bounds], axis=0) - 0.1
+    high = np.max([most for _, most in bounds], axis=0) + 0.1
     around = np.round((low + high) / 2) * (1, 1, 0)
     low = np.minimum(low, around - (1, 1, 0))
     high = np.maximum(high, np.add(around, (1, 1, 2)))

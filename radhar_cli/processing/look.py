@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from radhar_cli.arrays import Complex, Index
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 
+State = TypeVar("State")
 BLOCK = 2**13  # pulses of a slow-time process made at once
 
 
@@ -184,8 +185,8 @@ class Look:
     taps: tuple[float, ...] = (1.0,)  # of a canceller that x is seen after
     # where rows are drawn one after the other, the pulses of each that count
     spans: Sequence[slice] | None = None
-    # what impairments keep from one block of pulses to the next
-    memory: dict[str, Any] = field(default_factory=dict)
+    # what each impairment keeps from one block of pulses to the next, by its id
+    _states: dict[int, tuple[object, Any]] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of_all(
@@ -203,8 +204,26 @@ class Look:
         """M."""
         return len(self.pulses)
 
+    def state_of(self, impairment: object, start: Callable[[str], State]) -> State:
+        """What an impairment keeps from one block of pulses to the next, of its own.
+
+        Args:
+            impairment: the one that asks.
+            start: makes the first state, of a name for random streams: that of the look, for the
+                second and later impairments of the same class with their number.
+
+        Returns:
+            What `start` made, the same for all parts of a look.
+        """
+        if id(impairment) not in self._states:
+            earlier = sum(type(one) is type(impairment) for one, _ in self._states.values())
+            name = f"{self.name} {earlier + 1}" if earlier else self.name
+            self._states[id(impairment)] = impairment, start(name)
+        state: State = self._states[id(impairment)][1]
+        return state
+
     def part(self, first: int, stop: int) -> "Look":
-        """Some consecutive columns, with the same memory."""
+        """Some consecutive columns, with the same states of impairments."""
         return replace(self, pulses=self.pulses[first:stop])
 
     def taken(self, process: Callable[[Index], Complex]) -> Complex:

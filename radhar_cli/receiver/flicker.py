@@ -30,11 +30,13 @@ class FlickerNoise(Impairment):
 
     def apply(self, x: Complex, look: Look) -> Complex:
         """x + sigma v, v as white noise over fast time: W W^H."""
-        if "flicker" not in look.memory:
+
+        def started(name: str) -> _Processes:
             poles = self.processes(look.fast.waveform)
-            rngs = [self.stream(f"flicker {look.name} {k}") for k in range(len(poles[0]))]
-            look.memory["flicker"] = _Processes(rngs, *poles, look.fast.rank)
-        noisy = look.fast.colour(look.in_order(look.memory["flicker"]), self.sigma)
+            rngs = [self.stream(f"flicker {name} {k}") for k in range(len(poles[0]))]
+            return _Processes(rngs, *poles, look.fast.rank)
+
+        noisy = look.fast.colour(look.in_order(look.state_of(self, started)), self.sigma)
         noisy += x
         return noisy
 

@@ -16,6 +16,7 @@ class Impairment:
     def apply(self, x: Complex, look: Look) -> Complex:
         """What becomes of an echo [K, M] as `look` shows it: of `RawSamples` unless it is additive.
 
-        Consecutive blocks of a recording share `look.memory`.
+        A recording may come in consecutive blocks: `look.state_of(self, start)` is what it keeps
+        from one to the next.
         """
         raise RadharError(f"{type(self).__name__}: has no method apply; should have it")

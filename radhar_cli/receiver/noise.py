@@ -63,9 +63,7 @@ class WhiteNoise(Impairment):
 
     def apply(self, x: Complex, look: Look) -> Complex:
         """x + sigma v, v of covariance W W^H: of raw samples blocks of any length give the same."""
-        if "white noise" not in look.memory:
-            look.memory["white noise"] = self.stream(look.name)
-        noisy = white_noise(look, look.memory["white noise"], self.sigma)
+        noisy = white_noise(look, look.state_of(self, self.stream), self.sigma)
         noisy += x
         return noisy
 

@@ -20,6 +20,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 RATE_STEP_S = 1e-5
 WHOLE = "the whole activity"
+BLOCK = 2**14  # pulses at once
 
 
 @dataclass(frozen=True)
@@ -81,28 +82,37 @@ def truth(
     """Evaluate the kinematics of all scatterers at times t [M] (s), at every pulse if None."""
     if t is None:
         t = waveform.times(np.arange(waveform.n_pulses, dtype=float))
-
-    def rate(slab: Wall | None) -> Float:
-        """d tau/dt [M, I] by a central difference."""
-        early, late = (
-            point_delay(motion.positions(t + step), antennas, slab)
-            for step in (-RATE_STEP_S, RATE_STEP_S)
-        )
-        return (late - early).T / (2 * RATE_STEP_S)
-
+    count, joints = t.size, len(motion.names)
+    positions, velocity, doppler = np.empty((count, joints, 3)), *np.empty((2, count, joints))
+    with_hips = motion if isinstance(motion, HumanMotion | FileMotion) else None
+    hips = None if with_hips is None else np.empty((count, 2, 3))
+    for first in range(0, count, BLOCK):  # each step below takes several times what it leaves
+        block = slice(first, first + BLOCK)
+        positions[block] = motion.positions(t[block]).transpose(2, 1, 0)
+        rate, rate_with_wall = _rates(motion, antennas, wall, t[block])
+        velocity[block] = SPEED_OF_LIGHT / 2 * rate
+        doppler[block] = -waveform.f0 * rate_with_wall
+        if hips is not None and with_hips is not None:
+            hips[block] = with_hips.hip_joints(t[block]).transpose(2, 1, 0)
     phases = tuple(dict.fromkeys((WHOLE, *(name for _, name in motion.phases))))
-    with_hip_joints = (HumanMotion, FileMotion)
     return Truth(
         time=t,
-        positions=_by_pulse(motion.positions(t)),
-        radial_velocity=SPEED_OF_LIGHT / 2 * rate(None),
-        doppler=-waveform.f0 * rate(wall),
+        positions=positions,
+        radial_velocity=velocity,
+        doppler=doppler,
         phase_label=phase_numbers(motion.phases, t, phases, other=0),
         phases=phases,
-        hip_joints=_by_pulse(motion.hip_joints(t)) if isinstance(motion, with_hip_joints) else None,
+        hip_joints=hips,
     )
 
 
-def _by_pulse(p: Float) -> Float:
-    """[3, I, M] as [M, I, 3]."""
-    return np.ascontiguousarray(p.transpose(2, 1, 0))
+def _rates(motion: Motion, antennas: Antennas, wall: Wall | None, t: Float) -> tuple[Float, Float]:
+    """d tau/dt [M, I] at times t [M] (s) by a central difference, without and with the wall."""
+    late, early = (motion.positions(t + step) for step in (RATE_STEP_S, -RATE_STEP_S))
+
+    def rate(slab: Wall | None) -> Float:
+        change = point_delay(late, antennas, slab) - point_delay(early, antennas, slab)
+        return change.T / (2 * RATE_STEP_S)
+
+    in_air = rate(None)
+    return in_air, in_air if wall is None else rate(wall)

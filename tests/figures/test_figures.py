@@ -1,5 +1,6 @@
 """Figures are drawn whole, for scenes that are ordinary and for scenes that are not."""
 
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,14 @@ from PIL import Image
 from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.contact_sheet import draw_contact_sheet
 from radhar_cli.dataset.reading import open_dataset
-from radhar_cli.figures.maps_panel import decibels, draw_maps, of_simulation
+from radhar_cli.figures.maps_panel import (
+    MOST_COLUMNS,
+    columns_that_show,
+    decibels,
+    draw_maps,
+    of_simulation,
+)
+from radhar_cli.figures.sides import UNCHANGED, gif_blocks
 from radhar_cli.figures.stickman import draw_stickman, frame_count
 from radhar_cli.simulation.simulate import simulate
 
@@ -61,3 +69,46 @@ def test_decibels_of_an_all_zero_map_are_the_floor():
     found = decibels(np.array([[1.0, 0.1, 0.0]]), 50.0)
     assert found == pytest.approx(np.array([[0, -10, -50]]), rel=1e-15, abs=0)
     assert found[0, 2] == -50
+
+
+def test_a_film_holds_few_frames_at_a_time(tmp_path):
+    """A GIF reads back as it was drawn, and what does not change is shown for longer."""
+    rng = np.random.default_rng(0)
+    palette = rng.integers(0, 256, 3 * UNCHANGED)
+    alive, most = [], 0
+
+    def frames():
+        nonlocal most
+        for number in range(40):
+            picture = Image.fromarray(drawn[number], "P")
+            picture.putpalette(palette.tolist())
+            alive.append(weakref.ref(picture))
+            most = max(most, sum(one() is not None for one in alive))
+            yield picture
+            del picture
+
+    drawn = [np.zeros((30, 50), np.uint8)]
+    for number in range(1, 40):
+        drawn.append(drawn[-1].copy())
+        if number % 5:
+            drawn[-1][number % 20 : number % 20 + 7, number : number + 5] = rng.integers(0, 255)
+    path = tmp_path / "film.gif"
+    path.write_bytes(b"".join(gif_blocks(frames(), 50)))
+    assert most <= 3
+    shown = []
+    with Image.open(path) as film:
+        for number in range(film.n_frames):
+            film.seek(number)
+            shown += [np.asarray(film.convert("RGB"))] * (film.info["duration"] // 50)
+    assert film.n_frames == 40 - 7
+    colours = palette.reshape(-1, 3).astype(np.uint8)
+    assert all((one == colours[two]).all() for one, two in zip(shown, drawn, strict=True))
+
+
+def test_of_a_long_map_means_of_columns_are_drawn():
+    cells = np.arange(2 * (3 * MOST_COLUMNS + 1)).reshape(2, -1).astype(float)
+    drawn = columns_that_show(cells)
+    assert drawn.shape == (2, 3 * MOST_COLUMNS // 4 + 1)
+    assert drawn[0, :2].tolist() == [1.5, 5.5]
+    assert drawn[1, -1] == cells[1, -1]
+    assert columns_that_show(cells[:, :MOST_COLUMNS]).shape == (2, MOST_COLUMNS)

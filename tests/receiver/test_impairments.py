@@ -18,6 +18,7 @@ from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.flicker import FlickerNoise
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.interference import Line
+from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Scene, draw_scene, scene_numbers
 
 PRF, SAMPLES = 1000.0, 16
@@ -83,6 +84,22 @@ def test_the_sum_over_the_bins_amplifies_coloured_noise_as_it_does_white():
     direct = np.mean([np.abs(alone(one, coherent)) ** 2 for one in trials])
     cube = np.mean([np.abs(coherent(alone(one, RawSamples(w)))) ** 2 for one in trials])
     assert direct == pytest.approx(cube, rel=0.2)
+
+
+def test_two_of_a_kind_in_one_receiver_are_each_their_own():
+    """Two coloured noises have each its spectrum, two of any kind no random numbers in common."""
+    raw = RawSamples(waveform(4000))
+    first, second = flicker(50.0, 10.0), flicker(50.0, 20.0)
+    twins = [(first, second), (WhiteNoise(1.0, named), WhiteNoise(1.0, named))]
+    for one, other in twins:
+        look = Look.of_all("any", raw)
+        zero = np.zeros((SAMPLES, look.count), complex)
+        x, y = (impairment.apply(zero, look) for impairment in (one, other))
+        assert np.array_equal(x, alone(one, raw))  # the first as if it were alone
+        common = np.abs(np.vdot(x[:, :400], y[:, :400]))
+        assert common < 0.3 * np.linalg.norm(x[:, :400]) * np.linalg.norm(y[:, :400])
+        for band in (45.0, 55.0), (4.5, 5.5):
+            assert spectrum(y, band) == pytest.approx(spectrum(alone(other, raw), band), rel=0.7)
 
 
 @given(st.lists(st.integers(1, 40), min_size=1, max_size=6))

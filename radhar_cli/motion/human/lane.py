@@ -46,15 +46,20 @@ def along(s: Float, begins: Float, arc: float, side: float) -> tuple[Float, Floa
 
     Half turns of a length `arc` begin at `begins` [K] (m), to the left (side 1) or right (-1).
     """
-    forth, across = _arc()
     x, y, heading = s.copy(), np.zeros_like(s), np.zeros_like(s)
-    there = 1.0  # 1 on the way there, -1 on the way back
-    for begin in begins:
-        turned = s > begin
-        share = np.minimum((s[turned] - begin) / arc, 1.0)
-        beyond = np.maximum(s[turned] - begin - arc, 0.0)
-        x[turned] += there * (arc * forth(share) - (s[turned] - begin) - beyond)
-        y[turned] += there * side * arc * across(share)
-        heading[turned] += side * np.pi * minimum_jerk(share)
-        there = -there
+    if not begins.size:
+        return x, y, heading
+    forth, across = (part(np.ones(1))[0] * arc for part in _arc())
+    turn = np.searchsorted(begins, s, side="left") - 1  # the last that has begun, -1 for none
+    there = 1.0 - 2.0 * (np.arange(begins.size) % 2)  # 1 on the way there, -1 on the way back
+    straight = np.diff(begins) - arc  # between a turn and the next
+    x0 = begins[0] + np.concatenate([[0.0], np.cumsum(there[:-1] * (forth - straight))])
+    y0 = np.concatenate([[0.0], np.cumsum(there[:-1] * side * across)])
+    turned = turn >= 0
+    k, gone = turn[turned], s[turned] - begins[turn[turned]]
+    share, beyond = np.minimum(gone / arc, 1.0), np.maximum(gone - arc, 0.0)
+    forth, across = (arc * part(share) for part in _arc())
+    x[turned] = x0[k] + there[k] * (forth - beyond)
+    y[turned] = y0[k] + there[k] * side * across
+    heading[turned] = side * np.pi * (k + minimum_jerk(share))
     return x, y, heading

@@ -6,11 +6,14 @@ least jerk from rest to rest; twice continuously differentiable, peak slope 1.87
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Float
+from radhar_cli.arrays import Bool, Float, Index
+
+FEW_STEPS = 64  # of which all are evaluated at all times, by one matrix product
 
 
 def minimum_jerk(x: Float) -> Float:
@@ -41,6 +44,32 @@ class Step(NamedTuple):
     start: float
     length: float
     late: bool = False
+
+
+class StepsInOrder(NamedTuple):
+    """Steps in the order in which they begin, so that few of many are evaluated at a time."""
+
+    order: Index  # numbers of the steps [K]
+    starts: Float  # rising [K], s
+    # how many before the last that has begun, with it, hold all that may be under way
+    at_once: int
+
+    @classmethod
+    def of(cls, starts: Float, lengths: Float) -> "StepsInOrder":
+        """Sort steps that begin at `starts` and take `lengths` [K] (s)."""
+        order = np.argsort(starts, kind="stable")
+        begun = starts[order]
+        ended = np.maximum.accumulate(begun + lengths[order])  # the first k have all ended then
+        over = np.searchsorted(ended, begun, side="right")
+        return cls(order, begun, int((np.arange(1, over.size + 1) - over).max(initial=0)))
+
+    def earliest(self, t: Float) -> Index:
+        """Place in the order of the first step that may be under way at times t [M] (s).
+
+        Those before it have ended, and those from `at_once` places later on have not begun.
+        """
+        begun = np.searchsorted(self.starts, t, side="right")
+        return np.maximum(begun - self.at_once, 0)
 
 
 @dataclass(frozen=True)
@@ -85,10 +114,32 @@ class Course:
         """Values [C, M] at times t [M] (s)."""
         if not self.starts.size:
             return np.broadcast_to(self.initial, (len(self.channels), t.size))
+        if self.starts.size > FEW_STEPS:
+            return self._of_steps_under_way(t)
         x: Float = ((t - self.starts) / self.lengths).clip(0.0, 1.0)
         if self.late.any():
             x[self.late] **= 2
         return self.initial + self.weights @ (x * x * x * (10 + x * (6 * x - 15)))
+
+    @cached_property
+    def _in_order(self) -> tuple[StepsInOrder, Float]:
+        """The steps in order, and the values [C, K + 1] after the first k of them."""
+        steps = StepsInOrder.of(self.starts[:, 0], self.lengths[:, 0])
+        after = np.cumsum(self.weights[:, steps.order], axis=1)
+        return steps, self.initial + np.pad(after, ((0, 0), (1, 0)))
+
+    def _of_steps_under_way(self, t: Float) -> Float:
+        """Values [C, M] at times t [M] (s), in a time that does not grow with the steps."""
+        steps, after = self._in_order
+        earliest = steps.earliest(t)
+        values = after[:, earliest]
+        for later in range(steps.at_once):
+            k = steps.order[earliest + later]
+            x = ((t - self.starts[k, 0]) / self.lengths[k, 0]).clip(0.0, 1.0)
+            if self.late.any():
+                x = np.where(self.late[k], x * x, x)
+            values += self.weights[:, k] * minimum_jerk(x)
+        return values
 
     def at(self, t: float) -> dict[str, float]:
         """Values by channel at one time."""

@@ -86,12 +86,16 @@ class Turning:
 
     def _cycles(self, t: Float) -> Float:
         """Turns since the beginning [M]: from each to the next the frequency changes smoothly."""
-        f, paces, starts = self.turn.frequency, self.turn.paces, self._starts[:, None]
+        f, paces, starts = self.turn.frequency, self.turn.paces, self._starts
         rates = f / np.array((*paces[: starts.size + 1],) or (1.0,))
-        cycles: Float = rates[0] * (t - self.begin)
-        if paces and f:
-            gains = np.diff(rates) / f
-            cycles = cycles + gains @ minimum_jerk_integral(f * (t - starts[: gains.size]))
+        if not f or rates.size == 1:
+            return np.asarray(rates[0] * (t - self.begin))
+        # Within each 1/f from `starts` on the frequency goes from one rate to the next.
+        starts, turned = starts[: rates.size - 1], np.cumsum((rates[:-1] + rates[1:]) / (2 * f))
+        k = np.maximum(np.searchsorted(starts, t, side="right") - 1, 0)
+        since, gain = t - starts[k], (rates[k + 1] - rates[k]) / f
+        turned = np.concatenate([[0.0], turned])[k]
+        cycles: Float = turned + rates[k] * since + gain * minimum_jerk_integral(f * since)
         return cycles
 
     @property

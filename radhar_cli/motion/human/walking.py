@@ -215,8 +215,12 @@ class Walking:
     def _lost(self, t: Float) -> Float:
         """Way [M] (m) that a walker has lost in turns."""
         assert self.gait.lane is not None
-        on, off = minimum_jerk_integral((t - self._slower[..., None]) / self.ramp)
-        lost: Float = self.gait.lane.slow * self.gait.speed * self.ramp * (on - off).sum(axis=0)
+        on, off = self._slower  # each turn's ramps end before the next turn's begin
+        turn = np.maximum(np.searchsorted(on, t, side="right") - 1, 0)
+        before = np.concatenate([[0.0], np.cumsum((off - on) / self.ramp)])
+        slow, fast = (minimum_jerk_integral((t - ramp[turn]) / self.ramp) for ramp in (on, off))
+        way = self.gait.lane.slow * self.gait.speed * self.ramp
+        lost: Float = way * (before[turn] + slow - fast)
         return lost
 
     def _passes(self, s: Float) -> Float:

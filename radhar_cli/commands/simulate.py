@@ -38,6 +38,16 @@ def simulate(
     motion: Annotated[
         Path | None, typer.Option("--motion", help="Play this motion file (.bvh, .amc, .npz).")
     ] = None,
+    up: Annotated[
+        str | None, typer.Option(help="With --motion: axis of the file that points up, such as y.")
+    ] = None,
+    joints: Annotated[
+        Path | None,
+        typer.Option(help="With --motion: YAML of our joints and the file's names of them."),
+    ] = None,
+    skeleton: Annotated[
+        Path | None, typer.Option(help="With --motion: the .asf of an .amc, if not beside it.")
+    ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,
     maps: Maps = None,
@@ -70,6 +80,7 @@ def simulate(
     from radhar_cli.config import load_config
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file, refuse_foreign_files
+    from radhar_cli.errors import ConfigError
     from radhar_cli.simulation import scene_file
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
@@ -79,7 +90,14 @@ def simulate(
     overrides = with_tolerance(set_, tolerance)
     if motion is not None:
         activity = activity or FROM_FILE
-        overrides = [*_looking_at(motion, activity), *overrides]
+        reading = _how_to_read(activity, up, joints, skeleton)
+        overrides = [*_looking_at(motion, activity), *reading, *overrides]
+    else:
+        for option, value in (("up", up), ("joints", joints), ("skeleton", skeleton)):
+            if value is not None:
+                raise ConfigError(
+                    f"--{option} {value}: should go with --motion, whose file it reads"
+                )
     loaded = load_config(config, overrides)
     chosen = None if maps is None else map_names(maps.split(","))
     refuse_file(out)
@@ -153,6 +171,26 @@ def _looking_at(motion: Path, slug: str) -> list[str]:
     one = f"classes.{slug}"
     as_it_is = [f"{one}.start=0", f"{one}.playback_speed=1", f"{one}.mirror=0"]
     return [f"{one}.files=[{path}]", f"activities=[{slug}]", *as_it_is]
+
+
+def _how_to_read(
+    slug: str, up: str | None, joints: Path | None, skeleton: Path | None
+) -> list[str]:
+    """Overrides of what options say of a motion file."""
+    import json
+
+    from radhar_cli.config.documents import read_document
+
+    said = (
+        ("up", up),
+        ("joints", None if joints is None else read_document(joints)[0]),
+        ("skeleton", None if skeleton is None else str(skeleton.absolute())),
+    )
+    return [
+        f"--{key} classes.{slug}.{key}={json.dumps(value)}"
+        for key, value in said
+        if value is not None
+    ]
 
 
 def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:

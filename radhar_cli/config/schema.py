@@ -664,6 +664,11 @@ class FilesConfig(Section):
     def _one_of_them(self) -> "FilesConfig":
         if self.file is not None and self.file >= len(self.files):
             raise wrong(f"should have a file below {len(self.files)}, the number of files")
+        if self.skeleton is not None:
+            if not self.skeleton.lower().endswith(".asf"):
+                raise wrong("should have an .asf file as skeleton")
+            if not any(path.lower().endswith((".amc", "*")) for path in self.files):
+                raise wrong("should have .amc files with a skeleton")
         if self.section_s is not None and not self.section_s[0] < self.section_s[1]:
             raise wrong("should have a section_s that begins before it ends")
         return self

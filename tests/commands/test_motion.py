@@ -8,6 +8,7 @@ from recorded import frames, write_npz
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.motion.files.clip import clip_of
+from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import read_motion
 
 SMALL = """
@@ -21,7 +22,7 @@ classes: {wave: {files: [theirs.npz], joints: {head: Kopf}}}
 
 def test_a_motion_is_exported_and_read_back(tmp_path):
     path, bvh = tmp_path / "x.yaml", tmp_path / "kick.bvh"
-    names = [n if n != "head" else "Kopf" for n in clip_names()]
+    names = [n if n != "head" else "Kopf" for n in WANTED]
     write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
     path.write_text(SMALL)
     common = [path, "--activity", "kicking", "--nominal"]
@@ -58,15 +59,9 @@ def test_our_own_motion_of_the_demo_can_be_simulated(tmp_path, activity):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def clip_names():
-    from radhar_cli.motion.files.names import WANTED
-
-    return [*WANTED]
-
-
 def test_simulate_motion_uses_the_joint_names_of_a_class(tmp_path):
     path = tmp_path / "x.yaml"
-    names = [n if n != "head" else "Kopf" for n in clip_names()]
+    names = [n if n != "head" else "Kopf" for n in WANTED]
     write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
     path.write_text(SMALL)
     look = ["simulate", path, "--motion", tmp_path / "theirs.npz", "--no-figures", "--maps", "stft"]
@@ -74,3 +69,30 @@ def test_simulate_motion_uses_the_joint_names_of_a_class(tmp_path):
     assert done.returncode == 2
     assert "has no joint that is head by its name" in done.stderr
     done = ok(*look, "-o", tmp_path / "a", "--activity", "wave")
+
+
+def test_options_say_what_a_motion_file_does_not(tmp_path):
+    """`--up` and `--joints` stand for keys of the class, and messages name the option."""
+    config, path, names = tmp_path / "c.yaml", tmp_path / "x.npz", [*WANTED]
+    config.write_text("duration_s: 1\nradar: {prf_hz: 500}\nmotion: {range_m: 6}\nmaps: [stft]\n")
+    names[WANTED.index("right_knee")] = "Knie"
+    write_npz(path, frames("punching", 1.2), names=names)
+    (tmp_path / "ours.yaml").write_text("right_knee: Knie\n")
+    (tmp_path / "wrong.yaml").write_text("knee: Knie\n")
+    play = ["simulate", config, "--no-figures", "-o", tmp_path / "out", "--motion", path]
+    done = ok(*play, "--joints", tmp_path / "ours.yaml", "--up", "z")
+    assert "; z is up; " in done.stdout
+    refused = {
+        (): "no joint that is right_knee by its name",
+        ("--joints", tmp_path / "wrong.yaml"): "--joints: classes.from_file.joints",
+        ("--up", "w"): "--up: classes.from_file.up",
+        ("--skeleton", "x.asf"): "--skeleton: classes.from_file",
+    }
+    for words, message in refused.items():
+        done = radhar(*play, *words)
+        assert done.returncode == 2
+        assert message in done.stderr
+    alone = radhar("simulate", config, "-o", tmp_path / "out", "--up", "y")
+    assert (alone.returncode, alone.stderr) == (
+        *(2, "radhar: --up y: should go with --motion, whose file it reads\n"),
+    )

@@ -102,6 +102,12 @@ def test_another_file_of_the_same_name_is_another_data_set(place: Path) -> None:
         ("classes: {wave: {files: [b.npz], joints: {knee: x}}}", "did you mean"),
         ("classes: {wave: {files: [b.npz], up: w}}", "classes.wave.up"),
         ("classes: {wave: {files: [b.npz], start: 2}}", "should be from 0 to 1"),
+        (
+            "classes: {wave: {files: [b.npz], skeleton: b.asf}}",
+            "should have .amc files",
+        ),
+        ("classes: {wave: {files: [b.amc], skeleton: b.txt}}", "should have an .asf file as skel"),
+        ("classes: {wave: {files: [b.npz], past_end: velocity}}", "should be 'rest' or 'loop'"),
         ("classes: {wave: {files: [b.npz], section_s: [2, 1]}}", "begins before it ends"),
         ("classes: {wave: {files: [b.npz], file: 1}}", "should have a file below 1"),
         ("classes: {wave: {files: [b.npz], speed: 2}}", "classes.wave.speed.*unknown key"),

@@ -18,12 +18,16 @@ STATURES = (0.9, 2.3)  # m, of people
 FASTEST = 30.0  # m/s, of any joint
 MIN_FRAMES = 12  # frames
 UPRIGHT = 0.8  # least cosine of the angle to the vertical that tells which way is up
+MOST = 0.5  # share of the frames in which the head is above the feet, at least
+BENT = 0.01  # of the stature; knees are before the line from hip to ankle, by more than this
 # Two passes of an order of 2 are 3 dB down, each 1.5 dB, at 0.802 of the corner of one.
 ORDER, TWO_PASSES = 2, (sqrt(2) - 1) ** 0.25
 
 _HEAD, _ANKLES = JOINTS.index("head"), [JOINTS.index(f"{s}_ankle") for s in ("right", "left")]
 _KNEES = [JOINTS.index(f"{s}_knee") for s in ("right", "left")]
 _HIP = JOINTS.index("hip")
+_RIGHT = [JOINTS.index("right_shoulder"), len(JOINTS)]
+_LEFT = [JOINTS.index("left_shoulder"), len(JOINTS) + 1]
 # Axes of a file, by which of them is up, that are ahead, to the left and up: all right-handed.
 _AXES = {
     "x": ((1, 1), (2, 1), (0, 1)),
@@ -45,6 +49,7 @@ class Clip:
     hip_joints: bool  # whether the file has them; else they are at the hip
     stature: float  # of the recorded person by the legs, m
     up: str = "z"  # axis of the file that points up
+    mirrored: bool = False  # the file is a mirror image, or its axes are left-handed
 
     @property
     def seconds(self) -> float:
@@ -91,7 +96,10 @@ def clip_of(
     p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)
     p = _smooth(p, rate, low_pass) / units
     p[..., 2] += ANKLE - p[:, _ANKLES, 2].min()
-    return Clip(file.where, p, rate, own_hips, stature, up)
+    mirrored = _is_mirrored(p)
+    if mirrored:
+        p[..., 1] *= -1
+    return Clip(file.where, p, rate, own_hips, stature, up, mirrored)
 
 
 def _stature(units: float, unit: float | None, of_file: float | None, where: str) -> float:
@@ -137,24 +145,48 @@ def _refuse_jumps(file: MotionRecording, p: Float, rate: float, metres: float) -
 
 
 def _up(file: MotionRecording, wanted: list[int], p: Float) -> str:
-    """Which axis points up: the person stands in the rest pose, and most of the time."""
-    moving = np.median(p[:, _HEAD] - p[:, _ANKLES].mean(axis=1), axis=0)
-    guesses = [_axis_along(moving)]
+    """Which axis points up: heads are above feet in most frames; else, as the rest pose stands.
+
+    The rest pose comes second, for it need not stand: in games its root is turned by every frame.
+    """
+    moving = _axis_along(p[:, _HEAD] - p[:, _ANKLES].mean(axis=1))
+    if moving is not None:
+        return moving
     if file.rest is not None:
         rest = file.rest[wanted]
-        guesses.append(_axis_along(rest[_HEAD] - rest[_ANKLES].mean(axis=0)))
-    known = {guess for guess in guesses if guess is not None}
-    if len(known) != 1:
-        told = " or ".join(sorted(known)) or "no axis"
-        raise wrong(file.where, f"does not tell which axis points up ({told}); up: y would say so")
-    return known.pop()
+        standing = _axis_along((rest[_HEAD] - rest[_ANKLES].mean(axis=0))[None])
+        if standing is not None:
+            return standing
+    raise wrong(
+        file.where,
+        "does not tell which axis points up, for nobody stands in it; up: y of its class would say "
+        "so (--up y)",
+    )
 
 
-def _axis_along(vector: Float) -> str | None:
-    size, axis = float(np.linalg.norm(vector)), int(np.abs(vector).argmax())
-    if not abs(vector[axis]) > UPRIGHT * size:
-        return None
-    return ("-" if vector[axis] < 0 else "") + "xyz"[axis]
+def _axis_along(vectors: Float) -> str | None:
+    """The axis along which most vectors [frames, 3] lie, with its sign."""
+    sizes = np.linalg.norm(vectors, axis=1)
+    for axis, name in enumerate("xyz"):
+        for sign in (1, -1):
+            along = sign * vectors[:, axis] > UPRIGHT * sizes
+            if along.mean() > MOST:
+                return ("-" if sign < 0 else "") + name
+    return None
+
+
+def _is_mirrored(p: Float) -> bool:
+    """Whether left and right are exchanged, as in left-handed axes: knees bend backwards.
+
+    Positions [frames, 15, 3] over the stature, z up; people who lie tell nothing.
+    """
+    left = (p[:, _LEFT] - p[:, _RIGHT])[..., :2].sum(axis=1)
+    ahead = np.stack([left[:, 1], -left[:, 0]], axis=1)
+    ahead /= np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
+    legs = (p[:, len(JOINTS) :] + p[:, _ANKLES]) / 2
+    bend = np.einsum("fka,fa->f", (p[:, _KNEES] - legs)[..., :2], ahead) / len(_KNEES)
+    upright = p[:, _HEAD, 2] - p[:, _ANKLES, 2].mean(axis=1) > UPRIGHT / 2
+    return bool(upright.any() and bend[upright].mean() < -BENT)
 
 
 def _smooth(p: Float, rate: float, low_pass: float | None) -> Float:

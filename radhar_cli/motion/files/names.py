@@ -19,14 +19,15 @@ WANTED = (*JOINTS, *HIP_JOINTS)
 _BEGINS: dict[str, tuple[str, ...]] = {
     "torso": (
         *("thorax", "spine2", "spine1", "chest2", "upperchest", "chest", "spinechest"),
-        *("spinemid", "spine003", "spine002", "spine001", "spine", "torso"),
+        *("spinemid", "spine003", "spine002", "spine001"),  # Blender's Rigify
+        *("spine04", "spine03", "spine02", "spine01", "spine", "torso"),  # Unreal's mannequins
     ),
     "head": ("head",),
     "hip": ("hips", "hip", "pelvis", "root", "spinebase", "hipcenter", "hipscenter"),
-    "shoulder": ("upperarm", "uparm", "humerus", "arm", "shldr", "shoulder"),
-    "elbow": ("forearm", "lowerarm", "lowarm", "radius", "elbow"),
+    "shoulder": ("upperarm", "uparm", "humerus", "uarm", "arm", "shldr", "shldrbend", "shoulder"),
+    "elbow": ("forearm", "lowerarm", "lowarm", "farm", "forearmbend", "radius", "elbow"),
     "hand": ("wrist", "hand"),
-    "hip_joint": ("upleg", "upperleg", "thigh", "femur", "hip", "hipjoint"),
+    "hip_joint": ("upleg", "upperleg", "thigh", "thighbend", "femur", "hip", "hipjoint"),
     "knee": ("knee", "shin", "calf", "lowerleg", "lowleg", "tibia", "leg"),
     "ankle": ("ankle", "foot"),
 }
@@ -73,8 +74,9 @@ def joint_numbers(file: MotionRecording, own: Mapping[str, str]) -> list[int | N
     if missing:
         raise wrong(
             file.where,
-            f"has no joint that is {' or '.join(missing[:3])} by its name; it has "
-            f"{_listed(file.names)}; joints: {{{missing[0]}: NAME}} says which one it is",
+            f"has no joint that is {' or '.join(missing)} by its name; it has "
+            f"{_listed(file.names)}; joints: {{{missing[0]}: NAME, ...}} of its class says which "
+            "these are (--joints FILE.yaml)",
         )
     return [found[joint] for joint in WANTED]
 

@@ -7,6 +7,7 @@ import pytest
 from radhar_cli.arrays import Float
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.names import WANTED, joint_numbers
+from radhar_cli.motion.skeleton import JOINTS
 
 
 @dataclass
@@ -99,6 +100,12 @@ RIGS = {
         ["Bip01 Spine1", "Bip01 Head", "Bip01 Pelvis", "Bip01 R UpperArm", "Bip01 R Forearm"]
         + ["Bip01 R Hand", "Bip01 R Calf", "Bip01 R Foot"],
     ),
+    "Unreal": (
+        ["root", "pelvis", "spine_01", "spine_02", "spine_03", "neck_01", "head"]
+        + both("clavicle_{l}", "upperarm_{l}", "lowerarm_{l}", "hand_{l}")
+        + both("thigh_{l}", "calf_{l}", "foot_{l}", "ball_{l}"),
+        ["spine_03", "head", "pelvis", "upperarm_r", "lowerarm_r", "hand_r", "calf_r", "foot_r"],
+    ),
     "Second Life": (
         ["hip", "abdomen", "chest", "neck", "head"]
         + both("{l}Collar", "{l}Shldr", "{l}ForeArm", "{l}Hand", "{l}Thigh", "{l}Shin", "{l}Foot"),
@@ -167,6 +174,11 @@ def test_other_names_need_a_table() -> None:
     rig = Rig(foreign, (None,) * len(names))
     with pytest.raises(MotionFileError, match="no joint that is right_knee by its name"):
         joint_numbers(rig, {})
+    with pytest.raises(MotionFileError) as refused:
+        joint_numbers(Rig(tuple("abcdefghijklm"), (None,) * 13), {})
+    assert "no joint that is " + " or ".join(JOINTS) + " by its name" in str(refused.value)
+    assert "it has a, b, c, d" in str(refused.value)
+    assert "joints: {torso: NAME, ...}" in str(refused.value)
     found = joint_numbers(rig, {"right_knee": "Knie_rechts"})
     assert foreign[found[WANTED.index("right_knee")] or 0] == "Knie_rechts"
     with pytest.raises(MotionFileError, match=r"no joint 'Knie_rechs' .*mean 'Knie_rechts'"):

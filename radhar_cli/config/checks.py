@@ -127,9 +127,9 @@ def _processing_problems(c: AnyConfig) -> Iterator[Problem]:
         yield of_maps
     if c.radar.cfg is None:
         yield from _waveform_problems(c)
-        yield from _signal_problems(c)
         yield from _clutter_problems(c)
-        yield from _gate_problems(c)
+    yield from _signal_problems(c)
+    yield from _gate_problems(c)
     yield from _image_problems(c)
 
 
@@ -267,6 +267,24 @@ def _board_problems(c: Config) -> Iterator[Problem]:
     if clutter not in ("mean", "none"):
         right = "should be mean (of each frame) or none with radar.cfg"
         yield Problem("processing.clutter", clutter, right)
+    if clutter == "mean" and board.loops == 1:
+        right = "should be none with frames of 1 loop (frameCfg), of which a mean leaves nothing"
+        yield Problem("processing.clutter", clutter, right)
+    if radar.waveform != "fmcw":
+        yield Problem("radar.waveform", radar.waveform, "should be fmcw with radar.cfg")
+    if c.image.kind == "signed":
+        right = "should be decibel or cfar without radar.waveform: impulse"
+        yield Problem("image.kind", "signed", right)
+    sheets = [name for name in c.maps if name in FRAME_MAPS]
+    for key in ("power", "column_labels") if sheets else ():
+        if value := getattr(c.output, key):
+            right = (
+                f"should be left out with {', '.join(sheets)}, whose images are sheets of frames"
+            )
+            yield Problem(f"output.{key}", value, right)
+    products = [name for name in c.output.products if name in FRAME_MAPS]
+    if reasons := [why for name in products if (why := why_no_map(c, name)) is not None]:
+        yield Problem("output.products", products, f"should not have these: {reasons[0]}")
     if c.receiver.tones or support(c.receiver.noise_corner_hz)[1] > 0:
         right = "should have neither with radar.cfg: they are of one channel"
         yield Problem("receiver", "tones, noise_corner_hz", right)
@@ -368,36 +386,40 @@ def _waveform_problems(c: AnyConfig) -> Iterator[Problem]:
 
 
 def _window(c: AnyConfig, w: Waveform) -> int:
-    """Pulses of the STFT's window of a waveform."""
-    return c.processing.window_pulses(w.duration, w.prf, w.f0)
+    """Pulses of the STFT's window of a waveform, at most those of a board's frame."""
+    length = c.processing.window_pulses(w.duration, w.prf, w.f0)
+    return length if c.radar.cfg is None else min(length, c.radar.header.loops)
 
 
 HIGHEST_F0 = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz")
 
 
 def _signal_problems(c: AnyConfig) -> Iterator[Problem]:
-    processing, padding = c.processing, c.processing.stft_fft_length
+    processing, padding, board = c.processing, c.processing.stft_fft_length, c.radar.cfg is not None
     shortest, longest = _waveform(c, *HIGHEST_F0), _waveform(c, "duration_s", "prf_hz")
     pulses, most = shortest.n_pulses, longest.n_pulses
     window, longest_window = _window(c, shortest), _window(c, longest)
     kept = pulses - 1 if processing.clutter == "difference" else pulses
-    doppler = [name for name in c.maps if name != "rtm"]
+    there = "pulses there are"
+    if board:  # frames are cancelled, filtered and windowed one by one
+        kept, there = c.radar.header.loops, "pulses of a frame, the loops of radar.cfg"
+    doppler = [name for name in c.maps if name != "rtm" and name not in FRAME_MAPS]
     duration: tuple[str, object] = ("duration_s", c.duration_s)
     given = "window_s" in processing.model_fields_set and processing.window_s is not None
     of_window = ("processing.window_s", processing.window_s) if given else duration
-    if most > MAX_PULSES:
+    if most > MAX_PULSES and not board:
         right = f"at most {MAX_PULSES} pulses (duration_s * prf_hz is {most})"
         yield Problem(*duration, f"should give {right}: radar.prf_hz may be {longest.prf:g}")
-    if pulses < 2:
+    if pulses < 2 and not board:
         yield Problem(*duration, f"should hold at least 2 pulses (it holds {pulses})")
-    if doppler and window < MIN_WINDOW:
+    if doppler and window < min(MIN_WINDOW, kept if board else MIN_WINDOW):
         right = f"the window of window_s * prf_hz at least {MIN_WINDOW} pulses (it has {window})"
         yield Problem(*of_window, f"should make {right}: radar.prf_hz may be {shortest.prf:g}")
     if doppler and window > kept:
-        right = f"should make the window at most the {kept} pulses there are (it has {window})"
+        right = f"should make the window at most the {kept} {there} (it has {window})"
         yield Problem(*of_window, right)
     if any("denoised" in name for name in doppler) and processing.savgol.frame > kept:
-        right = f"should be at most the {kept} pulses there are"
+        right = f"should be at most the {kept} {there}"
         yield Problem("processing.savgol.frame", processing.savgol.frame, right)
     if padding is not None and padding < longest_window:
         right = f"should be null or at least the window of {longest_window} pulses"
@@ -428,6 +450,8 @@ def _gate_problems(c: AnyConfig) -> Iterator[Problem]:
         return
     within = processing.gate_m
     half_band = _waveform(c, "bandwidth_hz").half_band_range  # the least
+    if c.radar.cfg is not None:  # of whose complex samples every range bin is kept
+        half_band = SPEED_OF_LIGHT * c.radar.header.adc_rate_hz / (2 * c.radar.header.slope_hz)
     if isinstance(within, tuple):
         if within[1] >= half_band:
             right = f"should end before the range half-band does, at {half_band:.4g} m"
@@ -435,7 +459,8 @@ def _gate_problems(c: AnyConfig) -> Iterator[Problem]:
     elif 2 * within >= half_band:
         right = f"should be less than half the range half-band of {half_band:.4g} m"
         yield Problem("processing.gate_m", within, right)
-    yield from _too_many(c, "processing.range_sum", "gated", "the gate")
+    if c.radar.cfg is None:
+        yield from _too_many(c, "processing.range_sum", "gated", "the gate")
 
 
 def _too_many(c: AnyConfig, key: str, value: object, what: str) -> Iterator[Problem]:
@@ -594,7 +619,7 @@ def _image_problems(c: AnyConfig) -> Iterator[Problem]:
         )
         yield Problem("image.cfar.training", list(cfar.training), right)
     limits = c.image.doppler_limits_mps
-    if limits is None or set(c.maps) == {"rtm"} or c.radar.cfg is not None:
+    if limits is None or not set(c.maps) - {"rtm", *FRAME_MAPS}:
         return
     shortest = _waveform(c, *HIGHEST_F0)
     fastest = shortest.highest_speed

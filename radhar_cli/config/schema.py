@@ -78,7 +78,15 @@ from radhar_cli.errors import did_you_mean
 from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
-from radhar_cli.radar.board import DEVICES, EVEN, Array
+from radhar_cli.radar.board import (
+    DEVICES,
+    EVEN,
+    MAX_SIDELOBE,
+    Array,
+    Places,
+    longest_rows,
+    sidelobe,
+)
 from radhar_cli.radar.materials import Material
 from radhar_cli.registry import is_known, own_products
 from radhar_cli.rounding import half_up
@@ -1173,6 +1181,7 @@ MAP_NAMES = (
 
 
 # Maps of a board, frame by frame: data sets hold them as arrays, and sheets of frames as images.
+MIN_LOOPS = 4  # of a frame: of 2 or fewer, a Hann window keeps one
 FRAME_MAPS = ("range_doppler", "range_azimuth", "range_elevation", "points")
 # What comes with the points, and with any of these maps.
 OF_POINTS = ("points", "points_start", "points_person")
@@ -1669,11 +1678,12 @@ def why_no_map(config: "AnyConfig", name: str) -> str | None:
     if name in (*FRAME_MAPS, "cube"):
         if radar.cfg is None:
             return f"{name} is of the frames of a board (radar.cfg, docs/guide/boards.md)"
-        if name != "range_elevation" or _has_elevation(radar):
-            return None
-        return "all elements of the array lie in one row"
+        return _why_no_frames(config, name)
     if name not in MAP_NAMES:  # of a user's own
         return None
+    if radar.cfg is not None and name != "rtm" and radar.header.loops < MIN_WINDOW:
+        loops = f"{radar.header.loops} loop{'s' * (radar.header.loops > 1)}"
+        return f"the {loops} of a frame (radar.cfg, frameCfg) are fewer than {MIN_WINDOW} pulses"
     if radar.waveform == "cw" and name == "rtm":
         return "radar.waveform: cw has no range"
     if radar.waveform == "cw" and radar.output == "real" and "compensated" in name:
@@ -1693,14 +1703,58 @@ def why_no_map(config: "AnyConfig", name: str) -> str | None:
     return None
 
 
-def _has_elevation(radar: RadarConfig) -> bool:
-    """Whether the virtual elements of a board lie at more than one height.
+def _why_no_frames(config: "AnyConfig", name: str) -> str | None:
+    """Why a board cannot make the cube or a map of its frames; None if it can.
 
     A board that lacks elements which its .cfg names is refused elsewhere.
     """
+    header, places = config.radar.header, _virtual_places(config.radar)
+    if name in ("range_doppler", "points") and header.loops < MIN_LOOPS:
+        loops = f"{header.loops} loop{'s' * (header.loops > 1)}"
+        return f"the {loops} of a frame (radar.cfg, frameCfg) show no Doppler; {MIN_LOOPS} do"
+    if not places:
+        return None
+    for axis, (of, line) in enumerate((("range_azimuth", "column"), ("range_elevation", "row"))):
+        if name == of and len({round(place[axis], 6) for place in places}) == 1:
+            return f"all elements of the array lie in one {line}"
+    if name == "points" and isinstance(config, Config):
+        return _why_no_points(config, places)
+    return None
+
+
+def _why_no_points(config: Config, places: Places) -> str | None:
+    """Why the elements of a board do not tell where points are; None if they do.
+
+    The firmware's chain takes the elements of a row for neighbours. The other knows their places,
+    but takes high sidelobes of a sparse row for targets of their own.
+    """
+    row = [places[v][0] for v in longest_rows(places, 0)[0]]
+    apart, chain = [after - before for before, after in pairwise(row)], config.cloud.chain
+    if not apart:
+        return None
+    neighbours = min(apart) >= 0.8 and max(apart) <= 1.2
+    if neighbours or (chain == "best" and min(apart) <= 1.2 and sidelobe(row) <= MAX_SIDELOBE):
+        return None
+    at = ", ".join(f"{place:g}" for place in row)
+    return (
+        f"the longest row of the array, with elements at {at} half wavelengths, does not tell "
+        f"azimuths apart for the points of cloud.chain: {chain}"
+    )
+
+
+def _virtual_places(radar: RadarConfig) -> Places:
+    """Places of a board's virtual elements, half wavelengths; none where elements are missing."""
     array, board = radar.elements, radar.header
     if array is None:
-        return True
-    up_tx = [array.tx[n][1] for n in board.order if n < len(array.tx)]
-    up_rx = [array.rx[n][1] for n in board.receivers if n < len(array.rx)]
-    return len({round(tx + rx, 6) for tx in up_tx for rx in up_rx}) != 1
+        return ()
+    if max(board.order) >= len(array.tx) or max(board.receivers) >= len(array.rx):
+        return ()
+    scale = 1.0
+    if radar.half_wavelength_m is not None:
+        centre = board.carrier_hz + board.slope_hz * (board.samples - 1) / (2 * board.adc_rate_hz)
+        scale = radar.half_wavelength_m * 2 * centre / SPEED_OF_LIGHT
+    return tuple(
+        (scale * (array.tx[t][0] + array.rx[r][0]), scale * (array.tx[t][1] + array.rx[r][1]))
+        for t in board.order
+        for r in board.receivers
+    )

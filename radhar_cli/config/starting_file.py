@@ -5,18 +5,22 @@ import json
 import os
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
 from textwrap import wrap
 from typing import Any, Literal, get_args, get_origin
 
+from pydantic import ValidationError
+
 from radhar_cli.config.annotations import section
 from radhar_cli.config.documents import RADARS, cfg_text
-from radhar_cli.config.schema import Config, Section
+from radhar_cli.config.schema import Config, Section, possible_maps
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.light import SPEED_OF_LIGHT
 
 WIDTH = 100
+MAPS_OF_BOARDS = ("stft", "range_doppler", "range_azimuth", "points")
 HEAD = """\
 # Every key with its default, which holds too where a key is left out; `base: other.yaml` takes
 # what is left out from another file.
@@ -116,11 +120,13 @@ def of_board(cfg: str, folder: Path) -> str:
         cfg: its path, or the name of a radar that radhar knows.
         folder: of the config, which names it from there.
     """
-    board = board_header(cfg_text(cfg, Path(), "--radar"), cfg)
+    text = cfg_text(cfg, Path(), "--radar")
+    board = board_header(text, cfg)
     device = "IWR6843ISK" if board.start_hz < 70e9 else "IWR1443BOOST"
     path = os.path.relpath(Path(cfg).resolve(), folder.resolve())
     if cfg.lower() in RADARS:
         device, path = cfg.upper(), cfg.lower()
+    maps = ", ".join(_maps_of_board(text, device, board.period_s))
     range_step = SPEED_OF_LIGHT * board.adc_rate_hz / (2 * board.slope_hz)
     speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.slot_s * len(board.order))
     what = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
@@ -133,5 +139,16 @@ duration_s: {max(3.0, 2 * board.period_s):g}
 motion: {{range_m: {{uniform: [{min(1.5, range_step / 3):.2g}, {min(3.0, range_step / 1.5):.2g}]}}}}
 body: {{scatterers: surfaces}}
 cloud: {{chain: board}}  # as the firmware makes points; best: fewer, finer ones
-maps: [stft, range_doppler, range_azimuth, points]
+maps: [{maps}]
 """
+
+
+def _maps_of_board(cfg: str, device: str, period_s: float) -> tuple[str, ...]:
+    """Some maps that a board makes; a device that does not fit is told when the config is read."""
+    radar = {"device": device, "cfg": cfg}
+    given = {"radar": radar, "maps": ["rtm"], "duration_s": max(3.0, 2 * period_s)}
+    with suppress(ValidationError):
+        more = {"processing": {"clutter": "none"}, "cloud": {"chain": "board"}}
+        config = Config.model_validate(given | more)
+        return tuple(one for one in MAPS_OF_BOARDS if one in possible_maps(config)) or ("rtm",)
+    return MAPS_OF_BOARDS

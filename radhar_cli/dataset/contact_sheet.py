@@ -5,15 +5,21 @@ from typing import Any
 
 import numpy as np
 
+from radhar_cli.arrays import Levels
 from radhar_cli.dataset.layout import row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.figures.page import DPI, page_of_rows, write_figure
+from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.processing.frame_sheets import bones_sheet
 
 MAX_SIDE = 1024  # px of a panel
 
 
 def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> None:
-    """Write a PNG with a row of `per_class` maps `name` for every class that is present."""
+    """Write a PNG with a row of `per_class` maps `name` for every class that is present.
+
+    Points are drawn over the true skeletons, which the images of the data set lack.
+    """
     image, images, extent = data.config.image, data.maps[name], data.extent(name)
     every = tuple(slice(None, None, -(-side // MAX_SIDE)) for side in image.size_px)
     rows = {
@@ -24,12 +30,23 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
     figure, panels = page_of_rows(rows, (1.5, 1.4), (1.6, 0.7))
     look: dict[str, Any] = {"cmap": image.colour_map, "vmin": 0, "vmax": 255, "aspect": "auto"}
     for panel, sample in panels:
-        panel.imshow(images[sample][every], extent=extent, **look)
+        shown = images[sample]
+        if name == "points":
+            shown = over_bones(data, sample, shown)
+        panel.imshow(shown[every], extent=extent, **look)
         panel.tick_params(labelsize=5, length=2)
         panel.label_outer()
     figure.supxlabel("time (s)", fontsize=8)
     figure.supylabel("{} ({})".format(*row_axis(name)), fontsize=8)
     power = f"power, {image.dynamic_range_db:g} dB down from the largest of each map"
-    shown = "cells that the CFAR sets" if image.kind == "cfar" else power
-    figure.suptitle(f"{name}: {shown}", fontsize=9)
+    meant = "cells that the CFAR sets" if image.kind == "cfar" else power
+    figure.suptitle(f"{name}: {meant}", fontsize=9)
     write_figure(figure, path, DPI)
+
+
+def over_bones(data: Dataset, sample: int, points: Levels) -> Levels:
+    """A sheet of points over the true skeletons of its frames, where they are of known joints."""
+    skeletons = data.products["skeleton"][sample] if "skeleton" in data.products else None
+    if skeletons is None or skeletons.shape[2] != len(JOINTS):
+        return points
+    return np.where(points > 0, points, bones_sheet(skeletons, PARENTS, points.shape))

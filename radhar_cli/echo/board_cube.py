@@ -74,15 +74,15 @@ def fast_cube(
     so that the sum over the paths is two products of matrices a frame, the larger one with real
     numbers. The number of terms q follows from the spread of x and the tolerance. Paths are asked
     for at NODES instants of a frame, some milliseconds, and are polynomials between them; some
-    chirps are compared with the exact sum. Where the error misses the tolerance by SPARE_DB, the
-    frames are made once more, from MORE_NODES instants and in double precision.
+    chirps are compared with the exact sum. Unless the error is SPARE_DB below the tolerance, frames
+    are made again in double precision, from MORE_NODES instants and then from those of all loops.
 
     Raises:
         AccuracyError: the tolerance is missed all the same.
     """
     single = tolerance_db >= SINGLE_DB
     best = inf
-    for count, precise in ((NODES, not single), (MORE_NODES, True)):
+    for count, precise in ((NODES, not single), (MORE_NODES, True), (board.loops, True)):
         cube, power = _summed(channels, board, tolerance_db, count, precise)
         error = measured_db(cube, channels, board)
         if error <= tolerance_db - SPARE_DB:

@@ -20,6 +20,7 @@ from radhar_cli.radar.board import Board
 from radhar_cli.simulation.simulate import Simulation
 
 COLUMNS = 6
+TINY = float(np.finfo(np.float32).tiny)  # instead of the largest power of black maps
 NAMES = {
     "range_doppler": "range-Doppler",
     "range_azimuth": "range-azimuth",
@@ -79,7 +80,7 @@ def draw_frames(shown: BoardFrames, path: Path) -> None:
 
 def _draw_map(axes: Axes, maps: FrameMaps, frame: int, shown: BoardFrames) -> AxesImage:
     with np.errstate(divide="ignore"):
-        level = 10 * np.log10(maps.power[frame] / maps.power.max())
+        level = 10 * np.log10(maps.power[frame] / maps.power.max(initial=TINY))
     look: dict[str, Any] = {"cmap": shown.image.colour_map, "origin": "lower", "aspect": "auto"}
     extent = (*maps.columns.edges, *maps.rows.edges)
     lowest = -shown.image.dynamic_range_db

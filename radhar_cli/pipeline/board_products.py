@@ -30,7 +30,7 @@ from radhar_cli.pipeline.physics import (
 )
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.processing.best_points import best_points
-from radhar_cli.processing.canceller import NO_CANCELLER, MeanRemoval
+from radhar_cli.processing.canceller import NO_CANCELLER, Canceller, MeanRemoval
 from radhar_cli.processing.frame_maps import range_angle, range_doppler
 from radhar_cli.processing.frame_sheets import cloud_sheet, maps_sheet
 from radhar_cli.processing.frames import Frames
@@ -109,8 +109,8 @@ def board_products(c: Config) -> Iterator[Product]:
     yield Product("board_bins", ("cube", "board"), range_bins, "range bins of every channel")
     yield Product(
         "range_signals",
-        ("board_bins", "canceller"),
-        lambda x, canceller: x.cancelled(canceller),
+        ("cube", "board", "canceller"),
+        range_bins,
         "its range bins after the canceller",
     )
     yield Product("signal", ("range_signals",), lambda x: x.summed(), "their coherent sum")
@@ -118,11 +118,11 @@ def board_products(c: Config) -> Iterator[Product]:
     yield Product("range_profiles", ("range_signals",), lambda x: x.columns(width), "some pulses")
     yield Product("torso_track", ("motions", "board", "wall"), torso_track, "delay of the torso")
     if c.processing.range_sum == "gated":
-        of_gate = ("board_bins", "range_signals", "frames", "torso_track")
+        of_gate = ("range_signals", "frames", "torso_track")
         yield Product(
             "gate",
             of_gate,
-            lambda x, after, frames, track: gate_in_windows(c, after, frames, x.t, track),
+            lambda after, frames, track: gate_in_windows(c, after, frames, after.t, track),
             "range bins of each window",
         )
     for name in ("range_doppler", "range_azimuth", "range_elevation"):
@@ -132,13 +132,8 @@ def board_products(c: Config) -> Iterator[Product]:
             dynamic_range_db=c.image.dynamic_range_db,
         )
         yield Product(f"image:{name}", (name,), sheet, "sheet of frames")
-    shown = ("cloud", "skeletons", "motions")
-    yield Product(
-        "image:points",
-        shown,
-        lambda cloud, s, of: cloud_sheet(cloud, s.positions, of[0].parents, c.image.size_px),
-        "front views of frames",
-    )
+    sheet = partial(cloud_sheet, size=c.image.size_px)
+    yield Product("image:points", ("cloud",), sheet, "front views of frames")
     for name, of in (("frames", frames_of), ("fsst_frames", fsst_frames_of)):
         yield Product(name, ("board",), partial(_windows, c, of), "windows, within frames")
 
@@ -152,20 +147,17 @@ def channels(
 ) -> list[PathSource]:
     """The paths of every virtual channel; all are of the same motions, evaluated once."""
     once = tuple(remembered(motion) for motion in motions)
-    return [
-        together(sources_of(scene, once, board.antennas(k, r), wall, board.seen_as, room))
-        for k, r in board.pairs
-    ]
+    make = partial(sources_of, scene, once, first=board.antennas(*board.pairs[0]))
+    return [together(make(board.antennas(k, r), wall, board.seen_as, room)) for k, r in board.pairs]
 
 
 def _snr_channels(
     c: Config, scene: Scene, motions: tuple[Motion, ...], board: Board, wall: Wall | None
 ) -> list[PathSource]:
     """The paths of every virtual channel whose power is P_s."""
-    own = (remembered(motions[0]),)
-    return [
-        snr_paths(c, scene, own, board.antennas(k, r), wall, board.seen_as) for k, r in board.pairs
-    ]
+    make = partial(snr_paths, c, scene, (remembered(motions[0]),))
+    first = board.antennas(*board.pairs[0])
+    return [make(board.antennas(k, r), wall, board.seen_as, first) for k, r in board.pairs]
 
 
 def _echo(c: Config, sources: list[PathSource], board: Board, scene: Scene) -> Echo:
@@ -263,12 +255,16 @@ def _apparent(skeletons: Skeletons, board: Board, legs: tuple[Way, Way]) -> Floa
     return seen
 
 
-def range_bins(cube: Complex, board: Board) -> Signal:
-    """The range bins of every virtual channel, pulse by pulse."""
+def range_bins(cube: Complex, board: Board, canceller: Canceller = NO_CANCELLER) -> Signal:
+    """The range bins of every virtual channel, pulse by pulse.
+
+    Raw samples go through the canceller, not bins: nothing is left then of what stands still.
+    """
     w = board.waveform
     x = np.empty((board.channels, w.n_bins, board.frames * board.loops), cube.dtype)
     for v in range(board.channels):
-        s = cube[:, :, v].reshape(-1, board.samples).T * board.signs[v]
+        samples = cube[:, :, v].reshape(-1, board.samples).T * board.signs[v]
+        s = Signal(samples[None], board.pulses, w.f0).cancelled(canceller).x[0]
         x[v] = range_compression(s, w)
     return Signal(x, board.pulses, w.f0, w.range_axis(), range_step=w.range_step)
 

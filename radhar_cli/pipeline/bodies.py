@@ -47,11 +47,23 @@ def sources_of(
     waveform: Waveform,
     room: Reflectors | None = None,
     mirrored: bool = True,
+    first: Antennas | None = None,
 ) -> list[Whose]:
     """The paths of everything in a scene: of who moves, and of what stands in the room.
 
     People shadow each other, unless `body.shadowing` is false. By way of a room's faces they are
     there again, unshadowed, unless not `mirrored`.
+
+    Args:
+        scene: what is simulated.
+        motions: of its people, or of parts of one.
+        antennas: between which the paths run.
+        wall: the slab between, or None.
+        waveform: its duration and window say how many points segments have.
+        room: what stands there.
+        mirrored: whether people are there again by way of the room's faces.
+        first: antennas of the first channel of an array, all channels of which see the same points
+            of a body; None where there is one channel.
     """
     sources: list[Whose] = []
     images = [antennas.by_way(*way) for way in ways_of(scene)] if mirrored else []
@@ -67,7 +79,7 @@ def sources_of(
         if scene.config.body.scatterers != "points":
             whose = people[min(number, len(people) - 1)]
             given = 0 if own else number  # streams are the person's own
-            parts = body_paths(whose, motion, antennas, wall, waveform, given)
+            parts = body_paths(whose, motion, antennas, wall, waveform, given, first)
             theirs += [parts] if parts else []
             rest = _without_segments(motion)
         if rest is not None:
@@ -105,10 +117,12 @@ def body_paths(
     wall: Wall | None,
     waveform: Waveform,
     number: int = 0,
+    first: Antennas | None = None,
 ) -> SegmentPaths | SurfacePaths | None:
     """The paths of the segments of a motion or of their surfaces, None where its joints have none.
 
-    The motion is whole, or `Only` some joints of one; `number` is its own among several.
+    The motion is whole, or `Only` some joints of one; `number` is its own among several; points of
+    segments are as many as antennas need that are `first` in an array, or these.
     """
     body, config = body_of(person, motion), person.scene.config
     kept = tuple(sorted({n for joint in motion.names for n in covered(joint, body.segments)}))
@@ -122,7 +136,7 @@ def body_paths(
         )
     duration, prf = waveform.duration, waveform.prf
     window = frames_of(config, duration, prf, waveform.f0).length / prf
-    counts = point_counts(body, antennas, waveform.wavelength, window, duration, most)
+    counts = point_counts(body, first or antennas, waveform.wavelength, window, duration, most)
     points = tuple(
         _tapered(draw_points(count, person.own_stream(f"body/{number}/{one.name}")))
         for one, count in zip(body.segments, counts, strict=True)

@@ -79,11 +79,16 @@ def snr_paths(
     antennas: Antennas,
     wall: Wall | None,
     w: Waveform,
+    first: Antennas | None = None,
 ) -> PathSource:
-    """The paths whose power is P_s: of the sample's own person, straight there and back."""
+    """The paths whose power is P_s: of the sample's own person, straight there and back.
+
+    `first` are the antennas of the first channel of an array.
+    """
     if c.snr_reference == "free_space":
         antennas, wall = replace(antennas, aim=None), None
-    return together(sources_of(scene, motions[:1], antennas, wall, w, mirrored=False))
+    own = sources_of(scene, motions[:1], antennas, wall, w, mirrored=False, first=first)
+    return together(own)
 
 
 def _words(law: NoiseLaw) -> str:

@@ -91,7 +91,10 @@ class Flags(IntFlag):
 
 BLACK = (
     "a map is black: nothing is left of the echo (after canceller, wall and distance), or nothing "
-    "above the CFAR's threshold"
+    "above the CFAR's threshold, or a cloud has no point"
+)
+ANGLES_ALIAS = (
+    "; transmitters take turns, so that its angles are wrong, too, by the phase of the wrong speed"
 )
 _WORDING = {
     Flags.WALL: "the body passes through the wall, or leaves room.box_m",
@@ -548,19 +551,30 @@ def scene_warnings(scene: Scene) -> list[str]:
     check = check_scene(scene)
     if check.too_close:
         raise SceneError(f"{scene.name}: {check.invalid}; {_cure(scene.config, check)}")
-    outside = [_WORDING[flag] for flag in Flags if flag in check.flags]
+    outside = [_words(flag, scene.config) for flag in Flags if flag in check.flags]
     return (
         outside + config_warnings(scene.config) + timing_warnings(scene.config, (scene.activity,))
     )
 
 
-def flagged(counts: Mapping[Flags, int], recordings: int) -> list[dict[str, Any]]:
+def _words(flag: Flags, config: Config | None) -> str:
+    """What a flag says, of scenes of a config where there is one."""
+    board = config is not None and config.radar.cfg is not None
+    if flag is Flags.ALIASING and config is not None and board:
+        turns = len(config.radar.header.order) > 1
+        return _WORDING[flag] + ANGLES_ALIAS * turns
+    return _WORDING[flag]
+
+
+def flagged(
+    counts: Mapping[Flags, int], recordings: int, config: Config | None = None
+) -> list[dict[str, Any]]:
     """What to say of flags: [{kind, recordings, message}]; counts are of so many recordings."""
     return [
         {
             "kind": str(flag.name).lower(),
             "recordings": n,
-            "message": f"{n} of {recordings} recordings: {_WORDING[flag]}",
+            "message": f"{n} of {recordings} recordings: {_words(flag, config)}",
         }
         for flag, n in counts.items()
         if n
@@ -576,7 +590,7 @@ def warnings(
         {"kind": "config", "recordings": recordings, "message": message}
         for message in config_warnings(config)
     ]
-    return [*flagged(counts, recordings), *messages] + [
+    return [*flagged(counts, recordings, config), *messages] + [
         {"kind": "timing", "recordings": config.samples_of(activity), "message": message}
         for activity in config.chosen_activities
         for message in timing_warnings(config, (activity,))

@@ -5,6 +5,7 @@ reference cells has the distribution F(2 V, 2 V R) of V channels, from which the
 (neighbouring cells of a Hann window are correlated, so the rate of false alarms is approximate).
 """
 
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -12,11 +13,12 @@ import numpy as np
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.frame_maps import spectra, without_turns
 from radhar_cli.processing.points import COLUMNS, Cloud, elevation_pair
-from radhar_cli.radar.board import Board
+from radhar_cli.radar.board import Board, sidelobe
 
 GUARD, TRAINING = (3, 2), (8, 4)  # cells on each side: range, Doppler
 BEAMS, ANGLES = 32, 256  # of azimuth FFTs, to find targets and to place them
-BESIDE = 0.1  # power of a further target of a cell over its strongest
+BESIDE = 0.1  # least power of a further target of a cell over its strongest
+BEYOND = 1.5  # by how many times it exceeds the sidelobes of the row
 TINY = np.finfo(float).tiny
 INTERVALS = np.array([-1, 0, 1])
 
@@ -34,14 +36,53 @@ def best_points(
     Intensity is the power of a cell's echo, for unit transmit power; `pfa` the rate of false alarms
     of a cell; `carrier` (Hz) that of the Doppler axis, None the centre's; `bias` of ranges, m.
     """
-    step, found = board.doppler_step(carrier), list[Float]()
+    step, found, angles = board.doppler_step(carrier), list[Float](), Angles.of(board)
     for _, x in spectra(cube, board, remove_mean):
         for frame in x:  # [Doppler, virtual, range]
-            found.append(_frame_points(frame, board, pfa, step, bias))
+            found.append(_frame_points(frame, board, angles, pfa, step, bias))
     return Cloud.of(found)
 
 
-def _frame_points(x: Complex, board: Board, pfa: float, step: float, bias: float) -> Float:
+@dataclass(frozen=True)
+class Angles:
+    """How a board tells directions: by its longest row, and by the row nearest to that.
+
+    Of a row of one element the azimuth is 0, of a board without another row the elevation.
+    """
+
+    row: list[int]  # elements of the longest row
+    upper: list[int]  # elements of the nearest other row, none without one
+    # aside, above: how far to the left and up the other row begins, half wavelengths
+    aside: float
+    above: float
+    beams: Complex  # weights [element, beam] that targets are found with
+    fine: Complex  # weights [element, angle] that they are placed with
+    beside: float  # power of a further target of a cell over its strongest, beyond sidelobes
+
+    @classmethod
+    def of(cls, board: Board) -> "Angles":
+        """What follows from the elements of a board."""
+        row, upper, aside, above = elevation_pair(board)
+        places = board.places[row, 0] - board.places[row[0], 0]
+        single = len(row) == 1
+        # A single element has one beam, which sees everything ahead.
+        beams, fine = (
+            np.exp(-1j * np.pi * np.outer(places, _sines(1 if single else count)))
+            for count in (BEAMS, ANGLES)
+        )
+        beside = max(BESIDE, BEYOND * sidelobe(places))
+        return cls(row, upper, aside, above, beams, fine, beside)
+
+
+def _sines(count: int) -> Float:
+    """Sines of `count` angles, in the order of FFTs: 0 first, to the left positive."""
+    sines: Float = 2 * np.fft.fftfreq(count)
+    return sines
+
+
+def _frame_points(
+    x: Complex, board: Board, angles: Angles, pfa: float, step: float, bias: float
+) -> Float:
     """Points [n, 8] of a spectrum [Doppler, virtual, range]: peaks over range, Doppler, azimuth."""
     # Both are slow to import.
     from scipy.ndimage import maximum_filter
@@ -57,11 +98,12 @@ def _frame_points(x: Complex, board: Board, pfa: float, step: float, bias: float
         return np.empty((0, len(COLUMNS)))
     first, stop = max(ranges[0] - 1, 0), min(ranges[-1] + 2, len(power))
     turned = without_turns(x, board).transpose(2, 0, 1)[first:stop]  # [range, Doppler, virtual]
-    row = elevation_pair(board)[0]
-    beams = np.abs(np.fft.fft(turned[..., row], BEAMS) / len(row)) ** 2
-    around = (3, 3, 2 * BEAMS // len(row) // 2 + 1)
+    row = angles.row
+    beams = np.abs(turned[..., row] @ angles.beams.astype(turned.dtype) / len(row)) ** 2
+    reach = board.places[row[-1], 0] - board.places[row[0], 0] + 1  # of the row
+    around = (3, 3, 2 * int(BEAMS / reach) // 2 + 1)
     largest = maximum_filter(beams, around, mode=("nearest", "wrap", "wrap"))
-    strong = beams > BESIDE * beams.max(axis=2, keepdims=True)
+    strong = beams > angles.beside * beams.max(axis=2, keepdims=True)
     rows = []
     for k, d, b in np.argwhere((beams == largest) & strong & hit[first:stop, :, None]):
         level = np.log(np.maximum(beams[:, d, b], TINY))
@@ -71,7 +113,7 @@ def _frame_points(x: Complex, board: Board, pfa: float, step: float, bias: float
         element = turned[k, d] * np.exp(
             -2j * np.pi * (fine - signed) / board.n_doppler * board.turns
         )
-        left, up = _direction(element, board, 2 * np.pi * b / BEAMS)
+        left, up = _direction(element, board, angles, 2 * np.pi * b / BEAMS)
         if left * left + up * up <= 1:
             ahead = np.sqrt(r * r * (1 - left * left - up * up))
             snr = 10 * np.log10(power[first + k, d] / noise[first + k, d])
@@ -102,27 +144,30 @@ def _offset(level: Float, at: int, cyclic: bool) -> float:
     return float(np.clip((before - after) / (2 * curve), -0.5, 0.5)) if curve < 0 else 0.0
 
 
-def _direction(element: Complex, board: Board, near: float) -> tuple[float, float]:
+def _direction(element: Complex, board: Board, angles: Angles, near: float) -> tuple[float, float]:
     """Sines (left, up) of a target near a phase step (rad) from element to element of a row.
 
     left is the peak of the row's spectrum there; with the other peaks of the spectrum taken out by
     least squares, up follows from the phase between two rows.
     """
-    row, upper, aside, above = elevation_pair(board)
-    spectrum = np.abs(np.fft.fft(element[row], ANGLES)) ** 2
-    peaks = (spectrum >= np.roll(spectrum, 1)) & (spectrum > np.roll(spectrum, -1))
-    peaks &= spectrum > BESIDE * spectrum.max()
-    level = np.log(np.maximum(spectrum, TINY))
-    bins = sorted(np.flatnonzero(peaks), key=lambda n: -spectrum[n])[: max(len(upper), 1)]
-    turns = np.array([(b + _offset(level, int(b), True)) / ANGLES for b in bins])
-    apart = turns - near / (2 * np.pi)
-    chosen = int(np.abs(apart - np.round(apart)).argmin())
-    left = 2 * (turns - np.round(turns))
+    row, upper = angles.row, angles.upper
+    if len(row) == 1:
+        left, chosen = np.zeros(1), 0
+    else:
+        spectrum = np.abs(element[row] @ angles.fine) ** 2
+        peaks = (spectrum >= np.roll(spectrum, 1)) & (spectrum > np.roll(spectrum, -1))
+        peaks &= spectrum > angles.beside * spectrum.max()
+        level = np.log(np.maximum(spectrum, TINY))
+        bins = sorted(np.flatnonzero(peaks), key=lambda n: -spectrum[n])[: max(len(upper), 1)]
+        turns = np.array([(b + _offset(level, int(b), True)) / ANGLES for b in bins])
+        apart = turns - near / (2 * np.pi)
+        chosen = int(np.abs(apart - np.round(apart)).argmin())
+        left = 2 * (turns - np.round(turns))
     up = 0.0
     if upper:
         ratio = _targets(element, board, upper, left) / _targets(element, board, row, left)
-        turned = np.angle(ratio[chosen]) / np.pi - aside * left[chosen]
-        up = ((turned + 1) % 2 - 1) / above
+        turned = np.angle(ratio[chosen]) / np.pi - angles.aside * left[chosen]
+        up = ((turned + 1) % 2 - 1) / angles.above
     return float(left[chosen]), float(up)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.power_map import Axis
-from radhar_cli.radar.board import Board
+from radhar_cli.radar.board import Board, longest_rows
 
 BLOCK_FRAMES = 16
 
@@ -40,15 +40,24 @@ def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
     return scipy.fft.ifft(weighted, board.n_fft, axis=-1, norm="forward")
 
 
-def doppler_spectrum(x: Complex, board: Board, window: Float, remove_mean: bool) -> Complex:
+def without_mean(cube: Complex) -> Complex:
+    """A cube [frame, loop, ..] less the mean over the loops of each frame.
+
+    Of a frame whose loops are equal exactly nothing is left, which rounding in an FFT before would
+    spoil.
+    """
+    left: Complex = cube - cube[:, :1]
+    left -= left.mean(axis=1, keepdims=True)
+    return left
+
+
+def doppler_spectrum(x: Complex, board: Board, window: Float) -> Complex:
     """X [frame, Doppler, virtual, range] of x [frame, loop, virtual, range], windowed over loops.
 
     Doppler is as FFTs have it: 0 first, approaching positive.
     """
     import scipy.fft  # slow to import
 
-    if remove_mean:
-        x = x - x.mean(axis=1, keepdims=True)
     weights = (window / window.sum()).astype(x.real.dtype)[:, None, None]
     return scipy.fft.fft(x * weights, board.n_doppler, axis=1)
 
@@ -65,18 +74,19 @@ def without_turns(x: Complex, board: Board) -> Complex:
 
 
 def hann(count: int) -> Float:
-    """Periodic Hann window [count]."""
-    return np.hanning(count + 1)[:-1]
+    """Periodic Hann window [count]; 1 of a single sample."""
+    return np.hanning(count + 1)[:-1] if count > 1 else np.ones(count)
 
 
 def ascending(count: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     """Numbers of FFT bins from -count/2 + 1 to count/2, as a sort of 0 .. count - 1."""
-    return np.arange(-(count // 2) + 1, count // 2 + 1) % count
+    return np.arange(count // 2 - count + 1, count // 2 + 1) % count
 
 
 def doppler_axis(board: Board) -> Axis:
     """Radial speeds, positive approaching."""
-    bins = np.arange(-(board.n_doppler // 2) + 1, board.n_doppler // 2 + 1)
+    highest = board.n_doppler // 2
+    bins = np.arange(highest - board.n_doppler + 1, highest + 1)
     return Axis("radial speed", "m/s", bins * board.doppler_step())
 
 
@@ -90,8 +100,8 @@ def spectra(cube: Complex, board: Board, remove_mean: bool) -> Iterator[tuple[sl
     fast, slow = hann(board.samples), hann(board.loops)
     for first in range(0, len(cube), BLOCK_FRAMES):
         some = slice(first, min(first + BLOCK_FRAMES, len(cube)))
-        x = range_spectrum(cube[some], board, fast)
-        yield some, doppler_spectrum(x, board, slow, remove_mean)
+        samples = without_mean(cube[some]) if remove_mean else cube[some]
+        yield some, doppler_spectrum(range_spectrum(samples, board, fast), board, slow)
 
 
 def range_doppler(cube: Complex, board: Board, remove_mean: bool) -> FrameMaps:
@@ -113,7 +123,7 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     positive left, 1 elevation, positive up.
     """
     angles = np.arange(-90.0, 91.0)
-    rows = longest_rows(board, axis)
+    rows = longest_rows(board.places, axis)
     taper = np.sin(np.pi * np.arange(1, len(rows[0]) + 1) / (len(rows[0]) + 1)) ** 2
     sines = np.sin(np.radians(angles))[:, None]
     window = hann(board.loops)
@@ -132,15 +142,3 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     power /= level * len(rows)
     name = "azimuth" if axis == 0 else "elevation"
     return FrameMaps(power, range_axis(board), Axis(name, "degree", angles), board.middles)
-
-
-def longest_rows(board: Board, axis: int) -> list[list[int]]:
-    """Virtual elements along an axis, ordered: of each of the rows that have the most of them.
-
-    Of elements at the same place the first counts.
-    """
-    found: dict[float, dict[float, int]] = {}
-    for v, place in enumerate(board.places.round(6).tolist()):
-        found.setdefault(place[1 - axis], {}).setdefault(place[axis], v)
-    most = max(map(len, found.values()))
-    return [[row[at] for at in sorted(row)] for row in found.values() if len(row) == most]

@@ -1,5 +1,6 @@
 """Sheets of frames: one image a sample of a board's maps, points and skeletons, for looking."""
 
+from collections.abc import Iterator
 from itertools import pairwise, product
 from math import ceil, sqrt
 from typing import TypeAlias
@@ -7,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from PIL import Image, ImageDraw
 
-from radhar_cli.arrays import Float, Index
+from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.image import binary_exponent, levels, reduced
@@ -44,32 +45,40 @@ def maps_sheet(maps: FrameMaps, size: Size, dynamic_range_db: float) -> MapImage
     return MapImage(levels(cells, dynamic_range_db), entropy_bits(maps.power), extent)
 
 
-def cloud_sheet(
-    cloud: Cloud, skeletons: Float, parents: tuple[int | None, ...], size: Size
-) -> MapImage:
-    """Front views of frames side by side, as the radar sees them: points over the skeletons.
-
-    Skeletons are positions of joints [frame, person, joint, 3], m.
-    """
-    shown, places = _tiles(len(cloud.start) - 1, size)
-    sheet = np.zeros(size, np.uint8)
-    strongest = cloud.points[:, 4].max(initial=1e-30)
-    for frame, (rows, columns) in zip(shown, places, strict=True):
-        shape = rows.stop - rows.start, columns.stop - columns.start
-        if min(shape) <= 0:
-            continue
-        image = Image.fromarray(np.zeros(shape, np.uint8))
-        draw = ImageDraw.Draw(image)
-        for joints in _pixels(skeletons[frame], shape):
-            for joint, parent in enumerate(parents):
-                if parent is not None and np.isfinite(joints[[joint, parent]]).all():
-                    draw.line([*joints[joint], *joints[parent]], fill=BONE)
+def cloud_sheet(cloud: Cloud, size: Size) -> MapImage:
+    """Front views of the points of frames side by side, as the radar sees them."""
+    sheet, strongest = np.zeros(size, np.uint8), cloud.points[:, 4].max(initial=1e-30)
+    for frame, draw, shape in _drawings(sheet, len(cloud.start) - 1):
         points = cloud.points[cloud.start[frame] : cloud.start[frame + 1]]
         grey = LEAST + (255 - LEAST) * (points[:, 4] / strongest) ** 0.25
         for (x, y), level in zip(_pixels(points[:, :3], shape), grey.astype(int), strict=True):
             draw.rectangle([x, y, x + 1, y + 1], fill=int(level))
-        sheet[rows, columns] = np.asarray(image)
     return MapImage(sheet, entropy_bits(sheet.astype(float)), (*FRONT_M[0], *FRONT_M[1]))
+
+
+def bones_sheet(skeletons: Float, parents: tuple[int | None, ...], size: Size) -> Levels:
+    """The skeletons [frame, person, joint, 3] (m) of the frames that `cloud_sheet` shows.
+
+    They are the truth: to look at beneath the points, never in the images of data sets.
+    """
+    sheet = np.zeros(size, np.uint8)
+    for frame, draw, shape in _drawings(sheet, len(skeletons)):
+        for joints in _pixels(skeletons[frame], shape):
+            for joint, parent in enumerate(parents):
+                if parent is not None and np.isfinite(joints[[joint, parent]]).all():
+                    draw.line([*joints[joint], *joints[parent]], fill=BONE)
+    return sheet
+
+
+def _drawings(sheet: Levels, frames: int) -> Iterator[tuple[int, ImageDraw.ImageDraw, Size]]:
+    """(frame, what draws on its tile, size of that) of the frames that a sheet shows."""
+    shown, places = _tiles(frames, sheet.shape)
+    for frame, (rows, columns) in zip(shown.tolist(), places, strict=True):
+        shape = rows.stop - rows.start, columns.stop - columns.start
+        if min(shape) > 0:
+            image = Image.fromarray(np.zeros(shape, np.uint8))
+            yield frame, ImageDraw.Draw(image), shape
+            sheet[rows, columns] = np.asarray(image)
 
 
 def _pixels(p: Float, shape: Size) -> Float:

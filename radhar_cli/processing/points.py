@@ -9,8 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Bool, Complex, Float, Index
-from radhar_cli.processing.frame_maps import doppler_spectrum, longest_rows, range_spectrum
-from radhar_cli.radar.board import Board
+from radhar_cli.processing.frame_maps import (
+    doppler_spectrum,
+    range_spectrum,
+    without_mean,
+)
+from radhar_cli.radar.board import Board, longest_rows
 from radhar_cli.radar.detection import Cfar, Detection
 
 COLUMNS = ("x", "y", "z", "doppler", "intensity", "snr_db", "range_index", "doppler_index")
@@ -50,8 +54,10 @@ def board_points(
     # Bins in TI's order: the conjugate of a signal has the opposite frequency.
     negated = -np.arange(board.n_doppler) % board.n_doppler
     for frame in range(len(cube)):
-        x = range_spectrum(cube[frame : frame + 1], board, fast)
-        spectrum = doppler_spectrum(x, board, slow, detection.remove_mean)[0].conj()
+        samples = cube[frame : frame + 1]
+        samples = without_mean(samples) if detection.remove_mean else samples
+        x = range_spectrum(samples, board, fast)
+        spectrum = doppler_spectrum(x, board, slow)[0].conj()
         found.append(_frame_points(spectrum[negated], board, detection, lsb, step))
     return Cloud.of(found)
 
@@ -62,7 +68,7 @@ def noise_rms(cube: Complex, board: Board, fast: Float, slow: Float) -> float:
     The sums of the windows are 1.
     """
     some = np.unique(np.linspace(0, len(cube) - 1, min(len(cube), NOISE_FRAMES)).astype(int))
-    x = doppler_spectrum(range_spectrum(cube[some], board, fast), board, slow, False)
+    x = doppler_spectrum(range_spectrum(cube[some], board, fast), board, slow)
     moving = x[:, 2:-1] if board.n_doppler > 4 else x  # what stands still fills three bins
     return float(np.sqrt(np.median(moving.real**2 + moving.imag**2) / np.log(2)))
 
@@ -173,7 +179,7 @@ def elevation_pair(board: Board) -> tuple[list[int], list[int], float, float]:
 
     Offsets are in half wavelengths; without another row its elements are none.
     """
-    row = longest_rows(board, 0)[0]
+    row = longest_rows(board.places, 0)[0]
     places = board.places
     left, up = places[row[0]]
     others = sorted({round(float(other), 6) for other in places[:, 1]} - {round(float(up), 6)})

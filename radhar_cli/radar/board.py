@@ -6,7 +6,7 @@ of the chirp in the loop. Positions of the devices: TI's board user guides and t
 geometries of its people tracking demos.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -56,7 +56,35 @@ DEVICES: Mapping[str, Array] = MappingProxyType(
         ),
     }
 )
+MAX_SIDELOBE = 0.3  # of a row that tells targets apart, over its main lobe
 EVEN = (1000.0, 1000.0)  # half-power half-widths (degree) of an array by hand: no pattern
+
+
+def longest_rows(places: Sequence[Sequence[float]] | Float, axis: int) -> list[list[int]]:
+    """Elements along an axis, ordered: of each of the rows that have the most of them.
+
+    Of elements at the same place the first counts.
+    """
+    rows: dict[float, dict[float, int]] = {}
+    for v, place in enumerate(np.round(places, 6).tolist()):
+        rows.setdefault(place[1 - axis], {}).setdefault(place[axis], v)
+    most = max(map(len, rows.values()))
+    return [[row[at] for at in sorted(row)] for row in rows.values() if len(row) == most]
+
+
+def sidelobe(row: Sequence[float] | Float) -> float:
+    """Power of the highest sidelobe over the main lobe of a row of elements that looks ahead.
+
+    Args:
+        row: places of the elements [n], half wavelengths.
+
+    Returns:
+        1 where a grating lobe is as high as the main lobe, 0 without sidelobes.
+    """
+    sines = np.linspace(0, 1, 501)
+    pattern = np.abs(np.exp(1j * np.pi * np.outer(sines, row)).mean(axis=1)) ** 2
+    rises = np.flatnonzero(np.diff(pattern) > 0)  # behind the main lobe
+    return float(pattern[rises[0] :].max()) if rises.size else 0.0
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,9 @@ from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.products import SIGNALS, received, signal_of
 from radhar_cli.pipeline.run import Results, record
 from radhar_cli.pipeline.validity import BLACK, MIN_DISTANCE_M, draw_valid_scene, scene_warnings
+from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.look import Look, ProfileSamples
+from radhar_cli.processing.points import Cloud
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.radar.board import Board
@@ -175,6 +177,7 @@ def simulate(
     if isinstance(accuracy, Fallback):
         warnings.append(f"computed by the cube (engine.fallback): {accuracy.reason}")
     black = [name for name in maps if not recorded[name].power.any()]
+    black += [{"cloud": "points"}.get(name, name) for name in frames if _is_empty(recorded[name])]
     warnings += [f"{', '.join(black)}: {BLACK}"] if black else []
     return Simulation(
         scene=scene,
@@ -198,6 +201,13 @@ def simulate(
         frames={name: recorded[name] for name in frames},
         paths=_paths(scene, (motion, *others), recorded) if others or config.room.faces else None,
     )
+
+
+def _is_empty(product: object) -> bool:
+    """Whether the maps of a board's frames have no power, or its cloud has no point."""
+    if isinstance(product, FrameMaps):
+        return not product.power.any()
+    return isinstance(product, Cloud) and not len(product.points)
 
 
 def _paths(scene: Scene, motions: tuple[Motion, ...], recorded: Results) -> PathTruth:

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from command_line import radhar
 
+from radhar_cli.dataset.contact_sheet import over_bones
 from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.processing.frame_sheets import BONE
 from tests.boards import CFG
 
 YAML = """
@@ -134,3 +136,42 @@ def test_a_data_set_says_how_many_samples_the_cube_made(folder: Path, tmp_path: 
     refused = radhar("generate", folder / "config.yaml", "-o", tmp_path / "refused", *tight)
     assert refused.returncode == 2
     assert "engine.tolerance_db = -300: should be " in refused.stderr
+
+
+def test_previews_show_skeletons_that_the_images_lack(data: Path) -> None:
+    with open_dataset(data) as found:
+        points = found.maps["points"][0]
+        seen = over_bones(found, 0, points)
+    assert not (points == BONE).any()
+    assert (seen == BONE).any()
+    np.testing.assert_array_equal(seen[points > 0], points[points > 0])
+
+
+def test_an_array_by_hand_and_bodies_of_segments_are_built_and_verified(
+    folder: Path, tmp_path: Path
+) -> None:
+    more = (
+        "radar.array={tx: [[0, 0], [2, 1], [4, 0]], rx: [[0, 0], [1, 0], [2, 0], [3, 0]]}",
+        *("body.scatterers=segments", "duration_s=0.2", "motion.range_m=3"),
+    )
+    options = [word for one in more for word in ("--set", one)]
+    out = tmp_path / "out"
+    done("generate", folder / "config.yaml", "-o", out, "--jobs", "1", "-q", *options)
+    done("verify", out)
+
+
+def test_a_data_set_in_which_nobody_moves_is_black_and_says_so(
+    folder: Path, tmp_path: Path
+) -> None:
+    more = (
+        *("activities=[stationary]", "receiver.noise_figure_db=null", "body.scatterers=points"),
+        "subject={sway_ahead_m: 0, sway_aside_m: 0, chest_m: 0, heart_m: 0}",
+        *("motion={range_m: 2, fidget_hz: 0, shuffle_hz: 0}", "duration_s=0.2"),
+    )
+    options = [word for one in more for word in ("--set", one)]
+    out = tmp_path / "still"
+    made = radhar("generate", folder / "config.yaml", "-o", out, "--jobs", "1", *options)
+    assert made.returncode == 0, made.stderr
+    assert "2 of 2 recordings: a map is black" in made.stderr
+    with open_dataset(out) as found:
+        assert not any(images[row].any() for images in found.maps.values() for row in range(2))

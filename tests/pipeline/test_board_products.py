@@ -10,10 +10,14 @@ import pytest
 from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.board_cube import exact_cube
 from radhar_cli.errors import ConfigError, SceneError
+from radhar_cli.motion.skeleton import PARENTS
 from radhar_cli.pipeline.fallback import Fallback
 from radhar_cli.pipeline.physics import board_of
 from radhar_cli.pipeline.run import record
+from radhar_cli.processing.frame_sheets import BONE, bones_sheet, cloud_sheet
+from radhar_cli.processing.points import Cloud
 from radhar_cli.scene import Scene, draw_scene
 from radhar_cli.simulation.scene_file import describe
 from radhar_cli.simulation.simulate import simulate
@@ -241,6 +245,23 @@ WRONG = {
     "output.slow_time=true": "output.slow_time",
     "radar.array={tx: [[0, 0]], rx: [[0, 0], [1, 0]]}": "receivers of the array, 1 and 2",
     "maps=[range_elevation]": "",
+    "processing.savgol={order: 5, frame: 33}&maps=[stft_denoised]": (
+        "processing.savgol.frame = 33: should be at most the 32 pulses of a frame"
+    ),
+    "image.doppler_limits_mps=[50, 60]&maps=[stft]": "within the unambiguous band, -5.",
+    "image.doppler_limits_mps=[0, 0.5]&maps=[stft]": "should hold at least 2 Doppler bins",
+    "processing.window_s=0.0005&maps=[stft]": "processing.window_s = 0.0005: should make",
+    "processing.stft_fft_length=16&maps=[stft]": "at least the window of 32 pulses",
+    "processing.stft_fft_length=4096&maps=[stft]": "at most 64 times the window of 32 pulses",
+    "processing.gate_m=[0, 4]&maps=[stft]": "should end before the range half-band does, at 3.746",
+    "processing.gate_m=2&maps=[stft]": "should be less than half the range half-band of 3.746 m",
+    "output.power=float16": 'output.power = "float16": should be left out with points',
+    "output.power=float16&maps=[stft, range_doppler]": "should be left out with range_doppler",
+    "output.column_labels=true": "output.column_labels = true: should be left out with points",
+    "image.kind=signed&maps=[rtm]": "image.kind",
+    "radar.waveform=cw": "radar.waveform",
+    "output.products=[range_elevation]&radar.array={tx: [[0, 0], [4, 0], [8, 0]], rx: [[0, 0], "
+    "[1, 0], [2, 0], [3, 0]]}": "output.products",
 }
 
 
@@ -253,8 +274,138 @@ def test_what_a_board_cannot_do_is_said_in_a_line(path: Path, override: str) -> 
             load_config(path, [override, flat])
         return
     with pytest.raises(ConfigError) as caught:
-        load_config(path, [override])
+        load_config(path, override.split("&"))
     assert WRONG[override] in str(caught.value)
+
+
+def fewer(path: Path, loops: int, receivers: int = 15) -> None:
+    """Frames of so many loops, and these receivers, in board.cfg."""
+    text = CFG.replace("frameCfg 0 2 32", f"frameCfg 0 2 {loops}")
+    text = text.replace("channelCfg 15", f"channelCfg {receivers}")
+    (path.parent / "board.cfg").write_text(text)
+
+
+@pytest.mark.parametrize("loops", [1, 3, 4, 7, 8, 11])
+def test_what_frames_of_few_loops_show_is_made_and_the_rest_refused(path: Path, loops: int) -> None:
+    fewer(path, loops)
+    still = "processing.clutter=none"
+    possible = {"rtm", "range_azimuth", "range_elevation", "cube"}
+    possible |= {"range_doppler", "points"} if loops >= 4 else set()
+    possible |= {"stft", "stft_compensated"} if loops >= 8 else set()
+    possible |= {"stft_denoised", "stft_compensated_denoised"} if loops >= 11 else set()
+    simulation = simulate(load_config(path, ["maps=[rtm]", still]))
+    shown = {*simulation.maps, *simulation.frames} - {"cloud", "skeletons", "points_person"}
+    assert shown == possible - {"points"}
+    assert ("cloud" in simulation.frames) == ("points" in possible)
+    for maps in (*simulation.maps.values(), simulation.frames["range_azimuth"]):
+        assert np.isfinite(maps.power).all()
+        assert maps.power.any()
+    for name in {"points", "range_doppler", "stft", "stft_denoised"} - possible:
+        with pytest.raises(ConfigError, match=r"of a frame\W.*radar\.cfg"):
+            load_config(path, [f"maps=[{name}]", still])
+
+
+def test_the_mean_of_a_single_loop_would_leave_nothing(path: Path) -> None:
+    fewer(path, 1)
+    with pytest.raises(ConfigError, match=r"should be none with frames of 1 loop \(frameCfg\)"):
+        load_config(path, ["maps=[range_azimuth]"])
+
+
+def test_points_of_a_row_that_does_not_tell_azimuths_are_refused(path: Path) -> None:
+    fewer(path, 32, receivers=5)  # two half wavelengths apart
+    for chain in ("best", "board"):
+        words = rf"elements at 0, 2, 4, 6 half wavelengths, .* cloud\.chain: {chain}"
+        with pytest.raises(ConfigError, match=words):
+            load_config(path, [f"cloud.chain={chain}"])
+    assert "points" not in simulate(load_config(path, ["maps=[range_azimuth]"])).frames
+    fewer(path, 32, receivers=7)  # 0, 1, 2, 4, 5, 6: the firmware takes them for neighbours
+    with pytest.raises(ConfigError, match="does not tell azimuths apart"):
+        load_config(path, ["cloud.chain=board"])
+    assert len(made(path, "cloud", overrides=("duration_s=1",))["cloud"].points) > 5
+
+
+def test_one_channel_has_points_without_angles(path: Path) -> None:
+    one = "radar.array={tx: [[0, 0]], rx: [[0, 0]]}"
+    text = CFG.replace("channelCfg 15 7", "channelCfg 1 1").replace("frameCfg 0 2", "frameCfg 0 0")
+    (path.parent / "board.cfg").write_text(text)
+    for more in ((), (one,)):
+        cloud = made(path, "cloud", overrides=("duration_s=1", *more))["cloud"]
+        assert len(cloud.points) > 5
+        assert not cloud.points[:, 1:3].any()
+        with pytest.raises(ConfigError, match="all elements of the array lie in one column"):
+            load_config(path, ["maps=[range_azimuth]", *more])
+
+
+STILL = (
+    "activities=[stationary]",
+    "subject={sway_ahead_m: 0, sway_aside_m: 0, chest_m: 0, heart_m: 0}",
+    "motion={range_m: 2, fidget_hz: 0, shuffle_hz: 0}",
+    "snr_db=null",
+    QUIET,
+)
+
+
+@pytest.mark.parametrize("body", ["points", "segments"])  # surfaces tremble
+@pytest.mark.parametrize("engine", ["direct", "cube"])
+def test_a_person_who_does_not_move_at_all_is_black_and_said_to_be(
+    path: Path, engine: str, body: str
+) -> None:
+    options = *STILL, f"engine.kind={engine}", f"body.scatterers={body}"
+    simulation = simulate(load_config(path, options))
+    names = ["stft", "rtm", "range_doppler", "range_azimuth", "range_elevation", "points"]
+    (said,) = [one for one in simulation.warnings if "a map is black" in one]
+    assert not {*names} - {*said.partition(": ")[0].split(", ")}
+    for chain in ("board", "best"):
+        assert not len(made(path, "points", overrides=(*options, f"cloud.chain={chain}"))["points"])
+
+
+@pytest.mark.parametrize("distance", [2.0, 3.0, 5.0])
+@pytest.mark.parametrize("body", ["points", "segments", "surfaces"])
+@pytest.mark.parametrize("device", ["IWR6843ISK", "IWR6843AOP", "IWR1443BOOST"])
+def test_all_channels_see_one_body(path: Path, device: str, body: str, distance: float) -> None:
+    """Segments have as many points as the nearest antenna needs; at 3 m channels disagreed."""
+    cfg = device.lower()
+    options = (
+        *(f"radar.device={device}", f"radar.cfg={cfg}", f"body.scatterers={body}", QUIET),
+        *(f"motion.range_m={distance}", "activities=[walking]", "maps=[range_doppler]"),
+    )
+    scene = scene_of(path, *options)
+    found = record(scene, ["channels", "echo", "board"])
+    first, *rest = (source(np.zeros(1)) for source in found["channels"])
+    for paths in rest:
+        np.testing.assert_allclose(paths.delay, first.delay, atol=2e-10)
+        np.testing.assert_allclose(paths.amplitude, first.amplitude, rtol=0.3, atol=1e-6)
+    exact, power = exact_cube(found["channels"], found["board"])
+    error = np.linalg.norm(found["echo"].cube - exact) / np.linalg.norm(exact)
+    assert 20 * np.log10(error) < -80
+    assert found["echo"].power == pytest.approx(power, rel=1e-6)
+
+
+def test_points_do_not_show_the_truth(path: Path) -> None:
+    """Networks train on the images of points: skeletons are drawn beneath for looking only."""
+    found = made(path, "image:points", "cloud", "skeleton", overrides=(QUIET,))
+    nothing = Cloud.of([np.empty((0, 8))] * 3)
+    size = found["image:points"].levels.shape
+    assert not cloud_sheet(nothing, size).levels.any()
+    np.testing.assert_array_equal(
+        found["image:points"].levels, cloud_sheet(found["cloud"], size).levels
+    )
+    bones = bones_sheet(found["skeleton"], PARENTS, size)
+    assert {*np.unique(bones)} == {0, BONE}
+    assert (bones > 0).any()
+
+
+def test_speeds_beyond_the_board_say_that_angles_are_wrong_too(path: Path) -> None:
+    slow = CFG.replace("profileCfg 0 77 17", "profileCfg 0 77 600")
+    (path.parent / "board.cfg").write_text(slow)
+    (said,) = [one for one in simulate(load_config(path)).warnings if "aliases" in one]
+    assert "its angles are wrong, too" in said
+    (path.parent / "board.cfg").write_text(
+        slow.replace("600", "2000").replace("frameCfg 0 2", "frameCfg 0 0")
+    )
+    one = simulate(load_config(path))
+    (said,) = [one for one in one.warnings if "aliases" in one]
+    assert "angles" not in said
 
 
 @pytest.mark.parametrize("name", ["range_doppler", "points"])

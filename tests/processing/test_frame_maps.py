@@ -5,12 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from radhar_cli.echo.board_cube import exact_cube
-from radhar_cli.processing.frame_maps import FrameMaps, longest_rows, range_angle, range_doppler
-from radhar_cli.radar.board import DEVICES
+from radhar_cli.echo.board_cube import exact_cube, fast_cube
+from radhar_cli.processing.best_points import best_points
+from radhar_cli.processing.frame_maps import FrameMaps, range_angle, range_doppler
+from radhar_cli.processing.points import board_points
+from radhar_cli.radar.board import DEVICES, longest_rows
+from radhar_cli.radar.detection import CASO, Cfar, Detection
 from radhar_cli.receiver.noise import circular_gaussian
 from tests.boards import MARS, channels, cube_of
 from tests.echo.test_board_cube import A, P, V
+
+STILL = Detection(Cfar(CASO, 8, 4, False, 15.0), remove_mean=True)
 
 
 def _peak(maps: FrameMaps, frame: int = 0) -> tuple[int, float, float]:
@@ -73,7 +78,7 @@ def test_elevation_is_positive_up(degrees: float) -> None:
     [("IWR1443BOOST", 1, 8), ("IWR6843ISK", 1, 8), ("IWR6843ISK-ODS", 2, 4)],
 )
 def test_longest_rows(device: str, rows: int, elements: int) -> None:
-    found = longest_rows(replace(MARS, array=DEVICES[device]), 0)
+    found = longest_rows(replace(MARS, array=DEVICES[device]).places, 0)
     assert [len(row) for row in found] == [elements] * rows
 
 
@@ -85,3 +90,28 @@ def test_doppler_is_positive_approaching_and_ends_at_the_highest_speed() -> None
     assert _peak(maps)[1] == pytest.approx(1, abs=step / 2)
     receding, _ = cube_of((2, 0, 0), (1, 0, 0))
     assert _peak(range_doppler(receding, board, False))[1] == pytest.approx(-1, abs=step / 2)
+
+
+@pytest.mark.parametrize("loops", [1, 2, 7, 32])
+def test_of_what_stands_still_a_mean_leaves_nothing_at_all(loops: int) -> None:
+    """And not rounding, which maps would show at full brightness."""
+    board = replace(MARS, loops=loops, frames=3)
+    for cube in (
+        exact_cube(channels(board, P, np.zeros((2, 3)), A), board)[0],
+        fast_cube(channels(board, P, np.zeros((2, 3)), A), board, -80)[0],
+    ):
+        assert not range_doppler(cube, board, True).power.any()
+        assert not range_angle(cube, board, True, 0).power.any()
+        assert not range_angle(cube, board, True, 1).power.any()
+        assert range_doppler(cube, board, False).power.any()
+        if loops > 2:
+            assert not len(best_points(cube, board, True, 1e-4).points)
+            assert not len(board_points(cube, board, STILL, quantise=True).points)
+
+
+def test_frames_of_one_loop_have_angles() -> None:
+    cube, board = cube_of((2, 0.5, 0), (0, 0, 0), loops=1)
+    maps = range_angle(cube, board, False, 0)
+    assert np.isfinite(maps.power).all()
+    peak = np.unravel_index(maps.power[0].argmax(), maps.power[0].shape)[1]
+    assert maps.columns.values[peak] == pytest.approx(np.degrees(np.arctan2(0.5, 2)), abs=2)

@@ -50,6 +50,7 @@ if TYPE_CHECKING:  # for the completion of editors
     from radhar_cli.learning.samples import Samples as Samples
     from radhar_cli.learning.sequences import Sequences as Sequences
     from radhar_cli.learning.torch_dataset import torch_dataset as torch_dataset
+    from radhar_cli.learning.trained_run import load_run as load_run
     from radhar_cli.simulation.simulate import simulate as simulate
 
 __version__ = "0.1.0"
@@ -62,6 +63,7 @@ _INTERFACE = {
     "Samples": "radhar_cli.learning.samples",
     "Sequences": "radhar_cli.learning.sequences",
     "torch_dataset": "radhar_cli.learning.torch_dataset",
+    "load_run": "radhar_cli.learning.trained_run",
 }
 
 

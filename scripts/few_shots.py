@@ -32,7 +32,7 @@ from radhar_cli.learning.evaluation import predict, training_images
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.metrics import wilson
-from radhar_cli.learning.run_folder import Epoch, RunMetadata, load_best
+from radhar_cli.learning.run_folder import Epoch, RunMetadata, load_best, refuse_other_targets
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.single_result import EvalOptions, EvalSet, open_eval_set, open_run
 from radhar_cli.learning.training import train
@@ -140,6 +140,7 @@ def few_shots(
     """
     device = torch.device("cpu")
     opened = open_run(run.name, run, device)
+    refuse_other_targets(run, opened.metadata)
     own = TrainConfig.model_validate(opened.metadata.config)
     document = {**own.model_dump(mode="json"), "device": "cpu"}
     scratch = TrainConfig.model_validate(with_overrides(document, settings))

@@ -1,12 +1,14 @@
 """Build the paper's data sets, train its networks, evaluate them, and write docs/records/runs.md.
 
-    python scripts/reproduce_paper.py --scale smoke|cpu|full [--only WORD ...] [--report-only]
+    python scripts/reproduce_paper.py --scale smoke|weights|cpu|full [--only WORD ...]
+        [--report-only | --filters]
 
 Every step is a `radhar` command and resumes where it was stopped; run the same line again. Each
 finished run leaves one record, docs/records/paper/SCALE/RUN.json, which is committed; data sets and
 runs are not. The tables are made from the records alone, so a machine that has one run adds its
 row and the others stay; a row that has a record of all epochs is run --again only. See SCALES for
-what each scale does.
+what each scale does. --filters draws the paper's figure of weights, docs/images/filters_*.png: the
+global filters of the scale's networks by layer and SNR; what is not trained is trained first.
 
 Beside each data set and each run that it makes, the script notes commit and machine
 (NAME.made.json), for the record.
@@ -136,6 +138,17 @@ SCALES = {
         generate=("radar.prf_hz=500", "radar.carrier_hz=10e9"),
         train=("batch_size=12",),
     ),
+    # Some ten minutes: networks by SNR, for --filters.
+    "weights": Scale(
+        size_px=64,
+        per_class=40,
+        fresh_per_class=0,
+        trainings=(
+            *(Training("free_space", n, epochs=12) for n in (30, 10, 0, -10)),
+            *(Training("through_wall", n, epochs=12) for n in (30, 10, 0)),
+        ),
+        train=("batch_size=32",),
+    ),
     # Two cores, a night: the paper's protocol with maps of half its size.
     "cpu": Scale(
         size_px=128,
@@ -254,6 +267,21 @@ class Reproduction:
                 if source.exists():
                     shutil.copyfile(source, self.results / f"{run.name}_{name}.png")
                     break
+
+    def draw_filters(self, trainings: list[Training], images: Path) -> None:
+        """Train the plain networks among some, and draw their filters, a figure a scenario."""
+        for scenario in SCENARIOS:
+            mine = [t for t in trainings if t.scenario == scenario and _plain(t)]
+            for training in mine:
+                self.train(training)
+            if not mine:
+                continue
+            out = self.runs_root / f"reports_{self.name}" / f"{scenario}_filters"
+            # Weights are the same on any data; the split with the fewest maps is read.
+            data = self.generate(scenario, mine[0].snr_db)
+            radhar("eval", *map(self.run, mine), data, "-o", out, "--split", "val", "--filters")
+            images.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(out / "filters.png", images / f"filters_{scenario}.png")
 
     def _contents(
         self,
@@ -871,6 +899,9 @@ def main() -> None:
     parser.add_argument(
         "--report-only", action="store_true", help="write the tables from the records, no more"
     )
+    parser.add_argument(
+        "--filters", action="store_true", help="draw the global filters of the networks, no more"
+    )
     parser.add_argument("--again", action="store_true", help="also rows that have a record")
     parser.add_argument("--jobs", type=int, help="processes that generate")
     parser.add_argument("--datasets", type=Path, default=ROOT / "datasets" / "results")
@@ -884,12 +915,20 @@ def main() -> None:
     names = [run_name(scale, training) for training in scale.trainings]
     if not any(all(word in name for word in options.only) for name in names):
         parser.error(f"--only {' '.join(options.only)}: no run has that; runs: {', '.join(names)}")
-    todo = [] if options.report_only else wanted(scale, options.only, results, options.again)
-    if not todo and not options.report_only:
-        print("there is a record of all epochs of what is asked for; --again runs it again")
     # Commands run in the root of the repository, whatever the folder this was called in.
     folders = options.datasets.absolute(), options.runs.absolute()
     work = Reproduction(options.scale, scale, *folders, results, options.jobs)
+    if options.filters:
+        chosen = [
+            t
+            for t, n in zip(scale.trainings, names, strict=True)
+            if all(w in n for w in options.only)
+        ]
+        work.draw_filters(chosen, ROOT / "docs" / "images")
+        return
+    todo = [] if options.report_only else wanted(scale, options.only, results, options.again)
+    if not todo and not options.report_only:
+        print("there is a record of all epochs of what is asked for; --again runs it again")
     for training in todo:
         work.train(training)
         work.record(training)

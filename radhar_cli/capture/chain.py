@@ -84,8 +84,8 @@ def maps_of(
     track: TorsoTrack | None = None
     if recording.info.samples is None:
         _refuse_without_ranges(recording, config, names)
-        _refuse_too_much(recording, 1, receivers, first, last)
-        x = filled(recording.beat(first, last)[list(chosen), :1], lost)
+        _refuse_too_much(recording, 1, len(chosen), first, last)
+        x = filled(slow_time_of_part(recording, chosen, first, last), lost)
         signal = Signal(x, segments, recording.info.carrier_hz)
     else:
         processing = config.processing
@@ -163,13 +163,32 @@ def filled(x: Complex, lost: Bool) -> Complex:
 def _refuse_too_much(
     recording: Recording, bins: int, receivers: int, first: int, last: int
 ) -> None:
+    """Refuse more than MAX_BYTES of range bins [receivers, bins, pulses].
+
+    `receivers` are those that are held at once; --receiver helps only where there are several.
+    """
     size, seconds = 16 * receivers * bins * (last - first), (last - first) / recording.info.prf_hz
-    if size > MAX_BYTES:
-        raise CaptureError(
-            f"{recording.path}: {seconds:.4g} s of {receivers} receivers take "
-            f"{size / 2**30:.1f} GiB; --start and --stop should choose at most "
-            f"{MAX_BYTES / size * seconds:.3g} s, or --receiver one"
-        )
+    if size <= MAX_BYTES:
+        return
+    cure = f"--start and --stop should choose at most {MAX_BYTES / size * seconds:.3g} s"
+    if receivers > 1:
+        cure += ", or --receiver 0 one receiver"
+    held = f"{receivers} receivers" if receivers > 1 else "a receiver"
+    raise CaptureError(
+        f"{recording.path}: {seconds:.4g} s of {held} take {size / 2**30:.1f} GiB; {cure}"
+    )
+
+
+def slow_time_of_part(
+    recording: Recording, chosen: Sequence[int], first: int, last: int
+) -> Complex:
+    """Slow time [receiver, 1, M] of pulses first .. last - 1, read piece by piece."""
+    x = np.empty((len(chosen), 1, last - first), dtype=complex)
+    step = max(PIECE_SAMPLES // recording.info.receivers, 1)
+    for start in range(first, last, step):
+        beat = recording.beat(start, min(start + step, last))
+        x[:, :, start - first : start - first + beat.shape[2]] = beat[list(chosen), :1]
+    return x
 
 
 def analytic(profiles: Complex) -> Complex:

@@ -20,20 +20,20 @@ def adapt(
     map_: TrainedMap = None,
     split: Split = "all",
     epochs: Annotated[
-        int,
+        int | None,
         typer.Option(
             min=0,
             max=1000,
             help="Epochs of training on the images: towards confident predictions, with all "
-            "classes equally frequent. 0 adapts batch norm only.",
+            "classes equally frequent. 0 adapts batch norm only; default: 0 if the network has "
+            "batch norm and there is no --mix, else 20.",
         ),
-    ] = 0,
+    ] = None,
     mix: Annotated[
         list[Path] | None,
         typer.Option(
             metavar="DATA",
-            help="With --epochs: labelled data that RUN was trained on, used at the same time; "
-            "may repeat.",
+            help="Labelled data that RUN was trained on, used in the same epochs; may repeat.",
         ),
     ] = None,
     resize: Resize = False,
@@ -42,7 +42,7 @@ def adapt(
 ) -> None:
     """Adapt a copy of a run to another radar's images, without labels.
 
-    Batch-norm statistics are recomputed on the images; with --epochs the copy is trained on them.
+    Batch-norm statistics are recomputed on the images; in epochs the copy is trained on them.
 
     Example:
 
@@ -60,10 +60,10 @@ def adapt(
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device
 
-    if mix and not epochs:
+    if mix and epochs == 0:
         raise ConfigError("--mix: needs --epochs, during which its data are used")
     apart(out, [data, *(mix or [])])
-    adaptation.adapt(
+    adapted = adaptation.adapt(
         run,
         data,
         out,
@@ -76,6 +76,7 @@ def adapt(
         tuple(mix or ()),
         BarProgress(),
     )
-    report(folder=out, run=run, data=data, epochs=epochs)
-    more = f", after {counted(epochs, 'epoch')} without labels" if epochs else ""
+    passes = int(adapted.work["adapted_epochs"])
+    report(folder=out, run=run, data=data, epochs=passes)
+    more = f", after {counted(passes, 'epoch')} without labels" if passes else ""
     tell(f"{out}: {run}, adapted to {data}{more}")

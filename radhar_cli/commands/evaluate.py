@@ -27,6 +27,10 @@ def evaluate(
     tsne: Annotated[
         bool, typer.Option("--tsne", help="Draw t-SNE plots of the maps and of the last features.")
     ] = False,
+    filters: Annotated[
+        bool,
+        typer.Option("--filters", help="Draw the weights of the global filters (fftnet)."),
+    ] = False,
     in_place_vs_moving: Annotated[
         bool,
         typer.Option("--in-place-vs-moving", help="Also report the groups S1 to S7 and S8 to S12."),
@@ -57,7 +61,9 @@ def evaluate(
 
     runs, data = runs_and_data(paths)
     names = read_classes(classes)
-    options = EvalOptions(split_named(split), map_, tsne, in_place_vs_moving, batch, resize, names)
+    options = EvalOptions(
+        split_named(split), map_, tsne, in_place_vs_moving, batch, resize, names, filters
+    )
     inside = runs[0] if runs[0].is_dir() else runs[0].parent
     folder = out or inside / "eval"
     if out is None:

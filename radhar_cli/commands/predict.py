@@ -1,4 +1,4 @@
-"""`radhar predict`: classify single maps."""
+"""`radhar predict`: classes of single maps, or joints in sequences."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import Device, Resize, Run, Split, TrainedMap
-from radhar_cli.commands.tell import report, tell
+from radhar_cli.commands.tell import counted, report, tell
 
 
 def predict(
@@ -15,16 +15,26 @@ def predict(
         list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images or data sets.")
     ],
     top: Annotated[int, typer.Option(min=1, help="Classes to print, most likely first.")] = 3,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", help="Of a network that finds joints: file .npz or .csv."),
+    ] = None,
     map_: TrainedMap = None,
     split: Split = "all",
     resize: Resize = False,
     device: Device = "auto",
 ) -> None:
-    """Print the most likely classes of every image.
+    """Print the most likely classes of every image, or write the joints in every sequence.
 
     Example:
 
-      radhar predict runs/quickstart datasets/quickstart/png/stft/val/walking/00003.png
+      radhar predict runs/quickstart datasets/quickstart/png/stft/val/walking/00005.png
+
+      radhar predict runs/joints datasets/boards -o joints.npz
+
+    An .npz file has joints [sample, frame, joint, 3] in m (x ahead of the radar, y to its left, z
+    up; NaN after the end of a sample), joint_names, samples, and first_frame, the number of the
+    first frame in its sample; a .csv file a row for every joint and frame.
     """
     from radhar_cli.commands.learning_options import needs_torch
 
@@ -33,8 +43,22 @@ def predict(
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device
 
-    predictions = predict_paths(run, paths, choose_device(device), map_, split_named(split), resize)
-    for name, probabilities in predictions:
+    chosen, part = choose_device(device), split_named(split)
+    if out is not None:
+        from radhar_cli.learning.found_joints import check_joints_file, predict_joints
+
+        check_joints_file(out)
+        found = predict_joints(run, paths, chosen, map_, part)
+        found.write(out)
+        count = len(found.samples)
+        report(file=out, samples=count, joints=list(found.names))
+        tell(f"{out}: {len(found.names)} joints in {counted(count, 'sequence')}")
+        return
+
+    def warn(note: str) -> None:
+        tell(note, err=True)
+
+    for name, probabilities in predict_paths(run, paths, chosen, map_, part, resize, warn):
         ranked = sorted(probabilities.items(), key=lambda item: -item[1])
         report(**{"image": name, "class": ranked[0][0], "probabilities": probabilities})
         likely = ", ".join(f"{label} {100 * p:.1f} %" for label, p in ranked[:top])

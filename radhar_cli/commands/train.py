@@ -42,6 +42,12 @@ def train(
     init: Annotated[
         Path | None, typer.Option(help="Run whose best weights are used as initial weights.")
     ] = None,
+    resize: Annotated[
+        bool, typer.Option("--resize", help="With --init: resize images to the size of that run.")
+    ] = False,
+    tensorboard: Annotated[
+        bool, typer.Option("--tensorboard", help="Also write the curves for TensorBoard.")
+    ] = False,
     classes: Classes = None,
     overwrite: StartOver = False,
 ) -> None:
@@ -53,13 +59,16 @@ def train(
 
       radhar train datasets/boards -o runs/joints --model cloudnet --target skeleton
 
-      radhar train datasets/measured -o runs/tuned --init runs/simulated --set learning_rate=1e-4
+      radhar train measured -o runs/tuned --init runs/simulated --resize --set learning_rate=1e-4
 
-    The same command resumes an interrupted run after its last finished epoch.
+    The same command resumes an interrupted run after its last finished epoch. With --tensorboard,
+    `tensorboard --logdir runs` shows the curves of all runs.
     """
-    from radhar_cli.commands.learning_options import apart, needs_torch
+    from radhar_cli.commands.learning_options import apart, needs, needs_torch
 
     needs_torch()
+    if tensorboard:
+        needs("tensorboard", ("tensorboard",))
     from radhar_cli.commands.terminal import TrainingView
     from radhar_cli.config.reading import load_section
     from radhar_cli.learning import run_files, training
@@ -72,7 +81,9 @@ def train(
     apart(out, [*data, *([init] if init else [])])
     names = read_classes(classes)
     with resumable(f"the last finished epoch in {out}"), TrainingView() as view:
-        outcome = training.train(settings, data, out, view, overwrite, names, init)
+        outcome = training.train(
+            settings, data, out, view, overwrite, names, init, resize, tensorboard
+        )
     best = outcome.best
     report(
         folder=out,

@@ -1,7 +1,7 @@
 """The one reader of image files: five formats, one frame, a bounded number of pixels."""
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -37,16 +37,6 @@ def read_rgb(path: Path, size: tuple[int, int] | None = None) -> Levels:
         return _rgb(image)
 
 
-def read_gray(path: Path, size: tuple[int, int] | None = None) -> Levels:
-    """Levels [H, W] of an image file: the indices of a PNG of radhar, the luminance of any other.
-
-    Args and errors are those of `read_rgb`.
-    """
-    with _opened(path, size) as image:
-        levels = stored_levels(image)
-        return luminance(_rgb(image)) if levels is None else levels
-
-
 def luminance(rgb: Levels) -> Levels:
     """Brightness [H, W] of RGB [H, W, 3] after ITU-R BT.601.
 
@@ -64,6 +54,22 @@ def _rgb(image: Image.Image) -> Levels:
         grey = np.asarray(image).astype(np.uint32)
         return np.repeat(((grey + 128) // 257).astype(np.uint8)[..., None], 3, axis=-1)
     return np.asarray(image.convert("RGB"))
+
+
+def read_gray(
+    path: Path,
+    size: tuple[int, int] | None = None,
+    brightness: Callable[[Levels], Levels] = luminance,
+) -> Levels:
+    """Levels [H, W] of an image file: the indices of a PNG of radhar, the brightness of any other.
+
+    Args:
+        size: as in `read_rgb`, as are the errors.
+        brightness: levels [H, W] of RGB [H, W, 3].
+    """
+    with _opened(path, size) as image:
+        levels = stored_levels(image)
+        return brightness(_rgb(image)) if levels is None else levels
 
 
 @contextmanager
@@ -92,7 +98,7 @@ def _wrong(image: Image.Image, size: tuple[int, int] | None) -> str | None:
     if size is not None and (height, width) != size:
         return (
             f"is {height} x {width} px; should be {size[0]} x {size[1]} "
-            "(eval and predict bring it there with --resize)"
+            "(--resize brings it there, of train with --init)"
         )
     if not 1 <= min(height, width) <= max(height, width) <= MAX_SIDE:
         most = f"{MAX_SIDE} x {MAX_SIDE}"

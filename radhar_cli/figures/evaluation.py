@@ -10,9 +10,10 @@ from matplotlib import colormaps
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Index
+from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.figures.page import page, png_bytes
 
+ACROSS = 4  # pictures in a row
 MAX_NUMBERED = 32  # classes; with more, cells of a confusion matrix have no numbers
 
 
@@ -76,6 +77,45 @@ def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -
     return png_bytes(figure)
 
 
+def reliability_png(confidence: Float, accuracy: Float, count: Index, title: str) -> bytes:
+    """Draw the share that is right over the probability of the winning class, and how many.
+
+    Args:
+        confidence, accuracy: of each bin, nan where there is nothing.
+        count: predictions of each bin.
+    """
+    figure = page(4.6, 4.8)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3.2, 1])
+    above.plot([0, 1], [0, 1], ":", color="0.5", linewidth=1, label="calibrated")
+    there = count > 0
+    above.plot(confidence[there], accuracy[there], "o-", color="C0", markersize=5, label="measured")
+    above.vlines(confidence[there], confidence[there], accuracy[there], color="C3", linewidth=1)
+    above.set(ylabel="share that is right", ylim=(-0.02, 1.04))
+    above.legend(fontsize=8, loc="upper left")
+    edges = np.linspace(0, 1, len(count) + 1)
+    below.bar(edges[:-1], count, width=np.diff(edges), align="edge", color="0.7", edgecolor="white")
+    below.set(xlabel="probability of the predicted class", ylabel="images", xlim=(0, 1))
+    below.yaxis.set_major_locator(MaxNLocator(3, integer=True))
+    for axes in (above, below):
+        axes.grid(alpha=0.3)
+    figure.suptitle(title, fontsize=9)
+    return png_bytes(figure)
+
+
+def captioned_png(images: Sequence[Levels], captions: Sequence[str], title: str) -> bytes:
+    """Draw RGB images [H, W, 3] with captions of some lines, four a row."""
+    rows, columns = -(-len(images) // ACROSS), min(ACROSS, len(images))
+    figure = page(2.5 * columns, 3.1 * rows + 0.4)
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    for panel in panels:
+        panel.set_axis_off()
+    for panel, image, caption in zip(panels, images, captions, strict=False):
+        panel.imshow(image, interpolation="nearest", aspect="auto")
+        panel.set_title(caption, fontsize=7.5, loc="left")
+    figure.suptitle(title, fontsize=10)
+    return png_bytes(figure)
+
+
 def embeddings_png(
     panels: Mapping[str, Float], label: Index, names: Sequence[str], title: str
 ) -> bytes:
@@ -93,6 +133,47 @@ def embeddings_png(
         axes.set(xticks=[], yticks=[])
     figure.legend(*drawn[0].get_legend_handles_labels(), loc="outside right center", fontsize=7)
     figure.suptitle(title, fontsize=9)
+    return png_bytes(figure)
+
+
+def filters_png(runs: Mapping[str, Sequence[Float]]) -> bytes:
+    """Draw heat maps of global filters, a row for every run and a column for every layer.
+
+    Colours go from 0 to the largest value of each panel, which stands above it: layers and runs
+    differ by orders of magnitude, and it is the pattern that is compared.
+
+    Args:
+        runs: {name: its filters}, each [H, W]: magnitude of the effective weight in FFT order, mean
+            over channels; rows are the Doppler axis of the map, columns its time axis.
+    """
+    columns = max(len(filters) for filters in runs.values())
+    figure = page(1.9 * columns + 1.5, 1.95 * len(runs) + 0.9)
+    panels = figure.subplots(len(runs), columns, squeeze=False)
+    for number, (row, (name, filters)) in enumerate(zip(panels, runs.items(), strict=True)):
+        row[0].set_ylabel(name, fontsize=8)
+        for panel in row[len(filters) :]:
+            panel.set_axis_off()
+        for layer, (panel, weight) in enumerate(zip(row, filters, strict=False), start=1):
+            height, width = weight.shape
+            # Pixel centres are whole frequencies: -N/2 to N/2 - 1.
+            edges = (-width / 2 - 0.5, width / 2 - 0.5, -height / 2 - 0.5, height / 2 - 0.5)
+            image = panel.imshow(
+                np.fft.fftshift(weight) / max(weight.max(), 1e-30),
+                extent=edges,
+                origin="lower",
+                cmap="viridis",
+                vmin=0,
+                vmax=1,
+            )
+            over = f"Global Filter {layer}\n" if number == 0 else ""
+            panel.set_title(f"{over}{height} x {width}, largest {weight.max():.2g}", fontsize=8)
+            panel.tick_params(labelsize=7)
+            panel.locator_params(nbins=5)
+    bar = figure.colorbar(image, ax=panels, shrink=0.7, pad=0.01, aspect=40)
+    bar.set_label("mean |weight|, over the largest", fontsize=8)
+    bar.ax.tick_params(labelsize=7)
+    figure.supxlabel("time axis: frequency in cycles an image", fontsize=8)
+    figure.supylabel("Doppler axis: frequency in cycles an image", fontsize=8)
     return png_bytes(figure)
 
 

@@ -37,6 +37,7 @@ from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.worker_process import keep_memory
 
 MIN_IMAGES, BATCH = 16, 96
+EPOCHS = 20  # where none are asked for and batch norm alone would not do
 MIXED = 32  # labelled images a step
 RATE = 5e-4  # of Adam, falls to zero by a cosine
 
@@ -57,7 +58,7 @@ class Mixed:
         rng = stream(config.seed, TRAINING, epoch, name="adaptation mixed")
         drawn = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
         labels = labels_for(self.images, metadata.classes)
-        change = Augmentation(config.augment, config.seed) if config.input == "gray" else None
+        change = Augmentation(config.augment, config.seed) if config.reads == "gray" else None
         yield from Reader(self.images.pixels, labels, change)(list(drawn), epoch)
 
 
@@ -70,7 +71,7 @@ def adapt(
     split: str = "all",
     resize: bool = False,
     overwrite: bool = False,
-    epochs: int = 0,
+    epochs: int | None = None,
     mix: Sequence[Path] | Mixed = (),
     progress: Messages | None = None,
 ) -> RunMetadata:
@@ -85,10 +86,12 @@ def adapt(
         map_name: of a data set, if not the one of the run.
         split: of `data`, where it has any.
         resize: bring images to the model's size.
-        epochs: passes in which it learns from the images.
+        epochs: passes in which it learns from the images; None is none where there is batch norm
+            and nothing to mix, else EPOCHS.
         mix: labelled data sets that it shows as well, those that the run learned from.
     """
     metadata, model = load_best(run)
+    epochs = _epochs(run, metadata, model, epochs, bool(mix))
     if isinstance(data, Path):
         images = open_for(metadata, data, map_name, labelled=False, resize=resize)
         rows, _ = rows_of(images, split)
@@ -103,13 +106,10 @@ def adapt(
         raise run_folder.RunError(f"{run}: should be the folder of a run")
     if run.resolve() == folder.resolve():
         raise run_folder.RunError(f"{folder}: is the run itself; -o should name another folder")
+    if progress is not None:
+        for note in images.notes:
+            progress.say(note)
     history = run_folder.read_history(run)
-    if metadata.settings.target == "labels":
-        raise ConfigError(f"{run}: finds several labels at a time; should be a run of classes")
-    if not epochs and not any(isinstance(layer, _BatchNorm) for layer in model.modules()):
-        raise ConfigError(
-            f"epochs = 0: should be at least 1 for {metadata.model}, which has no batch norm"
-        )
     if rows.size < MIN_IMAGES:
         raise ConfigError(
             f"{images.where}: has {rows.size} images; should have at least {MIN_IMAGES}"
@@ -135,6 +135,26 @@ def adapt(
         if (run / TRAINED_ON).exists():
             write_whole(folder, folder / TRAINED_ON, read_bytes(run / TRAINED_ON, MAX_TABLE))
     return metadata
+
+
+def _epochs(
+    run: Path, metadata: RunMetadata, model: nn.Module, epochs: int | None, mixed: bool
+) -> int:
+    """Passes over the images, of a network that can be adapted.
+
+    Raises:
+        ConfigError: the network does not tell classes apart, one for each image; or would stay as
+            it is, having no batch norm.
+    """
+    run_folder.refuse_other_targets(run, metadata)
+    normed = any(isinstance(layer, _BatchNorm) for layer in model.modules())
+    if epochs == 0 and not normed:
+        raise ConfigError(
+            f"epochs = 0: should be at least 1 for {metadata.model}, which has no batch norm"
+        )
+    if epochs is None:
+        return 0 if normed and not mixed else EPOCHS
+    return epochs
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import statistics
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,9 +17,10 @@ from radhar_cli.dataset.split import TRAIN
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.images.classes import known_to, refuse_mistyped
-from radhar_cli.learning.images.folder import FilePixels, image_files, is_image
-from radhar_cli.learning.images.image_set import ImageSet, Pixels, Resized, labels_for
-from radhar_cli.learning.images.opening import is_h5, is_tree, open_images, open_inputs
+from radhar_cli.learning.images.colours import in_colours
+from radhar_cli.learning.images.folder import image_files, is_image, pictures
+from radhar_cli.learning.images.image_set import ImageSet, Pixels, labels_for, resized
+from radhar_cli.learning.images.opening import is_h5, is_tree, open_inputs
 from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.models.build import features_and_logits
 from radhar_cli.learning.run_files import is_run
@@ -61,19 +62,29 @@ def open_for(
     """Open a data set for a trained model.
 
     The map is the one it was trained on if none is named. Images that come without a split are
-    given the run's own where they are those that the run has cut.
+    given the run's own where they are those that the run has cut. Pictures are brought to the
+    colours that the run learned from.
 
     Args:
-        labelled: keep the classes that the model knows, and no other.
+        labelled: keep the classes that the model knows, and no other; of a model that finds joints,
+            all are kept.
         resize: bring images to the model's size.
         names: {class there: class here, or None to leave it out}.
     """
-    images = _opened_images(metadata, path, map_name or _map_there(metadata, path), resize)
+    images = open_inputs(
+        path,
+        map_name or _map_there(metadata, path),
+        metadata.settings,
+        metadata.size if resize else None,
+    )
     if (images.size, images.channels) != (metadata.size, metadata.channels):
         cure = "; --resize brings them to that" if metadata.input in ("rgb", "gray") else ""
         raise FolderError(
             f"{path}: images are {images.shape}; the model was trained on {metadata.shape}{cure}"
         )
+    images = in_colours(images, metadata.colours)
+    if metadata.finds_joints:
+        return images.renamed(names or {})
     if labelled:
         refuse_mistyped(names or {}, metadata.classes)
         images = images.renamed(names or {}).learned_as(metadata.settings.target)
@@ -85,16 +96,6 @@ def open_for(
                 if content_hash(cut, rows) == metadata.data["hash"]:
                     return cut
     return images
-
-
-def _opened_images(
-    metadata: RunMetadata, path: Path, map_name: str | None, resize: bool
-) -> ImageSet:
-    if not resize:
-        return open_inputs(path, map_name, metadata.settings)
-    if metadata.input not in ("rgb", "gray"):
-        raise RunError(f"--resize: {metadata.model} reads {metadata.input}, which have no size")
-    return open_images(path, map_name, metadata.input, metadata.size)
 
 
 def _map_there(metadata: RunMetadata, path: Path) -> str | None:
@@ -169,6 +170,16 @@ def predict(
     )
 
 
+@dataclass(frozen=True)
+class Inputs:
+    """What a network is asked about: images or sequences without regard to their classes."""
+
+    pixels: Pixels
+    rows: Index
+    names: tuple[str, ...]  # [len(rows)]
+    notes: tuple[str, ...]  # what was done to make them fit
+
+
 def predict_paths(
     run: Path,
     paths: Sequence[Path],
@@ -176,6 +187,7 @@ def predict_paths(
     map_name: str | None,
     split: str,
     resize: bool = False,
+    say: Callable[[str], None] | None = None,
 ) -> Iterator[tuple[str, dict[str, float]]]:
     """Yield (name, probability of every class) for every image.
 
@@ -183,24 +195,28 @@ def predict_paths(
         paths: images, folders of images, or data sets.
         map_name: of a data set, if not the one of the run.
         split: of a data set.
+        say: is told what was done to make the images fit.
     """
     metadata, model = load_best(run)
     if metadata.finds_joints:
-        raise RunError(f"{run}: finds joints, no classes; `radhar eval` shows how well")
+        raise RunError(f"{run}: finds joints, no classes; `-o joints.npz` writes them to a file")
     model.to(device)
     for path in paths:
-        pixels, rows, names = _opened(metadata, path, map_name, split, resize)
-        each = iter(names)
-        found = predict_batches(model, metadata, pixels, rows, device, PREDICT_BATCH)
+        inputs = open_unlabelled(metadata, path, map_name, split, resize)
+        if say is not None:
+            for note in inputs.notes:
+                say(note)
+        each = iter(inputs.names)
+        found = predict_batches(model, metadata, inputs.pixels, inputs.rows, device, PREDICT_BATCH)
         for probabilities, _ in found:
             for row in probabilities.tolist():
                 yield next(each), dict(zip(metadata.classes, row, strict=True))
 
 
-def _opened(
+def open_unlabelled(
     metadata: RunMetadata, path: Path, map_name: str | None, split: str, resize: bool
-) -> tuple[Pixels, Index, list[str]]:
-    """Images, which of them, and what to call them."""
+) -> Inputs:
+    """Open an image, a folder of images or a data set for a network that is asked about it."""
     if not path.exists():
         raise FolderError(f"{path}: no such file or folder")
     if is_run(path):
@@ -209,12 +225,15 @@ def _opened(
         raise RunError(f"{path}: {metadata.model} reads {metadata.input}; should be a data set")
     files = image_files(path, path) if is_tree(path) else [p for p in (path,) if is_image(p)]
     if files:
-        kept = FilePixels(tuple(files), metadata.input, None if resize else metadata.size)
-        brought = Resized(kept, metadata.size) if resize else kept
-        return brought, np.arange(len(files)), list(map(str, files))
+        size = None if resize else metadata.size
+        images = in_colours(pictures(path, files, metadata.input, size), metadata.colours)
+        if resize:
+            images = resized(images, metadata.size)
+        return Inputs(images.pixels, np.arange(len(files)), images.names, images.notes)
     images = open_for(metadata, path, map_name, labelled=False, resize=resize)
     rows, _ = rows_of(images, split)
-    return images.pixels, rows, [f"{path}: {images.names[row]}" for row in rows]
+    names = tuple(f"{path}: {images.names[row]}" for row in rows)
+    return Inputs(images.pixels, rows, names, images.notes)
 
 
 def speed(

@@ -49,7 +49,7 @@ def evaluate_labels(
     }
     head = ("class", "images", "average_precision")
     lines = zip(present, counts, (f"{value:.4f}" for value in precision), strict=True)
-    report.table(f"labels{stem}.csv", head, lines)
+    report.table(f"labels{stem}.csv", head, lines, "Label by label")
     told = (
         (images.names[row], *(" ".join(np.array(names)[one]) for one in pair))
         for row, *pair in zip(rows.tolist(), shown, found, strict=True)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any
 
@@ -24,10 +25,23 @@ def wilson(correct: float, count: float) -> tuple[float, float]:
     return max(0.0, low), min(1.0, high)
 
 
-def calibration_error(truth: Index, probabilities: Float) -> float:
-    """Expected calibration error of the winning class's probability, in 15 equal bins.
+@dataclass(frozen=True)
+class Calibration:
+    """Predictions in 15 equal bins of the probability of the winning class; nan in empty ones."""
 
-    The sum over bins of their share times |accuracy - confidence| (Guo et al., 2017).
+    confidence: Float  # [15] mean probability
+    accuracy: Float  # [15] share that is right
+    count: Index  # [15]
+
+    @property
+    def error(self) -> float:
+        """Expected calibration error: sum of share |accuracy - confidence| (Guo et al., 2017)."""
+        gaps = np.nan_to_num(np.abs(self.accuracy - self.confidence)) * self.count
+        return float(gaps.sum() / max(1, self.count.sum()))
+
+
+def calibration(truth: Index, probabilities: Float) -> Calibration:
+    """How often the winning class is right, by its probability.
 
     Args:
         truth: [N].
@@ -35,8 +49,15 @@ def calibration_error(truth: Index, probabilities: Float) -> float:
     """
     confidence, correct = probabilities.max(1), probabilities.argmax(1) == truth
     bins = np.clip(np.ceil(confidence * CALIBRATION_BINS).astype(int) - 1, 0, CALIBRATION_BINS - 1)
-    gaps = np.bincount(bins, correct - confidence, CALIBRATION_BINS)
-    return float(np.abs(gaps).sum() / max(1, truth.size))
+    count = np.bincount(bins, minlength=CALIBRATION_BINS)
+    sums = [np.bincount(bins, of, CALIBRATION_BINS) for of in (confidence, correct)]
+    mean, share = (np.where(count, one / np.maximum(count, 1), np.nan) for one in sums)
+    return Calibration(mean, share, count)
+
+
+def calibration_error(truth: Index, probabilities: Float) -> float:
+    """Expected calibration error of predictions, as `Calibration.error`."""
+    return calibration(truth, probabilities).error
 
 
 def summary(truth: Index, probabilities: Float, classes: Sequence[str]) -> dict[str, Any]:

@@ -12,29 +12,33 @@ from torch.nn.functional import interpolate
 
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Normalisation
+from radhar_cli.learning.images.sequences import COLUMNS
 from radhar_cli.learning.run_folder import RunError, RunMetadata, first_line, load_best
 from radhar_cli.replacing import replacing
 
 TOLERANCE = 1e-4
+INPUTS = {"rgb": "pixels", "gray": "pixels", "frames": "frames", "clouds": "clouds"}
 
 
-class _FromPixels(nn.Module):
-    """The network with its normalisation in front: pixels as they come out of a PNG."""
+class _FromInputs(nn.Module):
+    """The network with its normalisation in front: pixels as in a PNG, frames, or clouds."""
 
     def __init__(self, model: nn.Module, normalisation: Normalisation) -> None:
         super().__init__()
         self.model, self.normalisation = model, normalisation
 
-    def forward(self, pixels: Tensor) -> Tensor:
-        logits: Tensor = self.model(self.normalisation(pixels))
-        return logits
+    def forward(self, inputs: Tensor) -> Tensor:
+        outputs: Tensor = self.model(self.normalisation(inputs))
+        return outputs
 
 
 def export(run: Path, path: Path) -> float:
-    """Write the best epoch's network as ONNX and compare the two on random images.
+    """Write the best epoch's network as ONNX and compare the two on random inputs.
 
-    The input `pixels` is uint8 [batch, 3, H, W], RGB; the output `logits` is float32 [batch,
-    classes]. The file's metadata names the classes.
+    The input is `pixels` uint8 [batch, 3, H, W], RGB; or `frames` uint8 [batch, T, H, W]; or
+    `clouds` float32 [batch, 6, T, points], the columns of `Sequences` first. The output is `logits`
+    float32 [batch, classes], or `joints` float32 [batch, T, joint, 3] in m. The file's metadata
+    names the classes or the joints.
 
     Returns:
         The largest difference of a logit; relative to the largest logit where that is above 1.
@@ -43,20 +47,19 @@ def export(run: Path, path: Path) -> float:
     import onnxruntime
 
     metadata, network = load_best(run)
-    if metadata.input not in ("rgb", "gray"):
-        raise RunError(f"{run}: {metadata.model} reads {metadata.input}; only images are exported")
-    model = _FromPixels(network, metadata.normalisation).eval()
-    pixels = _pixels(2, metadata)
+    model = _FromInputs(network, metadata.normalisation).eval()
+    of, answer = INPUTS[metadata.input], "joints" if metadata.finds_joints else "logits"
+    inputs = _trial(2, metadata)
     try:
         with warnings.catch_warnings(), torch.no_grad():
             warnings.simplefilter("ignore")
             program: Any = torch.onnx.export(
                 model,
-                (pixels,),
+                (inputs,),
                 dynamo=True,
-                dynamic_shapes={"pixels": {0: torch.export.Dim("batch")}},
-                input_names=["pixels"],
-                output_names=["logits"],
+                dynamic_shapes={"inputs": {0: torch.export.Dim("batch")}},
+                input_names=[of],
+                output_names=[answer],
                 verbose=False,
             )
     except torch.onnx.errors.OnnxExporterError as error:
@@ -66,22 +69,26 @@ def export(run: Path, path: Path) -> float:
     written = program.model_proto
     onnx.helper.set_model_props(
         written,
-        {"classes": json.dumps(metadata.classes), "model": metadata.model, "input": metadata.input},
+        {
+            **{key: json.dumps(value) for key, value in _names(metadata).items()},
+            "model": metadata.model,
+            "input": metadata.input,
+        },
     )
     onnx.checker.check_model(written)
     content = written.SerializeToString()
     session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
     worst = 0.0
     for images in (1, 3):
-        trial = _pixels(images, metadata)
+        trial = _trial(images, metadata)
         with torch.inference_mode():
             expected = model(trial).numpy()
-        logits = session.run(["logits"], {"pixels": trial.numpy()})[0]
+        outputs = session.run([answer], {of: trial.numpy()})[0]
         scale = max(1.0, float(np.abs(expected).max()))
-        worst = max(worst, float(np.abs(logits - expected).max()) / scale)
+        worst = max(worst, float(np.abs(outputs - expected).max()) / scale)
     if not worst <= TOLERANCE:
         raise RunError(
-            f"{run}: ONNX Runtime's logits differ from PyTorch's by {worst:.2g}, more than "
+            f"{run}: ONNX Runtime's {answer} differ from PyTorch's by {worst:.2g}, more than "
             f"{TOLERANCE:g}; {path} was not written"
         )
     try:
@@ -93,14 +100,34 @@ def export(run: Path, path: Path) -> float:
     return worst
 
 
+def _names(metadata: RunMetadata) -> dict[str, tuple[str, ...]]:
+    """What the outputs of a network stand for."""
+    return {"joints": metadata.joints} if metadata.finds_joints else {"classes": metadata.classes}
+
+
+def _trial(count: int, metadata: RunMetadata) -> Tensor:
+    """Random inputs of a network, like those of its training."""
+    return _clouds(count, metadata) if metadata.input == "clouds" else _pixels(count, metadata)
+
+
+def _clouds(count: int, metadata: RunMetadata) -> Tensor:
+    """Random clouds [count, 6, T, points], of which a third of the points is missing."""
+    generator = torch.Generator().manual_seed(0)
+    clouds = torch.randn(count, len(COLUMNS), *metadata.size, generator=generator)
+    present = torch.rand(count, 1, *metadata.size, generator=generator) < 2 / 3
+    clouds[:, -1:] = 1
+    return clouds * present
+
+
 def _pixels(images: int, metadata: RunMetadata) -> Tensor:
-    """Smooth random images, uint8 [images, 3, H, W], with the mean and spread of the training data.
+    """Smooth random images, uint8 [images, C, H, W], with the mean and spread of the training data.
 
     White noise would not do: far from what it was trained on, the network's products of branches
     grow without bound, and rounding errors with them.
     """
     generator = torch.Generator().manual_seed(0)
-    coarse = torch.randn(images, 1, 8, 8, generator=generator)
+    depth = 1 if metadata.input in ("rgb", "gray") else metadata.channels
+    coarse = torch.randn(images, depth, 8, 8, generator=generator)
     smooth = interpolate(coarse, size=metadata.size, mode="bilinear", align_corners=False)
-    mean, sd = (torch.tensor(numbers).view(1, 3, 1, 1) for numbers in (metadata.mean, metadata.sd))
+    mean, sd = (torch.tensor(numbers).view(1, -1, 1, 1) for numbers in (metadata.mean, metadata.sd))
     return (255 * (mean + sd * smooth)).clamp(0, 255).to(torch.uint8)

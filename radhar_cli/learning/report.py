@@ -1,5 +1,6 @@
 """`radhar eval`: every figure and table of some runs on some data sets."""
 
+import json
 import platform
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -7,14 +8,16 @@ from typing import Any
 
 import torch
 
+from radhar_cli.build_version import build_version
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.errors import FolderError
-from radhar_cli.figures.evaluation import Point, curves_png, robustness_png
+from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
 from radhar_cli.learning.evaluation import SPEEDS, speed
+from radhar_cli.learning.filter_weights import filter_table, magnitudes
 from radhar_cli.learning.images.classes import unknown_message
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_files import BEST
-from radhar_cli.learning.run_folder import best_epoch
+from radhar_cli.learning.run_folder import RunMetadata, best_epoch
 from radhar_cli.learning.single_result import (
     EvalOptions,
     Run,
@@ -54,13 +57,20 @@ def evaluate(
             "machine": platform.machine(),
             "threads": torch.get_num_threads(),
             "runs": {},
-        }
+        },
+        title=f"{', '.join(run.name for run in opened)} on {', '.join(named_data)}",
+        about=(
+            f"radhar eval {build_version()}, split {options.split}; on {device.type}, "
+            f"threads: {torch.get_num_threads()}, float32. Intervals are Wilson's, 95 %."
+        ),
     )
 
     def say(line: str) -> None:
         progress.say(line)
-        report.lines.append(line)
+        report.line(line)
 
+    for note in dict.fromkeys(n for one in eval_sets.values() for n in one.images.notes):
+        say(note)
     for message in dict.fromkeys(
         unknown_message(eval_set.images, options.names) for eval_set in eval_sets.values()
     ):
@@ -68,12 +78,13 @@ def evaluate(
             say(f"warning: {message}")
     lines: dict[str, list[Point]] = {}
     for run in opened:
-        say(f"{run.name}: {run.metadata.model}, {len(run.metadata.classes)} classes")
+        say(f"{run.name}: {run.metadata.model}, {run.metadata.answers}")
         results = {}
         for data_name in named_data:
             one = len(opened) == len(named_data) == 1
             stem = "" if one else f"_{run.name}__{data_name}"
             eval_set = eval_sets[run.name, data_name]
+            report.section(f"{run.name} on {data_name}, {eval_set.split}")
             numbers = evaluate_one(report, run, data_name, eval_set, stem, options, device)
             results[data_name] = numbers
             say(f"  {data_name}, {numbers['split']}: {_found(numbers)}")
@@ -95,9 +106,43 @@ def evaluate(
         report.numbers["runs"][run.name] = _about(run) | {"speed": timed, "data": results}
     about = report.numbers["runs"].items()
     networks = ([n, *(one[key] for key in NETWORK), *one["speed"].values()] for n, one in about)
-    report.table("networks.csv", ["run", *NETWORK, *SPEEDS], networks)
+    report.section("Networks" if len(opened) > 1 else "Network")
+    listed = [*networks]
+    report.table("networks.csv", ["run", *NETWORK, *SPEEDS], listed)
+    _show_networks(report, listed)
     _compare(report, opened, lines)
+    if options.filters:
+        _show_filters(report, opened)
+    report.section("How they were trained")
+    for run in opened:
+        report.details(run.name, _trained_how(run.metadata))
     return report
+
+
+def _show_networks(report: Report, rows: Sequence[Sequence[object]]) -> None:
+    """The table of networks with a column a run, in units that people read."""
+    units = (
+        *("network", "parameters", "multiply-adds of an image", "best epoch", "loading, s"),
+        *("an image, s", "loading and an image, s", "images of a batch", "images/s in batches"),
+        "images/s in batches, loading included",
+    )
+    head = ["", *(row[0] for row in rows)]
+    columns = zip(*(row[1:] for row in rows), strict=True)
+    lines = [[unit, *column] for unit, column in zip(units, columns, strict=True)]
+    report.show_table("Size and speed", head, lines)
+
+
+def _trained_how(metadata: RunMetadata) -> str:
+    """Data, settings and versions of a run, as JSON."""
+    about = {
+        "data": metadata.data["path"],
+        "images": {"train": metadata.data["train"], "validation": metadata.data["val"]},
+        "map": metadata.map,
+        "size": list(metadata.size),
+        "versions": metadata.versions,
+        "config": metadata.config,
+    }
+    return json.dumps(about, indent=2, ensure_ascii=False)
 
 
 def _about(run: Run) -> dict[str, Any]:
@@ -156,6 +201,23 @@ def _compare(report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[P
         )
         head = ("run", "data", "snr_db", "accuracy", "low_95", "high_95")
         report.table("robustness.csv", head, rows)
+
+
+def _show_filters(report: Report, runs: Sequence[Run]) -> None:
+    """The paper's figure of weights: a row for every network, a column for every global filter."""
+    weights = {run.name: magnitudes(run.model) for run in runs}
+    weights = {name: filters for name, filters in weights.items() if filters}
+    caption = (
+        "Weight heat maps of the global filters (the paper's figure): magnitude of the effective "
+        "weight by spatial frequency, mean over channels, each over its largest value; Doppler "
+        "axis down, time axis across, the zero frequency in the middle."
+    )
+    report.figure("filters.png", caption, filters_png(weights))
+    tables = {name: filter_table(filters) for name, filters in weights.items()}
+    report.numbers["filters"] = tables
+    keys = list(next(iter(tables.values()))[0])
+    every = ([name, *row.values()] for name, rows in tables.items() for row in rows)
+    report.table("filters.csv", ["run", *keys], every)
 
 
 def _named(paths: Sequence[Path]) -> dict[str, Path]:

@@ -12,31 +12,52 @@ from radhar_cli.dataset.files import write_whole
 from radhar_cli.learning.report_folder import csv_text, write_report
 
 PAGE = "report.html"
-LONG = "predictions"  # tables of a row an image, which the page leaves to their files
 _PAGE = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>radhar eval</title>
+<html lang="en"><head><meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1"><title>{{ title }}</title>
 <style>
-body { font: 15px/1.45 system-ui, sans-serif; max-width: 70rem; margin: 2rem auto; }
-table { border-collapse: collapse; margin: .6rem 0 1.4rem; }
-th, td { padding: .18rem .6rem; border-bottom: 1px solid #ccc; text-align: right; }
+:root { --line: #d8dee4; --soft: #57606a; }
+body { font: 15px/1.5 system-ui, sans-serif; color: #1f2328; max-width: 66rem; margin: 2rem auto;
+  padding: 0 1rem; }
+h1 { font-size: 1.7rem; margin-bottom: .2rem; }
+h2 { border-bottom: 1px solid var(--line); padding-bottom: .25rem; margin-top: 2.4rem; }
+h3 { margin: 1.4rem 0 .3rem; font-size: 1rem; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; margin: .4rem 0 1.2rem; font-variant-numeric: tabular-nums; }
+th, td { padding: .22rem .7rem; border-bottom: 1px solid var(--line); text-align: right; }
+th { color: var(--soft); font-weight: 600; }
 th:first-child, td:first-child { text-align: left; }
-.warning { background: #fff3cd; padding: .4rem .8rem; }
-figure { margin: 1.2rem 0; } img { max-width: 100%; } figcaption { color: #555; }
+.soft, figcaption { color: var(--soft); }
+.warning { background: #fff8c5; border-left: 4px solid #d4a72c; padding: .4rem .8rem; }
+figure { margin: 1.2rem 0; } img { max-width: 100%; height: auto; }
+pre { background: #f6f8fa; padding: .8rem; overflow-x: auto; font-size: 13px; }
 </style></head><body>
-<h1>radhar eval: {{ n.runs | join(", ") }}</h1>
-<p>Device: {{ n.device }}, {{ n.threads }} threads, float32. Intervals are Wilson's, 95 %.</p>
-{% for line in lines %}<p{% if "warning:" in line %} class="warning"{% endif %}>{{ line }}</p>
-{% endfor %}
-{% for name, head, rows in tables %}<h2>{{ name }}</h2>
-<table><tr>{% for one in head %}<th>{{ one }}</th>{% endfor %}</tr>
-{% for row in rows %}<tr>{% for one in row %}<td>{{ one }}</td>{% endfor %}</tr>
-{% endfor %}</table>{% endfor %}
-<h2>Figures</h2>
-{% for name, caption, data in figures %}<figure><img alt="{{ name }}"
-src="data:image/png;base64,{{ data }}"><figcaption>{{ caption }}</figcaption></figure>
-{% endfor %}
+<h1>{{ title }}</h1>
+<p class="soft">{{ about }}</p>
+{% for section in sections %}{% if section.title %}<h2>{{ section.title }}</h2>
+{% endif %}{% for part in section.parts %}{% if part.kind == "line" %}
+<p{% if part.warning %} class="warning"{% endif %}>{{ part.text }}</p>
+{% elif part.kind == "table" %}<h3>{{ part.title }}</h3>
+<div class="scroll"><table><tr>{% for one in part.head %}<th>{{ one }}</th>{% endfor %}</tr>
+{% for row in part.rows %}<tr>{% for one in row %}<td>{{ one }}</td>{% endfor %}</tr>
+{% endfor %}</table></div>
+{% elif part.kind == "details" %}<details><summary>{{ part.title }}</summary>
+<pre>{{ part.text }}</pre></details>
+{% else %}<figure><img alt="{{ part.caption }}"
+src="data:image/png;base64,{{ part.data }}"><figcaption>{{ part.caption }}</figcaption></figure>
+{% endif %}{% endfor %}{% endfor %}
+<p class="soft">The same numbers for programs: report.json; each figure and table is a file beside
+this page.</p>
 </body></html>
 """
+
+
+@dataclass
+class ReportSection:
+    """A part of the page under a heading: lines, figures and tables, in their order."""
+
+    title: str
+    parts: list[dict[str, object]] = field(default_factory=list)
 
 
 @dataclass
@@ -44,17 +65,59 @@ class Report:
     """Lines, figures and tables of a report, in the order in which they are read; its numbers."""
 
     numbers: dict[str, Any]
+    title: str = "Evaluation"
+    about: str = ""  # a line below the title
     lines: list[str] = field(default_factory=list)
     figures: list[tuple[str, str, bytes]] = field(default_factory=list)
     tables: list[tuple[str, Sequence[object], list[list[object]]]] = field(default_factory=list)
+    sections: list[ReportSection] = field(default_factory=lambda: [ReportSection("")])
+
+    def section(self, title: str) -> None:
+        """Begin a part of the page; what is added goes below its heading."""
+        self.sections.append(ReportSection(title))
+
+    def line(self, text: str) -> None:
+        """Add a line to those at the top of the page."""
+        self.lines.append(text)
+        top = {"kind": "line", "text": text, "warning": "warning:" in text}
+        self.sections[0].parts.append(top)
+
+    def details(self, title: str, text: str) -> None:
+        """Add a text that the page shows when it is asked to."""
+        self._add("details", title=title, text=text)
 
     def figure(self, name: str, caption: str, png: bytes) -> None:
         """Add a figure."""
         self.figures.append((name, caption, png))
+        self._add("figure", caption=caption, data=b64encode(png).decode())
 
-    def table(self, name: str, header: Sequence[object], rows: Iterable[Iterable[object]]) -> None:
-        """Add a table."""
-        self.tables.append((name, header, [[*row] for row in rows]))
+    def table(
+        self,
+        name: str,
+        header: Sequence[object],
+        rows: Iterable[Iterable[object]],
+        title: str | None = None,
+    ) -> None:
+        """Add a table.
+
+        Args:
+            name: of its file.
+            title: what the page calls it; None leaves it to its file.
+        """
+        listed = [[*row] for row in rows]
+        self.tables.append((name, header, listed))
+        if title is not None:
+            self.show_table(title, [str(one).replace("_", " ") for one in header], listed)
+
+    def show_table(
+        self, title: str, header: Sequence[object], rows: Iterable[Iterable[object]]
+    ) -> None:
+        """Add a table that the page alone has."""
+        shown = [[_short(value) for value in row] for row in rows]
+        self._add("table", title=title, head=list(header), rows=shown)
+
+    def _add(self, kind: str, **what: object) -> None:
+        self.sections[-1].parts.append({"kind": kind, **what})
 
     def write(self, folder: Path) -> None:
         """Write everything into a folder; report.json comes last."""
@@ -62,11 +125,16 @@ class Report:
         for name, head, rows in self.tables:
             files[name] = csv_text(head, rows).encode("utf-8", "surrogateescape")
         page = Environment(autoescape=True).from_string(_PAGE)
-        text = page.render(
-            n=self.numbers,
-            lines=self.lines,
-            tables=[one for one in self.tables if not one[0].startswith(LONG)],
-            figures=[(name, what, b64encode(png).decode()) for name, what, png in self.figures],
-        )
+        shown = [section for section in self.sections if section.parts]
+        text = page.render(title=self.title, about=self.about, sections=shown)
         write_whole(folder, folder / PAGE, text.encode("utf-8", "backslashreplace"))
         write_report(folder, files, self.numbers)
+
+
+def _short(value: object) -> object:
+    """A number as a person reads it; anything else as it is."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return "" if value is None else value
+    if isinstance(value, int) or value == int(value):
+        return f"{int(value):,}".replace(",", "\u202f")
+    return f"{value:.4g}"

@@ -9,6 +9,7 @@ HISTORY = "history.csv"
 CURVES = "curves.png"
 METRICS = "metrics.json"
 TRAINED_ON = "trained_on.csv"
+TENSORBOARD, EVENTS = "tensorboard", "events.out.tfevents.*"  # folder, and files in it
 ALL = (ABOUT, BEST, LAST, HISTORY, CURVES, METRICS, TRAINED_ON)
 
 

@@ -22,12 +22,21 @@ from radhar_cli.config.number import must, wrong
 from radhar_cli.config.schema import Section
 from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
-from radhar_cli.errors import ModelError, RadharError
+from radhar_cli.errors import ConfigError, ModelError, RadharError
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.images.image_set import shape_in_words
 from radhar_cli.learning.models.build import Cost, build_model, cost
 from radhar_cli.learning.report_folder import csv_text
-from radhar_cli.learning.run_files import ABOUT, ALL, BEST, HISTORY, LAST, TRAINED_ON
+from radhar_cli.learning.run_files import (
+    ABOUT,
+    ALL,
+    BEST,
+    EVENTS,
+    HISTORY,
+    LAST,
+    TENSORBOARD,
+    TRAINED_ON,
+)
 from radhar_cli.learning.settings import Kind, TrainConfig
 from radhar_cli.untrusted import regular_size
 
@@ -66,6 +75,7 @@ class RunMetadata(Section):
     channels: Annotated[int, Field(ge=1, le=2**14)] = 3
     input: Kind
     joints: Annotated[tuple[Name, ...], Field(max_length=256)] = ()  # of skeletons
+    colours: Name | None = None  # colour map of its RGB pictures, where it was recognised
     mean: Annotated[tuple[float, ...], Field(min_length=1, max_length=3)]  # of the channels
     sd: Annotated[tuple[Spread, ...], Field(min_length=1, max_length=3)]
     config: dict[str, Any]  # resolved
@@ -100,8 +110,15 @@ class RunMetadata(Section):
         return self.settings.target == "skeleton"
 
     @property
+    def answers(self) -> str:
+        """What the network answers, in words."""
+        if self.finds_joints:
+            return f"{len(self.joints)} joints"
+        return f"{len(self.classes)} {'labels' if self.settings.target == 'labels' else 'classes'}"
+
+    @property
     def shape(self) -> str:
-        """Of an image that it takes, in words."""
+        """Size of an image or a sequence that it takes, in words."""
         return shape_in_words(self.input, self.size, self.channels)
 
     def network(self) -> nn.Module:
@@ -121,6 +138,19 @@ class RunMetadata(Section):
     def normalisation(self) -> Normalisation:
         """Levels to network input."""
         return Normalisation(self.mean, self.sd)
+
+
+def refuse_other_targets(run: Path, metadata: RunMetadata) -> None:
+    """Refuse a network that does not put each input into one class.
+
+    Raises:
+        ConfigError: it finds several labels, or joints.
+    """
+    finds = {"labels": "several labels at a time", "skeleton": "joints"}
+    if metadata.settings.target in finds:
+        raise ConfigError(
+            f"{run}: finds {finds[metadata.settings.target]}; should be a run of classes"
+        )
 
 
 @dataclass(frozen=True)
@@ -147,6 +177,8 @@ def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
     if ours and (overwrite or not ((folder / LAST).exists() or (folder / BEST).exists())):
         for name in reversed(ALL):
             (folder / name).unlink(missing_ok=True)
+        for path in (folder / TENSORBOARD).glob(EVENTS):
+            path.unlink()
     if not (folder / ABOUT).exists():
         if not ours:
             refuse_foreign_files(folder, "training run", error=RunError)

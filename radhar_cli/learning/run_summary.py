@@ -11,7 +11,20 @@ from radhar_cli.figures.evaluation import curves_png
 from radhar_cli.learning import run_files
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
+from radhar_cli.learning.settings import Target
 from radhar_cli.learning.targets import LOSSES, SCORES
+
+
+def _score(
+    target: Target, value: float, interval: tuple[float, float] | None
+) -> dict[str, float | tuple[float, float] | None]:
+    """The validation score by its right name; only where it is an accuracy it has an interval."""
+    match target:
+        case "skeleton":
+            return {"val_within_15_cm": value}
+        case "labels":
+            return {"val_exact_match": value}
+    return {"val_accuracy": value, "val_accuracy_95": interval}
 
 
 def write_run_summary(
@@ -26,8 +39,7 @@ def write_run_summary(
         "model": metadata.model,
         "best_epoch": best.epoch,
         "score": score,
-        "val_accuracy": best.val_accuracy,
-        "val_accuracy_95": interval,
+        **_score(settings.target, best.val_accuracy, interval),
         "val_loss": best.val_loss,
         "epochs": len(history),
         "parameters": price.parameters,

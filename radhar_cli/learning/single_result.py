@@ -13,12 +13,18 @@ from torch import nn
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Index
-from radhar_cli.figures.evaluation import confusion_png, embeddings_png
+from radhar_cli.figures.evaluation import (
+    captioned_png,
+    confusion_png,
+    embeddings_png,
+    reliability_png,
+)
 from radhar_cli.learning import metrics
 from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.labels_result import evaluate_labels
+from radhar_cli.learning.models.fftnet import NAME
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_folder import (
     Epoch,
@@ -31,6 +37,7 @@ from radhar_cli.learning.run_folder import (
 from radhar_cli.learning.skeleton_result import evaluate_skeletons, found_and_true
 
 MIN_EMBEDDED = 2
+MAX_MISTAKES, FEW = 12, 4  # images that are shown
 GROUPS = ("in place", "moving")
 
 
@@ -45,6 +52,7 @@ class EvalOptions:
     batch: int = 32
     resize: bool = False
     names: Mapping[str, str | None] = field(default_factory=dict)
+    filters: bool = False
 
 
 @dataclass(frozen=True)
@@ -86,6 +94,8 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
                     f"--in-place-vs-moving: {name!r} is none of the twelve activities; its group "
                     "is unknown"
                 )
+    if options.filters and not any(run.metadata.model == NAME for run in runs):
+        raise RunError("--filters: none of these networks has global filters; fftnet has six")
 
 
 def open_run(name: str, path: Path, device: torch.device) -> Run:
@@ -132,6 +142,9 @@ def evaluate_one(
     title = f"{shown.title}: {right:.2f} % of {rows.size}"
     shown.confusion("confusion", caption, counts, names, title)
     shown.tables(numbers["classes"])
+    numbers["calibration"] = shown.reliability(run.metadata.settings.label_smoothing)
+    if images.kind in ("rgb", "gray"):
+        shown.hardest()
     if options.in_place_vs_moving:
         numbers["in_place_vs_moving"] = shown.in_place_vs_moving()
     if options.tsne:
@@ -169,13 +182,14 @@ class _Shown:
         """Counts [true class, predicted class] as a figure and a table, true classes down."""
         self.figure(name, caption, confusion_png(counts, classes, title))
         rows = ([one, *row] for one, row in zip(classes, counts.tolist(), strict=True))
+        # Beside its figure the page has no use for the table.
         self.report.table(f"{name}{self.stem}.csv", ["true \\ predicted", *classes], rows)
 
     def tables(self, classes: Mapping[str, Mapping[str, float]]) -> None:
         """Numbers of each class, and what was predicted of each image."""
-        each = ([name, *(f"{n:.4g}" for n in one.values())] for name, one in classes.items())
+        each = [[name, *(float(f"{n:.4g}") for n in one.values())] for name, one in classes.items()]
         head = ("class", "precision", "recall", "f1", "images")
-        self.report.table(f"classes{self.stem}.csv", head, each)
+        self.report.table(f"classes{self.stem}.csv", head, each, "Class by class")
         found, names = self.predictions, self.names
         columns = (found.rows, found.truth, found.predicted, found.probabilities.max(1))
         rows = (
@@ -184,6 +198,57 @@ class _Shown:
         )
         of_image = ("image", "true", "predicted", "probability")
         self.report.table(f"predictions{self.stem}.csv", of_image, rows)
+
+    def reliability(self, smoothing: float) -> dict[str, list[float | None] | list[int]]:
+        """The reliability diagram, and its bins: mean probability, share that is right, images."""
+        bins = metrics.calibration(self.predictions.truth, self.predictions.probabilities)
+        comment = ""
+        if smoothing:
+            sure = 1 - smoothing + smoothing / len(self.names)
+            comment = (
+                f" Label smoothing of {smoothing:g} asks for a probability of {sure:.2f} where the "
+                "network is sure, so points above the line, and an error of up to "
+                f"{1 - sure:.2f} with every prediction right, are what it was trained for."
+            )
+        error = f"calibration error {100 * bins.error:.1f} %"
+        caption = (
+            f"Reliability, {self.title}: how often a prediction is right, by the probability that "
+            f"the network gives it; {error} (mean distance from the line).{comment}"
+        )
+        png = reliability_png(bins.confidence, bins.accuracy, bins.count, f"{self.title}\n{error}")
+        self.figure("reliability", caption, png)
+        columns = (bins.confidence, bins.accuracy)
+        confidence, accuracy = (
+            [None if np.isnan(value) else value for value in column.tolist()] for column in columns
+        )
+        return {"confidence": confidence, "accuracy": accuracy, "images": bins.count.tolist()}
+
+    def hardest(self) -> None:
+        """The most confident mistakes; where there are none, the least confident predictions."""
+        found = self.predictions
+        confidence, wrong = found.probabilities.max(1), found.predicted != found.truth
+        order = np.argsort(-confidence, kind="stable")
+        chosen, what = order[wrong[order]][:MAX_MISTAKES], "Most confident mistakes"
+        if not chosen.size:
+            chosen, what = order[::-1][:FEW], "No mistakes; the least confident predictions"
+        plain = [name.replace("_", " ") for name in self.names]
+        rows = found.rows[chosen].tolist()
+        paths = [found.images.path_of(row) for row in rows]
+        lines = [
+            (plain[found.truth[i]], plain[found.predicted[i]], f"{100 * confidence[i]:.1f} %")
+            for i in chosen
+        ]
+        names = [found.images.names[row] for row in rows]
+        captions = [
+            f"{name}\ntrue: {true}\nfound: {guess}, {sure}"
+            for name, (true, guess, sure) in zip(names, lines, strict=True)
+        ]
+        pictures = [found.images.pixels.read(row) for row in rows]
+        png = captioned_png(pictures, captions, f"{what}: {self.title}")
+        self.figure("hardest", f"{what}, {self.title}.", png)
+        table = ((path, *line) for path, line in zip(paths, lines, strict=True))
+        head = ("image", "true", "predicted", "probability")
+        self.report.table(f"hardest{self.stem}.csv", head, table, what)
 
     def in_place_vs_moving(self) -> list[list[int]]:
         """The paper's two groups: S1 to S7 against S8 to S12; counts [true, predicted]."""

@@ -8,10 +8,10 @@ import torch
 from radhar_cli.arrays import Float, Index
 from radhar_cli.figures.evaluation import bars_png
 from radhar_cli.figures.skeletons import skeletons_png
-from radhar_cli.learning.batches import Reader, pieces
+from radhar_cli.learning.found_joints import joint_batches
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.report_files import Report
-from radhar_cli.learning.run_folder import RunError, RunMetadata
+from radhar_cli.learning.run_folder import RunMetadata
 from radhar_cli.learning.targets import NEAR_M
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 
@@ -29,16 +29,9 @@ def found_and_true(
     batch: int,
 ) -> tuple[Float, Float]:
     """Joints that a network finds, and those that are there, [N, T, joint, 3] in m."""
-    reader = Reader(images.pixels, images.skeletons)
-    found, true = list[Float](), list[Float]()
-    with torch.inference_mode():
-        for values, joints in reader(pieces(rows, batch)):
-            each = model(metadata.normalisation(values.to(device))).cpu().numpy()
-            if not np.isfinite(each).all():
-                raise RunError(f"the network {metadata.model}: finds joints that are not finite")
-            found.append(each)
-            true.append(joints.numpy())
-    return np.concatenate(found), np.concatenate(true)
+    found = joint_batches(model, metadata, images.pixels, rows, device, batch)
+    true = [images.skeletons[int(row)] for row in rows]
+    return np.concatenate(list(found)), np.stack(true)
 
 
 def evaluate_skeletons(
@@ -62,7 +55,7 @@ def evaluate_skeletons(
         for name, axes, error in zip(names, by_axis.tolist(), by_joint.tolist(), strict=True)
     ]
     head = ("joint", *(f"{axis}_cm" for axis in AXES), "mpjpe_cm")
-    report.table(f"joints{stem}.csv", head, table)
+    report.table(f"joints{stem}.csv", head, table, "Joint by joint, mean errors")
     errors = np.linalg.norm(off, axis=2).mean(1)
     numbers = {
         "images": int(rows.size),

@@ -37,13 +37,14 @@ def start_from(run: Path, model: nn.Module, config: TrainConfig, images: ImageSe
         ("list of joints", metadata.joints, images.joints),
     ):
         if theirs != ours:
-            raise ConfigError(f"--init {run}: its {what} is {theirs}, here it is {ours}")
+            cure = "; --resize brings the images there" if what == "image size" else ""
+            raise ConfigError(f"--init {run}: its {what} is {theirs}, here it is {ours}{cure}")
     weights = earlier.state_dict()
     digest = hashlib.sha256()
     for name, tensor in weights.items():
         digest.update(name.encode() + tensor.numpy().tobytes())
     notes: tuple[str, ...] = ()
-    if metadata.classes != images.classes:
+    if metadata.classes != images.classes and not metadata.finds_joints:
         last = {name for name, old in model.state_dict().items() if is_of_last_layer(name, model)}
         weights = {name: tensor for name, tensor in weights.items() if name not in last}
         notes = (f"--init {run}: knows other classes; the last layer is learned from nothing",)

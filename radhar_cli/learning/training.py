@@ -22,6 +22,7 @@ from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.batches import Labels, Reader, epoch_batches, epoch_order, pieces
 from radhar_cli.learning.images.classes import renamed
+from radhar_cli.learning.images.colours import in_colours
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_inputs
@@ -83,6 +84,8 @@ def train(
     overwrite: bool = False,
     names: Mapping[str, str | None] | None = None,
     start: Path | None = None,
+    resize: bool = False,
+    tensorboard: bool = False,
 ) -> Outcome:
     """Train `config` on `data` in `folder`, or resume; nothing to do where it is complete.
 
@@ -91,7 +94,9 @@ def train(
         overwrite: start over in a folder that holds a run.
         names: {class of the data: class here, or None to leave it out}.
         start: a run whose best weights and normalisation are the initial ones; those of the last
-            layer too if the classes are the same.
+            layer too if the classes are the same. Pictures are brought to its colours.
+        resize: bring images to the size of those that `start` learned from.
+        tensorboard: also write the curves as TensorBoard reads them.
 
     Raises:
         FolderError: data that cannot be used.
@@ -101,7 +106,15 @@ def train(
         TrainingError: a step too large for memory, or a loss that is not finite; earlier
             checkpoints are kept.
     """
-    images = data if isinstance(data, ImageSet) else checked_images(config, data, names)
+    earlier = None if start is None else run.load_best(start)[0]
+    if resize and earlier is None:
+        raise ConfigError("--resize: needs --init, a run whose image size is taken")
+    if isinstance(data, ImageSet):
+        images = data
+    else:
+        images = checked_images(config, data, names, earlier.size if earlier and resize else None)
+    if earlier is not None:
+        images = in_colours(images, earlier.colours)
     config = config.for_images(images.rows("train").size, images.frames)
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
@@ -111,7 +124,8 @@ def train(
         keep_memory()
     with folder_lock(folder):
         try:
-            return _Training(config, images, folder, progress, device, overwrite, start).run()
+            run_here = _Training(config, images, folder, progress, device, overwrite, start)
+            return run_here.run(tensorboard)
         except RuntimeError as error:
             # On the CPU only the message says that memory was short.
             if not isinstance(error, torch.OutOfMemoryError) and "CPUAllocator" not in str(error):
@@ -125,9 +139,17 @@ def train(
 
 
 def checked_images(
-    config: TrainConfig, data: Path | Sequence[Path], names: Mapping[str, str | None] | None = None
+    config: TrainConfig,
+    data: Path | Sequence[Path],
+    names: Mapping[str, str | None] | None = None,
+    resize: tuple[int, int] | None = None,
 ) -> ImageSet:
-    """Open a data set, or several as one, and make sure that it can be learned from."""
+    """Open a data set, or several as one, and make sure that it can be learned from.
+
+    Args:
+        names: {class of the data: class here, or None to leave it out}.
+        resize: (H, W) to bring images to; None refuses those of several sizes.
+    """
     paths = [data] if isinstance(data, Path) else list(data)
     if config.data_weights is not None and len(config.data_weights) != len(paths):
         raise ConfigError(
@@ -135,7 +157,7 @@ def checked_images(
             f"{len(paths)} data sets"
         )
     sets = [
-        renamed(open_inputs(path, config.map, config), names or {}).cut(
+        renamed(open_inputs(path, config.map, config, resize), names or {}).cut(
             config.validation_share, config.seed
         )
         for path in paths
@@ -147,9 +169,7 @@ def checked_images(
     if len(images.classes) < 2:
         raise FolderError(f"{path}: has the class {images.classes[0]!r} alone; should have two")
     rows = images.rows("train")
-    learned = set(images.label[rows].tolist())
-    if config.target == "labels":
-        learned = set(np.flatnonzero(images.shows(images.classes)[rows].any(0)).tolist())
+    learned = _shown_classes(config, images, rows)
     for index, name in enumerate(images.classes):
         if index not in learned:
             raise FolderError(f"{path}: the class {name!r} has no training image")
@@ -179,9 +199,11 @@ class _Training:
         outputs = 3 * len(images.joints) if joints else len(images.classes)
         self.model = build_model(config.model, outputs, images.size, joints)
         started = None if start is None else start_from(start, self.model, config, images)
-        many = f"{len(images)} images of {len(images.classes)} classes"
+        what = "images" if images.kind in ("rgb", "gray") else "sequences"
+        many = f"{len(images)} {what} of {len(images.classes)} classes"
         progress.say(f"reading {many}, {images.shape}")
-        for message in (*_warnings(config, images), *(started.notes if started else ())):
+        notes = started.notes if started else ()
+        for message in (*images.notes, *_warnings(config, images), *notes):
             progress.say(message)
         self.metadata, learned = _metadata(config, images, self.precision, started)
         run.reserve_run(folder, self.metadata, overwrite)
@@ -190,9 +212,16 @@ class _Training:
         self.average = AveragedModel(self.model) if config.average_last else None
         self.optimiser = optimiser_for(config, self.model)
 
-    def run(self) -> Outcome:
+    def run(self, tensorboard: bool = False) -> Outcome:
+        """Train the epochs that are not done, and write what a finished run leaves."""
         config, images, device = self.config, self.images, self.device
         resumed = self._restore()
+        curves = None
+        if tensorboard:
+            from radhar_cli.learning.tensorboard import TensorBoardCurves
+
+            curves = TensorBoardCurves(self.folder, self.metadata, SCORES[config.target])
+            curves.write(self.history)
         if resumed:
             self.progress.say(f"resuming: {resumed} of {config.epochs} epochs are done")
         how = f"{self.metadata.work['precision']}, {torch.get_num_threads()} threads"
@@ -215,6 +244,10 @@ class _Training:
             seconds = round(time.perf_counter() - began, 3)
             self.history.append(Epoch(epoch + 1, learning_rate, *training, *validation, seconds))
             self._keep()
+            if curves is not None:
+                curves.write(self.history[-1:])
+        if curves is not None:
+            curves.close()
         run.write_history(self.folder, self.history)
         if resumed < config.epochs or not (self.folder / run_files.METRICS).exists():
             write_run_summary(self.folder, self.metadata, self.history, device)
@@ -375,6 +408,13 @@ class _Training:
         self.progress.epoch_done(row, best)
 
 
+def _shown_classes(config: TrainConfig, images: ImageSet, rows: Index) -> set[int]:
+    """Numbers of the classes that some rows show: of labels, whoever does them."""
+    if config.target == "labels":
+        return set(np.flatnonzero(images.shows(images.classes)[rows].any(0)).tolist())
+    return set(images.label[rows].tolist())
+
+
 def _wanted(config: TrainConfig, images: ImageSet) -> Labels:
     """What is to be learned of each row."""
     match config.target:
@@ -401,6 +441,7 @@ def _metadata(
         channels=images.channels,
         input=config.reads,
         joints=images.joints,
+        colours=images.colours,
         mean=statistics.mean,
         sd=statistics.sd,
         config={k: v for k, v in resolved(config).items() if k not in NOT_IDENTITY},
@@ -422,12 +463,12 @@ def _metadata(
 
 
 def _warnings(config: TrainConfig, images: ImageSet) -> list[str]:
-    """Of classes that are not validated, and of epochs too short to learn much in."""
-    checked = set(images.label[images.rows("val")].tolist())
+    """Warnings of classes that are not validated, and of epochs too short to learn much in."""
+    validated = _shown_classes(config, images, images.rows("val"))
     warnings = [
         f"warning: the class {name!r} has no validation image; the best epoch is chosen without it"
         for index, name in enumerate(images.classes)
-        if index not in checked
+        if index not in validated and config.target != "skeleton"
     ]
     count, size = images.rows("train").size, config.images_a_step
     steps = len(epoch_batches(np.arange(count), size))

@@ -269,6 +269,34 @@ def test_too_much_at_once_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert processed(tmp_path / "r.h5", config, "stft", stop=0.45).maps["stft"].power.any()
 
 
+@pytest.mark.parametrize("slow_time", [False, True])
+def test_one_receiver_is_advised_where_it_helps_and_nowhere_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, slow_time: bool
+) -> None:
+    path, config = tmp_path / "two.h5", config_of(tmp_path)
+    pulses, bins = 2000, 1
+    if slow_time:
+        pulse = np.exp(2j * np.pi * 0.12 * np.arange(pulses))
+        np.save(tmp_path / "x.npy", np.stack([pulse, 1j * pulse]))
+        keys = ["carrier_hz=24e9", "prf_hz=1000", "axes=[receiver, pulse]"]
+        import_capture([tmp_path / "x.npy"], path, read_settings(None, keys))
+    else:
+        _, scene = recorded(tmp_path)
+        assert scene.beat is not None
+        np.save(tmp_path / "x.npy", np.stack([scene.beat, 1j * scene.beat]))
+        w, bins = scene.waveform, scene.waveform.n_bins
+        keys = [f"carrier_hz={w.fc}", f"bandwidth_hz={w.bandwidth}", f"adc_rate_hz={w.adc_rate}"]
+        keys += [f"prf_hz={w.prf}", "axes=[receiver, sample, pulse]"]
+        import_capture([tmp_path / "x.npy"], path, read_settings(None, keys))
+    monkeypatch.setattr("radhar_cli.capture.chain.MAX_BYTES", 16 * pulses * bins)
+    with pytest.raises(CaptureError, match=r"2 receivers take .*, or --receiver 0 one receiver"):
+        processed(path, config, "stft")
+    assert processed(path, config, "stft", receiver=1).maps["stft"].power.any()
+    monkeypatch.setattr("radhar_cli.capture.chain.MAX_BYTES", 4 * pulses * bins)
+    with pytest.raises(CaptureError, match=r"s of a receiver take .* s$"):
+        processed(path, config, "stft", receiver=1)
+
+
 def test_segments_of_a_part_keep_their_times() -> None:
     from radhar_cli.capture.chain import _within
 

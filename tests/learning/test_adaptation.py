@@ -8,6 +8,7 @@ from PIL import Image
 from torch import nn
 
 from radhar_cli.errors import ConfigError
+from radhar_cli.learning import adaptation
 from radhar_cli.learning.adaptation import Mixed, adapt
 from radhar_cli.learning.evaluation import open_for, predict, training_images
 from radhar_cli.learning.images.joined import joined
@@ -66,7 +67,17 @@ def test_statistics_restore_accuracy_at_another_contrast(normed, tmp_path):
 def test_without_batch_norm_there_is_nothing_but_learning(learned, tmp_path):
     measured = tree(tmp_path / "measured", seed=5)
     with pytest.raises(ConfigError, match="epochs = 0: should be at least 1 for smallnet"):
-        adapt(learned, measured, tmp_path / "adapted", CPU)
+        adapt(learned, measured, tmp_path / "adapted", CPU, epochs=0)
+
+
+def test_defaults_learn_where_statistics_alone_would_change_nothing(
+    learned, normed, data, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(adaptation, "EPOCHS", 2)
+    measured = tree(tmp_path / "measured", seed=5)
+    for run, mix, epochs in ((learned, (), 2), (normed, (), 0), (normed, (data,), 2)):
+        found = adapt(run, measured, tmp_path / "adapted", CPU, mix=mix, overwrite=True)
+        assert found.work["adapted_epochs"] == epochs
 
 
 def test_statistics_alone_change_and_labels_do_not_matter(normed, tmp_path):

@@ -4,6 +4,7 @@ import csv
 import json
 import re
 import shutil
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -66,9 +67,9 @@ def test_report_of_a_good_run(learned, tmp_path):
     page = (out / "report.html").read_text()
     assert "://" not in page
     sources = re.findall(r'src="([^"]{0,30})', page)
-    assert len(sources) == len(report.figures) == 4
+    assert len(sources) == len(report.figures) == 6
     assert all(source.startswith("data:image/png;base64,") for source in sources)
-    for name in ("confusion", "tsne", "curves"):
+    for name in ("confusion", "reliability", "hardest", "tsne", "curves"):
         assert (out / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
     with (out / "predictions.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -291,3 +292,84 @@ def test_hdf5_and_png_train_and_evaluate_the_same(tmp_path):
     assert seen[1]["seen_in_training"] == {"images": 4, "scenes": 0}
     with pytest.raises(FolderError, match="has no map 'stfft'"):
         evaluate([tmp_path / "run"], [stored], EvalOptions(map="stfft"), CPU, Listener())
+
+
+@pytest.fixture(scope="module")
+def mistaken(learned, tmp_path_factory):
+    """The report of a network on a tree where punching and walking have changed their names."""
+    root = tmp_path_factory.mktemp("mistaken") / "tree"
+    shutil.copytree(learned[1], root)
+    val = root / "val"
+    for old, new in (("punching", "x"), ("walking", "punching"), ("x", "walking")):
+        (val / old).rename(val / new)
+    report, _ = evaluated(learned, root)
+    report.write(root.parent / "report")
+    return root, root.parent / "report"
+
+
+def test_the_most_confident_mistakes_are_shown_with_their_files(mistaken):
+    root, out = mistaken
+    with (out / "predictions.csv").open() as file:
+        wrong = [row for row in csv.DictReader(file) if row["true"] != row["predicted"]]
+    with (out / "hardest.csv").open() as file:
+        shown = list(csv.DictReader(file))
+    assert len(shown) == len(wrong) == 6
+    surest = sorted((float(row["probability"]) for row in wrong), reverse=True)
+    assert [float(row["probability"].rstrip(" %")) for row in shown] == [
+        pytest.approx(100 * value, abs=0.06) for value in surest
+    ]
+    for row in shown:
+        path = Path(row["image"])
+        assert path.is_file()
+        assert path.parent.name == row["true"].replace(" ", "_")
+    page = (out / "report.html").read_text()
+    assert "Most confident mistakes" in page
+    assert str(root / "val") in page
+
+
+def test_the_page_is_for_people_and_the_same_each_time(mistaken, learned, tmp_path):
+    page = (mistaken[1] / "report.html").read_text()
+    assert "<title>good on tree</title>" in page
+    assert not re.search(r"<h[123]>[^<]*\.csv", page), "a title is no file name"
+    assert not re.search(r"<td>[^<]*\d\.\d{8,}", page), "a number has few digits"
+    assert "label smoothing" in page.lower()
+    assert "learning_rate" in page
+    other, _ = evaluated(learned, mistaken[0])
+    other.write(tmp_path)
+
+    def untimed(text):  # but for how long an image took
+        return re.sub(r"(?s)<h3>Size and speed.*?</table>", "", text)
+
+    assert untimed((tmp_path / "report.html").read_text()) == untimed(page)
+
+
+def test_the_calibration_error_is_the_distance_of_the_bins_from_the_line(mistaken):
+    (run,) = json.loads((mistaken[1] / "report.json").read_text())["runs"].values()
+    (numbers,) = run["data"].values()
+    bins = numbers["calibration"]
+    assert sum(bins["images"]) == numbers["images"]
+    gap = sum(
+        n * abs(share - sure)
+        for n, share, sure in zip(
+            *(bins[k] for k in ("images", "accuracy", "confidence")), strict=True
+        )
+        if n
+    )
+    assert numbers["calibration_error"] == pytest.approx(gap / numbers["images"])
+
+
+def test_weights_of_global_filters_are_drawn_by_network_and_layer(learned, tmp_path):
+    names = ("one", "two")
+    for number, name in enumerate(names):
+        trained(learned[1], tmp_path / name, epochs=1, model="fftnet", seed=number)
+    runs = [tmp_path / "one", tmp_path / "two", learned[0]]
+    options = EvalOptions(filters=True)
+    report = evaluate(runs, [learned[1]], options, CPU, Listener())
+    assert list(report.numbers["filters"]) == list(names), "the third has none"
+    for rows in report.numbers["filters"].values():
+        assert [(row["height"], row["width"]) for row in rows] == [(8, 8)] * 2 + [(4, 4)] * 2 + [
+            (2, 2)
+        ] * 2
+    assert any(name == "filters.png" for name, _, _ in report.figures)
+    with clear_line(RadharError, "--filters", "fftnet has six"):
+        evaluated(learned, filters=True)

@@ -2,13 +2,16 @@
 
 import numpy as np
 import pytest
-from learning.patterns import Watched, same_run, settings, split_tree
+from learning.patterns import Watched, clear_line, same_run, settings, split_tree
+from listener import Listener
 
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import build
 from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.batches import epoch_order
-from radhar_cli.learning.images.joined import sampling_weights
+from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_images
-from radhar_cli.learning.run_folder import RunError
+from radhar_cli.learning.run_folder import RunError, load_best
 from radhar_cli.learning.training import checked_images, train
 
 
@@ -86,3 +89,57 @@ def test_images_of_two_sizes_are_refused(data, tmp_path):
     large = split_tree(tmp_path / "large", size=(64, 64))
     with pytest.raises(FolderError, match=r"64 x 64 px, those of .* 32 x 32"):
         checked_images(settings(), [data, large])
+
+
+def h5_set(folder, name, maps, colour_map="viridis"):
+    text = SET.replace("MAPS", maps).replace("COLOURS", colour_map)
+    path = folder / f"{name}.yaml"
+    path.write_text(text)
+    build(load_config(path), folder / name, progress=Listener(), jobs=1)
+    return folder / name
+
+
+SET = """
+samples_per_class: 2
+activities: [punching, walking]
+duration_s: 1.0
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
+motion: {range_m: 2}
+maps: [MAPS]
+image: {size_px: 32, colour_map: COLOURS}
+output: {png: false}
+split: {train: 0.5, validation: 0.5}
+"""
+
+
+def test_data_sets_of_two_maps_are_no_one_set_unless_a_map_is_named(tmp_path, data):
+    """Without --map each data set would give its first one."""
+    one, two = h5_set(tmp_path, "one", "stft"), h5_set(tmp_path, "two", "rtm, stft")
+    with clear_line(FolderError, two, "its map is rtm", "stft", "--map"):
+        checked_images(settings(), [one, two])
+    assert checked_images(settings(map="stft"), [one, two]).map == "stft"
+    mixed = checked_images(settings(), [data, one])  # a tree says of no map
+    assert mixed.map == "stft"
+    with clear_line(FolderError, "its map is rtm"):
+        checked_images(settings(), [one, data, two])
+
+
+def test_of_all_joined_sets_what_is_left_out_is_added_up(data, other):
+    sets = [open_images(path, None, "rgb").renamed({"walking": None}) for path in (data, other)]
+    both = joined([*sets, open_images(data, None, "rgb")])
+    assert both.left_out == {"walking": 6 + 10}
+
+
+def test_a_joined_set_is_named_after_all_of_its_parts(data, other, tmp_path):
+    train(settings(epochs=1), [data, other], tmp_path / "run", Watched())
+    assert load_best(tmp_path / "run")[0].data["path"] == f"{data} and {other}"
+
+
+def test_joined_data_sets_have_the_colours_of_the_first(tmp_path):
+    one = h5_set(tmp_path, "one", "stft")
+    two = h5_set(tmp_path, "two", "stft", "jet")
+    both = checked_images(settings(), [one, two])
+    assert both.colours == "viridis"
+    assert any("drawn in jet, recoloured to viridis" in note for note in both.notes)
+    for row in range(4):
+        np.testing.assert_array_equal(both.pixels.read(row), both.pixels.read(row + 4))

@@ -1,5 +1,6 @@
 """Sequences of frames and clouds: how they are read, learned from, and evaluated."""
 
+import csv
 import json
 import re
 from pathlib import Path
@@ -189,7 +190,10 @@ def test_joints_are_found_nearer_than_by_a_person_who_stands_still(boards: Path)
     assert numbers["mean_absolute_error_cm"] == pytest.approx(100 * np.abs(found - true).mean())
     assert numbers["joints"]["head"]["mpjpe_cm"] == pytest.approx(off[..., 1].mean(), rel=1e-5)
     assert numbers["mpjpe_cm"] < 25
-    assert "joints within 15 cm" in (run / "metrics.json").read_text()
+    metrics = json.loads((run / "metrics.json").read_text())
+    assert metrics["score"] == "joints within 15 cm"
+    assert 0 <= metrics["val_within_15_cm"] <= 1
+    assert "val_accuracy" not in metrics
     for name in ("joints.csv", "joints.png", "skeletons.png", "report.html"):
         assert (boards / "eval_joints" / name).exists()
 
@@ -223,8 +227,65 @@ def test_images_are_refused_where_a_network_reads_clouds(boards: Path) -> None:
         (("eval", run, boards / "data", "--resize"), "reads clouds, which have no size"),
         (("eval", run, boards / "data", "--tsne"), "reads clouds; it is of images"),
         (("predict", run, boards / "data"), "finds joints, no classes"),
-        (("export", run, "-o", boards / "x.onnx"), "only images are exported"),
+        (("predict", run, boards / "data", "-o", boards / "x.txt"), "end in .npz or .csv"),
     ):
         done = radhar(*words)
         assert done.returncode == 2, done.stderr
         assert message in " ".join(done.stderr.split())
+
+
+@pytest.mark.parametrize("model", ["cloudnet", "framenet"])
+def test_joints_go_to_a_file_to_python_and_to_onnx_alike(boards: Path, model: str) -> None:
+    import onnx
+    import onnxruntime
+
+    words = ("--set", "epochs=60") if model == "cloudnet" else ("--set", "epochs=1")
+    run, data = trained(boards, model, "skeleton", *words), boards / "data"
+    for name in ("found.npz", "found.csv"):
+        done = radhar("predict", run, data, "-o", boards / name, "--split", "val", "--json")
+        assert done.returncode == 0, done.stderr
+        assert json.loads(done.stdout)["samples"] == 4
+    loaded = radhar_cli.load_run(run, device="cpu")
+    with np.load(boards / "found.npz") as found:
+        joints, first, names = (found[key] for key in ("joints", "first_frame", "joint_names"))
+        samples = found["samples"].tolist()
+    assert joints.shape == (4, *joints.shape[1:3], 3)
+    assert tuple(names) == loaded.joints
+    assert first.tolist() == [0] * 4
+    again = loaded.predict(data, split="val")
+    np.testing.assert_array_equal(again.joints.astype(np.float32), joints)
+    assert list(again.samples) == samples
+    with (boards / "found.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == joints[..., 0].size
+    last = rows[-1]
+    assert (last["sample"], last["joint"]) == (samples[-1], names[-1])
+    assert int(last["frame"]) == joints.shape[1] - 1
+    place = [float(last[f"{axis}_m"]) for axis in "xyz"]
+    np.testing.assert_allclose(place, joints[-1, -1, -1], atol=1e-4)
+    stored = radhar("export", run, "-o", boards / f"{model}.onnx")
+    assert stored.returncode == 0, stored.stderr
+    about = {p.key: p.value for p in onnx.load(boards / f"{model}.onnx").metadata_props}
+    assert tuple(json.loads(about["joints"])) == loaded.joints
+    session = onnxruntime.InferenceSession(
+        boards / f"{model}.onnx", providers=["CPUExecutionProvider"]
+    )
+    images = open_for(loaded.metadata, data, None)
+    levels = images.pixels.read(int(images.rows("val")[0])).transpose(2, 0, 1)[None]
+    (answer,) = session.run(["joints"], {session.get_inputs()[0].name: levels})
+    np.testing.assert_allclose(answer[0], joints[0], atol=1e-3)
+
+
+def test_joints_end_with_their_sample(boards: Path, tmp_path: Path) -> None:
+    """A network of seven frames on samples of five; a network of three reads the middle ones."""
+    for frames, first, known in ((7, 0, [True] * 5 + [False] * 2), (3, 1, [True] * 3)):
+        run = tmp_path / str(frames)
+        options = ("--model", "cloudnet", "--target", "skeleton", "--set", "epochs=1")
+        done = radhar(
+            "train", boards / "data", "-o", run, *options, *QUICK, "--set", f"frames={frames}"
+        )
+        assert done.returncode == 0, done.stderr
+        found = radhar_cli.load_run(run, device="cpu").predict(boards / "data", split="val")
+        assert found.first_frame.tolist() == [first] * 4
+        there = np.isfinite(found.joints).all((2, 3))
+        np.testing.assert_array_equal(there, [known] * 4)

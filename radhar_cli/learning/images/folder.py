@@ -2,15 +2,18 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from radhar_cli.arrays import Levels
-from radhar_cli.dataset.image_file import SUFFIXES, image_size, read_gray, read_rgb
+from radhar_cli.config.schema import DEFAULT_COLOUR_MAP
+from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_gray, read_rgb
 from radhar_cli.dataset.layout import CONFIG, PNG
 from radhar_cli.errors import FolderError
+from radhar_cli.learning.images.colour_maps import PICTURES, colour_map_of, levels_behind
 from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet, class_order, repeated
 from radhar_cli.untrusted import refuse_outside
 
@@ -28,12 +31,26 @@ class FilePixels:
     files: tuple[Path, ...]  # [N]
     kind: str  # "rgb" or "gray"
     size: tuple[int, int] | None  # (H, W) that all of them should have, None for any
+    colours: str | None = None  # colour map whose levels are one channel; None takes the luminance
 
     def read(self, row: int) -> Levels:
         """RGB [H, W, 3] of a row, or one channel three times."""
         if self.kind == "rgb":
             return read_rgb(self.files[row], self.size)
-        return repeated(read_gray(self.files[row], self.size))
+        behind = None if self.colours is None else partial(levels_behind, name=self.colours)
+        return repeated(read_gray(self.files[row], self.size, behind or luminance))
+
+    def recognised(self) -> "FilePixels":
+        """The same files, with the colour map that some of them are drawn in."""
+        spread = np.linspace(0, len(self.files) - 1, min(PICTURES, len(self.files))).astype(int)
+        pictures = (read_rgb(self.files[row], self.size) for row in spread.tolist())
+        return replace(self, colours=colour_map_of(pictures))
+
+    def notes(self, where: Path) -> tuple[str, ...]:
+        """What is said of pictures whose levels are taken from their colours."""
+        if self.kind == "rgb" or self.colours in (None, DEFAULT_COLOUR_MAP, "gray"):
+            return ()
+        return (f"{where}: drawn in {self.colours}; its levels are learned from, not brightness",)
 
 
 def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = False) -> ImageSet:
@@ -67,23 +84,56 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
         hint = f"--map {maps[0]} takes one of its maps" if maps and not parts else _WANTED
         raise FolderError(f"{root}: holds no class folders with images; {hint}")
     if empty:
-        raise FolderError(f"{root}: the class {sorted(empty)[0]!r} has no image")
+        raise FolderError(
+            f"{root}: the class {sorted(empty)[0]!r} has no image; {_empty_hint(empty, images)}"
+        )
     classes = class_order({name for _, name, _ in images})
     if len(classes) > MAX_CLASSES:
         raise FolderError(f"{root}: has {len(classes)} classes; should have at most {MAX_CLASSES}")
     images.sort(key=lambda item: (item[0], classes.index(item[1]), item[2].name))
     files = tuple(file for _, _, file in images)
     size = image_size(files[0])
-    return ImageSet(
-        where=root,
+    return replace(
+        pictures(root, files, kind, None if any_size else size),
         map=own,
         classes=classes,
         label=np.array([classes.index(name) for _, name, _ in images], dtype=np.intp),
         split=np.array([split for split, _, _ in images], dtype=np.uint8) if parts else None,
         names=_names(images),
-        scenes=None,
         size=size,
-        pixels=FilePixels(files, kind, None if any_size else size),
+    )
+
+
+def _empty_hint(empty: set[str], images: Sequence[tuple[int, str, Path]]) -> str:
+    """What a folder without images beside others with images may mean."""
+    classes = sorted({name for _, name, _ in images})
+    if len(classes) < 2:
+        return f"{classes[0]!r} alone has images, so this may be no data set; {_WANTED}"
+    return "every folder beside those of the classes should hold images of its class"
+
+
+def pictures(
+    where: Path, files: Sequence[Path], kind: str, size: tuple[int, int] | None
+) -> ImageSet:
+    """Pictures of which nothing is known but the colour map that they are drawn in.
+
+    Args:
+        kind: "rgb" or "gray".
+        size: (H, W) that all of them should have, None for any.
+    """
+    pixels = FilePixels(tuple(files), kind, size).recognised()
+    return ImageSet(
+        where=where,
+        map=None,
+        classes=("unknown",),
+        label=np.zeros(len(files), np.intp),
+        split=None,
+        names=tuple(map(str, files)),
+        scenes=None,
+        size=size or image_size(files[0]),
+        pixels=pixels,
+        colours=pixels.colours if kind == "rgb" else None,
+        notes=pixels.notes(where),
     )
 
 

@@ -50,7 +50,9 @@ def h5_images(path: Path, map_name: str | None, kind: Kind) -> ImageSet:
         colours = colour_table(data.config.image.colour_map)
         table = colours if kind == "rgb" else repeated(np.arange(256, dtype=np.uint8))
         pixels = H5Pixels(data.path, name, table)
-        return _labelled(data, path, name, pixels, data.config.image.size_px)
+        images = _labelled(data, path, name, pixels, data.config.image.size_px)
+        colour_map = data.config.image.colour_map if kind == "rgb" else None
+        return replace(images, colours=colour_map)
 
 
 def h5_sequences(

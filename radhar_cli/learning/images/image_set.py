@@ -42,6 +42,11 @@ class Resized:
         return np.asarray(Image.fromarray(rgb).resize(self.size[::-1], smooth))
 
 
+def resized(images: "ImageSet", size: tuple[int, int]) -> "ImageSet":
+    """The same images brought to (H, W)."""
+    return replace(images, size=size, pixels=Resized(images.pixels, size))
+
+
 @dataclass(frozen=True)
 class TrueSkeletons:
     """Joints [T, joint, 3] of every row of pixels that have them."""
@@ -98,6 +103,8 @@ class ImageSet:
     joints: tuple[str, ...] = ()  # names of what `pixels.joints` reads
     # [N] class of everybody in each, the sample's main person first; None where there is one person
     everybody: tuple[tuple[str, ...], ...] | None = None
+    colours: str | None = None  # colour map of RGB pictures, where it is known
+    notes: tuple[str, ...] = ()  # what was done to make the images fit, to be said
 
     def __post_init__(self) -> None:
         if not self.source.size:
@@ -105,6 +112,11 @@ class ImageSet:
 
     def __len__(self) -> int:
         return len(self.label)
+
+    def path_of(self, row: int) -> str:
+        """File of an image in a tree; else the data set and the name of the row."""
+        files = getattr(self.pixels, "files", None)
+        return str(files[row]) if files else f"{self.where}: {self.names[row]}"
 
     @property
     def shape(self) -> str:

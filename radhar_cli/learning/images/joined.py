@@ -1,34 +1,45 @@
 """Several sets of images as one."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 
 from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import FolderError
+from radhar_cli.learning.images.colours import in_colours
 from radhar_cli.learning.images.image_set import Chosen, ImageSet, class_order
 
 
 def joined(sets: Sequence[ImageSet]) -> ImageSet:
-    """One set of all images, classes matched by name."""
+    """One set of all images, classes matched by name, colours brought to those of the first set.
+
+    Raises:
+        FolderError: they differ in map, kind, size or joints. A tree of images that does not say
+            which map it shows goes with any.
+    """
     if len(sets) == 1:
         return sets[0]
-    for one, other in pairwise(sets):
-        if (one.size, one.channels, one.joints) != (other.size, other.channels, other.joints):
-            raise FolderError(
-                f"{other.where}: images are {other.shape}, those of {one.where} {one.shape}; "
-                "should be of one size"
-            )
+    _refuse_unlike(sets)
+    colours = next((one.colours for one in sets if one.colours is not None), None)
+    sets = [in_colours(one, colours) for one in sets]
     several = any(one.everybody for one in sets)
     classes = class_order({name for one in sets for name in one.classes})
     numbers = [np.array([classes.index(name) for name in one.classes]) for one in sets]
     source = np.repeat(np.arange(len(sets)), [len(one) for one in sets])
     rows = np.concatenate([np.arange(len(one)) for one in sets])
     scenes = [one.scenes or ("",) * len(one) for one in sets]
+    left_out = Counter[str]()
+    for one in sets:
+        left_out.update(one.left_out)
     return replace(
         sets[0],
+        where=Path(" and ".join(str(one.where) for one in sets)),
+        map=next((one.map for one in sets if one.map is not None), None),
+        colours=colours,
+        notes=tuple(dict.fromkeys(note for one in sets for note in one.notes)),
         classes=classes,
         label=np.concatenate([n[one.label] for n, one in zip(numbers, sets, strict=True)]),
         split=np.concatenate([one.split for one in sets if one.split is not None]),
@@ -36,11 +47,38 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
         scenes=tuple(scene for each in scenes for scene in each),
         pixels=Chosen(tuple(one.pixels for one in sets), source, rows),
         snr_db=sets[0].snr_db if len({one.snr_db for one in sets}) == 1 else None,
-        left_out={name: n for one in sets for name, n in one.left_out.items()},
+        left_out=dict(left_out),
         source=source,
         persons=None,
         everybody=tuple(names for one in sets for names in one.done) if several else None,
     )
+
+
+def _refuse_unlike(sets: Sequence[ImageSet]) -> None:
+    """Refuse sets that no network can read as one."""
+    first = sets[0]
+    named = next((one for one in sets if one.map is not None), first)
+    for one in sets:
+        if one.kind != first.kind:
+            raise FolderError(
+                f"{one.where}: has {one.kind}, {first.where} {first.kind}; should be of one kind"
+            )
+        if one.map not in (None, named.map):
+            raise FolderError(
+                f"{one.where}: its map is {one.map}, that of {named.where} {named.map}; --map "
+                "should name one that all data sets have"
+            )
+        if (one.size, one.channels) != (first.size, first.channels):
+            cure = "; --set frames=N makes sequences of one length" if first.frames > 1 else ""
+            raise FolderError(
+                f"{one.where}: images are {one.shape}, those of {first.where} {first.shape}; "
+                f"should be of one size{cure}"
+            )
+        if one.joints != first.joints:
+            raise FolderError(
+                f"{one.where}: its skeletons have {len(one.joints)} joints, those of {first.where} "
+                f"{len(first.joints)}; should be the same"
+            )
 
 
 def sampling_weights(

@@ -1,7 +1,6 @@
 """Open labelled images by path: dataset.h5, its folder, or a tree; what `inspect` says of one."""
 
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +11,22 @@ from radhar_cli.dataset.layout import DATASET, SPLITS, is_incomplete
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.folder import FilePixels, folder_images
 from radhar_cli.learning.images.h5 import h5_images, h5_sequences
-from radhar_cli.learning.images.image_set import ImageSet, Resized
+from radhar_cli.learning.images.image_set import ImageSet, resized
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.settings import OF_SEQUENCES, Kind, TrainConfig
 
 
-def open_inputs(path: Path, map_name: str | None, config: TrainConfig) -> ImageSet:
+def open_inputs(
+    path: Path,
+    map_name: str | None,
+    config: TrainConfig,
+    resize: tuple[int, int] | None = None,
+) -> ImageSet:
     """Open what a network reads: images as `open_images`, or sequences of a dataset.h5."""
     if config.model not in OF_SEQUENCES:
-        return open_images(path, map_name, config.input)
+        return open_images(path, map_name, config.input, resize)
+    if resize is not None:
+        raise FolderError(f"--resize: {config.model} reads {config.reads}, which have no size")
     if not is_h5(path):
         raise FolderError(f"{path}: is no data set with {config.reads}, which {config.model} reads")
     return h5_sequences(path, map_name, config.reads, config.frames, config.points)
@@ -49,9 +55,7 @@ def open_images(
         images = folder_images(path, map_name, kind, any_size=resize is not None)
     else:
         images = h5_images(path, map_name, kind)
-    if resize is None:
-        return images
-    return replace(images, size=resize, pixels=Resized(images.pixels, resize))
+    return images if resize is None else resized(images, resize)
 
 
 def is_tree(path: Path) -> bool:

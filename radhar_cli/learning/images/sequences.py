@@ -86,6 +86,12 @@ class SequenceReader(Opened):
             return of_length(clouds, self.frames, 0)
         return of_length(values, self.frames, 0).transpose(1, 2, 0)
 
+    def span(self, row: int) -> tuple[int, int]:
+        """Number of the first frame of the sample that is read, and how many of its frames are."""
+        clouds = self.product == CLOUDS
+        there = len(self.data.products["points_start" if clouds else self.product][row]) - clouds
+        return max(there - self.frames, 0) // 2, min(there, self.frames)
+
     def joints(self, row: int) -> NDArray[np.float32]:
         """Joints [T, joint, 3] of the first person, m; NaN after the end of a sample."""
         skeleton = self.data.products["skeleton"][row][:, 0]

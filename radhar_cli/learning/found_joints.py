@@ -1,0 +1,136 @@
+"""The joints that a network finds in sequences, and the file that `predict` writes of them."""
+
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import nn
+
+from radhar_cli.arrays import Float, Index
+from radhar_cli.errors import ConfigError, FolderError
+from radhar_cli.learning.batches import Reader, pieces
+from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled
+from radhar_cli.learning.images.image_set import Pixels
+from radhar_cli.learning.images.sequences import SequenceReader
+from radhar_cli.learning.report_folder import csv_text
+from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
+from radhar_cli.replacing import replacing
+
+SUFFIXES = (".npz", ".csv")
+
+
+@dataclass(frozen=True)
+class FoundJoints:
+    """Joints that a network found in some sequences of one length."""
+
+    samples: tuple[str, ...]  # [N] names
+    names: tuple[str, ...]  # [joint]
+    joints: Float  # [N, T, joint, 3] m, in the radar's axes; NaN after the end of a sample
+    first_frame: Index  # [N] number of the first frame in its sample
+
+    def write(self, path: Path) -> None:
+        """Write them as NumPy arrays, or as CSV of a row a joint and frame.
+
+        Raises:
+            FolderError: the file cannot be written.
+        """
+        if path.suffix == ".csv":
+            content = csv_text(("sample", "frame", "joint", "x_m", "y_m", "z_m"), self._rows())
+            data = content.encode("utf-8", "surrogateescape")
+        else:
+            buffer = io.BytesIO()
+            np.savez(
+                buffer,
+                joints=self.joints.astype(np.float32),
+                first_frame=self.first_frame,
+                samples=np.array(self.samples),
+                joint_names=np.array(self.names),
+            )
+            data = buffer.getvalue()
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with replacing(path) as unfinished:
+                unfinished.write_bytes(data)
+        except OSError as error:
+            raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
+
+    def _rows(self) -> Iterator[tuple[object, ...]]:
+        for sample, frames, first in zip(self.samples, self.joints, self.first_frame, strict=True):
+            for number, skeleton in enumerate(frames, start=int(first)):
+                if np.isnan(skeleton).any():
+                    continue
+                for name, place in zip(self.names, skeleton.tolist(), strict=True):
+                    yield (sample, number, name, *(f"{x:.4f}" for x in place))
+
+
+def check_joints_file(path: Path) -> None:
+    """Refuse a file name that says no format, before anything is computed."""
+    if path.suffix not in SUFFIXES:
+        raise ConfigError(f"-o {path}: should end in {' or '.join(SUFFIXES)}")
+
+
+def joint_batches(
+    model: nn.Module,
+    metadata: RunMetadata,
+    pixels: Pixels,
+    rows: Index,
+    device: torch.device,
+    batch: int,
+) -> Iterator[Float]:
+    """Yield joints [B, T, joint, 3] (m) of some rows, batch by batch.
+
+    The model is in evaluation mode and on the device; float32, whatever it was trained in.
+    """
+    with torch.inference_mode():
+        for values, _ in Reader(pixels, None)(pieces(rows, batch)):
+            joints = model(metadata.normalisation(values.to(device))).cpu().numpy()
+            if not np.isfinite(joints).all():
+                raise RunError(f"the network {metadata.model}: finds joints that are not finite")
+            yield joints
+
+
+def find_joints(
+    metadata: RunMetadata,
+    model: nn.Module,
+    paths: Sequence[Path],
+    device: torch.device,
+    map_name: str | None,
+    split: str,
+) -> FoundJoints:
+    """Joints in the sequences of data sets.
+
+    Args:
+        model: on the device, in evaluation mode.
+        map_name: of a data set, if not the one of the run.
+        split: of a data set.
+    """
+    samples, joints, first = list[str](), list[Float](), list[int]()
+    for path in paths:
+        inputs = open_unlabelled(metadata, path, map_name, split, resize=False)
+        reader = inputs.pixels
+        assert isinstance(reader, SequenceReader)
+        batches = joint_batches(model, metadata, reader, inputs.rows, device, PREDICT_BATCH)
+        joints.append(np.concatenate(list(batches)))
+        for one, row in zip(joints[-1], inputs.rows.tolist(), strict=True):
+            start, count = reader.span(row)
+            one[count:] = np.nan
+            first.append(start)
+        samples += inputs.names
+    return FoundJoints(tuple(samples), metadata.joints, np.concatenate(joints), np.array(first))
+
+
+def predict_joints(
+    run: Path, paths: Sequence[Path], device: torch.device, map_name: str | None, split: str
+) -> FoundJoints:
+    """Joints that a run finds in data sets.
+
+    Raises:
+        RunError: the run puts images into classes.
+    """
+    metadata, model = load_best(run)
+    if not metadata.finds_joints:
+        raise RunError(f"{run}: finds classes; -o: is for networks that find joints")
+    return find_joints(metadata, model.to(device), paths, device, map_name, split)

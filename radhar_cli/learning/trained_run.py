@@ -1,0 +1,121 @@
+"""A trained network in Python: `radhar.load_run`."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from radhar_cli.arrays import Float
+from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled, predict_batches
+from radhar_cli.learning.found_joints import FoundJoints, find_joints
+from radhar_cli.learning.images.image_set import split_named
+from radhar_cli.learning.machine import choose_device
+from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
+
+
+@dataclass(frozen=True)
+class FoundClasses:
+    """Probabilities of every class, image by image."""
+
+    samples: tuple[str, ...]  # [N] names
+    classes: tuple[str, ...]
+    probabilities: Float  # [N, classes]; of labels each by itself, else they add up to 1
+
+    @property
+    def likeliest(self) -> list[str]:
+        """Most likely class of each image [N]."""
+        return [self.classes[number] for number in self.probabilities.argmax(1)]
+
+
+@dataclass(frozen=True)
+class TrainedRun:
+    """The best weights of a training run, and what they were trained for.
+
+    Attributes:
+        metadata: classes, size, map, normalisation and settings, as best.safetensors has them.
+        network: in evaluation mode; takes normalised inputs.
+        device: where the network is.
+    """
+
+    metadata: RunMetadata
+    network: nn.Module
+    device: torch.device
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """Names of the classes, in the order of the outputs; of no meaning for joints."""
+        return self.metadata.classes
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints that it finds, in the order of the outputs; empty for classes."""
+        return self.metadata.joints if self.metadata.finds_joints else ()
+
+    def __call__(self, inputs: Tensor) -> Tensor:
+        """Probabilities [B, classes], or joints [B, T, joint, 3] in m, of a batch.
+
+        Args:
+            inputs: as they are stored: images uint8 [B, 3, H, W], frames uint8 [B, T, H, W], clouds
+                float32 [B, 6, T, points] (`Sequences` has the columns last).
+        """
+        with torch.inference_mode():
+            outputs: Tensor = self.network(self.metadata.normalisation(inputs.to(self.device)))
+        if self.metadata.finds_joints:
+            return outputs
+        several = self.metadata.settings.target == "labels"
+        return outputs.sigmoid() if several else outputs.softmax(1)
+
+    def predict(
+        self,
+        path: str | Path,
+        map: str | None = None,
+        split: str = "all",
+        resize: bool = False,
+    ) -> FoundClasses | FoundJoints:
+        """What the network finds in an image, a folder of images, or a data set.
+
+        Args:
+            path: what to read.
+            map: which map of a data set; None is the one that the run was trained on.
+            split: train, val, test or all, of a data set.
+            resize: bring images to the size of those in training.
+
+        Raises:
+            FolderError: no such data, or images of another size.
+        """
+        where, part = Path(path), split_named(split)
+        if self.metadata.finds_joints:
+            return find_joints(self.metadata, self.network, [where], self.device, map, part)
+        inputs = open_unlabelled(self.metadata, where, map, part, resize)
+        asked = (inputs.pixels, inputs.rows, self.device, PREDICT_BATCH)
+        batches = predict_batches(self.network, self.metadata, *asked)
+        probabilities = np.concatenate([found for found, _ in batches])
+        return FoundClasses(inputs.names, self.classes, probabilities)
+
+    def __repr__(self) -> str:
+        about = self.metadata
+        return f"<TrainedRun: {about.model}, {about.answers}, of {about.shape}>"
+
+
+def load_run(path: str | Path, device: str = "auto") -> TrainedRun:
+    """Load a network that `radhar train` wrote; the file runs no code.
+
+    `load_run("runs/quickstart").predict("datasets/quickstart", split="val").likeliest` is the list
+    of the classes that it finds.
+
+    Args:
+        path: folder of the run, or its best.safetensors.
+        device: auto, cpu, cuda or mps.
+
+    Raises:
+        RunError: it is no run, or is damaged.
+        MachineError: a device that is not available.
+    """
+    where = Path(path)
+    if not where.exists():
+        raise RunError(f"{where}: no such file or folder")
+    chosen = choose_device(device)
+    metadata, network = load_best(where)
+    return TrainedRun(metadata, network.to(chosen), chosen)

@@ -182,97 +182,101 @@ class ArrayConfig(Section):
     """Antenna elements of a board, (left, up) in half wavelengths, looking out of the radar."""
 
     tx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)] = DEVICES[BOOST].tx
-    """Transmitters."""
+    """Places of the transmitters, in the order of the board's TX 1, 2, 3."""
     rx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)] = DEVICES[BOOST].rx
-    """Receivers."""
+    """Places of the receivers, in the order of the board's RX 1 to 4."""
 
 
 class BeamConfig(Section):
     """A beam of -min(12 (az/azimuth_deg)^2 + 12 (el/elevation_deg)^2, most_db) dB, one way."""
 
     azimuth_deg: Annotated[Positive, within(1, 1000, "degree")] = 70.0
-    """Full width at -3 dB."""
+    """Full width of the beam in azimuth at -3 dB."""
     elevation_deg: Annotated[Positive, within(1, 1000, "degree")] = 30.0
-    """Full width at -3 dB."""
+    """Full width of the beam in elevation at -3 dB."""
     pan_deg: Angle = 0.0
-    """Of the boresight from the x axis, positive to the left."""
+    """Angle of the boresight from the x axis, positive to the left."""
     tilt_deg: Angle = 0.0
-    """Of the boresight, positive down."""
+    """Angle of the boresight below the horizontal, positive down."""
     most_db: Annotated[NotNegative, within(0, 120, "dB")] = 30.0
-    """Least gain below that of the boresight."""
+    """Largest loss: no direction gets less than this below the gain of the boresight."""
 
 
 class RadarConfig(Section):
     """Waveform, antenna positions and gains; every number may be drawn."""
 
     carrier_hz: Annotated[Positive, within(1e6, 1e13, "Hz")] = 77e9
-    """At the start of the chirp."""
+    """Carrier frequency at the start of the chirp."""
     bandwidth_hz: Annotated[
         Positive | None, within(1e3, 1e12, "Hz"), ByModel(human=1e9, paper=4e9, file=4e9)
     ] = None
-    """Swept by a chirp; with the default chirp 1 and 4 GHz have a half-band of 30 and 7.5 m."""
+    """Bandwidth B that a chirp sweeps; the range step is c/2B. With the default chirp 1 and 4 GHz
+    have a half-band of 30 and 7.5 m."""
     prf_hz: Annotated[
         Positive | None, within(1e-3, 1e7, "Hz"), ByModel(human=1e4, paper=5e3, file=5e3)
     ] = None
-    """Chirps per second; 10 kHz is +-9.7 m/s at 77 GHz, and a kick's foot reaches 7 to 9."""
+    """Pulse repetition frequency, chirps per second; 10 kHz is +-9.7 m/s at 77 GHz, and a kick's
+    foot reaches 7 to 9."""
     adc_rate_hz: Annotated[Positive, within(1e-3, 1e13, "Hz")] = 10e6
-    """Samples per second within a chirp."""
+    """Sampling rate of the ADC within a chirp."""
     chirp_s: Annotated[Positive, within(1e-12, 1e4, "s")] = 40e-6
-    """Shorter than 1/prf_hz."""
+    """Duration of a chirp, at most 1/prf_hz."""
     tx_m: Annotated[Vector, _NO_BOARD] = (0.4, -0.1, 1.5)
-    """Transmitter: range, cross-range, height."""
+    """Place of the transmitter: range, cross-range, height."""
     rx_m: Annotated[Vector, _NO_BOARD] = (0.4, 0.1, 1.5)
-    """Receiver: range, cross-range, height."""
+    """Place of the receiver: range, cross-range, height."""
     antenna_gain_dbi: Annotated[Decibel, within(-150, 150, "dBi")] = 6.0
-    """Of each antenna."""
+    """Gain of each antenna at its boresight."""
     antenna_isolation_db: Annotated[Decibel, _NO_BOARD] = 10.0
-    """Only a raw echo shows the leakage."""
+    """Isolation between transmitter and receiver; only a raw echo shows the leakage."""
     residual_video_phase: Annotated[Flag, _NO_BOARD] = False
-    """Keep the term pi K tau^2."""
+    """Whether the beat keeps the residual video phase, the term pi K tau^2."""
     polarisation: Annotated[
         Literal["vertical", "horizontal"],
         ActsIfAny(ActsIf("room.faces", GIVEN), ActsIf("wall.echoes", "exact")),
     ] = "vertical"
-    """Of the antennas' field, for room.faces and wall.echoes; horizontal is along y."""
+    """Polarisation of the antennas' field, for room.faces and wall.echoes; horizontal is along
+    y."""
     beam: BeamConfig | None = None
-    """Where both antennas look; null radiates evenly. A board has radar.half_power_deg."""
+    """Beam of both antennas; null radiates evenly. A board has radar.half_power_deg instead."""
     waveform: Literal["fmcw", "sfcw", "cw", "impulse"] = "fmcw"
     """sfcw: sweeps of steps, sampled once each; cw: one sample a pulse, at carrier_hz; impulse:
     Gaussian pulses from carrier_hz to carrier_hz + bandwidth_hz (-10 dB). Without adc_rate_hz and
     chirp_s; cw without bandwidth_hz."""
     output: Annotated[Literal["iq", "real"], ActsIf("radar.waveform", "cw")] = "iq"
-    """Of cw: real is the in-phase channel alone, whose Doppler is symmetric."""
+    """Output of a cw radar: iq, or real for the in-phase channel alone, whose Doppler is
+    symmetric."""
     steps: Annotated[int, Field(ge=2, le=2**20, strict=True)] | None = None
-    """Of a sweep of sfcw: frequencies carrier_hz + n bandwidth_hz/steps."""
+    """Number of frequencies of an sfcw sweep, carrier_hz + n bandwidth_hz/steps."""
     dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)] | None = None
-    """On each step of sfcw."""
+    """Time that an sfcw radar stays on each frequency."""
     profile_m: tuple[Real, Real] | None = None
-    """[from, to] of the range axis of impulse."""
+    """Range axis [from, to] of an impulse radar's profiles, m."""
     profile_samples: Annotated[
         int, Field(ge=2, le=2**16, strict=True), ActsIf("radar.waveform", "impulse")
     ] = 256
-    """Of that axis."""
+    """Number of range samples in an impulse radar's profile."""
     cfg: Annotated[str, Field(min_length=1, max_length=2**16)] | None = None
     """The .cfg of a TI board, which gives the waveform: a path from this file's folder on, or a
     known radar (docs/guide/boards.md). A config that is written has its text."""
     device: Annotated[Literal[tuple(DEVICES)] | None, _BOARD] = None  # type: ignore[valid-type]
-    """The board that the .cfg runs on: its antenna array."""
+    """TI board that the .cfg runs on; it decides the antenna array."""
     array: Annotated[ArrayConfig | None, _BOARD] = None
-    """Another array instead of a device's."""
+    """Antenna array used instead of the device's."""
     position_m: Annotated[Vector, _BOARD] = (0.0, 0.0, 1.0)
-    """Of a board: range, cross-range, height."""
+    """Position of a board: range, cross-range, height."""
     yaw_deg: Annotated[Angle, _BOARD] = 0.0
-    """Of its boresight from the x axis, positive to the left."""
+    """Angle of a board's boresight from the x axis, positive to the left."""
     tilt_deg: Annotated[Angle, _BOARD] = 0.0
-    """Of its boresight, positive down."""
+    """Angle of a board's boresight below the horizontal, positive down."""
     half_power_deg: Annotated[tuple[HalfPower, HalfPower] | None, _BOARD] = None
     """Half-power half-widths of an element in azimuth and elevation; null is the device's."""
     half_wavelength_m: Annotated[float | None, Field(gt=0, le=1, strict=True), _BOARD] = None
-    """Unit of an array's places; null is c/(2 f_c), f_c the middle of what is sampled."""
+    """Unit of an array's places; null is c/(2 f_c), where f_c is the middle of the sampled band."""
     transmit_power_dbm: Annotated[
         Decibel, ActsIf("snr_db", None), ActsIf("receiver.noise_figure_db", GIVEN)
     ] = 12.0
-    """Power that is sent, which thermal noise (receiver.noise_figure_db) is compared with."""
+    """Transmitted power, which thermal noise (receiver.noise_figure_db) is compared with."""
 
     @property
     def chirp_keys(self) -> dict[str, float]:
@@ -317,21 +321,21 @@ class SubjectConfig(Section):
     height_m: Annotated[Positive, within(0.1, 10, "m"), Limits(1.5, 2.1), PERSONAL] = uniform(
         1.5, 1.9
     )
-    """Stature."""
+    """Stature of the person."""
     weight_kg: Annotated[Positive | None, within(1e-3, 1e6, "kg"), PERSONAL] = None
-    """null is 26 kg/m^2 times the height squared."""
+    """Body mass of the person; null is 26 kg/m^2 times the height squared."""
     sway_ahead_m: Annotated[Metres, People("", 0, 0.01), PERSONAL] = uniform(0.002, 0.006)
-    """Standard deviation of a standing person's sway."""
+    """Standard deviation of a standing person's sway forwards and backwards."""
     sway_aside_m: Annotated[Metres, People("", 0, 0.01), PERSONAL] = uniform(0.0015, 0.0035)
-    """The same to the side."""
+    """Standard deviation of a standing person's sway to the sides."""
     breathing_hz: Annotated[Rate, People("", 0, 2), PERSONAL] = normal(0.25, 0.04, 0.15, 0.4)
-    """Rate of breathing."""
+    """Breathing rate, breaths per second."""
     chest_m: Annotated[Metres, People("", 0, 0.01), PERSONAL] = uniform(0.002, 0.006)
-    """Amplitude of breathing."""
+    """Amplitude of the chest's motion by breathing."""
     pulse_hz: Annotated[Rate, People("", 0, 4), PERSONAL] = normal(1.15, 0.12, 0.8, 1.8)
-    """Heart rate."""
+    """Heart rate, beats per second."""
     heart_m: Annotated[Metres, People("", 0, 0.002), PERSONAL] = uniform(0.0001, 0.0004)
-    """Amplitude of the pulse."""
+    """Amplitude of the chest's motion by the heartbeat."""
 
 
 FallName = Literal["forward", "backward", "sideways"]
@@ -368,20 +372,21 @@ class MotionConfig(Section):
     """
 
     model: Literal["human", "paper", "file"] = "human"
-    """Of people, of the paper, or motion files for every class; see motion.md."""
+    """Model of motion: human for measured gaits and movements, paper for the paper's formulas, file
+    for motion files in every class (docs/guide/motion.md)."""
     folder: Annotated[str | None, Field(exclude=True, max_length=1000)] = None
     """Folder that paths of motion files are relative to; not part of a data set's identity."""
     range_m: Annotated[
         By[Coordinate] | None,
         ByModel(human=_HUMAN_RANGE, paper=uniform(1.0, 3.0), file=uniform(2.0, 4.0)),
     ] = None
-    """Where people are: the torso (paper), the feet at first (human)."""
+    """Range at which people start: of the torso (paper), of the feet (human)."""
     cross_range_m: By[Coordinate] = 0.0
-    """The same across."""
+    """Cross-range at which people start, positive to the left."""
     angle_deg: Annotated[
         By[Angle] | None, ByModel(human=_FACING, paper=uniform(-30.0, 30.0), file=_FACING)
     ] = None
-    """Heading; 0 faces away from the radar, 180 faces it."""
+    """Heading of people; 0 faces away from the radar, 180 faces it."""
     speed_mps: Annotated[
         By[Speed] | None,
         People("walking", 0.3, 2.8),
@@ -389,21 +394,21 @@ class MotionConfig(Section):
         PERSONAL,
         ByModel(human=normal(1.3, 0.18, 0.7, 2.0), paper=1.5),
     ] = None
-    """Of walking."""
+    """Walking speed."""
     gait_hz: Annotated[By[Frequency], Paper(f"S2 S3 S4 S7 {_GAIT}"), PERSONAL] = 1.0
-    """Strides per second."""
+    """Strides per second in the paper's gait."""
     thigh_deg: Annotated[By[Angle], Paper(f"S3 {_GAIT}"), PERSONAL] = vary(30.0, 0.2)
-    """Amplitude."""
+    """Peak angle of the thigh in the paper's gait and kick."""
     calf_deg: Annotated[By[Angle], Paper(f"S2 S3 {_GAIT}"), PERSONAL] = vary(45.0, 0.2)
-    """Amplitude."""
+    """Peak angle of the calf in the paper's gait, punch and kick."""
     arm_deg: Annotated[By[Angle], Paper(f"S2 {_GAIT}"), PERSONAL] = vary(35.0, 0.2)
-    """Amplitude."""
+    """Peak angle of the arm in the paper's gait and punch."""
     turn_deg: Annotated[By[Angle], People("body_rotating", -90, 90), Paper("S7"), PERSONAL] = vary(
         45.0, 0.2
     )
-    """How far S7 turns to each side."""
+    """Angle through which a rotating body (S7) turns to each side."""
     rotation_hz: Annotated[By[Frequency], People("body_rotating", 0, 1)] = vary(0.45, 0.2)
-    """Turns to both sides per second."""
+    """Turns of a rotating body (S7), to both sides, per second."""
     period_scale: Annotated[By[Ratio], People("walking", 0.85, 1.05), PERSONAL] = normal(
         0.95, 0.04, 0.85, 1.05
     )
@@ -413,7 +418,7 @@ class MotionConfig(Section):
     )
     """Initial phase of steady walks, punches, kicks and turns, in cycles."""
     arm_swing: Annotated[By[Ratio], People("walking", 0, 2), PERSONAL] = uniform(0.6, 1.3)
-    """Relative to Boulic and Thalmann's."""
+    """Arm swing of a walker, relative to Boulic and Thalmann's."""
     trunk_pitch_deg: Annotated[By[Angle], People("walking", -5, 15), PERSONAL] = normal(
         3.0, 2.0, -2.0, 8.0
     )
@@ -421,14 +426,14 @@ class MotionConfig(Section):
     step_width: Annotated[By[Ratio], People("walking", 0.02, 0.1), PERSONAL] = normal(
         0.063, 0.011, 0.03, 0.1
     )
-    """Between a walker's feet, relative to the stature."""
+    """Distance across between a walker's feet, relative to the stature."""
     speed_variation: Annotated[By[Ratio], People("walking", 0, 0.06), UNSTEADY] = uniform(0.0, 0.06)
-    """Standard deviation of the speed over time, relative to the speed; of stride times it is half
-    as much, of half the step width a third, in metres."""
+    """Standard deviation of a walker's speed over time, relative to the speed; that of the stride
+    times is half as much, that of the step width a third, in metres."""
     lane_m: Annotated[By[Coordinate], People("walking", 0, 1000)] = 0.0
-    """Distance after which walkers turn round, every time again; 0 is never."""
+    """Length of the lane after which walkers turn round, again and again; 0 is never."""
     lane_start: Annotated[By[Ratio], People("walking", 0, 1)] = uniform(0.0, 1.0)
-    """Share of the first lane that lies behind them at 0 s."""
+    """Share of the first lane that lies behind a walker at 0 s."""
     speed_up: Annotated[By[Ratio], People("walking", 0.4, 2)] = 0.6
     """Strides in which a walker gains speed from rest."""
     punch_hz: Annotated[By[Frequency], People("punching", 0.05, 1.1)] = vary(0.7, 0.15)
@@ -440,9 +445,9 @@ class MotionConfig(Section):
     )
     """Duration of a punch or kick, relative to the usual one."""
     exercise_period: Annotated[By[Ratio], People("exercises", 0.6, 1.8)] = uniform(0.8, 1.3)
-    """Of exercises: the time a repetition takes, over the usual one."""
+    """Duration of a repetition of an exercise, relative to the usual one."""
     exercise_size: Annotated[By[Ratio], People("exercises", 0.5, 1.1)] = uniform(0.75, 1.05)
-    """Of exercises: how far they go, over the usual one."""
+    """Extent of the movements of an exercise, relative to the usual one."""
     tempo_jitter: Annotated[
         By[Ratio], People("punching kicking body_rotating exercises", 0, 0.2), UNSTEADY
     ] = uniform(0.0, 0.1)
@@ -452,41 +457,46 @@ class MotionConfig(Section):
     ] = uniform(0.0, 0.1)
     """Relative standard deviation of the size from one punch, kick or turn to the next."""
     bend_deg: Annotated[By[Angle], People("grabbing", 30, 85)] = normal(72.0, 5.0, 60.0, 85.0)
-    """Pitch of the trunk."""
+    """Forward pitch of the trunk when something is picked up."""
     dwell_s: Annotated[By[Coordinate], People("grabbing", -1, 60)] = uniform(0.2, 0.6)
-    """Time at the floor; below 0 the rise begins before the descent ends, by at most 0.6 of it."""
+    """Time that the hand stays at the floor when something is picked up; below 0 the rise begins
+    before the descent ends, by at most 0.6 of it."""
     seat_height: Annotated[By[Ratio], People(SEATS, 0.24, 0.33)] = normal(0.285, 0.015, 0.25, 0.32)
     """Height of the seated hip, relative to the stature."""
     lean_deg: Annotated[By[Angle], People("sitting_down standing_up", 0, 60), PERSONAL] = normal(
         42.0, 8.0, 25.0, 58.0
     )
-    """Trunk ahead while rising."""
+    """Forward pitch of the trunk while sitting down or rising."""
     recline_deg: Annotated[By[Angle], People(SEATS, -10, 45)] = 0.0
-    """Trunk backwards in the seat."""
+    """Backward pitch of the trunk in the seat."""
     hands_on_lap: Annotated[By[Ratio], People(SEATS, 0, 1)] = 1.0
-    """0 is beside the seat, 1 on the lap."""
+    """Place of a seated person's hands: 0 is beside the seat, 1 on the lap."""
     joint_lag: Annotated[
         By[Ratio], People("grabbing sitting_down standing_up", 0, 0.6), UNSTEADY
     ] = 0.0
-    """Share of the movement by which some joints lead and others lag, in each recording others."""
+    """Share of a movement by which some joints lead and others lag; which ones differs between
+    recordings."""
     step_m: Annotated[By[Ratio], People("S4 S5 S6", 0, 0.5), UNSTEADY] = uniform(0.0, 0.5)
-    """Steps back before sitting down (S5), ahead after standing up (S6), around picking up (S4)."""
+    """Length of the steps back before sitting down (S5), ahead after standing up (S6) and around
+    picking up (S4)."""
     settle_size: Annotated[By[Ratio], People("S4 S5 S6", 0, 3), UNSTEADY] = uniform(0.0, 3.0)
-    """Size of the fidgets around the end."""
+    """Size of the fidgets around the end of a movement, relative to the usual one."""
     heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0
-    """How far the shanks swing up as people land on their knees in a forward fall."""
+    """Angle by which the shanks swing up as people land on their knees in a forward fall."""
     fall: Annotated[
         FallName | Falls, People("falling falling_off_seat falling_on_rising stumbling")
     ] = "forward"
-    """Direction, or drawn: {choice: [forward, forward, sideways]}."""
+    """Direction of a fall or stumble: forward, backward, sideways, or drawn: {choice: [forward,
+    forward, sideways]}."""
     stumble_deg: Annotated[By[Angle], People("stumbling tripping", 0, 45)] = uniform(15.0, 40.0)
-    """How far the trunk goes ahead before a stumble is caught; backwards and sideways 0.4 of it."""
+    """Angle of the trunk ahead before a stumble is caught; backwards and sideways it is 0.4 of
+    that."""
     fidget_hz: Annotated[By[Frequency], People("", 0, 2), UNSTEADY] = uniform(0.0, 0.4)
-    """How often a standing or seated person fidgets."""
+    """Fidgets of a standing or seated person per second, in the mean."""
     fidget_size: Annotated[By[Ratio], People("", 0, 2)] = uniform(0.5, 1.5)
-    """Size of the fidgets, relative to the usual one."""
+    """Size of a person's fidgets, relative to the usual one."""
     shuffle_hz: Annotated[By[Frequency], People("S1 S4", 0, 0.5), UNSTEADY] = uniform(0.0, 0.2)
-    """Steps of some centimetres, S1 and after S4."""
+    """Steps of some centimetres per second, of who stands (S1, and S4 afterwards)."""
     idle_phase_s: Annotated[By[Seconds], People("")] = uniform(0.0, 1000.0)
     """Time offset of sway, breathing, pulse and speed variation."""
 
@@ -508,13 +518,13 @@ class TimingConfig(Section):
             paper=2.0,
         ),
     ] = None
-    """How long it lasts."""
+    """Duration of sitting down or standing up."""
     grab_start_s: Annotated[By[Seconds], People("S4")] = 0.5
     """When picking up begins."""
     grab_duration_s: Annotated[By[Seconds], People("S4", 1, 60)] = normal(2.5, 0.5, 1.6, 3.6)
-    """Down and up together."""
+    """Duration of picking up, down and up together."""
     rise_start_s: Annotated[By[Seconds], People("S9 S11"), Paper("S9 S11")] = 0.5
-    """When standing or getting up begins."""
+    """When standing up or getting up before a walk begins."""
     rise_duration_s: Annotated[
         By[Seconds] | None,
         People("S9 S11", 1, 60),
@@ -526,35 +536,35 @@ class TimingConfig(Section):
             paper=1.5,
         ),
     ] = None
-    """How long it lasts."""
+    """Duration of standing up or getting up before a walk."""
     walk_begin_s: Annotated[By[Seconds] | None, People("S8", 0, 600)] = None
-    """S8 stands until then; null: is under way at 0 s."""
+    """When the walk of S8 begins, after standing; null is a walk that is under way at 0 s."""
     walk_start_s: Annotated[
         By[Seconds] | None, People("S9 S11", 0, 600), Paper("S9 S11"), ByModel(paper=2.0)
     ] = None
-    """When walking begins; null of people: when risen, less overlap_s."""
+    """When the walk after rising begins; null of people is when they have risen, less overlap_s."""
     walk_stop_s: Annotated[By[Seconds], People("S10 S12", 0.5, 600), Paper("S10 S12")] = 2.0
-    """When walking ends."""
+    """When the walk before sitting down or falling ends."""
     sit_duration_s: Annotated[
         By[Seconds] | None,
         People("S10", 1, 60),
         Paper("S10"),
         ByModel(human=normal(2.0, 0.25, 1.3, 3.0), paper=1.5),
     ] = None
-    """How long sitting down lasts."""
+    """Duration of sitting down after a walk."""
     fall_duration_s: Annotated[
         By[Seconds] | None,
         People("S12", 0.7, 10),
         Paper("S12"),
         ByModel(human=normal(1.1, 0.4, 0.9, 2.0), paper=0.8),
     ] = None
-    """How long the fall lasts."""
+    """Duration of the fall after a walk."""
     blend_s: Annotated[By[Seconds], Paper("S9 S10 S11 S12")] = 0.3
-    """Raised-cosine ramps of the gait, in and out; 0 is a hard switch."""
+    """Duration of the raised-cosine ramps of the gait, in and out; 0 is a hard switch."""
     overlap_s: Annotated[By[Seconds], People("S9 S10 S11 S12", 0, 0.8)] = 0.0
-    """The second movement starts this long before the first ends, unless walk_start_s says when.
-    A scene gets at most 0.3 of the duration of rising, sitting down or falling, and nothing of a
-    fall to the side: its number is what it got."""
+    """Time by which the second movement starts before the first ends, unless walk_start_s says
+    when. A scene gets at most 0.3 of the duration of rising, sitting down or falling, and nothing
+    of a fall to the side: its number is what it got."""
 
 
 MIN_MOVEMENT_S = 0.3
@@ -567,11 +577,12 @@ class SequenceConfig(Section):
     """A class of your own: movements one after the other, joined at rest."""
 
     sequence: Annotated[tuple[str, ...], Field(min_length=1, max_length=64)]
-    """Names of movements (`radhar_cli.activity.MOVEMENTS`)."""
+    """Movements of the class in order, by their names (docs/guide/motion.md)."""
     durations_s: tuple[Seconds | None, ...] = ()
-    """Of each; null is the usual one, of the last one until the recording ends."""
+    """Duration of each movement; null is the usual one, and of the last movement until the
+    recording ends."""
     pauses_s: tuple[Seconds, ...] = ()
-    """At rest before each; not given, none."""
+    """Time at rest before each movement; left out, there is none."""
 
     @model_validator(mode="after")
     def _joined(self) -> "SequenceConfig":
@@ -610,31 +621,32 @@ class FilesConfig(Section):
     """A class whose motion is recorded: BVH, AMC or npz files; a list of them is enough."""
 
     files: dict[str, str]
-    """{path: SHA-256}; a list of paths and patterns when it is written."""
+    """Motion files {path: SHA-256}; a list of paths and patterns when a person writes it."""
     skeleton: Annotated[str, Field(max_length=MAX_PATH_LENGTH)] | None = None
-    """The ASF of AMC files, where it is not beside them."""
+    """ASF file of AMC files, where it is not beside them."""
     joints: dict[str, Annotated[str, Field(min_length=1, max_length=100)]] = {}
-    """{our joint: the file's}, where the tables of names do not know it."""
+    """Names of joints {radhar's: the file's}, where the tables of names do not know the file's."""
     up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None
-    """Axis of the files that points up; null is found."""
+    """Axis of the files that points up; null finds it by the body's pose."""
     unit_m: Annotated[float, Field(ge=1e-6, le=1e3, strict=True)] | None = None
-    """Of the files; null is found."""
+    """Length unit of the files; null finds it by the body's size."""
     rate_hz: Annotated[float, Field(ge=1, le=1e4, strict=True)] | None = None
-    """Frames per second, instead of the files'."""
+    """Frames per second of the files, instead of what they say."""
     section_s: tuple[FileSecond, FileSecond] | None = None
-    """What of each file is used, from and to; null is all."""
+    """Section [from, to] of each file that is used; null is all of it."""
     low_pass_hz: Annotated[float, Field(ge=0.1, le=1e3, strict=True)] | None = 8.0
-    """Zero-phase low-pass of the positions; null is none."""
+    """Cut-off of the zero-phase low-pass of the positions; null is no filter."""
     past_end: Literal["rest", "loop"] = "rest"
-    """Where a file is shorter than the recording: people come to rest, or go on in a loop."""
+    """What people do where a file is shorter than the recording: they come to rest, or go on in a
+    loop."""
     file: Annotated[int, Field(ge=0, strict=True)] | None = None
-    """Number of the one file that is used; null is drawn."""
+    """Number of the one file that is used, from 0; null draws one."""
     start: Share01 = uniform(0.0, 1.0)
-    """Where in the section a recording begins, 0 at the earliest, 1 at the latest."""
+    """Place in the section at which a recording begins, 0 at the earliest, 1 at the latest."""
     playback_speed: Annotated[Number, within(0.25, 4)] = uniform(0.9, 1.1)
-    """Seconds of the file a second."""
+    """Playback rate, seconds of the file per second of the recording."""
     mirror: Share01 = Choice(choice=(0, 1))
-    """1 exchanges left and right."""
+    """Whether left and right are exchanged: 1 exchanges them."""
 
     NUMBERS: ClassVar = ("start", "playback_speed", "mirror")
 
@@ -701,12 +713,13 @@ class LayerConfig(Section):
     """A layer of a wall, of a material or of a permittivity."""
 
     thickness_m: Size = 0.1
+    """Thickness of the layer."""
     material: Material | None = None
-    """Of ITU-R P.2040, whose permittivity depends on frequency; null has eps_r."""
+    """Material of ITU-R P.2040, whose permittivity depends on frequency; null takes eps_r."""
     eps_r: Annotated[AtLeastOne | None, within(1, 1e6)] = None
-    """Relative permittivity."""
+    """Relative permittivity of the layer, where no material is named."""
     loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.0
-    """With eps_r."""
+    """Loss tangent of the layer, used with eps_r."""
 
 
 _NO_LAYERS = ActsIf("wall.layers", None)
@@ -719,28 +732,32 @@ class WallConfig(Section):
     """
 
     center_m: Vector = (1.0, 0.0, 1.25)
-    """Range, cross-range, height of its middle."""
+    """Middle of the wall: range, cross-range, height."""
     size_m: tuple[Size | None, Size, Size] = (0.24, 5.0, 2.5)
-    """Extent in range, cross-range, height; of layers, whose depth is theirs, [null, y, z]."""
+    """Extent of the wall in range, cross-range, height; with layers, whose thickness counts, [null,
+    y, z]."""
     eps_r: Annotated[AtLeastOne, within(1, 1e6), _NO_LAYERS] = 6.0
-    """Relative permittivity."""
+    """Relative permittivity of the wall."""
     loss_tangent: Annotated[NotNegative, within(0, 1e12), _NO_LAYERS] = 0.03
-    """Of its material."""
+    """Loss tangent of the wall's material."""
     rays: Annotated[
         Literal["straight", "plane", "refracted"] | None,
         ByModel(human="plane", paper="straight", file="plane"),
     ] = None
-    """Through the wall: the chord, a plane wave's at the same angle, or Snell's law."""
+    """Path of a ray through the wall: the chord, a plane wave's at the same angle, or Snell's
+    law."""
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
-    """Loss of the faces: at normal incidence, or the ray's with the field so to its plane."""
+    """Loss of the wall's faces: at normal incidence, or at the ray's angle with the field
+    perpendicular or parallel to its plane."""
     echoes: Literal["none", "exact"] = "none"
-    """exact: reflections inside the wall, over frequency, by radar.polarisation; engine.kind: cube
-    or impulse."""
+    """Reflections inside the wall: none, or exact over frequency, by radar.polarisation; exact
+    needs engine.kind: cube or an impulse radar."""
     layers: Annotated[
         Annotated[tuple[LayerConfig, ...], Field(min_length=1, max_length=16)] | None,
         ActsIf("wall.echoes", "exact"),
     ] = None
-    """Nearest first, with echoes: exact; null is one of size_m, eps_r and loss_tangent."""
+    """Layers of the wall, nearest first, with echoes: exact; null is one layer of size_m, eps_r and
+    loss_tangent."""
 
 
 _SEGMENTS = ActsIf("body.scatterers", "segments")
@@ -754,26 +771,27 @@ class BodyConfig(Section):
     """
 
     scatterers: Literal["points", "segments", "surfaces"] = "points"
-    """The 13 joints, ellipsoids between them, or surfaces that face the radar."""
+    """What scatters: the 13 joints, ellipsoids between them, or surfaces that face the radar."""
     points_per_segment: Annotated[
         int, Field(ge=1, le=1000, strict=True), ActsIf("body.scatterers", "segments", "surfaces")
     ] = 20
-    """Most points of a segment; of a surface there are 14 at most."""
+    """Largest number of points of a segment; a surface has 14 at most."""
     shadowing: Annotated[Flag, ActsIfAny(_SEGMENTS, ActsIf("people", GIVEN))] = True
-    """Of segments: trunk and thighs hide what is behind them. With `people`: each hides others."""
+    """Whether trunk and thighs hide the segments behind them and, with `people`, each person hides
+    others."""
 
 
 class ReflectorConfig(Section):
     """Something that stands in the room, with a residual motion along the line of sight."""
 
     position_m: Vector = (uniform(1.0, 6.0), uniform(-3.0, 3.0), uniform(0.0, 2.5))
-    """Range, cross-range, height."""
+    """Position of the reflector: range, cross-range, height."""
     rcs_dbsm: Annotated[Number, within(-120, 120, "dBsm")] = uniform(-10.0, 10.0)
-    """Its radar cross-section."""
+    """Radar cross-section of the reflector."""
     residual_m: Annotated[NotNegative, within(0, 0.01, "m")] = uniform(5e-5, 5e-4)
-    """Standard deviation of its small motion along the line of sight."""
+    """Standard deviation of the reflector's small motion along the line of sight."""
     highest_hz: Annotated[Positive, within(1e-3, 100, "Hz")] = 10.0
-    """Highest frequency of that motion."""
+    """Highest frequency of the reflector's small motion."""
 
 
 MAX_REFLECTORS = 32
@@ -783,20 +801,20 @@ class DielectricConfig(Section):
     """A material by its permittivity eps_r (1 - j loss_tangent)."""
 
     eps_r: Annotated[AtLeastOne, within(1, 1e6)] = 5.0
-    """Relative permittivity."""
+    """Relative permittivity of the material."""
     loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.0
-    """Of the material."""
+    """Loss tangent of the material."""
 
 
 class BoxConfig(Section):
     """Where the faces of a room are; the floor is at 0."""
 
     x: tuple[Number, Number] = (0.0, 6.0)
-    """Of front and back face, m."""
+    """Ranges of the front and the back face, m."""
     y: tuple[Number, Number] = (-2.5, 2.5)
-    """Of right and left face, m."""
+    """Cross-ranges of the right and the left face, m."""
     height: Positive = 2.8
-    """Of the ceiling, m."""
+    """Height of the ceiling, m."""
 
 
 def _material_kind(value: Any) -> str:
@@ -813,18 +831,19 @@ class FacesConfig(Section):
     """What the faces of a room are made of: ITU-R P.2040's name, or {eps_r, loss_tangent}."""
 
     floor: _Face | None = None
-    """concrete, brick, plasterboard, wood, glass, ceiling_board, chipboard, floorboard, metal, or
-    {eps_r, loss_tangent}; alone it needs no room.box_m."""
+    """Material of the floor: concrete, brick, plasterboard, wood, glass, ceiling_board, chipboard,
+    floorboard, metal, or {eps_r, loss_tangent}; null does not reflect. The floor alone needs no
+    room.box_m."""
     ceiling: _Face | None = None
-    """As the floor, at the height of room.box_m."""
+    """Material of the ceiling, at the height of room.box_m."""
     left: _Face | None = None
-    """At the larger y."""
+    """Material of the face at the larger y of room.box_m."""
     right: _Face | None = None
-    """At the smaller y."""
+    """Material of the face at the smaller y of room.box_m."""
     front: _Face | None = None
-    """At the smaller x."""
+    """Material of the face at the smaller x of room.box_m."""
     back: _Face | None = None
-    """At the larger x."""
+    """Material of the face at the larger x of room.box_m."""
 
     @property
     def given(self) -> dict[str, Material | DielectricConfig]:
@@ -836,20 +855,21 @@ class RoomConfig(Section):
     """What stands in the room, what its faces echo, or a wall behind people."""
 
     box_m: Annotated[BoxConfig | None, ActsIf("room.faces", GIVEN)] = None
-    """Where the faces are."""
+    """Places of the room's faces."""
     faces: FacesConfig | None = None
-    """Faces by way of which people are seen again; null is none."""
+    """Faces in which people are seen again; null is none."""
     order: Annotated[int, Field(ge=0, le=2, strict=True), ActsIf("room.faces", GIVEN)] = 1
-    """Most bounces of a path, on the ways there and back together."""
+    """Largest number of bounces of a path, on the ways there and back together."""
 
     reflectors: Annotated[tuple[ReflectorConfig, ...], Field(max_length=MAX_REFLECTORS)] = ()
-    """Up to 32 of {position_m, rcs_dbsm, residual_m, highest_hz}; `[{}, {}]`: two default ones."""
+    """Things that stand in the room, up to 32 of {position_m, rcs_dbsm, residual_m, highest_hz};
+    `[{}, {}]` is two default ones."""
     back_wall_m: Annotated[Number, within(0, 1e4, "m")] | None = None
-    """Range of a rear wall, beyond people, which mirrors them (image source); null is none."""
+    """Range of a rear wall beyond people, which mirrors them (image source); null is none."""
     back_wall_reflection_db: Annotated[
         Number, within(-120, 0, "dB"), ActsIf("room.back_wall_m", GIVEN)
     ] = -8.0
-    """Its reflection loss, applied twice to the mirrored echo."""
+    """Reflection loss of the rear wall, applied twice to the mirrored echo."""
 
 
 class ToneConfig(Section):
@@ -861,14 +881,14 @@ class ToneConfig(Section):
     doppler_hz: Annotated[Number, within(-1e7, 1e7, "Hz")]
     """Doppler frequency of the tone."""
     level_db: Decibel = -10.0
-    """Relative to the white noise of a raw sample."""
+    """Level of the tone, relative to the white noise of a raw sample."""
     on_s: Annotated[Positive, within(1e-3, 1e7, "s")] = 1.0
-    """Mean time for which it is on."""
+    """Mean time for which the tone is on."""
     off_s: Annotated[NotNegative, within(0, 1e7, "s")] = 0.0
-    """Mean time for which it is off; 0: always on."""
+    """Mean time for which the tone is off; 0 is always on."""
     both_sides: Flag = False
-    """As strong at the opposite Doppler, at the same times: amplitude modulation, real samples.
-    At 0 Hz the two are one tone of 6 dB more."""
+    """Whether the tone stands as strong at the opposite Doppler, at the same times: amplitude
+    modulation, real samples. At 0 Hz the two are one tone of 6 dB more."""
 
 
 class ReceiverConfig(Section):
@@ -877,15 +897,15 @@ class ReceiverConfig(Section):
     noise_corner_hz: Annotated[
         NotNegative, within(0, 1e7, "Hz"), ActsIf("receiver.noise_corner_hz", ABOVE_ZERO)
     ] = 0.0
-    """Doppler at which noise that grows towards zero equals the white noise; 0 is none."""
+    """Doppler at which noise that grows towards zero equals the white noise; 0 is no such noise."""
     noise_slope_db: Annotated[
         NotNegative,
         within(1, 20, "dB per decade"),
         ActsIf("receiver.noise_corner_hz", ABOVE_ZERO),
     ] = 10.0
-    """Slope of that noise, dB per decade."""
+    """Slope of the noise that grows towards zero Doppler, dB per decade."""
     tones: Annotated[tuple[ToneConfig, ...], Field(max_length=16)] = ()
-    """Interference: up to 16 of {doppler_hz, level_db, on_s, off_s, both_sides}."""
+    """Interference tones: up to 16 of {doppler_hz, level_db, on_s, off_s, both_sides}."""
     noise_figure_db: Annotated[
         Annotated[NotNegative, within(0, 100, "dB")] | None, ActsIf("snr_db", None)
     ] = None
@@ -896,16 +916,16 @@ class ReceiverConfig(Section):
     channel_phase_deg: Annotated[NotNegative, within(0, 180, "degree"), _BOARD] = 0.0
     """Standard deviation of the virtual channels' phases."""
     channel_errors: Annotated[Literal["data_set", "sample"], _BOARD] = "data_set"
-    """Gains and phases are drawn once a data set, or once a sample."""
+    """How often gains and phases of the channels are drawn: once a data set, or once a sample."""
 
 
 class SavgolConfig(Section):
     """The Savitzky-Golay filter of the denoised maps."""
 
     order: Annotated[int, Field(ge=0, le=30, strict=True)] = 5
-    """Of the polynomial."""
+    """Order of the polynomial."""
     frame: Annotated[int, Field(ge=1, strict=True)] = 11
-    """Odd, above the order."""
+    """Number of pulses that the polynomial is fitted to; odd, above the order."""
 
     @model_validator(mode="after")
     def _fits(self) -> "SavgolConfig":
@@ -918,13 +938,14 @@ class HighpassConfig(Section):
     """The Butterworth filter of `clutter: highpass`."""
 
     order: Annotated[int, Field(ge=1, le=10, strict=True)] = 4
-    """Of the filter."""
+    """Order of the filter."""
     cutoff_hz: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
-    """The cut-off; null is 0.00375 of the PRF."""
+    """Cut-off frequency; null is 0.00375 of the PRF."""
     zero_phase: Flag = False
-    """Filter both ways."""
+    """Whether the filter runs both ways, without a delay."""
     remove_mean: Flag = True
-    """Take out the mean first; false starts from rest as MATLAB's `filter`: static echoes ring."""
+    """Whether the mean is taken out first; false starts from rest as MATLAB's `filter`: static
+    echoes ring."""
 
     def cutoff(self, prf: float) -> float:
         """The cut-off as a fraction of PRF/2."""
@@ -946,35 +967,38 @@ class ProcessingConfig(Section):
     """Clutter, range compression, gate, windows and thresholds."""
 
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
-    """s[m + 1] - s[m], the paper's MTI; less the mean of the recording; the filter below."""
+    """Clutter canceller: difference is s[m + 1] - s[m], the paper's MTI; mean takes out that of the
+    recording; highpass is the filter below."""
     highpass: Annotated[HighpassConfig, ActsIf("processing.clutter", "highpass")] = HighpassConfig()
     range_sum: Annotated[Literal["coherent", "gated"], _SPECTRA] = "coherent"
-    """The coherent sum of the kept bins, or STFTs of those in the gate, summed incoherently."""
+    """What Doppler maps show: the coherent sum of the kept bins, or STFTs of those in the gate,
+    summed incoherently."""
     gate_m: Annotated[float | tuple[float, float], _GATED] = 1.0
-    """How far (m) the gate reaches to both sides of the torso, or [from, to]: fixed ranges."""
+    """Reach of the gate to both sides of the torso, m, or [from, to]: fixed ranges."""
     gate_sum: Annotated[Literal["power", "magnitude"], _GATED] = "power"
-    """Powers are added up, or (sum of the magnitudes)^2."""
+    """How the gate's bins are added up: their powers, or (sum of the magnitudes)^2."""
     range_fft_length: Annotated[
         Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None, _NO_BOARD
     ] = None
-    """Even, at least the samples of a chirp; null is found."""
+    """Length of the range FFT, even, at least the samples of a chirp; null finds one."""
     range_gain_power: Annotated[float, Field(ge=0, le=8, strict=True), OnlyMaps("rtm")] = 0.0
-    """p of the gain (R/largest R)^p of the rtm's range bins, after canceller and noise."""
+    """Exponent p of the gain (R/largest R)^p of the rtm's range bins, after canceller and noise."""
     range_reference: Annotated[Literal["centre", "start"], _NO_BOARD] = "centre"
-    """Where in the chirp the phase is taken."""
+    """Instant of the chirp at which the phase of range bins is taken."""
     window_s: Annotated[float | None, Field(gt=0, le=1e7, strict=True), _SPECTRA] = None
-    """The window; null: of paper a tenth of duration_s, else by the wavelength, as limbs need."""
+    """Length of the STFT's window; null is a tenth of duration_s (paper), else by the wavelength,
+    as limbs need."""
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True), _SPECTRA] = 0.9
-    """Of consecutive windows, as a fraction of the window."""
+    """Overlap of consecutive STFT windows, as a fraction of the window."""
     stft_fft_length: Annotated[int | None, Field(ge=8, strict=True), OnlyMaps("stft")] = None
-    """At least the window; null is found."""
+    """Length of the STFT's FFT, at least the window; null finds one."""
     savgol: Annotated[SavgolConfig, OnlyMaps("denoised")] = SavgolConfig()
     fsst_hop_pulses: Annotated[int | None, Field(ge=1, le=2**24, strict=True), OnlyMaps("fsst")] = (
         None
     )
-    """Of the fsst maps; 1 is every sample; null is the STFT's."""
+    """Hop of the fsst maps in pulses; 1 is every sample, null the STFT's."""
     fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True), OnlyMaps("fsst")] = 1e-3
-    """Coefficients below this share of the map's largest are left out."""
+    """Share of the fsst map's largest coefficient below which coefficients are left out."""
 
     @field_validator("gate_m", mode="before")
     @classmethod
@@ -1021,30 +1045,31 @@ class CfarConfig(Section):
     """
 
     guard: tuple[Cells, Cells] = (10, 2)
-    """Pixels on each side, [rows, columns], left out."""
+    """Guard cells on each side, [rows, columns] of pixels, left out of the average."""
     training: tuple[Cells, Cells] = (50, 10)
-    """Pixels on each side, [rows, columns], averaged."""
+    """Training cells on each side, [rows, columns] of pixels, averaged."""
     pfa: Annotated[Positive, within(1e-12, 0.999)] = 0.31
-    """Threshold: the false alarm rate in exponentially distributed power."""
+    """False alarm rate in exponentially distributed power, which gives the threshold."""
     domain: Literal["power", "decibel"] = "decibel"
-    """What is averaged and compared."""
+    """Quantity that is averaged and compared."""
     floor_db: Annotated[Decibel, within(0, 200, "dB"), ActsIf("image.cfar.domain", "decibel")] = (
         uniform(10.0, 30.0)
     )
-    """With decibels, where the map's median is put: the threshold is then a factor of decibels."""
+    """Level at which the map's median is put with `domain: decibel`: the threshold is then a factor
+    of decibels."""
     edges: Literal["wrap", "shrink"] = "wrap"
-    """Beyond an edge: the cells of the opposite edge, or none."""
+    """What stands for cells beyond an edge: those of the opposite edge, or none."""
 
 
 class CloudConfig(Section):
     """How points are found in the frames of a board (docs/guide/boards.md)."""
 
     chain: Literal["best", "board"] = "best"
-    """What the data allow, or what TI's firmware does with the .cfg."""
+    """Detection chain: best is what the data allow, board what TI's firmware does with the .cfg."""
     pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), ActsIf("cloud.chain", "best")] = 1e-5
     """Rate of false alarms of a range-Doppler cell."""
     quantise: Annotated[Flag, ActsIf("cloud.chain", "board")] = True
-    """Round as the firmware's fixed-point numbers do."""
+    """Whether numbers are rounded as the firmware's fixed-point ones."""
     doppler_carrier: Literal["centre", "start"] = "centre"
     """Frequency that the points' speeds refer to; TI's software takes that at which ramps start."""
 
@@ -1059,23 +1084,23 @@ class ImageConfig(Section):
         tuple[Pixels, Pixels],
         BeforeValidator(lambda one: (one, one) if isinstance(one, int) else one),
     ] = (256, 256)
-    """[height, width]; one number is a square."""
+    """Image size [height, width]; one number is a square."""
     kind: Literal["decibel", "cfar", "signed"] = "decibel"
-    """Grey levels; binary masks of what exceeds its background; or, of an impulse radar's rtm,
-    samples with their sign, 0 in the middle."""
+    """What pixels show: grey levels of decibels; cfar, binary masks of what exceeds its background;
+    or signed, the samples of an impulse radar's rtm, 0 in the middle."""
     clipped: Annotated[float, Field(ge=0, lt=1, strict=True), ActsIf("image.kind", "signed")] = 0.02
     """Share of the samples that are black or white."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
-    """How far grey levels reach below the largest power (`kind: decibel`)."""
+    """Range of the grey levels below the largest power (`kind: decibel`)."""
     cfar: Annotated[CfarConfig, ActsIf("image.kind", "cfar")] = CfarConfig()
     colour_map: str = DEFAULT_COLOUR_MAP
-    """Any Matplotlib name; of PNGs and figures, as dataset.h5 holds grey levels."""
+    """Colour map of PNGs and figures, any Matplotlib name; dataset.h5 holds grey levels."""
     doppler_limits_mps: Annotated[
         tuple[Real, Real] | None,
         must(lambda value: value[0] < value[1], "should be [low, high] with low < high"),
         _SPECTRA,
     ] = None
-    """[low, high], approaching positive; null is all."""
+    """Speeds [low, high] that Doppler maps show, approaching positive; null is all."""
 
     @field_validator("colour_map")
     @classmethod
@@ -1096,15 +1121,15 @@ class SplitConfig(Section):
     """Shares of the three parts, of the samples of each class or of the persons."""
 
     by: Literal["sample", "subject"] = "sample"
-    """Shares of each class's samples, or of the persons."""
+    """Whether samples of each class are split, or persons."""
     train: Share = 0.8
-    """Share to learn from."""
+    """Share to train on."""
     validation: Share = 0.2
     """Share to choose the best epoch by."""
     test: Share = 0.0
     """Share that training never sees."""
     subjects: Annotated[int, Field(ge=1, strict=True)] | None = None
-    """With `by: subject`: persons who each perform every activity."""
+    """Number of persons, who each perform every activity, with `by: subject`."""
 
     @model_validator(mode="after")
     def _whole(self) -> "SplitConfig":
@@ -1132,17 +1157,18 @@ class EngineConfig(Section):
     """
 
     kind: Literal["direct", "cube"] = "direct"
-    """The closed form within the tolerance, or the exact reference."""
+    """Echo engine: the closed form within the tolerance, or the exact reference."""
     tolerance_db: Annotated[
         float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True), _DIRECT
     ] = -80.0
-    """Relative L2 error of the noiseless signal after MTI, measured in every scene."""
+    """Largest relative L2 error of the noiseless signal after the canceller, measured in every
+    scene."""
     fallback: Annotated[Literal["refuse", "cube"], _DIRECT] = "refuse"
     """What to do with a scene in which `direct` misses the tolerance."""
     precision: Annotated[Literal["auto", "double"], _DIRECT] = "auto"
-    """double: float64 whatever the tolerance."""
+    """Arithmetic of the direct engine: single where the tolerance allows it, or float64 always."""
     motion_in_chirp: Flag = False
-    """Of `cube`: paths go on moving during a chirp."""
+    """Whether paths go on moving during a chirp, with `kind: cube`."""
 
 
 Level = Annotated[int, Field(ge=0, le=9, strict=True)]
@@ -1153,21 +1179,21 @@ class OutputConfig(Section):
     """What is written of every sample, and how hard it is compressed: 0 none, 1 fast, 9 small."""
 
     png: Flag = True
-    """Write a tree of images beside dataset.h5."""
+    """Whether a tree of images is written beside dataset.h5."""
     column_labels: Flag = False
-    """Store what is done at the time of each column of a map."""
+    """Whether the movement at the time of each column of a map is stored."""
     png_level: Level = 1
-    """Compression, 0 to 9."""
+    """Compression of PNGs, 0 to 9."""
     hdf5_level: Level = 1
-    """Compression, 0 to 9."""
+    """Compression of dataset.h5, 0 to 9."""
     power: Literal["float16"] | None = None
-    """float16: store the decibels behind every image, not clipped."""
+    """Powers behind the images: float16 stores the decibels of every map, not clipped."""
     slow_time: Flag = False
-    """Store the complex slow-time signal."""
+    """Whether the complex slow-time signal is stored."""
     products: tuple[Name, ...] = ()
-    """Further products to store as arrays, those of your own too (`radhar_cli.registry`)."""
+    """Further products that are stored as arrays, a user's own too (`radhar_cli.registry`)."""
     license: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.+-]{0,60}$")] | None = None
-    """Of the data card, as the Hugging Face Hub calls it: cc-by-4.0, mit."""
+    """Licence in the data card, as the Hugging Face Hub calls it: cc-by-4.0, mit."""
 
 
 MAP_NAMES = (
@@ -1210,10 +1236,15 @@ class RecordedPart(Section):
     """
 
     file: Annotated[str, Field(max_length=500)]
+    """Path of the recording, from the manifest's folder on."""
     label: Annotated[str, Field(pattern=f"^{SLUG}$")]
+    """Class of what the person does."""
     person: Annotated[str, Field(max_length=100)] | None = None
+    """Name or number of the person, where it is known."""
     start_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]
+    """When the part begins."""
     stop_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]
+    """When the part ends."""
 
     @field_validator("file")
     @classmethod
@@ -1228,17 +1259,17 @@ class RecordingsConfig(Section):
     """A data set of measured data: windows of recordings instead of scenes."""
 
     window_s: Annotated[float, Field(gt=0, le=1e6, strict=True)] = 4.0
-    """Length of a sample."""
+    """Duration of a sample."""
     hop_s: Annotated[float, Field(gt=0, le=1e6, strict=True)] = 4.0
-    """From one sample to the next."""
+    """Time from the start of a sample to the start of the next."""
     receiver: Annotated[int, Field(ge=0, le=2**16, strict=True)] | None = None
-    """One of them; null is the sum of all maps' powers."""
+    """Number of the receiver that maps are made of; null is the sum of all receivers' powers."""
     parts: Annotated[tuple[RecordedPart, ...], Field(max_length=10_000)] = ()
-    """Filled in from the manifest, in its order."""
+    """Parts of recordings, filled in from the manifest, in its order."""
     sha256: dict[str, str] = {}
-    """Filled in: of each file, which the data set's bytes depend on."""
+    """SHA-256 of each file, filled in; the data set's bytes depend on it."""
     rows: tuple[float, float] | None = None
-    """Of images that exist already: lowest and highest edge, Hz (m of a range-time map)."""
+    """Lowest and highest edge of images that exist already, Hz (m of a range-time map)."""
     packed: Flag = False
     """Whether the columns of masks are bits."""
 
@@ -1291,15 +1322,15 @@ class PersonConfig(Section):
     REPEATS: ClassVar = True  # sections of the top level
 
     activity: Annotated[str | OneOf, BeforeValidator(_name_or_choice)] = "walking"
-    """Slug or label, or {choice: [...]}."""
+    """Activity of the person: a slug or label, or {choice: [...]}."""
     share: Share = 1.0
-    """Of the scenes in which the person is there."""
+    """Share of the scenes in which the person is there."""
     subject: SubjectConfig = SubjectConfig()
     motion: MotionConfig = MotionConfig()
-    """`cross_range_m` is -1.5 to 1.5 unless given."""
+    """Motion of the person; its `cross_range_m` is -1.5 to 1.5 unless given."""
     timing: TimingConfig = TimingConfig()
     classes: dict[str, ClassConfig] | None = None
-    """Filled in for a scene: numbers of a class of one's own that were drawn for this person."""
+    """Drawn numbers of a class of one's own, filled in for a scene."""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -1337,29 +1368,33 @@ class Config(Section):
     """A data set: what to draw, what to compute, how to store it."""
 
     seed: Seed = 1
-    """0 to 2^63 - 1."""
+    """Seed of everything that is drawn, 0 to 2^63 - 1."""
     samples_per_class: By[Samples] = 300
-    """May differ: `{per_activity: {default: 300, walking: 100}}`."""
+    """Number of samples of each class; it may differ: `{per_activity: {default: 300, walking:
+    100}}`."""
     classes: Classes = {}
-    """Your own: `{name: {sequence: [...]}}` of movements, `{name: [walk/*.bvh]}` of files."""
+    """Classes of your own: `{name: {sequence: [...]}}` of movements, `{name: [walk/*.bvh]}` of
+    files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
-    """The twelve and those of `classes`; or a list of slugs or labels, [walking, S12]."""
+    """Classes of the data set: all is the twelve and those of `classes`; or a list of slugs or
+    labels, [walking, S12]."""
     duration_s: Annotated[
         Positive | None,
         within(1e-9, 1e7, "s"),
         Limits(0, 600),
         ByModel(human=6.0, paper=4.0, file=4.0),
     ] = None
-    """Of a recording."""
+    """Duration of a recording."""
     radar: RadarConfig = RadarConfig()
     subject: SubjectConfig = SubjectConfig()
     motion: MotionConfig = MotionConfig()
     timing: TimingConfig = TimingConfig()
     body: BodyConfig = BodyConfig()
     people: Annotated[tuple[PersonConfig, ...], Field(max_length=7)] = ()
-    """Others in the scene; see docs/guide/scenes.md."""
+    """Other people in the scene, up to seven of {activity, share, subject, motion, timing}; see
+    docs/guide/scenes.md."""
     wall: WallConfig | None = None
-    """null is free space."""
+    """Wall between radar and people; null is free space."""
     room: RoomConfig = RoomConfig()
     snr_db: Decibel | None = 30.0
     """SNR of a raw sample; null: thermal noise by receiver.noise_figure_db, which a board has by
@@ -1370,28 +1405,30 @@ class Config(Section):
         ActsIf("snr_db", GIVEN),
         ActsIfAny(ActsIf("wall", GIVEN), ActsIf("radar.beam", GIVEN), ActsIf("radar.cfg", GIVEN)),
     ] = "free_space"
-    """What snr_db is the SNR of: the echo as it would be without the wall, in the middle of the
-    antennas' beam; or as it is received, less what the wall and the beam take."""
+    """Echo that snr_db refers to: as it would be without the wall, in the middle of the antennas'
+    beam (free_space); or as it is received, less what the wall and the beam take."""
     on_invalid: Annotated[
         Literal["keep", "redraw", "error"] | None,
         ByModel(human="redraw", paper="keep", file="redraw"),
     ] = None
-    """A body that meets the wall, a scatterer that leaves the range half-band. One that comes
-    within 5 cm of an antenna is drawn again with `redraw`, and refused otherwise."""
+    """What happens to a scene in which a body meets the wall or a scatterer leaves the range
+    half-band. A scene in which one comes within 5 cm of an antenna is drawn again with `redraw`,
+    and refused otherwise."""
     processing: ProcessingConfig = ProcessingConfig()
     cloud: Annotated[CloudConfig, OnlyMaps("points")] = CloudConfig()
     image: ImageConfig = ImageConfig()
     maps: Maps = ("stft",)
-    """Of `rtm`, `stft`, `fsst`; the latter two with `_denoised`, `_compensated`,
-    `_compensated_denoised`. Of boards also `range_doppler`, `range_azimuth`, `range_elevation`,
-    `points`."""
+    """Maps of the data set: `rtm`, `stft`, `fsst`, the latter two also with `_denoised`,
+    `_compensated`, `_compensated_denoised`; of boards also `range_doppler`, `range_azimuth`,
+    `range_elevation`, `points`."""
     split: SplitConfig = SplitConfig()
     engine: EngineConfig = EngineConfig()
     output: OutputConfig = OutputConfig()
     _places: tuple[dict[str, str], dict[str, str]] = ({}, {})  # {key: file:line}, {key: option}
 
     recordings: RecordingsConfig | None = None
-    """How `radhar generate --recordings` cuts them: see docs/guide/measured.md."""
+    """How `radhar generate --recordings` cuts recordings into samples: see
+    docs/guide/measured.md."""
 
     @field_validator("activities", mode="before")
     @classmethod

@@ -23,10 +23,10 @@ maps: [rtm, stft, fsst_compensated]
 
 
 def checked(config: Config, rows: list[int]) -> tuple[dict[Flags, int], int]:
-    """How many of these scenes have each flag, and how many were drawn again."""
-    found = [draw_valid_scene(config, *Rows.of(config)[row]) for row in rows]
-    counts = {flag: sum(flag in flags for _, flags in found) for flag in Flags}
-    return counts, sum(scene.attempt > 0 for scene, _ in found)
+    """Count the scenes that have each flag, and those that were drawn again."""
+    drawn = [draw_valid_scene(config, *Rows.of(config)[row]) for row in rows]
+    counts = {flag: sum(flag in flags for _, flags in drawn) for flag in Flags}
+    return counts, sum(scene.attempt > 0 for scene, _ in drawn)
 
 
 @pytest.mark.parametrize(
@@ -62,12 +62,17 @@ def test_what_is_said_goes_before_the_models_default(model: str) -> None:
 
 
 def test_people_of_the_defaults_stay_clear_of_the_radar_and_in_its_band() -> None:
-    """One kick in 60 is faster than the unambiguous band."""
+    """One kick in 60 is faster than the unambiguous band; the fastest walker meets the radar.
+
+    Who comes straight on at 1.75 m/s from 10.5 m walks into the radar within 6 s, and is drawn
+    again.
+    """
     config = Config(samples_per_class=300)
-    counts, redrawn = checked(config, Rows.of(config).spread(12 * 12))
+    rows = Rows.of(config).spread(12 * 12)
+    counts, redrawn = checked(config, rows)
     assert counts.pop(Flags.ALIASING) <= 1
     assert not any(counts.values())
-    assert redrawn == 0
+    assert redrawn <= 1
 
 
 def test_the_demo_builds_without_a_warning() -> None:

@@ -17,20 +17,45 @@ from command_line import ROOT
 import radhar_cli
 
 
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What `mkdocs build --strict` makes: a dead link, or a page that no menu has, fails."""
-    out = tmp_path_factory.mktemp("site")
-    build = (sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-d", out)
-    done = subprocess.run(
-        [*map(str, build)],
+def run_site_command(*more: object) -> "subprocess.CompletedProcess[str]":
+    """Run the command of `make site`, with more options.
+
+    `--quiet` is none of them: MkDocs then does not count the warnings that `--strict` fails at.
+    """
+    recipe = re.search(r"^site:.*\n\t\$\(BIN\)/python (.*)$", (ROOT / "Makefile").read_text(), re.M)
+    assert recipe
+    return subprocess.run(
+        [sys.executable, *recipe[1].split(), *map(str, more)],
         cwd=ROOT,
         capture_output=True,
         text=True,
         env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
     )
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What `make site` makes: a dead link or anchor, or a page that no menu has, fails."""
+    out = tmp_path_factory.mktemp("site")
+    done = run_site_command("-d", out)
     assert done.returncode == 0, done.stdout + done.stderr
     return out
+
+
+@pytest.mark.parametrize(
+    ("link", "status"),
+    [("other.md#a-heading", 0), ("other.md#no-heading", 1), ("nowhere.md", 1)],
+)
+def test_a_dead_link_or_anchor_fails(link: str, status: int, tmp_path: Path) -> None:
+    docs, settings = tmp_path / "docs", tmp_path / "mkdocs.yml"
+    docs.mkdir()
+    (docs / "index.md").write_text(f"# Home\n\n[a link]({link})\n")
+    (docs / "other.md").write_text("# Other\n\n## A heading\n")
+    pages = "nav: [index.md, other.md]"
+    settings.write_text(f"INHERIT: {ROOT / 'mkdocs.yml'}\ndocs_dir: {docs}\n{pages}\n")
+    done = run_site_command("-f", settings, "-d", tmp_path / "site")
+    assert done.returncode == status, done.stdout + done.stderr
+    assert (link in done.stderr) == bool(status)
 
 
 def test_every_page_is_there(site: Path) -> None:

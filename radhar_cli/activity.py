@@ -84,7 +84,10 @@ class Activity:
 
     @property
     def index(self) -> int:
-        """Class number in a data set: 0 to 11 for the twelve."""
+        """Number that names its random streams: 0 to 11 for the twelve.
+
+        It is no label of a data set: that is a place in the config's `activities`.
+        """
         return self.number - 1
 
     @property
@@ -126,7 +129,7 @@ def add_activity(
 ) -> Activity:
     """Make a class beyond the twelve known, under a slug that configs may name from then on.
 
-    The first such class in a config's `activities` is number 12 of the data set, the next 13.
+    A config names it in `activities`; its place there is its label.
 
     Args:
         slug: lower-case letters, digits and underscores.

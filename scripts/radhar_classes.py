@@ -125,7 +125,7 @@ def simulated(out: Path, per_class: int, jobs: int) -> tuple[list[Cloud], list[i
         sys.exit(done.returncode)
     clouds = []
     with open_dataset(out) as data:
-        labels = [CLASSES.index(data.class_slugs[label]) for label in data.label[:]]
+        labels = [CLASSES.index(data.classes[label]) for label in data.label[:]]
         for row in range(len(labels)):
             start = data.products["points_start"][row]
             frame = np.repeat(np.arange(len(start) - 1), np.diff(start))

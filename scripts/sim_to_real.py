@@ -184,7 +184,7 @@ def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) ->
         with open_dataset(out / name) as data:
             masks, split = data.maps["stft"], data.split[:]
             for row, label in enumerate(data.label):
-                slug = CLASSES[data.class_slugs[label]]
+                slug = CLASSES[data.classes[label]]
                 part = "val" if split[row] else "train"
                 for tree, axis in TREES.items():
                     image = network_image(masks[row] > 0, slug, axis)

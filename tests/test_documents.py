@@ -38,7 +38,8 @@ NOT_RUN = {
     "rule merge": "needs Snakemake",
     "clouds_against_measured.py": "measured pairs; tests/scripts has some of its own",
     "pose_from_clouds.py": "the same",
-    "load_dataset": "tests/dataset/test_hub.py does, in a process of its own",
+    "load_dataset": "tests/dataset/test_formats.py does, in a process of its own",
+    "torchvision.datasets": "the same",
 }
 # Commands whose options alone are looked at, by a word of theirs, and why.
 OPTIONS_ONLY = {

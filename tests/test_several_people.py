@@ -289,7 +289,9 @@ def test_a_data_set_knows_what_everybody_does(data: Path) -> None:
         assert found.person_label is not None
         assert found.labels.shape == (8, 12)
         assert found.person_label.shape == (8, 3)
-        assert found.class_slugs[4] == "sitting_down"
+        assert found.classes == ("walking", "punching")
+        assert found.class_slugs[:2] == ["walking", "punching"]
+        assert set(found.label.tolist()) == {0, 1}
         for labels, persons, label in zip(
             found.labels, found.person_label, found.label, strict=True
         ):

@@ -12,7 +12,8 @@ def convert(
     dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to create.")],
     to: Annotated[
-        str, typer.Option(metavar="FORMAT", help="parquet; for point clouds mars, ros or ti.")
+        str,
+        typer.Option(metavar="FORMAT", help="parquet, webdataset; for point clouds mars, ros, ti."),
     ],
 ) -> None:
     """Convert a data set, or its point clouds, for other tools.
@@ -20,6 +21,8 @@ def convert(
     Example:
 
       radhar convert datasets/quickstart -o shared/quickstart --to parquet
+
+      radhar convert datasets/quickstart -o shared/tars --to webdataset
 
       radhar convert datasets/boards -o shared/mars --to mars
 

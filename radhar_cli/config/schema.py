@@ -8,7 +8,7 @@ import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
-from itertools import pairwise
+from itertools import count, pairwise
 from math import floor, sqrt
 from pathlib import PurePosixPath
 from textwrap import dedent
@@ -1376,8 +1376,8 @@ class Config(Section):
     """Classes of your own: `{name: {sequence: [...]}}` of movements, `{name: [walk/*.bvh]}` of
     files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
-    """Classes of the data set: all is the twelve and those of `classes`; or a list of slugs or
-    labels, [walking, S12]."""
+    """Classes of the data set: all is the twelve and those of `classes`; or a list of slugs or S1 to
+    S12, [walking, S12]. A place in it, from 0, is a label of the data set."""
     duration_s: Annotated[
         Positive | None,
         within(1e-9, 1e7, "s"),
@@ -1442,8 +1442,7 @@ class Config(Section):
             raise wrong(str(error)) from None
         if not chosen or len({a.slug for a in chosen}) != len(chosen):
             raise wrong("should name at least one activity, each once")
-        # User-defined ones last: those of `classes`, then those of `add_activity`.
-        return tuple(a.slug for a in sorted(chosen, key=lambda a: (a.motion is not None, a.number)))
+        return tuple(a.slug for a in chosen)
 
     @property
     def stored(self) -> tuple[str, ...]:
@@ -1529,27 +1528,25 @@ class Config(Section):
 
     @property
     def every_class(self) -> tuple[Activity, ...]:
-        """Every class by label: the twelve, those of `classes`, then those of `add_activity`."""
+        """Every class that anybody may show: the chosen ones, whose place here is their label, then
+        the others of the twelve and of `classes`, which only `people` do."""
         known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
-        return (*(known | {a.slug: a for a in self.chosen_activities}).values(),)
+        return (*({a.slug: a for a in self.chosen_activities} | known).values(),)
 
     @property
     def chosen_activities(self) -> tuple[Activity, ...]:
-        """The activities to build: S1 to S12, then user-defined ones from 13 on, in order.
+        """The activities to build, in the order of `activities`; a place here, from 0, is a label.
 
-        All of them are those of `classes` alone with `motion.model: file`.
+        `activities: all` is S1 to S12, then those of `classes`; with `motion.model: file` only the
+        latter. Those of `add_activity` have the numbers after these, which name random streams.
         """
         own = class_activities(self.classes)
         if self.activities == "all":
             twelve = {} if self.motion.model == "file" else {a.slug: a for a in ACTIVITIES}
             return (*sorted((twelve | own).values(), key=lambda a: a.number),)
         chosen = [activity_named(slug, own) for slug in self.activities]
-        added = [a for a in chosen if a.motion is not None]
-        after = 1 + max(a.number for a in (*ACTIVITIES, *own.values()))
-        return (
-            *(a for a in chosen if a.motion is None),
-            *(replace(a, number=after + n) for n, a in enumerate(added)),
-        )
+        numbers = count(1 + max(a.number for a in (*ACTIVITIES, *own.values())))
+        return tuple(a if a.motion is None else replace(a, number=next(numbers)) for a in chosen)
 
     def depends_on(self, activity: Activity, key: str) -> bool:
         """Whether scenes of an activity depend on the number of this dotted key."""
@@ -1616,14 +1613,15 @@ class MeasuredConfig(Section):
 
     @cached_property
     def every_class(self) -> tuple[Activity, ...]:
-        """Every class by label: the twelve, those of `classes`, then new labels by the alphabet."""
+        """Every class: those that have windows, whose place is their label, then the others."""
         known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
         new = sorted(self.recordings.counts.keys() - known.keys())
-        return (*known.values(), *(Activity(len(known) + n, slug) for n, slug in enumerate(new, 1)))
+        known |= {slug: Activity(len(known) + n, slug) for n, slug in enumerate(new, 1)}
+        return tuple(sorted(known.values(), key=lambda one: not self.samples_of(one)))
 
     @property
     def chosen_activities(self) -> tuple[Activity, ...]:
-        """Those of which there is a window."""
+        """Those that have windows: of the twelve, of `classes`, then new ones by the alphabet."""
         return tuple(filter(self.samples_of, self.every_class))
 
 

@@ -51,7 +51,6 @@ from radhar_cli.processing.points import COLUMNS
 from radhar_cli.progress import Progress
 from radhar_cli.replacing import replacing
 
-SCHEMA_VERSION = 2
 RUN, RUN_BYTES = 128, 2**28
 COLUMN_RUN, CHUNK_BYTES = 4096, 2**16
 SCENES_DIGEST = "scenes_sha256"
@@ -199,7 +198,7 @@ def _describe_products(file: h5py.File, config: Config) -> None:
         file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
     if config.people:
         file[layout.LABELS].attrs["class_slugs"] = [one.slug for one in config.every_class]
-        meaning = "class of each person, the sample's own first; -1 absent"
+        meaning = "place in class_slugs of /labels, the sample's main person first; -1 absent"
         file[layout.PERSON_LABEL].attrs["meaning"] = meaning
     if config.output.slow_time:
         file["slow_time"].attrs.update({"axes": ["sample", "pulse"], "meaning": SLOW_TIME_TEXT})
@@ -259,20 +258,18 @@ class _Column:
 def _describe_samples(file: h5py.File, config: AnyConfig) -> None:
     rows = Rows.of(config)
     count = len(rows)
-    labels = np.repeat(np.array([a.index for a in rows.activities], np.uint8), rows.counts)
-    meaning = "0..11 for S1..S12, whatever subset was built; own classes after"
-    file["label"] = labels
-    file["label"].attrs["meaning"] = meaning
+    file["label"] = rows.label.astype(np.uint8)
+    file["label"].attrs["names"] = rows.names
+    file["label"].attrs["meaning"] = "place in names: the order of `activities` in the config"
     file["split"] = split_rows(config)
     file["split"].attrs["meaning"] = ", ".join(f"{i} {name}" for i, name in enumerate(SPLITS))
     keys = file.create_dataset("sample_key", (count, 2), np.int64)
-    keys.attrs["columns"] = ["class", "index"]
+    keys.attrs["columns"] = ["label", "index"]
     if (everyone := persons(config)) is not None:
         subject = file.create_dataset("scene/subject", (count,), np.int64, data=everyone)
         subject.attrs["unit"] = "1"
-    for activity, here in rows.classes():
-        indices = np.arange(here.stop - here.start)
-        keys[here, 0], keys[here, 1] = activity.index, indices
+    keys[:, 0] = rows.label
+    keys[:, 1] = np.concatenate([np.arange(number) for number in rows.counts])
     for field in scene_fields.fields(config):
         dataset = file.create_dataset(f"scene/{field.name}", (count,), np.float64)
         dataset.attrs["unit"] = field.unit
@@ -324,13 +321,13 @@ def _root_attributes(file: h5py.File, config: AnyConfig, messages: list[dict[str
     named = identity(config)
     named = {part: named[part] for part in ("keys", "versions", "hash")}
     described = {
-        "schema_version": SCHEMA_VERSION,
+        "schema_version": layout.SCHEMA_VERSION,
         "config": json.dumps(resolved(config)),
         "config_hash": config_hash(config),
         "identity": json.dumps(named, sort_keys=True),
         "seed": config.seed,
-        "class_names": [activity.label for activity in config.every_class],
-        "class_slugs": [activity.slug for activity in config.every_class],
+        "class_names": [activity.label for activity in config.chosen_activities],
+        "class_slugs": [activity.slug for activity in config.chosen_activities],
         "warnings": json.dumps(messages),
         **{f"{library}_version": version for library, version in versions().items()},
     }
@@ -351,8 +348,9 @@ class _SceneTable:
         """Write the rows from `start` on, of values [rows, fields]."""
         for row, numbers in enumerate(values.tolist(), start):
             activity, index = self._rows[row]
+            label = self._rows.activities.index(activity)
             self._writer.writerow(
-                [activity.index, activity.label, activity.slug, index, SPLITS[self._split[row]]]
+                [label, activity.label, activity.slug, index, SPLITS[self._split[row]]]
                 + ["" if self._persons is None else self._persons[row]]
                 + ["" if value != value else repr(value) for value in numbers]
             )

@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from radhar_cli.config.schema import MeasuredConfig
 from radhar_cli.dataset.files import refuse_links, write_whole
+from radhar_cli.dataset.image_tables import hub_configs
 from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
@@ -26,6 +27,24 @@ _SIMULATED = (
     "nobody was recorded: a network that is accurate on simulated data need not be so on a real "
     "radar"
 )
+_READING = """\
+`dataset.h5` holds everything for h5py and MATLAB: `/maps/<map>`, `/label`, `/split`,
+`/scene/<column>`. `radhar convert . -o OUT --to parquet`, or `--to webdataset`, makes other forms.
+A label is the same number in all of them: its place in the table of classes below."""
+_READING_PNGS = """
+
+```python
+import datasets
+from torchvision.datasets import ImageFolder
+
+data = datasets.load_dataset("FOLDER OR NAME ON THE HUB", "{0}")  # one configuration a map
+names = data["train"].features["label"].names
+
+train = ImageFolder("png/{0}/train")  # numbered by the alphabet; the next line gives our labels
+train.target_transform = [names.index(name) for name in train.classes].__getitem__
+```
+
+`png/{0}/classes.txt` has these names too."""
 BIBTEX = """\
 @article{gao2025radharsimulator,
   title = {RadHARSimulator V1: Model-Based FMCW Radar Human Activity Recognition Simulator},
@@ -60,13 +79,13 @@ def write_card(source: Path, folder: Path) -> None:
             write_whole(folder, folder / GALLERY, gallery_png(data, name))
         if CARD not in missing:
             return
-        reading = f"""\
-`dataset.h5` holds everything for h5py and MATLAB: `/maps/<map>`, `/label`, `/split`,
-`/scene/<column>`. torchvision's `ImageFolder("png/{name}/train")` reads the images, where there are
-any, but numbers the classes by the alphabet. `radhar convert . -o OUT --to parquet` makes what
-`datasets.load_dataset` reads."""
+        more: dict[str, Any] = {}
+        reading = _READING
+        if data.config.output.png:
+            more["configs"] = hub_configs(data.config, data.split)
+            reading += _READING_PNGS.format(name)
         picture = f"![{name}, one sample of each class]({GALLERY})"
-        write_whole(folder, folder / CARD, card(data, {}, f"{picture}\n\n{reading}").encode())
+        write_whole(folder, folder / CARD, card(data, more, f"{picture}\n\n{reading}").encode())
 
 
 def gallery_png(data: Dataset, name: str) -> bytes:
@@ -169,9 +188,9 @@ def _maps(data: Dataset) -> str:
 
 def _classes(data: Dataset) -> str:
     present, lines = data.present_splits, []
-    for activity, rows in Rows.of(data.config).classes():
+    for label, (activity, rows) in enumerate(Rows.of(data.config).classes()):
         counts = np.bincount(data.split[rows], minlength=len(SPLITS))
-        lines.append([activity.index, f"`{activity.slug}`", *(counts[n] for n in present)])
+        lines.append([label, f"`{activity.slug}`", *(counts[n] for n in present)])
     others = ""
     if data.labels is not None:
         shown = zip(data.class_slugs, data.labels.sum(axis=0).tolist(), strict=True)

@@ -12,12 +12,16 @@ from typing import TypeAlias
 import numpy as np
 
 from radhar_cli.activity import Activity
+from radhar_cli.arrays import Index
 from radhar_cli.config.schema import MAP_NAMES, AnyConfig
 
+# Of dataset.h5; 3: labels are 0 to C - 1 in the order of the config.
+SCHEMA_VERSION = 3
 DATASET = "dataset.h5"
 CONFIG = "config.yaml"
 SCENES = "scenes.csv"
 PNG = "png"
+CLASSES, METADATA = "classes.txt", "metadata.csv"  # beside the PNGs
 CARD = "README.md"
 GALLERY = "gallery.png"
 WORK = ".radhar"
@@ -128,6 +132,16 @@ class Rows:
 
     def __len__(self) -> int:
         return self.starts[-1]
+
+    @property
+    def label(self) -> Index:
+        """Label of each row [N]: the place of its class in the config's `activities`, from 0."""
+        return np.repeat(np.arange(len(self.activities)), self.counts)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of each label [C]: the slugs of the classes."""
+        return tuple(activity.slug for activity in self.activities)
 
     def __getitem__(self, row: int) -> tuple[Activity, int]:
         """(activity, index within its class) of a row."""

@@ -37,7 +37,7 @@ def sample(
 
     Args:
         config: of the data set, or its path; its `maps` and `output` say what is made.
-        activity: slug, label or Activity; None where the config has but one.
+        activity: slug, S1 to S12 or Activity, one of the config's; None where it has but one.
         index: number of the sample within its class; may lie beyond `samples_per_class`.
         seed: instead of the config's.
 
@@ -81,11 +81,11 @@ class Recipe:
 
     def __call__(self, activity: Activity, index: int) -> Sample:
         """The fields of one sample; errors as of `sample`."""
-        index = whole("index", index)
+        index, label = whole("index", index), self._label(activity)
         with one_thread():
             scene, _ = draw_valid_scene(self.config, activity, index)
             made = synthesise(scene, self._plan)
-        found = Sample(label=activity.index, sample_key=np.array([activity.index, index]))
+        found = Sample(label=label, sample_key=np.array([label, index]))
         found.update(made.columns)
         for name, (_, shape) in chunked(self.config).items():
             found[name] = np.ascontiguousarray(made.chunk(name, shape))
@@ -96,6 +96,20 @@ class Recipe:
         if self.config.split.subjects is not None:
             found["scene/subject"] = scene.subject
         return found
+
+    def _label(self, activity: Activity) -> int:
+        """Label of a class: its place among those of the config."""
+        names = self._classes
+        if activity.slug not in names:
+            raise ConfigError(
+                f"activity = {activity.slug}: is no class of this config, so it has no label; "
+                f"activities has {', '.join(names)}"
+            )
+        return names.index(activity.slug)
+
+    @cached_property
+    def _classes(self) -> tuple[str, ...]:
+        return tuple(activity.slug for activity in self.config.chosen_activities)
 
     @cached_property
     def _plan(self) -> Plan:

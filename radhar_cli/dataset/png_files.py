@@ -7,6 +7,7 @@ import numpy as np
 from radhar_cli.arrays import Index, Levels
 from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.batch import png_rows
+from radhar_cli.dataset.image_tables import write_missing_tables
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.workers import parent_pid, run_tasks
@@ -18,7 +19,9 @@ ROWS = 32  # rows per task
 def write_missing_pngs(
     config: AnyConfig, folder: Path, split: Levels, source: Path, jobs: int, progress: Progress
 ) -> int:
-    """Write PNGs that are not there: asked for later, deleted, or lost with a killed run.
+    """Write PNGs, and the tables beside them, that are not there.
+
+    They were asked for later, deleted, or lost with a killed run.
 
     Args:
         source: HDF5 file to make them from.
@@ -26,7 +29,10 @@ def write_missing_pngs(
     Returns:
         Number of PNGs written; none where the config asks for none.
     """
-    missing = rows_without_png(config, folder, split) if config.output.png else np.empty(0, int)
+    if not config.output.png:
+        return 0
+    write_missing_tables(config, folder, split)
+    missing = rows_without_png(config, folder, split)
     if not missing.size:
         return 0
     progress.stage("png", missing.size, 0)

@@ -34,10 +34,14 @@ class Dataset(Closing):
         path: of dataset.h5.
         config: its own.
         maps: {map name: uint8 [N, H, W]}.
-        label, split: uint8 [N]; 0 to 11, 0 to 2.
-        labels: uint8 [N, classes], 1 for what anybody in the scene does; None without `people`.
-        person_label: int16 [N, 1 + people], the class of each person, -1 absent; None without.
-        sample_key: int64 [N, 2], (class, index).
+        label: uint8 [N], place in `classes`, as in every other form of the data set.
+        split: uint8 [N]; 0 train, 1 validation, 2 test.
+        classes: name of every label [C]: the slugs, in the order of the config's `activities`.
+        labels: uint8 [N, len(class_slugs)], 1 for what anybody in the scene does; None without
+            `people`.
+        person_label: int16 [N, 1 + people], the class of each person, place in `class_slugs`, -1
+            absent; None without.
+        sample_key: int64 [N, 2], (label, index within the class).
         scene: {field: [N]}, SI units.
         fields: what the fields of `scene` are.
         large: {name: [N, ...]}, all datasets with a sample a chunk, the maps among them.
@@ -45,7 +49,7 @@ class Dataset(Closing):
         products: {name: an array of each sample}, of `output.products`.
         column_label: {map name: uint8 [N, W]}, numbers in `column_labels.label_names`; empty where
             they were not asked for.
-        class_slugs: slug of every label.
+        class_slugs: `classes`, then what only `people` may do.
 
     Raises:
         FolderError: it is not a data set of radhar, or is damaged; names file and field.
@@ -57,15 +61,28 @@ class Dataset(Closing):
         try:
             if self.file.has_attribute("scene"):
                 raise FolderError(f"{path}: is a scene of `radhar simulate`, not a data set")
+            self._refuse_other_formats()
             self.config = stored_config(self.file.json("config"), str(path))
             self._check()
         except BaseException:
             self.file.close()
             raise
 
+    def _refuse_other_formats(self) -> None:
+        """Refuse a file whose layout is of another version: its labels mean something else."""
+        if not self.file.has_attribute("schema_version"):
+            return  # what else it lacks is said of it
+        version = self.file.whole_number("schema_version")
+        if version != layout.SCHEMA_VERSION:
+            raise FolderError(
+                f"{self.path}: schema_version = {version}: should be {layout.SCHEMA_VERSION}, in "
+                "which labels are 0 to C - 1; `radhar generate` of its config.yaml makes it anew"
+            )
+
     def _check(self) -> None:
         config, file, count = self.config, self.file, len(layout.Rows.of(self.config))
         self.fields = scene_fields.fields(config)
+        self.classes = tuple(activity.slug for activity in config.chosen_activities)
         self.class_slugs = [activity.slug for activity in config.every_class]
         names: tuple[str, ...] = config.maps
         self.large = {
@@ -98,7 +115,7 @@ class Dataset(Closing):
             small[name][:] if config.people else None
             for name in (layout.LABELS, layout.PERSON_LABEL)
         )
-        self.label = _small(file.column("label", np.uint8, (count,)), len(config.every_class))
+        self.label = _small(file.column("label", np.uint8, (count,)), len(self.classes))
         self.split = _small(file.column("split", np.uint8, (count,)), len(layout.SPLITS))
 
     def __len__(self) -> int:

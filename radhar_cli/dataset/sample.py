@@ -111,10 +111,11 @@ def labels_of(scene: Scene) -> dict[str, NDArray[Any]]:
     """What everybody does, where a config has `people`: LABELS and PERSON_LABEL."""
     if not scene.config.people:
         return {}
+    classes = [activity.slug for activity in scene.config.every_class]
     person = np.full(1 + len(scene.config.people), -1, np.int16)
     for one in scene.people:
-        person[one.number] = one.activity.index
-    found = np.zeros(len(scene.config.every_class), np.uint8)
+        person[one.number] = classes.index(one.activity.slug)
+    found = np.zeros(len(classes), np.uint8)
     found[person[person >= 0]] = 1
     return {LABELS: found, PERSON_LABEL: person}
 

@@ -21,7 +21,7 @@ class Entry(NamedTuple):
 
     row: int  # of dataset.h5
     split: int  # 0 train, 1 validation, 2 test
-    number: int  # of the class, as in /label
+    number: int  # of the class, as in /label: the label
     label: str  # slug of the class
     place: int  # index within the class; (number, place) is the sample key
     # of `number_names`, as in /scene: SI units, NaN where one does not apply
@@ -67,19 +67,19 @@ def entries(data: Dataset) -> Iterator[Entry]:
             numbers = (data.scene[name].rows(start, stop).tolist() for name in names)
             held.append((activity, start, list(zip(*numbers, strict=True))))
         for place in range(BLOCK):
-            for activity, start, values in held:
+            for label, (activity, start, values) in enumerate(held):
                 if place >= len(values):
                     continue
                 row = start + place
-                if data.label[row] != activity.index:
+                if data.label[row] != label:
                     raise FolderError(
                         f"{data.path}: /label[{row}]: is {data.label[row]}; should be "
-                        f"{activity.index}, {activity.slug}"
+                        f"{label}, {activity.slug}"
                     )
                 yield Entry(
                     row,
                     int(data.split[row]),
-                    activity.index,
+                    label,
                     activity.slug,
                     first + place,
                     values[place],

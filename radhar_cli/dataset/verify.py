@@ -17,6 +17,7 @@ from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.files import digest_of, read_bytes
 from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.image_file import SUFFIXES, read_gray, read_rgb
+from radhar_cli.dataset.image_tables import image_tables
 from radhar_cli.dataset.layout import COLUMN_LABEL, CONFIG, PNG, SCENES, WORK, Rows, checksum_of
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
@@ -86,7 +87,7 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
 def _structure(data: Dataset, report: Verification) -> bool:
     config = data.config
     rows = Rows.of(config)
-    label = np.repeat([a.index for a in rows.activities], rows.counts)
+    label = rows.label
     index = np.concatenate([np.arange(count) for count in rows.counts])
     follows = [
         ("label", data.label, label),
@@ -225,6 +226,14 @@ def _pngs(data: Dataset, folder: Path, report: Verification) -> None:
     table = colour_table(config.image.colour_map)
     for foreign in sorted({path.name for path in (folder / PNG).iterdir()} - {*config.maps}):
         report.problems.append(f"{PNG}/{foreign}: is no map of this data set")
+    for path, text in image_tables(config, split):
+        try:
+            if read_bytes(folder / path, len(text)) != text:
+                report.problems.append(f"{path}: is not that of dataset.h5")
+        except FileNotFoundError:
+            report.problems.append(f"{path}: is missing; `radhar generate` makes it again")
+        except FolderError as error:
+            report.problems.append(str(error))
     for name in config.maps:
         if not (folder / PNG / name).is_dir():
             report.problems.append(f"{PNG}/{name}: is missing")

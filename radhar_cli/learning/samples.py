@@ -25,8 +25,8 @@ class Samples(Dataset[dict[str, Any]]):
 
     Attributes:
         config: of the data set.
-        label: [N] place in `class_slugs`.
-        class_slugs: slug of every label.
+        label: [N] place in `classes`, as in the dataset.h5.
+        classes: name of every label, in the order of the config's `activities`.
         identity: hash of everything that determines the samples: config, seed, versions.
     """
 
@@ -52,9 +52,8 @@ class Samples(Dataset[dict[str, Any]]):
         if not numbers.size:
             raise ConfigError(f"split.{split}: leaves no sample for it; should be larger")
         self._numbers = numbers
-        labels = [activity.index for activity in self._rows.activities]
-        self.label: Index = np.repeat(labels, self._rows.counts)[numbers]
-        self.class_slugs = [activity.slug for activity in self.config.every_class]
+        self.label: Index = self._rows.label[numbers]
+        self.classes = self._rows.names
         self.identity = identity_hash(identity(self.config))
 
     def __len__(self) -> int:
@@ -62,7 +61,7 @@ class Samples(Dataset[dict[str, Any]]):
 
     def __repr__(self) -> str:
         maps, seed = ", ".join(self.config.maps), self.config.seed
-        classes = ", ".join(self.class_slugs[n] for n in np.unique(self.label))
+        classes = ", ".join(self.classes[n] for n in np.unique(self.label))
         return f"<Samples: {len(self)} of {classes}, synthesised from seed {seed}; maps {maps}>"
 
     def __getitem__(self, row: int) -> dict[str, Any]:

@@ -24,14 +24,14 @@ from radhar_cli.learning.images.sequences import (
 class Sequences(Dataset[dict[str, Any]]):
     """Sequences of a data set as tensors, for a DataLoader.
 
-    An item has `label` (place in `class_slugs`), `skeleton` float32 [frames, joint, 3] of the first
+    An item has `label` (place in `classes`), `skeleton` float32 [frames, joint, 3] of the first
     person (m, in the radar's axes; NaN after the end of the sample), and `clouds` float32 [frames,
     points, 6], or `frames` uint8 [frames, rows, columns]. The columns of a cloud are x, y, z (m),
     Doppler (m/s, approaching), SNR (bels) and 1 where there is a point.
 
     Attributes:
-        label: [N].
-        class_slugs: slug of every label.
+        label: [N] place in `classes`, as in the dataset.h5.
+        classes: name of every label, in the order of the config's `activities`.
         frames: number per item.
     """
 
@@ -67,14 +67,14 @@ class Sequences(Dataset[dict[str, Any]]):
             some = wanted == "all" or data.split == SPLIT_NAMES.get(wanted)
             self._rows = np.flatnonzero(np.broadcast_to(some, data.split.shape))
             self.label: Index = data.label[self._rows].astype(np.intp)
-            self.class_slugs = data.class_slugs
+            self.classes = data.classes
             self._reader = SequenceReader(data.path, product, self.frames, points)
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def __repr__(self) -> str:
-        classes = ", ".join(self.class_slugs[n] for n in np.unique(self.label))
+        classes = ", ".join(self.classes[n] for n in np.unique(self.label))
         of = f"{self.frames} frames of {self._reader.product}"
         return f"<Sequences {self._reader.path}: {len(self)} x {of}; classes {classes}>"
 

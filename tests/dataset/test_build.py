@@ -298,8 +298,8 @@ def test_dataset_contract(config, small_set):
         assert file["maps/stft"].attrs["row_unit"] == "Hz"
         assert file["maps/stft"].attrs["row_top"] == pytest.approx(250, abs=2)
         assert file["maps/rtm"].attrs["row_unit"] == "m"
-        assert file["label"][:].tolist() == [1, 1, 1, 7, 7, 7, 11, 11, 11]
-        assert file["sample_key"][:].tolist()[3:5] == [[7, 0], [7, 1]]
+        assert file["label"][:].tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
+        assert file["sample_key"][:].tolist()[3:5] == [[1, 0], [1, 1]]
         assert np.bincount(file["split"][:], minlength=3).tolist() == [6, 3, 0]
         assert file["scene/angle"].attrs["unit"] == "rad"
         assert np.abs(file["scene/angle"][:]).max() <= np.pi / 6
@@ -307,7 +307,9 @@ def test_dataset_contract(config, small_set):
         assert np.isfinite(file["scene/thigh"][3:]).all()
         assert file["scene/error_db"].attrs["unit"] == "dB"
         assert (file["scene/error_db"][:] <= config.engine.tolerance_db).all()
-        assert file.attrs["class_slugs"][7] == "walking"
+        names = ["punching", "walking", "walking_to_falling"]
+        assert list(file.attrs["class_slugs"]) == list(file["label"].attrs["names"]) == names
+        assert list(file.attrs["class_names"]) == ["S2", "S8", "S12"]
         assert file.attrs["seed"] == 7
         assert json.loads(file.attrs["config"])["samples_per_class"] == 3
         for key in ("config_hash", "schema_version", "radhar_version", "numpy_version"):

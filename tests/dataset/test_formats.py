@@ -1,5 +1,6 @@
 """A data set as a folder and as Parquet, read with the libraries that they are made for."""
 
+import csv
 import hashlib
 import json
 import os
@@ -11,6 +12,7 @@ import h5py
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+import torch
 import yaml
 from command_line import ROOT, radhar
 from listener import Listener
@@ -20,17 +22,20 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset import layout
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.folder import folder_lock
-from radhar_cli.dataset.formats import parquet
+from radhar_cli.dataset.formats import parquet, webdataset
 from radhar_cli.dataset.formats.convert import convert
+from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.table import number_names
 from radhar_cli.errors import FolderError
+from radhar_cli.learning.samples import Samples
+from radhar_cli.learning.torch_dataset import torch_dataset
 
 READER = Path(__file__).with_name("read_by_others.py")
 CONFIG = """
 seed: 3
 samples_per_class: {per_activity: {default: 5, home: 7}}
 classes: {home: {sequence: [grabbing, walking]}}
-activities: [punching, kicking, grabbing, home]
+activities: [punching, home, kicking, grabbing]
 duration_s: 3.0
 radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
 motion: {range_m: 5}
@@ -54,6 +59,8 @@ def place(tmp_path_factory):
         patch.setattr(parquet, "GROUP", 2)
         build(load_config(small_config(place, CONFIG)), place / "set", 1, Listener())
         assert convert(place / "set", place / "parquet", "parquet", Listener()) == 22
+        patch.setattr(webdataset, "SHARD_SAMPLES", 4)
+        assert convert(place / "set", place / "tars", "webdataset", Listener()) == 22
     return place
 
 
@@ -69,7 +76,13 @@ def line(h5, row):
     names = number_names(load_config(Path(h5.filename).with_name("config.yaml")))
     scene = {name: h5["scene"][name][row].item() for name in names}
     expected = {name: None if value != value else value for name, value in scene.items()}
-    return {"label": h5.attrs["class_slugs"][number], "index": index, **expected}
+    assert number == h5["label"][row]
+    return {
+        "label": h5["label"].attrs["names"][number],
+        "number": number,
+        "index": index,
+        **expected,
+    }
 
 
 def digest(levels):
@@ -99,8 +112,13 @@ def test_each_folder_is_read_by_the_libraries_it_is_for(place, h5, tmp_path):
     found = json.loads(done.stdout)
     for name in ("rtm", "stft"):
         there = found["parquet"][name]
-        assert there["labels"] == list(h5.attrs["class_slugs"])
+        assert there["labels"] == ["punching", "home", "kicking", "grabbing"]
+        own = found["set"][name]
+        assert own["labels"] == there["labels"]
         for split in SPLITS:
+            named = ("label", "number", "index", "image")
+            listed = sorted([row[key] for key in named] for row in there["parts"][split])
+            assert sorted([row[key] for key in named] for row in own["parts"][split]) == listed
             right = [
                 {"image": digest(h5[f"maps/{name}"][row]), **line(h5, row)}
                 for row in rows_of(h5, split)
@@ -108,8 +126,75 @@ def test_each_folder_is_read_by_the_libraries_it_is_for(place, h5, tmp_path):
             assert there["parts"][split] == right
     train = place / "set/png/stft/train"
     files = sorted(path.relative_to(train) for path in train.rglob("*.png"))
-    assert sorted(found["tree"]) == [[str(path), path.parts[0]] for path in files]
-    assert any("home/0001/" in path for path, _ in found["tree"])
+    names = list(h5["label"].attrs["names"])
+    assert sorted(found["tree"]) == [
+        [str(path), path.parts[0], names.index(path.parts[0])] for path in files
+    ]
+    assert any("home/0001/" in path for path, *_ in found["tree"])
+    for split in SPLITS:
+        rows = rows_of(h5, split)
+        lines = [line(h5, row) for row in rows]
+        digests = [digest(h5["maps/stft"][row]) for row in rows]
+        pairs = list(zip(lines, digests, strict=True))
+        assert sorted(found["imagefolder"][split]) == sorted(
+            [one["number"], one["label"], one["index"], image] for one, image in pairs
+        )
+        json_lines = [
+            {
+                **{key: value for key, value in one.items() if key not in ("label", "number")},
+                **{"class": one["label"], "label": one["number"], "split": split},
+                **{"key": f"{one['label']}_{one['index']:05d}", "cls": one["number"]},
+                "image": image,
+            }
+            for one, image in pairs
+        ]
+        assert len(found["tars"][split]) == len(json_lines)
+        for read, right in zip(found["tars"][split], json_lines, strict=True):
+            assert read == right
+    assert found["tars_by_hub"] == len(rows_of(h5, "train"))
+
+
+def test_every_reader_of_ours_has_the_same_labels(place, h5):
+    """0 to C - 1 in the config's order, which is neither the alphabet's nor the paper's."""
+    stored, names = h5["label"][:].tolist(), ("punching", "home", "kicking", "grabbing")
+    assert set(stored) == set(range(len(names)))
+    with open_dataset(place / "set") as data:
+        assert (data.classes, data.label.tolist()) == (names, stored)
+        assert data.sample_key[:][:, 0].tolist() == stored
+    samples = Samples(place / "small.yaml")
+    assert (samples.classes, samples.label.tolist()) == (names, stored)
+    assert samples[7]["label"] == stored[7]
+    for path in (place / "set", place / "set/dataset.h5", place / "set/png/stft"):
+        images = torch_dataset(path)
+        labels = {name: images.images.label[n] for n, name in enumerate(images.images.names)}
+        assert images.classes == names
+        assert all(names[label] == name.split("/")[0] for name, label in labels.items())
+        logits = torch.zeros(len(images), len(images.classes))
+        found = torch.tensor([images[row][1] for row in range(len(images))])
+        assert torch.nn.CrossEntropyLoss()(logits, found) > 0
+    with (place / "set/scenes.csv").open() as file:
+        assert [(int(row["label"]), row["slug"]) for row in csv.DictReader(file)] == [
+            (label, names[label]) for label in stored
+        ]
+    assert (place / "tars/classes.txt").read_text().split() == list(names)
+
+
+def test_tar_files_are_cut_and_have_the_same_bytes_again(place, tmp_path, monkeypatch):
+    monkeypatch.setattr(webdataset, "SHARD_SAMPLES", 4)
+    convert(place / "set", tmp_path / "again", "webdataset", Listener())
+    assert fingerprint(place / "tars") == fingerprint(tmp_path / "again")
+    names = sorted(path.name for path in (place / "tars/rtm").glob("train-*"))
+    assert names == [f"train-{n:06d}.tar" for n in range(len(names))]
+    assert len(names) > 1
+    assert f"train-{{000000..{len(names) - 1:06d}}}.tar" in (place / "tars/README.md").read_text()
+
+
+def test_a_data_set_of_another_numbering_is_refused_in_a_line(place, tmp_path):
+    old = tmp_path / "dataset.h5"
+    with edited(place / "set/dataset.h5", old) as file:
+        file.attrs["schema_version"] = 2
+    with pytest.raises(FolderError, match="schema_version = 2: should be 3, in which labels"):
+        open_dataset(old)
 
 
 def test_files_are_cut_and_groups_are_small(place, h5):
@@ -172,7 +257,7 @@ def test_damaged_data_sets_are_not_converted(place, tmp_path):
 def test_a_label_of_another_row_is_refused(place, tmp_path):
     damaged = tmp_path / "dataset.h5"
     with edited(place / "set/dataset.h5", damaged) as file:
-        file["label"][0] = 4
+        file["label"][0] = 3
     done = radhar("convert", damaged, "-o", tmp_path / "out", "--to", "parquet")
     assert done.returncode == 2
-    assert "/label[0]: is 4; should be 1, punching" in done.stderr
+    assert "/label[0]: is 3; should be 0, punching" in done.stderr

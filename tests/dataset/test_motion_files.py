@@ -54,15 +54,15 @@ def place(tmp_path_factory):
 def test_labels_columns_and_folders_follow(place):
     with open_dataset(place / "out") as data:
         assert [data.class_slugs[label] for label in data.label[::6]] == [
-            *("kicking", "walking", "rise", "wave")
+            *("walking", "kicking", "wave", "rise")
         ]
-        assert data.label[::6].tolist() == [2, 7, 12, 13]
+        assert data.label[::6].tolist() == [0, 1, 2, 3]
         files = data.scene["walking_file"][:]
-        assert set(files[6:12]) <= {0, 1, 2}
-        assert np.isnan(np.delete(files, range(6, 12))).all()
-        assert np.isnan(data.scene["kick"][6:]).all()
+        assert set(files[:6]) <= {0, 1, 2}
+        assert np.isnan(files[6:]).all()
+        assert np.isnan(data.scene["kick"][12:]).all()
         assert data.maps["stft"][:].std(axis=(1, 2)).min() > 5
-    assert sorted(p.name for p in (place / "out/png/stft/train").iterdir()) == [
+    assert sorted(p.name for p in (place / "out/png/stft/train").iterdir() if p.is_dir()) == [
         *("kicking", "rise", "walking", "wave")
     ]
 
@@ -86,7 +86,7 @@ def test_persons_that_share_files_are_warned_of(place):
     assert split_warnings(config, split_rows(config)) == [
         f"classes.{slug}: 1 files for split.subjects = 3: "
         "persons of training and validation share them"
-        for slug in ("rise", "wave")
+        for slug in ("wave", "rise")
     ]
 
 
@@ -114,7 +114,7 @@ def test_a_written_scene_is_the_same_recording(place, tmp_path):
         assert a["truth/positions"].shape == (750, 13, 3)
         assert a["truth/hip_joints"].shape == (750, 2, 3)
     with open_dataset(place / "out") as data:
-        file = int(data.scene["walking_file"][6 + 4])
+        file = int(data.scene["walking_file"][4])
     assert f"walks/{file}.bvh" in (tmp_path / "a/scene.yaml").read_text()
     ok("inspect", tmp_path / "a")
 

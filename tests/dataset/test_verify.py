@@ -60,7 +60,7 @@ def _flip_level_and_checksum(file: h5py.File) -> None:
 
 
 def _relabel(file: h5py.File) -> None:
-    file["label"][0] = 5
+    file["label"][0] = 2
 
 
 def _resplit(file: h5py.File) -> None:
@@ -147,6 +147,17 @@ def test_an_empty_class_folder_is_none_of_its_own(whole: Path, tmp_path: Path) -
     (tmp_path / "set/png/stft/train/dancing").mkdir()
     problems = verify(tmp_path / "set", 1).problems
     assert problems == ["png/stft/train/dancing: is no class of this data set"]
+
+
+def test_tables_beside_the_images_are_checked(whole: Path, tmp_path: Path) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    table = tmp_path / "set/png/stft/train/metadata.csv"
+    table.write_text(table.read_text().replace("punching,", "walking,", 1))
+    (tmp_path / "set/png/rtm/classes.txt").unlink()
+    assert verify(tmp_path / "set", 0).problems == [
+        "png/rtm/classes.txt: is missing; `radhar generate` makes it again",
+        "png/stft/train/metadata.csv: is not that of dataset.h5",
+    ]
 
 
 def test_persons_are_those_of_the_config(tmp_path: Path) -> None:

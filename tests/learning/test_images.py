@@ -19,7 +19,7 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.image_file import luminance, read_gray, read_rgb
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.image_set import ImageSet, class_order, labels_for, split_named
+from radhar_cli.learning.images.image_set import ImageSet, labels_for, split_named
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.training import checked_images
@@ -57,7 +57,7 @@ def test_hdf5_and_png_are_the_same_images_in_the_same_order(made, kind, map_name
     hashes = set()
     for place, name in ((made / "png", map_name), (made / "png" / map_name, None)):
         files = open_images(place, name, kind)
-        assert files.classes == stored.classes == ("punching", "walking", "walking_to_falling")
+        assert files.classes == stored.classes == ("walking", "walking_to_falling", "punching")
         assert files.size == stored.size == (32, 32)
         for split, count in (("train", 6), ("val", 3), ("test", 3)):
             ours, theirs = stored.rows(split), files.rows(split)
@@ -130,11 +130,16 @@ def test_subjects_and_snr_are_read_from_the_scenes(made):
     assert images.snr_db == 20.0
 
 
-def test_known_classes_keep_the_papers_order_and_others_are_alphabetical():
-    ours = ("stationary", "punching", "kicking", "body_rotating", "walking")
-    assert class_order(set(ours)) == ours
-    assert class_order({"walking", "kicking", "zebra"}) == ("kicking", "walking", "zebra")
-    assert class_order({"walking", "stationary", "apple"}) == ("apple", "stationary", "walking")
+def test_labels_of_a_tree_are_those_of_its_classes_txt_or_of_the_alphabet(tmp_path):
+    root = tree(tmp_path / "t", ("walking", "stationary", "apple"), {"train": 2, "val": 1})
+    assert open_images(root, None, "rgb").classes == ("apple", "stationary", "walking")
+    (root / "classes.txt").write_text("walking\nextra\napple\nstationary\n")
+    for place in (root, root / "val"):
+        assert open_images(place, None, "rgb").classes == (
+            *("walking", "extra", "apple", "stationary"),
+        )
+    (root / "classes.txt").write_text("another\nlist\n")
+    assert open_images(root, None, "rgb").classes == ("apple", "stationary", "walking")
 
 
 def test_classes_are_matched_by_name_not_by_number(tmp_path):
@@ -150,7 +155,7 @@ def test_folders_named_like_splits_are_splits(tmp_path, name):
     assert images.split is not None
     counts = [images.rows(split).size for split in ("train", "val", "test", "all")]
     assert counts == [9, 6, 3, 18]
-    assert images.names[0] == "punching/000"
+    assert images.names[0] == "kicking/000"
 
 
 def test_a_tree_without_splits_is_split_by_class_reproducibly(tmp_path):

@@ -40,7 +40,7 @@ def data(config: Path) -> Path:
 def test_workers_read_what_training_reads(data: Path) -> None:
     images = open_images(data, "stft", "rgb")
     found = radhar.torch_dataset(str(data), "stft", split="val")
-    assert found.classes == ("punching", "walking")
+    assert found.classes == ("walking", "punching")
     rows = images.rows("val")
     loader = DataLoader(found, 2, num_workers=2, multiprocessing_context="spawn")
     read, labels = (torch.cat(parts) for parts in zip(*loader, strict=True))
@@ -77,14 +77,14 @@ def test_mistakes_say_what_there_is(data: Path) -> None:
 def test_every_object_says_in_a_line_what_is_in_it(config: Path, data: Path) -> None:
     with radhar.open_dataset(data) as opened:
         assert repr(opened) == (
-            f"<Dataset {data}/dataset.h5: 8 samples (4 train, 4 validation) of punching, walking; "
+            f"<Dataset {data}/dataset.h5: 8 samples (4 train, 4 validation) of walking, punching; "
             "maps rtm, stft of 16 x 16 px>"
         )
     assert repr(radhar.torch_dataset(data, split="val")) == (
-        f"<LabelledImages {data}: 4 x float32 [3, 16, 16] of map rtm; classes punching, walking>"
+        f"<LabelledImages {data}: 4 x float32 [3, 16, 16] of map rtm; classes walking, punching>"
     )
     assert repr(radhar.Samples(config, seed=3, split="train")) == (
-        "<Samples: 4 of punching, walking, synthesised from seed 3; maps rtm, stft>"
+        "<Samples: 4 of walking, punching, synthesised from seed 3; maps rtm, stft>"
     )
     one = repr(radhar.sample(config, "walking"))
     assert one.startswith("<Sample: maps/rtm [16, 16], maps/stft [16, 16]; ")

@@ -408,14 +408,15 @@ def test_a_sequence_is_a_class_of_its_own() -> None:
     assert_a_body(moving(scene), np.arange(0, 6, 0.02))
 
 
-def test_a_sequence_among_chosen_activities_keeps_its_label() -> None:
+def test_a_sequence_among_chosen_activities_keeps_its_streams() -> None:
     classes = {"waiting": {"sequence": ["stationary"]}, **HOME}
     config = people(classes=classes, activities=["coming_home", "walking"])
     assert [(a.slug, a.index) for a in config.chosen_activities] == [
-        ("walking", 7),
         ("coming_home", 13),
+        ("walking", 7),
     ]
-    assert [a.slug for a in config.every_class][12:] == ["waiting", "coming_home"]
+    assert [a.slug for a in config.every_class][:2] == ["coming_home", "walking"]
+    assert config.every_class[-1].slug == "waiting"
 
 
 @pytest.mark.parametrize("name", MOVEMENTS)

@@ -16,6 +16,7 @@ from radhar_cli.progress import Progress
 # Module and function of each format.
 FORMATS = {
     "parquet": ("parquet", "write"),
+    "webdataset": ("webdataset", "write"),
     "mars": ("clouds", "write_mars"),
     "ros": ("clouds", "write_ros"),
     "ti": ("clouds", "write_ti"),

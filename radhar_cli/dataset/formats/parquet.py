@@ -1,6 +1,5 @@
 """Parquet files with the images in them, a folder a map, as the Hugging Face Hub keeps them."""
 
-import hashlib
 from collections.abc import Iterator
 from itertools import islice
 from math import prod
@@ -9,15 +8,14 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from radhar_cli.arrays import Levels
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.card import card
+from radhar_cli.dataset.formats.stored_png import checked_png
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
-from radhar_cli.dataset.png import colour_table, encode_png
+from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries, number_names
-from radhar_cli.errors import FolderError
 from radhar_cli.progress import Progress
 
 FILE_BYTES = 2**28  # of pixels per file
@@ -48,7 +46,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                         file.write_table(_table(data, name, some, schema))
                         progress.advance(len(some) if name == data.config.maps[0] else 0)
     parts = data.present_splits.values()
-    names = {str(a.index): a.slug for a in data.config.every_class}
+    names = {str(label): name for label, name in enumerate(data.classes)}
     label = {"name": "label", "dtype": {"class_label": {"names": names}}}
     features = [{"name": "image", "dtype": "image"}, label, *_number_features(data.config)]
     configs = [
@@ -92,7 +90,7 @@ def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa
     rows, numbers = Rows.of(data.config), zip(*(entry.values for entry in here), strict=True)
     colours = colour_table(data.config.image.colour_map)
     images = [
-        {"bytes": _checked_png(data, colours, name, one.row), "path": rows.file_name(one.row)}
+        {"bytes": checked_png(data, colours, name, one.row), "path": rows.file_name(one.row)}
         for one in here
     ]
     columns = [
@@ -104,12 +102,3 @@ def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa
     ]
     arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]
     return pa.Table.from_arrays(arrays, schema=schema)
-
-
-def _checked_png(data: Dataset, table: Levels, map_name: str, row: int) -> bytes:
-    """The PNG file of a sample with a colour table [256, 3], as `generate` writes it."""
-    name = f"maps/{map_name}"
-    levels, stored = data.large[name][row], data.sha256[name].rows(row, row + 1)[0]
-    if hashlib.sha256(levels.tobytes()).hexdigest().encode() != stored:
-        raise FolderError(f"{data.path}: /{name}[{row}]: does not match its checksum")
-    return encode_png(levels, table, data.config.output.png_level)

@@ -10,11 +10,12 @@ import numpy as np
 
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import DEFAULT_COLOUR_MAP
+from radhar_cli.dataset.files import read_bytes
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_gray, read_rgb
-from radhar_cli.dataset.layout import CONFIG, PNG
+from radhar_cli.dataset.layout import CLASSES, CONFIG, PNG
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.colour_maps import PICTURES, colour_map_of, levels_behind
-from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet, class_order, repeated
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet, repeated
 from radhar_cli.untrusted import refuse_outside
 
 _WANTED = (
@@ -87,7 +88,7 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
         raise FolderError(
             f"{root}: the class {sorted(empty)[0]!r} has no image; {_empty_hint(empty, images)}"
         )
-    classes = class_order({name for _, name, _ in images})
+    classes = _classes(root, {name for _, name, _ in images})
     if len(classes) > MAX_CLASSES:
         raise FolderError(f"{root}: has {len(classes)} classes; should have at most {MAX_CLASSES}")
     images.sort(key=lambda item: (item[0], classes.index(item[1]), item[2].name))
@@ -135,6 +136,20 @@ def pictures(
         colours=pixels.colours if kind == "rgb" else None,
         notes=pixels.notes(where),
     )
+
+
+def _classes(root: Path, present: set[str]) -> tuple[str, ...]:
+    """Name of every label of a tree: those of its classes.txt, else by the alphabet.
+
+    `generate` writes that file beside the splits of a map; ImageFolder numbers by the alphabet.
+    """
+    for folder in (root, root.parent):
+        path = folder / CLASSES
+        if path.is_file() and not path.is_symlink():
+            names = tuple(read_bytes(path).decode(errors="replace").splitlines())
+            if present <= set(names) and len(set(names)) == len(names):
+                return names
+    return tuple(sorted(present))
 
 
 def _names(images: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:

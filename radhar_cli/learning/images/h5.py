@@ -12,7 +12,7 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.learning.images.image_set import ImageSet, Pixels, class_order, repeated
+from radhar_cli.learning.images.image_set import ImageSet, Pixels, repeated
 from radhar_cli.learning.images.sequences import (
     COLUMNS,
     POINTS,
@@ -81,13 +81,12 @@ def _labelled(
 ) -> ImageSet:
     """An image set of what reads the rows of a data set."""
     rows, snr_db = Rows.of(data.config), data.config.snr_db
-    slug = np.array(data.class_slugs)[data.label]
-    classes = class_order(set(slug.tolist()))
+    slug = np.array(data.classes)[data.label]
     return ImageSet(
         where=where,
         map=name,
-        classes=classes,
-        label=np.array([classes.index(s) for s in slug], dtype=np.intp),
+        classes=data.classes,
+        label=data.label.astype(np.intp),
         split=data.split,
         names=tuple(f"{s}/{rows.name(row)}" for row, s in enumerate(slug)),
         scenes=_scenes(data, slug.tolist()),

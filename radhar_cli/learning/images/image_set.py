@@ -8,7 +8,6 @@ from typing import Any, Protocol
 import numpy as np
 from PIL import Image
 
-from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
@@ -81,8 +80,7 @@ class ImageSet:
 
     where: Path  # the file or folder they came from
     map: str | None  # name of the map, None for a tree that names none
-    # names of the classes that are present, S1 to S12 in this order where all are of the twelve,
-    # else alphabetically
+    # name of every label: the data set's, of a tree without classes.txt by the alphabet
     classes: tuple[str, ...]
     label: Index  # [N] index into `classes`
     split: Levels | None  # [N] 0 train, 1 validation, 2 test; None where the source does not say
@@ -147,9 +145,8 @@ class ImageSet:
         The label of target labels is still that of the sample's main person.
         """
         if target == "labels":
-            classes = class_order({name for names in self.done for name in names})
-            label = np.array([classes.index(name) for name in self.classes])[self.label]
-            return replace(self, classes=classes, label=label)
+            shown = {name for names in self.done for name in names}
+            return replace(self, classes=(*self.classes, *sorted(shown.difference(self.classes))))
         if target != "count":
             return self
         counts = np.array([len(names) for names in self.done])
@@ -178,7 +175,7 @@ class ImageSet:
     def renamed(self, names: Mapping[str, str | None]) -> "ImageSet":
         """The same images with some classes under other names; None leaves a class out."""
         new = [names.get(name, name) for name in self.classes]
-        classes = class_order({name for name in new if name is not None})
+        classes = tuple(dict.fromkeys(name for name in new if name is not None))
         if not classes:
             raise FolderError(f"{self.where}: --classes leaves no class of it")
         number = np.array([-1 if name is None else classes.index(name) for name in new])
@@ -235,14 +232,6 @@ def shape_in_words(kind: Kind, size: tuple[int, int], channels: int) -> str:
     if kind == "clouds":
         return f"{height} frames of {width} points"
     return f"{f'{channels} frames of ' * (kind == 'frames')}{height} x {width} px"
-
-
-def class_order(names: set[str]) -> tuple[str, ...]:
-    """Sort class names: S1 to S12 where all are of the twelve, else alphabetically."""
-    ours = [activity.slug for activity in ACTIVITIES]
-    if names <= set(ours):
-        return tuple(slug for slug in ours if slug in names)
-    return tuple(sorted(names))
 
 
 def labels_for(images: ImageSet, known: Sequence[str]) -> Index:

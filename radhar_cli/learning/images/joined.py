@@ -10,7 +10,7 @@ import numpy as np
 from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.colours import in_colours
-from radhar_cli.learning.images.image_set import Chosen, ImageSet, class_order
+from radhar_cli.learning.images.image_set import Chosen, ImageSet
 
 
 def joined(sets: Sequence[ImageSet]) -> ImageSet:
@@ -26,7 +26,7 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
     colours = next((one.colours for one in sets if one.colours is not None), None)
     sets = [in_colours(one, colours) for one in sets]
     several = any(one.everybody for one in sets)
-    classes = class_order({name for one in sets for name in one.classes})
+    classes = tuple(dict.fromkeys(name for one in sets for name in one.classes))
     numbers = [np.array([classes.index(name) for name in one.classes]) for one in sets]
     source = np.repeat(np.arange(len(sets)), [len(one) for one in sets])
     rows = np.concatenate([np.arange(len(one)) for one in sets])

@@ -118,7 +118,7 @@ def _made(batch: Batch) -> Iterator[tuple[Row, int]]:
             yield batch.factory(config, row), 0
             continue
         scene, flags = draw_valid_scene(config, *rows[row])
-        sample = synthesise(scene, plan)
+        sample = synthesise(scene, plan, config)
         yield Row(sample, scene_fields.values(scene, columns, sample.error_db)), flags
 
 

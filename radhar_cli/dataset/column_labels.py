@@ -1,5 +1,7 @@
 """Movement or class at the time of each column of an image (`output.column_labels`)."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from radhar_cli.arrays import Levels
@@ -15,14 +17,13 @@ def label_names(config: AnyConfig) -> tuple[str, ...]:
     return (*PHASES, *(activity.slug for activity in config.every_class if activity.number > 12))
 
 
-def column_labels(scene: Scene, motion: Motion, image: MapImage) -> Levels:
-    """Index into `label_names` of each column, at the time of its middle [width].
+def column_labels(scene: Scene, motion: Motion, image: MapImage, names: Sequence[str]) -> Levels:
+    """Index into `names`, the `label_names`, of each column, at the time of its middle [width].
 
     A motion that names no phases, or others than PHASES, is labelled with its class.
     """
     left, right, *_ = image.extent
     width = image.levels.shape[1]
     t = left + (np.arange(width) + 0.5) * (right - left) / width
-    names = label_names(scene.config)
     slug = scene.activity.slug
     return phase_numbers(motion.phases, t, names, names.index(slug) if slug in names else 0)

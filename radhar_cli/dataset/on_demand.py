@@ -84,7 +84,7 @@ class Recipe:
         index, label = whole("index", index), self._label(activity)
         with one_thread():
             scene, _ = draw_valid_scene(self.config, activity, index)
-            made = synthesise(scene, self._plan)
+            made = synthesise(scene, self._plan, self.config)
         found = Sample(label=label, sample_key=np.array([label, index]))
         found.update(made.columns)
         for name, (_, shape) in chunked(self.config).items():

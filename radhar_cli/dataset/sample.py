@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.arrays import Complex, Float, Levels
-from radhar_cli.config.schema import MeasuredConfig
-from radhar_cli.dataset.column_labels import column_labels
+from radhar_cli.config.schema import Config, MeasuredConfig
+from radhar_cli.dataset.column_labels import column_labels, label_names
 from radhar_cli.dataset.layout import COLUMN_LABEL, LABELS, PERSON_LABEL
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError
@@ -75,14 +75,21 @@ class Row(NamedTuple):
 RowFactory: TypeAlias = Callable[[MeasuredConfig, int], Row]
 
 
-def synthesise(scene: Scene, plan: Plan) -> Synthesised:
-    """Run the plan of a data set on one scene."""
+def synthesise(scene: Scene, plan: Plan, config: Config | None = None) -> Synthesised:
+    """Run the plan of a data set on one scene.
+
+    Args:
+        config: of the data set, whose classes the labels number; None for the scene's own, which
+            has but the class that is performed.
+    """
+    config = scene.config if config is None else config
     recording = run(plan, {"scene": scene})
     images: dict[str, MapImage] = {name: recording[f"image:{name}"] for name in scene.config.maps}
     labels: dict[str, Levels] = {}
     if scene.config.output.column_labels:
         motion = recording["motions"][0]
-        labels = {name: column_labels(scene, motion, image) for name, image in images.items()}
+        names = label_names(config)
+        labels = {n: column_labels(scene, motion, image, names) for n, image in images.items()}
     accuracy: EchoAccuracy | None = recording.products.get("accuracy")
     slow_time = None
     if scene.config.output.slow_time:
@@ -92,7 +99,9 @@ def synthesise(scene: Scene, plan: Plan) -> Synthesised:
         error_db = accuracy.error_db
     deepest = scene.config.image.dynamic_range_db
     own = {name: _array(recording[name], name, deepest) for name in scene.config.stored}
-    return Synthesised(images, error_db, fell_back, labels, slow_time, own, labels_of(scene))
+    return Synthesised(
+        images, error_db, fell_back, labels, slow_time, own, labels_of(scene, config)
+    )
 
 
 def _storable(x: Complex, name: str) -> Complex:
@@ -107,11 +116,15 @@ def _storable(x: Complex, name: str) -> Complex:
     return x
 
 
-def labels_of(scene: Scene) -> dict[str, NDArray[Any]]:
-    """What everybody does, where a config has `people`: LABELS and PERSON_LABEL."""
+def labels_of(scene: Scene, config: Config) -> dict[str, NDArray[Any]]:
+    """What everybody does, where a config has `people`: LABELS and PERSON_LABEL.
+
+    Args:
+        config: of the data set, of whose `every_class` they are places.
+    """
     if not scene.config.people:
         return {}
-    classes = [activity.slug for activity in scene.config.every_class]
+    classes = [activity.slug for activity in config.every_class]
     person = np.full(1 + len(scene.config.people), -1, np.int16)
     for one in scene.people:
         person[one.number] = classes.index(one.activity.slug)

@@ -175,7 +175,7 @@ def _resynthesise(
                 report.problems.append(
                     f"/scene/{column.name}[{row}]: {there} instead of {value * column.factor}"
                 )
-        made = synthesise(scene, plan)
+        made = synthesise(scene, plan, config)
         for name, stored in data.large.items():
             if not name.startswith("maps/"):
                 right = made.chunk(name, stored.shape[1:])

@@ -111,5 +111,6 @@ def test_a_motion_without_phases_is_labelled_with_its_class(config):
 
     scene = nominal_scene(config, config.chosen_activities[0])
     image = MapImage(np.zeros((4, 6), np.uint8), 0.0, (0.0, 1.0, 0.0, 1.0))
-    found = column_labels(scene, Silent(motion_of(scene.people[0]), (0,)), image)
-    assert [label_names(config)[number] for number in found] == ["coming_home"] * 6
+    names = label_names(config)
+    found = column_labels(scene, Silent(motion_of(scene.people[0]), (0,)), image, names)
+    assert [names[number] for number in found] == ["coming_home"] * 6

@@ -57,7 +57,7 @@ def test_what_is_shown_and_counted(place: Path) -> None:
     stored = images(place)
     assert stored.everybody is not None
     labels, count = stored.learned_as("labels"), stored.learned_as("count")
-    assert labels.classes == ("punching", "sitting_down", "walking")
+    assert labels.classes == ("walking", "punching", "sitting_down")
     assert count.classes == ("1 person", "2 people")
     shown = labels.shows(labels.classes)
     for row, names in enumerate(stored.everybody):

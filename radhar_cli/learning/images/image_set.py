@@ -146,7 +146,8 @@ class ImageSet:
         """
         if target == "labels":
             shown = {name for names in self.done for name in names}
-            return replace(self, classes=(*self.classes, *sorted(shown.difference(self.classes))))
+            others = sorted(shown.difference(self.classes))
+            return replace(self, classes=(*self.classes, *others))
         if target != "count":
             return self
         counts = np.array([len(names) for names in self.done])

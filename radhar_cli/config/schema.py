@@ -1376,8 +1376,8 @@ class Config(Section):
     """Classes of your own: `{name: {sequence: [...]}}` of movements, `{name: [walk/*.bvh]}` of
     files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
-    """Classes of the data set: all is the twelve and those of `classes`; or a list of slugs or S1 to
-    S12, [walking, S12]. A place in it, from 0, is a label of the data set."""
+    """Classes of the data set: all is the twelve and those of `classes`; or a list of slugs or S1
+    to S12, [walking, S12]. A place in it, from 0, is a label of the data set."""
     duration_s: Annotated[
         Positive | None,
         within(1e-9, 1e7, "s"),

@@ -121,6 +121,11 @@ def map_problem(c: AnyConfig, names: Iterable[str]) -> Problem | None:
     return Problem("maps", list(reasons), f"{right}: {'; '.join(dict.fromkeys(reasons.values()))}")
 
 
+def problems_of_maps(c: Config, names: tuple[str, ...]) -> list[Problem]:
+    """What keeps a config's radar and processing from making other maps than its own."""
+    return list(_processing_problems(c.model_copy(update={"maps": names})))
+
+
 def _processing_problems(c: AnyConfig) -> Iterator[Problem]:
     names = c.maps if isinstance(c, Config) else [one for one in c.maps if one in MAP_NAMES]
     if (of_maps := map_problem(c, names)) is not None:

@@ -10,6 +10,7 @@ map] -> sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
     <map>      PowerMap                              image:<map>  MapImage
 """
 
+import json
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -102,7 +103,12 @@ def plan_images(config: Config) -> Plan:
         asked.append("signal")
     if config.output.column_labels:
         asked.append("motions")
-    return plan(products(config), asked, ["scene"])
+    table = products(config)
+    absent = [name for name in config.output.products if name not in table]
+    if absent:
+        right = "should be products that this radar and engine make, such as signal"
+        raise ConfigError(f"output.products = {json.dumps(absent)}: {right}")
+    return plan(table, asked, ["scene"])
 
 
 def products(config: Config) -> dict[str, Product]:

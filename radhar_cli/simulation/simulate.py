@@ -10,7 +10,7 @@ import numpy as np
 
 from radhar_cli.activity import Activity, activity_named
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.config.checks import map_problem
+from radhar_cli.config.checks import problems_of_maps
 from radhar_cli.config.reading import ABSENT, as_config
 from radhar_cli.config.schema import FRAME_MAPS, MAP_NAMES, Config, possible_maps
 from radhar_cli.echo.beat import beat_matrix
@@ -152,9 +152,11 @@ def simulate(
     config = as_config(config)
     activity = activity_of(activity, config)
     possible = possible_maps(config)
-    maps = possible if maps is None else maps
-    if (problem := map_problem(config, maps)) is not None:
-        raise ConfigError(f"maps = {json.dumps(problem.value)}: {problem.right}")
+    fitting = tuple(name for name in possible if not problems_of_maps(config, (name,)))
+    maps = fitting if maps is None else maps
+    if wrong := problems_of_maps(config, maps):
+        lines = (f"{one.key} = {json.dumps(one.value, default=str)}: {one.right}" for one in wrong)
+        raise ConfigError("\n".join(dict.fromkeys(lines)))
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
     scene = scene_of(config, activity, index, nominal)
     warnings = scene_warnings(scene)
@@ -164,7 +166,7 @@ def simulate(
     frames = [product for name in maps for product in FRAMES.get(name, ())]
     frames += ["points_kind"] if "points" in maps and config.room.faces else []
     maps = tuple(name for name in maps if name not in FRAMES)
-    of_maps = {signal_of(name) for name in possible if name in MAP_NAMES}
+    of_maps = {"signal", *(signal_of(name) for name in fitting if name in MAP_NAMES)}
     signals = [name for name in SIGNALS if name in of_maps] if not board else SIGNALS[:1]
     frames += ["cube"] if board and raw and "cube" not in frames else []
     asked = [*signals, *maps, *frames, "waveform", "antennas", "wall"] + ["board"] * board

@@ -30,6 +30,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = "paper"  # of the records, beside the page
@@ -145,7 +146,8 @@ SCALES = {
         fresh_per_class=0,
         trainings=(
             *(Training("free_space", n, epochs=12) for n in (30, 10, 0, -10)),
-            *(Training("through_wall", n, epochs=12) for n in (30, 10, 0)),
+            Training("through_wall", 30, epochs=12),
+            *(Training("through_wall", n, epochs=6) for n in (10, 0)),
         ),
         train=("batch_size=32",),
     ),
@@ -281,7 +283,8 @@ class Reproduction:
             data = self.generate(scenario, mine[0].snr_db)
             radhar("eval", *map(self.run, mine), data, "-o", out, "--split", "val", "--filters")
             images.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(out / "filters.png", images / f"filters_{scenario}.png")
+            with Image.open(out / "filters.png") as figure:
+                figure.convert("RGB").save(images / f"filters_{scenario}.png", optimize=True)
 
     def _contents(
         self,

@@ -258,3 +258,25 @@ def test_committed_records_are_whole_and_name_no_folder() -> None:
         assert record["name"] == file.stem
         assert record["reduced"] == (record["epochs"] < reproduce_paper.PAPER_EPOCHS)
         assert '"/' not in file.read_text(), "an absolute path"
+
+
+def test_filters_are_drawn_of_the_networks_of_a_scenario(
+    quick: Reproduction, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those of its plain networks, by SNR; what is trained already is not trained again."""
+    from PIL import Image
+
+    asked = []
+    run = reproduce_paper.radhar
+
+    def watched(*words: object) -> None:
+        asked.append(words)
+        run(*words)
+
+    monkeypatch.setattr(reproduce_paper, "radhar", watched)
+    quick.draw_filters([QUICK.trainings[0], QUICK.trainings[2]], tmp_path / "images")
+    (command,) = asked
+    assert command[:2] == ("eval", quick.run(QUICK.trainings[0]))
+    with Image.open(tmp_path / "images/filters_free_space.png") as figure:
+        assert figure.mode == "RGB"
+    assert not (tmp_path / "images/filters_through_wall.png").exists()

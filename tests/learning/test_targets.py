@@ -44,7 +44,7 @@ REFUSED = {
         NETWORKS.keys() - {*JOINTS}, "-o: is for networks that find joints"
     ),
 }
-REFUSED["adapt --mix"] = REFUSED["few shots"] = REFUSED["adapt"]
+REFUSED |= dict.fromkeys(("adapt --epochs", "adapt --mix", "few shots"), REFUSED["adapt"])
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +97,8 @@ def few(run: Path, data: Path, out: Path) -> Done:
 
 
 COMMANDS = (
-    *("eval", "predict", "predict -o", "adapt", "adapt --mix", "few shots", "init"),
+    *("eval", "predict", "predict -o", "adapt", "adapt --epochs", "adapt --mix"),
+    *("few shots", "init"),
     *("init of other classes", "two data sets", "resume", "compare"),
     *(pytest.param(name, marks=pytest.mark.slow) for name in ("eval of two runs", "export")),
 )
@@ -114,7 +115,7 @@ def test_every_target_works_or_is_refused_in_a_line(
     (name, run), out = network, tmp_path / "out"
     kind = NETWORKS[name][0]
     one, other = place / f"{kind}1", place / f"{kind}2"
-    monkeypatch.setattr(adaptation, "EPOCHS", 1)
+    monkeypatch.setattr(adaptation, "EPOCHS", 1, raising=False)
     classes = tmp_path / "classes.yaml"
     classes.write_text("walking: strolling\n")
     match command:
@@ -132,6 +133,8 @@ def test_every_target_works_or_is_refused_in_a_line(
             done = radhar("export", run, "-o", tmp_path / "network.onnx")
         case "adapt":
             done = radhar("adapt", run, other, "-o", out)
+        case "adapt --epochs":
+            done = radhar("adapt", run, other, "-o", out, "--epochs", 1)
         case "adapt --mix":
             done = radhar("adapt", run, other, "-o", out, "--mix", one)
         case "few shots":

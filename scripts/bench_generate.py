@@ -586,7 +586,49 @@ def _generate_seconds(
     return children + after.children_system - before.children_system
 
 
+LENGTHS = (60, 120, 240, 480)  # s
+_LENGTHS = """
+import json, sys, time
+from radhar_cli.config import load_config
+from radhar_cli.pipeline.run import record
+from radhar_cli.scene import draw_scene
+def once(seconds):
+    config = load_config(sys.argv[1], ["snr_db=null", "motion.lane_m=4", f"duration_s={seconds}"])
+    walking = next(one for one in config.chosen_activities if one.slug == "walking")
+    scene = draw_scene(config, walking, 0)
+    start = time.process_time()
+    record(scene, ["signal"])
+    return time.process_time() - start
+once(20)
+print(json.dumps([once(int(seconds)) for seconds in sys.argv[2:]]))
+"""
+
+
+def lengths(rounds: int, against: Path | None = None) -> dict[str, Any]:
+    """Processor time of the echo of a walk to and fro, of one minute to eight."""
+    trees = {"this": ROOT} | ({"against": against.resolve()} if against else {})
+    one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    words = [sys.executable, "-c", _LENGTHS, "configs/quickstart.yaml", *map(str, LENGTHS)]
+    found: dict[str, list[list[float]]] = {name: [] for name in trees}
+    for _ in range(rounds):
+        for name, tree in trees.items():
+            environment = os.environ | one_thread | {"PYTHONPATH": str(tree)}
+            done = subprocess.run(
+                words, env=environment, cwd=tree, capture_output=True, text=True, check=True
+            )
+            found[name].append(json.loads(done.stdout))
+    print(f"\nechoes of walks of {', '.join(map(str, LENGTHS))} s, seconds of processor time")
+    results = {}
+    for name, times in found.items():
+        results[name] = [median(of_length) for of_length in zip(*times, strict=True)]
+        line = ", ".join(f"{seconds:.2f}" for seconds in results[name])
+        ratio = results[name][-1] / results[name][0]
+        print(f"  {name:<9}{line}; the last is {ratio:.1f} times the first")
+    return results
+
+
 SECTIONS = {
+    "lengths": lengths,
     "rows": rows,
     "builds": builds,
     "people": people,
@@ -605,11 +647,16 @@ def main() -> None:
     parser.add_argument("--json", type=Path, default=Path("build/bench_generate.json"))
     parser.add_argument("--only", default=",".join(SECTIONS), help="sections, comma separated")
     parser.add_argument(
-        "--against", type=Path, help="another tree of radhar, for builds, people and scatterers"
+        "--against",
+        type=Path,
+        help="another tree of radhar, for lengths, builds, people and scatterers",
     )
     arguments = parser.parse_args()
     prepare_process()
-    more = {name: {"against": arguments.against} for name in ("builds", "people", "scatterers")}
+    more = {
+        name: {"against": arguments.against}
+        for name in ("lengths", "builds", "people", "scatterers")
+    }
     results = {
         name: SECTIONS[name](arguments.rounds, **more.get(name, {}))
         for name in arguments.only.split(",")

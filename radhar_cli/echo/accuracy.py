@@ -33,6 +33,7 @@ CUBIC_DB = -140.0  # of a cubic phase over 20 pulses, which may err by -120 dB i
 MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 30.0, -220.0
 COARSEST_DB = -60.0  # tolerance above which farther knots save no time (docs/results/tradeoff.md)
 PROBES = 48
+ROUGH = 0.25  # share of the probes that lie where interpolation is likely to err most
 
 
 class Settings(NamedTuple):
@@ -83,16 +84,16 @@ def measured_db(
     waveform: Waveform,
     canceller: Canceller,
     unit: float,
+    likely: Float | None = None,
 ) -> float:
     """Relative L2 error (dB) of y [M], in units of `unit`, after a canceller, from some pulses.
 
-    Half of the pulses are spread evenly, half by the power of the signal, so that a jump which
-    holds most of it, as of a limb that crosses a wall's face, is among them. The estimate of
+    Pulses are chosen by `probed_pulses`, `likely` is where errors may be large. The estimate of
     sum |e|^2 divides each |e|^2 by the density of the pulses; sum |x|^2 is known. e is the error
     after the canceller where few pulses show that; before it otherwise, and bounds what is left.
     """
     shown = canceller if isinstance(canceller, Fir) else NO_CANCELLER
-    probes, density, total = probed_pulses(_power(y, canceller))
+    probes, density, total = probed_pulses(_power(y, canceller), likely)
     if total == 0:
         return -inf
     error = _exact(source, waveform, probes, shown.taps) / unit - sum(
@@ -101,12 +102,29 @@ def measured_db(
     return relative_db(error.real**2 + error.imag**2, density, total)
 
 
-def probed_pulses(power: Float) -> tuple[Index, Float, float]:
-    """(pulses, how often one is expected among them, the sum of the power) for |x|^2 [M]."""
+def probed_pulses(power: Float, likely: Float | None = None) -> tuple[Index, Float, float]:
+    """Choose pulses at which a signal is compared with the exact one.
+
+    A share `ROUGH` of them lies where the error is likely to be large, so that few milliseconds
+    which hold most of it are among them; of the others half are spread evenly, half by the power,
+    so that a jump which holds most of that, as of a limb that crosses a wall's face, is.
+
+    Args:
+        power: |x|^2 [M].
+        likely: how large |e|^2 may be [M or more], up to a factor; None or zeros where nothing is
+            known of it.
+
+    Returns:
+        The pulses, how often one is expected among them, and the sum of the power.
+    """
     total = float(power.sum())
     if total == 0:
         return np.empty(0, np.intp), np.empty(0), 0.0
     share = power * (0.5 / total) + 0.5 / power.size
+    expected = 0.0 if likely is None else float(likely[: power.size].sum())
+    if likely is not None and expected > 0:
+        share *= 1 - ROUGH
+        share += likely[: power.size] * (ROUGH / expected)
     place = (np.arange(PROBES) + np.arange(PROBES) * 0.6180339887498949 % 1) / PROBES
     pulses = np.searchsorted(np.cumsum(share), place).clip(max=power.size - 1)
     probes, times = np.unique(pulses, return_counts=True)

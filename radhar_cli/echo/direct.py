@@ -91,8 +91,7 @@ class DirectEcho:
             chosen = chosen._replace(single=chosen.single and self._single_will_do(motion))
             unit = 2.0 ** frexp(motion.largest)[1]
             y = self._sum(chosen, motion, unit)
-            exact = only(self._kept(motion), motion.at_pulses(self.source, self.waveform))
-            error = self._error(y, exact, unit)
+            error = self._error(y, motion, unit)
             best = min(best, error)
             if error <= self.tolerance_db - SPARE_DB:
                 y *= unit
@@ -115,8 +114,14 @@ class DirectEcho:
         strict = self.double or first_aim(self.tolerance_db) < SINGLE_DB
         return chosen._replace(single=False, cubic=False) if strict else chosen
 
-    def _error(self, y: Complex, exact: Callable[[Float], Paths], unit: float) -> float:
-        return measured_db(y, exact, self.waveform, self.canceller, unit)
+    def _error(self, y: Complex, motion: PathsAtKnots, unit: float) -> float:
+        """Measured relative L2 error (dB) of y, in units of `unit`, after the canceller."""
+        exact, likely = self._exact(motion), motion.likely_error
+        return measured_db(y, exact, self.waveform, self.canceller, unit, likely)
+
+    def _exact(self, motion: PathsAtKnots) -> Callable[[Float], Paths]:
+        """The paths that are summed, at times of pulses."""
+        return only(self._kept(motion), motion.at_pulses(self.source, self.waveform))
 
     def _kept(self, motion: PathsAtKnots) -> Bool:
         kept: Bool = motion.moving | (not self.canceller.removes_static)

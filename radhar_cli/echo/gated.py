@@ -9,7 +9,6 @@ the bins'. As in `direct`, phasors follow from one another, and the envelopes A 
 real, are interpolated from knots; docs/physics/engines.md.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import ceil, inf
@@ -158,7 +157,7 @@ class GatedEcho(DirectEcho):
         in_middle = w.fc + w.slope / w.adc_rate * (w.n_adc - 1) / 2
         return start_phase(delay, w, in_middle), envelope, coefficients
 
-    def _error(self, y: Complex, exact: Callable[[Float], Paths], unit: float) -> float:
+    def _error(self, y: Complex, motion: PathsAtKnots, unit: float) -> float:
         """Relative L2 error (dB) of all bins that count, together, after the canceller."""
         w = self.waveform
         shown = self.canceller if isinstance(self.canceller, Fir) else NO_CANCELLER
@@ -170,11 +169,16 @@ class GatedEcho(DirectEcho):
         inside = (low <= k) & (k < high)
         pairs = np.where(inside, self.canceller(y), 0).view(float)
         power = np.einsum("km,km->m", pairs, pairs).reshape(-1, 2).sum(axis=1)
-        probes, density, total = probed_pulses(power)
+        probes, density, total = probed_pulses(power, motion.likely_error)
         if total == 0:
             return -inf
         centred = replace(w, centred=True)
-        right = range_compression(beat_at(exact, w, probes, shown.taps), centred, self.bins) / unit
+        right = (
+            range_compression(
+                beat_at(self._exact(motion), w, probes, shown.taps), centred, self.bins
+            )
+            / unit
+        )
         for lag, c in enumerate(shown.taps):
             right -= c * y[:, probes + lag]
         right *= inside[:, probes]

@@ -18,6 +18,7 @@ REACH = TAPS // 2 - 1
 # Knots around the first and the last segment, so that a stencil may be shifted there too.
 BEFORE = 2 * REACH
 AFTER = 2 * REACH + 1
+SHIFTED_BY = (1.0, 1.4, 4.2)  # by how much the error grows where a stencil is shifted by 0, 1, 2
 EXACT = TAPS  # not a shift: the segment cannot be interpolated
 NODES = np.arange(TAPS, dtype=float) - REACH
 

@@ -7,7 +7,16 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Bool, Float, Index
-from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, shifts, upsample
+from radhar_cli.echo.interpolation import (
+    AFTER,
+    BEFORE,
+    EXACT,
+    REACH,
+    SHIFTED_BY,
+    TAPS,
+    shifts,
+    upsample,
+)
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.radar.waveform import Waveform
 
@@ -15,6 +24,9 @@ CHUNK_KNOTS, BLOCK = 32768, 2**15
 MIN_KNOTS = 64  # per recording
 SEEN = 64  # of many paths some are compared from knot to knot: neighbours move alike
 POWER_CHANGE = 0.1  # of amplitudes from knot to knot, where the mean power is all that is asked for
+# Of an amplitude, relative to its root mean square: below which it passes zero, as that of a bounce
+# at Brewster's angle; and of which its changes are then fractions at least.
+NEAR_ZERO, SMALL = 1e-4, 0.3
 MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
 
 
@@ -55,8 +67,8 @@ class Knots(NamedTuple):
 
 class Spacing(NamedTuple):
     """How close knots must be: `per_second`, and so close that from one to the next an amplitude
-    changes by at most `amplitude_change` of itself and G's fastest component by at most
-    `phase_change` cycles."""
+    changes by at most `amplitude_change` of itself, or of its usual size where it passes zero, and
+    G's fastest component by at most `phase_change` cycles."""
 
     per_second: float
     amplitude_change: float
@@ -71,10 +83,18 @@ class PathsAtKnots(NamedTuple):
     power: float  # mean over the pulses of sum_i A_i^2
     largest: float  # amplitude
     kept: Knots | None  # the knots, where one chunk of them is all
+    # how large the squared error of interpolation is in each segment, up to a factor; empty where
+    # nothing is interpolated
+    roughness: Float
 
     def knots(self, source: PathSource, waveform: Waveform) -> Iterator[Knots]:
         """The knots of the whole recording."""
         return iter([self.kept]) if self.kept else all_knots(source, waveform, self.step)
+
+    @property
+    def likely_error(self) -> Float:
+        """How large the squared error is at each pulse, up to a factor; empty where it is even."""
+        return np.repeat(self.roughness, self.step)
 
     def at_pulses(self, source: PathSource, waveform: Waveform) -> Callable[[Float], Paths]:
         """The source at times of pulses; where all of them are kept, they are looked up."""
@@ -93,6 +113,7 @@ def resolve(
     while True:
         step = step if source.smooth and step >= least else 1
         first, kept, moving, power, largest = None, None, np.zeros(1, bool), 0.0, 0.0
+        rough: list[Float] = [np.empty(0)]
         for knots in all_knots(source, waveform, step):
             if step > 1 and (excess := _excess(knots.paths, waveform, spacing)) > 1:
                 step = min(step - 1, int(step / excess))
@@ -101,8 +122,11 @@ def resolve(
             moving = moving | knots.moving(first)
             power += knots.power()
             largest = max(largest, float(knots.paths.amplitude.max(initial=0.0)))
+            if step > 1:
+                rough.append(_roughness(knots, waveform))
         else:
-            return PathsAtKnots(step, moving, power / waveform.n_pulses, largest, kept)
+            mean = power / waveform.n_pulses
+            return PathsAtKnots(step, moving, mean, largest, kept, np.concatenate(rough))
 
 
 def widest_step(waveform: Waveform, per_second: float) -> int:
@@ -134,12 +158,48 @@ def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
         delay, a = (part[start : start + rows : few] for part in paths[:2])
         delay = np.diff(delay, axis=1)
         moved = max(moved, float(delay.max(initial=0.0)), -float(delay.min(initial=0.0)))
+        size = np.sqrt(np.mean(a * a, axis=1))
+        through_zero = np.abs(a).min(axis=1, initial=inf) < NEAR_ZERO * size
+        through_zero |= (a < 0).any(axis=1) & (a > 0).any(axis=1)
+        if through_zero.any():
+            # A zero passed smoothly is no edge, however large the relative change.
+            some, floor = np.abs(a[through_zero]), SMALL * size[through_zero, None]
+            largest = np.maximum(np.maximum(some[:, 1:], some[:, :-1]), floor)
+            change = np.abs(np.diff(a[through_zero], axis=1)) / largest
+            least = min(least, 1 - float(change.max(initial=0.0)))
+            a = a[~through_zero]
         with np.errstate(invalid="ignore"):  # 0/0 is no change
             kept = np.minimum(a[:, 1:], a[:, :-1]) / np.maximum(a[:, 1:], a[:, :-1])
         least = float(np.fmin.reduce(kept, axis=None, initial=least))
     return max(
         (1 - least) / spacing.amplitude_change, _fastest_cycles(w) * moved / spacing.phase_change
     )
+
+
+def _roughness(knots: Knots, w: Waveform) -> Float:
+    """Sum over the paths of the squared sixth differences of 2 pi f0 tau A and of A [segments].
+
+    Six-point interpolation errs by 5/1024 of them. Those across a breakpoint do not count; where
+    the stencil is shifted, the error is as much larger as `upsample` says.
+    """
+    delay, amplitude = knots.paths.delay, knots.paths.amplitude
+    few, count = max(1, len(delay) // SEEN), delay.shape[1] - TAPS
+    squares = np.zeros(count)
+    rows = few * max(1, BLOCK // delay.shape[1])
+    for start in range(0, len(delay), rows):  # so that it stays in the cache
+        tau, a = (part[start : start + rows : few] for part in (delay, amplitude))
+        phase = 2 * np.pi * w.f0 * np.diff(tau, TAPS, axis=1) * a[:, TAPS // 2 : -TAPS // 2]
+        size = np.diff(a, TAPS, axis=1)
+        squares += np.einsum("im,im->m", phase, phase) + np.einsum("im,im->m", size, size)
+    broken = np.pad(knots.shift == EXACT, (BEFORE, AFTER - 1))
+    windows = np.lib.stride_tricks.sliding_window_view(broken, TAPS)
+    squares[windows.any(axis=1)] = 0.0
+    segment, shift = np.arange(knots.shift.size), np.where(knots.shift == EXACT, 0, knots.shift)
+    first = segment + shift + BEFORE - REACH - 1
+    largest = np.maximum(squares[first.clip(0)], squares[(first + 1).clip(max=count - 1)])
+    rough: Float = largest * np.array(SHIFTED_BY)[np.abs(shift)] ** 2
+    rough[knots.shift == EXACT] = 0.0
+    return rough
 
 
 def _fastest_cycles(w: Waveform) -> float:

@@ -1,8 +1,10 @@
 """Where knots are placed."""
 
 import numpy as np
+import pytest
 
 from radhar_cli.arrays import Float
+from radhar_cli.echo.accuracy import probed_pulses
 from radhar_cli.echo.knots import Spacing, resolve
 from radhar_cli.echo.paths import Paths
 from radhar_cli.radar.waveform import Waveform
@@ -50,3 +52,52 @@ def test_moving_paths_are_told_from_static_ones():
 
     found = resolve(Blink([0.0, 0.0, 0.0]), RADAR, SPACING)
     assert found.moving.tolist() == [False, True, False]
+
+
+class Passing(Fading):
+    """A path of constant amplitude, and one that passes zero smoothly, as at Brewster's angle."""
+
+    def __call__(self, t: Float) -> Paths:
+        once, again = (np.sin(2 * np.pi * (t - zero)) for zero in (0.2003, 0.22))
+        return Paths(np.full((3, t.size), 1.3e-8), np.stack([np.ones(t.size), once, once * again]))
+
+
+def test_an_amplitude_that_passes_zero_smoothly_is_no_edge() -> None:
+    """Its change counts relative to its usual size; relative to itself it is any number."""
+    assert resolve(Passing([]), RADAR, SPACING).step >= 5
+
+
+def test_probes_lie_where_interpolation_errs() -> None:
+    """A short bend that few pulses show: the segments around it are the rough ones, and of the
+    probes so many lie there that the error is found."""
+
+    class Bent(Fading):
+        def __call__(self, t: Float) -> Paths:
+            x = (t - 0.25) / 0.01
+            return Paths((1.3e-8 + 1e-13 * np.tanh(x))[None], np.ones((1, t.size)))
+
+    found = resolve(Bent([]), RADAR, SPACING)
+    likely = found.likely_error
+    assert likely.size >= RADAR.n_pulses
+    t = RADAR.times(np.arange(float(likely.size)))
+    near = np.abs(t - 0.25) < 0.05
+    assert likely[near].sum() > 0.99 * likely.sum()
+    probes, density, _ = probed_pulses(np.ones(RADAR.n_pulses), likely)
+    assert np.abs(RADAR.times(probes.astype(float)) - 0.25).min() < 0.01
+    # Unbiased: what is spread in any way is counted once.
+    assert np.sum(1 / density) == pytest.approx(RADAR.n_pulses, rel=0.25)
+
+
+def test_a_breakpoint_is_not_rough_where_the_stencil_avoids_it() -> None:
+    """The kink that a source names is left to the shifted stencils and to exact pulses."""
+
+    class Kinked(Fading):
+        breakpoints = (0.2503,)
+
+        def __call__(self, t: Float) -> Paths:
+            delay = 1.3e-8 + 1e-12 * np.maximum(t - 0.2503, 0.0) + 1e-13 * np.sin(30 * t)
+            return Paths(delay[None], np.ones((1, t.size)))
+
+    likely = resolve(Kinked([]), RADAR, SPACING).likely_error
+    t = RADAR.times(np.arange(float(likely.size)))
+    assert likely[np.abs(t - 0.25) < 0.05].max() < 100 * np.median(likely)

@@ -258,6 +258,43 @@ def test_smooth_between_breakpoints(what: str) -> None:
         assert np.abs(p - fit).max() < (1e-5 if what == "jumping" else 3e-6)
 
 
+def jerk_changes(motion: HumanMotion, kinks: np.ndarray, step: float) -> float:
+    """The largest change of any point's jerk (m/s^3) within `step` s, kinks left out."""
+    t = np.arange(0.0, HORIZON, step)
+    jerk = np.diff(motion.landmark_positions(t), 3, axis=2) / step**3
+    change = np.abs(np.diff(jerk, axis=2)).max(axis=(0, 1))
+    at = t[: change.size] + 2 * step
+    far = np.abs(kinks[:, None] - at).min(axis=0, initial=np.inf) > 3 * COARSE
+    return float(change[far].max())
+
+
+COARSE = 1e-3  # s
+
+
+@pytest.mark.parametrize("what", ACTIVITIES)
+def test_every_breakpoint_is_named(what: str) -> None:
+    """Between the named ones the jerk changes in proportion to the time, a quarter in a quarter.
+
+    A jump of velocity, acceleration or jerk would not become less.
+    """
+    motion = moving(what)
+    kinks = np.array(motion.breakpoints)
+    coarse, fine = (jerk_changes(motion, kinks, step) for step in (COARSE, COARSE / 4))
+    assert fine < 0.3 * coarse + 1e-3
+
+
+def test_a_breakpoint_that_is_not_named_is_found() -> None:
+    """Each of who sits down, in turn; jerk jumps there by 60 w/T^3 of a step of w within T."""
+    motion = moving("S5")
+    kinks = np.unique(motion.breakpoints)
+    for number in range(kinks.size):
+        others = np.delete(kinks, number)
+        if np.abs(others - kinks[number]).min() < 7 * COARSE:
+            continue
+        coarse, fine = (jerk_changes(motion, others, step) for step in (COARSE, COARSE / 4))
+        assert fine > 0.5 * coarse
+
+
 @given(stature=STATURES, gait=GAITS, from_rest=st.booleans(), duration=st.floats(0.2, 3.0))
 @settings(max_examples=40, deadline=None)
 def test_feet_of_walkers_stand_still_between_touch_down_and_heel_off(

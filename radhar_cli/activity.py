@@ -1,11 +1,11 @@
 """The activities: label, slug, class number and the movements of people each one consists of."""
 
-import difflib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from radhar_cli.registry import load_extensions
+from radhar_cli.vocabulary import advice_on, meaning_of
 
 if TYPE_CHECKING:
     from radhar_cli.motion.protocol import Motion
@@ -112,7 +112,6 @@ ACTIVITIES: tuple[Activity, ...] = (
 )
 
 DEFAULT = "default"  # in `per_activity`: what holds for activities that it does not name
-SURE = 0.75  # similarity from which on a misspelt name is guessed
 
 
 def _by_name(activities: Iterable[Activity]) -> dict[str, Activity]:
@@ -177,11 +176,15 @@ def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> 
     if wanted in known:
         return known[wanted]
     slugs = list(dict.fromkeys(a.slug for a in known.values()))
-    longer = [slug for slug in slugs if len(wanted) > 2 and slug.startswith(wanted)]
-    near = longer[:1] or difflib.get_close_matches(wanted, known, n=1, cutoff=SURE)
-    hint = (
-        f"did you mean {near[0].upper() if near[0] not in slugs else near[0]!r}?"
-        if near
-        else "the slugs are " + ", ".join(slugs)
-    )
+    meant = meaning_of(wanted, (*slugs, *MOVEMENTS))
+    if meant in MOVEMENTS and meant not in slugs:
+        raise ValueError(
+            f"{name!r} is not an activity; {meant} is a movement, of which a class can be made: "
+            f"classes: {{my_class: {{sequence: [{meant}]}}}}, activities: [my_class, ...]"
+        )
+    longer = [slug for slug in slugs if len(wanted) > 3 and slug.startswith(wanted)]
+    otherwise = "the slugs are " + ", ".join(slugs)
+    hint = advice_on(wanted, [*slugs, *known], otherwise)
+    if hint == otherwise and longer:
+        hint = f"did you mean {longer[0]!r}?"
     raise ValueError(f"{name!r} is not an activity; {hint}")

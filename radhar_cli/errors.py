@@ -6,9 +6,9 @@ from collections.abc import Iterable
 INTERRUPTED, TERMINATED = 130, 143  # exit status after Ctrl-C and SIGTERM, as shells count them
 
 
-def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
-    """Suggest the nearest known name, or say `otherwise` where none is near."""
-    near = difflib.get_close_matches(name, list(known), n=1)
+def did_you_mean(name: str, known: Iterable[str], otherwise: str, similar: float = 0.6) -> str:
+    """Suggest the nearest known name, or say `otherwise` where none is so similar."""
+    near = difflib.get_close_matches(name, list(known), n=1, cutoff=similar)
     return f"did you mean {near[0]!r}?" if near else otherwise
 
 

@@ -23,6 +23,7 @@ PACKAGES = (
     "code_digest",
     "build_version",
     "light",
+    "vocabulary",
     "plain_json",
     "phasor",
     "replacing",

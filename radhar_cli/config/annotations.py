@@ -13,7 +13,7 @@ from typing import Any, Literal, TypeAlias, TypeVar, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from radhar_cli.config.number import MAX_NUMBER, support
+from radhar_cli.config.number import MAX_NUMBER, Bounds, support
 
 A = TypeVar("A")
 
@@ -139,6 +139,13 @@ def value_text(value: object) -> str:
         return f"[{', '.join(map(value_text, value))}]"
     if value is None or isinstance(value, bool):
         return {None: "null", True: "true", False: "false"}[value]
+    if isinstance(value, BaseModel):
+        value = value.model_dump(exclude_none=True)
+    elif hasattr(value, "per_activity"):
+        value = {"per_activity": value.per_activity}
+    if isinstance(value, dict):
+        inner = (f"{key}: {value_text(one)}" for key, one in value.items())
+        return "{" + ", ".join(inner) + "}"
     return str(value)
 
 
@@ -203,6 +210,21 @@ def at(config: BaseModel, key: str) -> Any:
         elif place is not None:
             place = getattr(place, name)
     return place
+
+
+def range_of(kind: type[BaseModel], key: str) -> str:
+    """From where to where a key's numbers may go, in words; "" where nothing says so."""
+    low, high, unit = -MAX_NUMBER, MAX_NUMBER, ""
+    for one in annotations(kind).get(key, ()):
+        if isinstance(one, Bounds):
+            low, high, unit = max(low, one.low), min(high, one.high), one.unit or unit
+        for name in ("ge", "gt"):
+            low = max(low, getattr(one, name, None) or low)
+        for name in ("le", "lt"):
+            high = min(high, getattr(one, name, high))
+    if low <= -MAX_NUMBER or high >= MAX_NUMBER:
+        return ""
+    return f"from {low:g} to {high:g} {unit}".rstrip()
 
 
 def section(field: FieldInfo) -> type[BaseModel] | None:

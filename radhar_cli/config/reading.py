@@ -1,6 +1,7 @@
 """Read a YAML config, apply ``--set`` overrides, and say clearly what is wrong with it."""
 
 import json
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
@@ -8,11 +9,12 @@ from typing import Any, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from radhar_cli.config.annotations import section
+from radhar_cli.config.annotations import range_of, section
 from radhar_cli.config.checks import Problem
 from radhar_cli.config.documents import BASE, Places, cfg_text, read_on_bases
 from radhar_cli.config.motion_files import with_files
-from radhar_cli.config.schema import Config, ConfigOfRecordings, Section
+from radhar_cli.config.schema import Config, ConfigOfRecordings, PerActivity, Section
+from radhar_cli.config.units import key_in_our_unit, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.untrusted import shown
@@ -25,7 +27,7 @@ _UNION_TAGS = {
 }
 Options: TypeAlias = dict[str, str]
 MAX_MISTAKES = 20
-MAX_VALUE, MAX_ADVICE = 120, 500  # characters of value and advice in a message
+MAX_VALUE, MAX_ADVICE = 200, 500  # characters of value and advice in a message
 
 _CHANNELS = "is not there: channels of a board come with radar.cfg (docs/guide/boards.md)"
 _PEOPLE = "is not there: `people` has others in a scene (docs/guide/scenes.md)"
@@ -174,7 +176,7 @@ def _found(kind: type[BaseModel], error: ValidationError, document: Any) -> Iter
         names = _document_path(item["loc"], document)
         key = ".".join(str(name) for name in names)
         if item["type"] in ("extra_forbidden", "unexpected_keyword_argument"):
-            yield Problem(key, item["input"], _unknown(kind, names))
+            yield Problem(key, item["input"], _unknown(kind, names, item["input"]))
         elif names[:1] == ["maps"] and (absent := ABSENT.get(str(item["input"]))):
             yield Problem(key, item["input"], absent)
         else:
@@ -183,7 +185,21 @@ def _found(kind: type[BaseModel], error: ValidationError, document: Any) -> Iter
             if not message.startswith(("should", "'")):
                 message = message[0].lower() + message[1:]
                 message = message.removeprefix("input ")
-            yield Problem(key, item["input"], message)
+            yield Problem(key, item["input"], _advice_on_number(kind, names, item, message))
+
+
+def _advice_on_number(
+    kind: type[BaseModel], names: list[int | str], item: Any, message: str
+) -> str:
+    """What a text in the place of a number should be: in our unit, or within its range."""
+    key, value = ".".join(str(name) for name in names), item["input"]
+    if not isinstance(value, str) or "number" not in message:
+        return message
+    with_unit = value_with_unit(key, value)
+    if with_unit is not None:
+        return with_unit
+    reach = range_of(kind, re.sub(r"\.\d+\b", "", key))
+    return f"{message}, {reach}" if reach else message
 
 
 def _document_path(location: tuple[int | str, ...], document: Any) -> list[int | str]:
@@ -209,7 +225,7 @@ def _document_path(location: tuple[int | str, ...], document: Any) -> list[int |
     return names
 
 
-def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
+def _unknown(kind: type[BaseModel], names: list[int | str], value: object) -> str:
     if issubclass(kind, Config) and (absent := ABSENT.get(str(names[-1]))):
         return absent
     place: type[BaseModel] | None = kind
@@ -220,6 +236,9 @@ def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
     if place is None:
         return "is an unknown key"
     known = list(place.model_fields)
+    in_our_unit = key_in_our_unit(str(names[-1]), value, known)
+    if in_our_unit is not None:
+        return f"is an unknown key; {in_our_unit}"
     return "is an unknown key; " + did_you_mean(
         str(names[-1]), known, f"known here: {', '.join(known)}"
     )
@@ -257,4 +276,6 @@ def _short(text: str, most: int = MAX_VALUE) -> str:
 def _plain(value: object) -> object:
     if isinstance(value, BaseModel):
         return value.model_dump(mode="json", exclude_none=True)
+    if isinstance(value, PerActivity):
+        return {"per_activity": value.per_activity}
     return str(value)

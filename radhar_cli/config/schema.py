@@ -90,6 +90,7 @@ from radhar_cli.radar.board import (
 from radhar_cli.radar.materials import Material
 from radhar_cli.registry import is_known, own_products
 from radhar_cli.rounding import half_up
+from radhar_cli.vocabulary import advice_on
 
 if TYPE_CHECKING:
     from radhar_cli.config.ti_header import BoardHeader
@@ -130,8 +131,8 @@ def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
         if slug in numbers:
             raise wrong(f"should name {slug} once")
         numbers[slug] = number
-    if DEFAULT not in numbers:
-        raise wrong("should have a 'default' beside the activities it names")
+    if not numbers:
+        raise wrong("should name one activity or more, or `default`")
     return numbers
 
 
@@ -139,6 +140,7 @@ def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
 class PerActivity(Generic[T]):
     """``{per_activity: {default: 2.0, walking: 1.0, S9: 1.0}}``: a number by activity.
 
+    Without a default, the activities that are not named keep that of the key, or of its model.
     Names that are none of the twelve's are a config's own classes, which `Config` knows.
     """
 
@@ -597,7 +599,7 @@ class SequenceConfig(Section):
         for n, (name, duration) in enumerate(zip(self.sequence, self.durations_s, strict=True)):
             movement = MOVEMENTS.get(name)
             if movement is None:
-                hint = did_you_mean(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
+                hint = advice_on(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
                 raise wrong(f"{name!r} is not a movement; {hint}")
             if state not in (None, movement.before):
                 raise wrong(
@@ -1460,8 +1462,11 @@ class Config(Section):
         return self.engine.kind == "direct" and bool(signals or self.radar.cfg is not None)
 
     def filled(self) -> "Config":
-        """This config, in which what is null and has a default by model takes it."""
-        changed = dict[str, dict[str, Any]]()
+        """This config, in which what is null and has a default by model takes it.
+
+        So do activities that a number by activity does not name.
+        """
+        changed = _missing_defaults(self)
         for key, default in of_kind(Config, ByModel):
             name, _, rest = key.rpartition(".")
             holder = getattr(self, name) if name else self
@@ -1641,6 +1646,29 @@ def _with_defaults(section: S, values: Mapping[str, Any]) -> S:
     filled = section.model_copy(update=dict(values))
     object.__setattr__(filled, "__pydantic_fields_set__", set(section.model_fields_set))
     return filled
+
+
+def _missing_defaults(c: Config) -> dict[str, dict[str, Any]]:
+    """{section: {key: number}} of numbers by activity that have no default: that of the key."""
+    by_model, changed = dict(of_kind(Config, ByModel)), dict[str, dict[str, Any]]()
+    for name in ("", "motion", "timing"):
+        holder: BaseModel = getattr(c, name) if name else c
+        for key, field in type(holder).model_fields.items():
+            value = getattr(holder, key)
+            if not isinstance(value, PerActivity) or DEFAULT in value.per_activity:
+                continue
+            dotted = f"{name}.{key}" if name else key
+            usual = field.get_default(call_default_factory=False)
+            if dotted in by_model:
+                usual = by_model[dotted].values.get(c.motion.model)
+            if isinstance(usual, PerActivity):
+                numbers = {**usual.per_activity, **value.per_activity}
+            elif usual is not None:
+                numbers = {DEFAULT: usual, **value.per_activity}
+            else:  # of no use to this model
+                numbers = {DEFAULT: next(iter(value.per_activity.values())), **value.per_activity}
+            changed.setdefault(name, {})[key] = PerActivity(numbers)
+    return changed
 
 
 def _fill_from_cfg(c: Config, changed: dict[str, dict[str, Any]]) -> None:

@@ -10,7 +10,7 @@ from radhar_cli.config.schema import FRAME_MAPS, Config, MeasuredConfig
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.errors import FolderError, RadharError
+from radhar_cli.errors import FolderError, RadharError, did_you_mean
 from radhar_cli.figures import scene_page
 from radhar_cli.figures.scene_page import Entry, SceneView, ShownBody
 from radhar_cli.figures.sides import bones
@@ -41,7 +41,9 @@ def chosen_rows(data: Dataset, samples: Sequence[str]) -> list[int]:
     for sample in samples:
         slug, _, index = sample.partition("/")
         if slug not in known:
-            raise FolderError(f"--sample {sample}: no such class; there are {', '.join(known)}")
+            names = [one.slug for one, _ in classes]
+            hint = did_you_mean(slug, names, f"there are {', '.join(sorted(names))}")
+            raise FolderError(f"--sample {sample}: no such class; {hint}")
         start, stop = known[slug].start, known[slug].stop
         if not index.isdecimal() or int(index) >= stop - start:
             wanted = f"{slug}/0 to {slug}/{stop - start - 1}"

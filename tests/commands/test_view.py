@@ -119,7 +119,8 @@ def test_view_shows_the_first_sample_of_each_class(small_set, tmp_path):
     ("options", "said"),
     [
         (("--sample", "walking/3"), "--sample walking/3: should be walking/0 to walking/2"),
-        (("--sample", "dancing/0"), "--sample dancing/0: no such class; there are punching,"),
+        (("--sample", "dancing/0"), "--sample dancing/0: no such class; there are "),
+        (("--sample", "walkin/3"), "walkin/3: no such class; did you mean 'walking'?"),
         (("--sample", "walking/0") * 51, "--sample: 51 samples; a page holds 50 at most"),
     ],
 )

@@ -13,6 +13,7 @@ from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.number import Choice, Normal, Uniform, Vary
 from radhar_cli.config.schema import for_activity
+from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.errors import ConfigError, FolderError
 
@@ -288,14 +289,14 @@ BROKEN = [
     Broken("maps: [sfft]", '1: maps.0 = "sfft"', "should be 'rtm', 'stft'"),
     Broken("maps: []", "1: maps = []", "at least 1"),
     Broken(
-        "motion:\n  gait_hz:\n    per_activity: {walking: 1}",
-        '3: motion.gait_hz.per_activity = {"walking": 1}',
-        "'default'",
+        "motion:\n  gait_hz:\n    per_activity: {}",
+        "3: motion.gait_hz.per_activity = {}",
+        "should name one activity or more, or `default`",
     ),
     Broken(
         "motion:\n  gait_hz: {per_activity: {default: 1, jogging: 2}}",
         "2: motion.gait_hz.per_activity.jogging = 2.0",
-        "'jogging' is not an activity; the slugs are stationary",
+        "'jogging' is not an activity; no model moves like this; motion files can",
     ),
     Broken(
         "seed: 1\nsamples_per_class: {per_activity: {default: 3, sitting: 2}}",
@@ -583,3 +584,40 @@ def test_a_mistake_of_file_and_option_together_names_both(tmp_path: Path) -> Non
     with pytest.raises(ConfigError) as caught:
         load_config(path, ["split.train=0.9"])
     assert str(caught.value).startswith(f"{path}:2: split (--set split.train) = ")
+
+
+def test_activities_that_are_not_named_keep_the_default_of_the_key(tmp_path: Path) -> None:
+    """That of the model where the key has one, whether it is a number or differs by activity."""
+    text = "classes: {run: {sequence: [walking]}}\nactivities: [walking, kicking, run]\n"
+    usual = read(tmp_path, text)
+    for key in ("speed_mps", "range_m", "cross_range_m", "gait_hz", "angle_deg"):
+        given = read(
+            tmp_path, text, f"motion.{key}={{per_activity: {{run: {{uniform: [2, 2.5]}}}}}}"
+        )
+        before, after = (getattr(config.motion, key) for config in (usual, given))
+        for activity in given.chosen_activities:
+            kept = for_activity(before, activity)
+            changed = Uniform(uniform=(2, 2.5)) if activity.slug == "run" else kept
+            assert for_activity(after, activity) == changed
+        again = Config.model_validate(given.model_dump(mode="json"))
+        assert getattr(again.motion, key) == after
+    given = read(tmp_path, text, "samples_per_class={per_activity: {run: 7}}")
+    kept = usual.samples_of(usual.chosen_activities[0])
+    assert [given.samples_of(one) for one in given.chosen_activities] == [kept, kept, 7]
+
+
+KINDS = ("3.0", "{uniform: [3, 4]}", "{normal: [3, 0.1], min: 2.9, max: 4}", "{choice: [3, 4]}")
+KINDS += ("{vary: [3, 0.1]}",)
+
+
+@pytest.mark.parametrize(
+    "number", [*KINDS, *(f"{{per_activity: {{walking: {n}}}}}" for n in KINDS)]
+)
+def test_messages_show_numbers_as_yaml_has_them(tmp_path: Path, number: str) -> None:
+    """Walking is at most 2.8 m/s; the value is shown as it may be written, and never as Python."""
+    (line,) = mistakes(tmp_path, f"motion: {{speed_mps: {number}}}")
+    assert "with motion.model: human" in line
+    shown, _ = parse_yaml(line.split("speed_mps = ")[1].split(": should")[0], "message")
+    (again,) = mistakes(tmp_path, "{}", f"motion.speed_mps={json.dumps(shown)}")
+    assert again.partition(" = ")[2] == line.partition(" = ")[2]
+    assert "per_activity=" not in line

@@ -1,0 +1,85 @@
+"""Units of keys: what a value with a unit, or a key in another unit, would be in ours."""
+
+import re
+from collections.abc import Iterable
+from math import floor, log10
+
+# {last word of a key: (unit, {other spelling: factor to it})}; kHz, ms and the like: PREFIXES.
+UNITS: dict[str, tuple[str, dict[str, float]]] = {
+    "hz": ("Hz", {"hertz": 1.0, "rpm": 1 / 60}),
+    "s": ("s", {"sec": 1.0, "second": 1.0, "seconds": 1.0, "min": 60.0, "h": 3600.0}),
+    "m": (
+        "m",
+        {"metre": 1.0, "meter": 1.0, "metres": 1.0, "meters": 1.0, "in": 0.0254, "ft": 0.3048},
+    ),
+    "mps": ("m/s", {"mps": 1.0, "kmh": 1 / 3.6, "km/h": 1 / 3.6, "kph": 1 / 3.6, "mph": 0.44704}),
+    "deg": ("deg", {"degree": 1.0, "degrees": 1.0, "°": 1.0, "rad": 57.29577951308232}),
+    "kg": ("kg", {"g": 1e-3, "lb": 0.45359237, "lbs": 0.45359237}),
+    "db": ("dB", {}),
+    "dbi": ("dBi", {}),
+    "dbm": ("dBm", {}),
+    "dbsm": ("dBsm", {}),
+    "px": ("px", {"pixel": 1.0, "pixels": 1.0}),
+}
+PREFIXES = {"T": 1e12, "G": 1e9, "M": 1e6, "k": 1e3, "K": 1e3, "d": 0.1, "c": 1e-2, "m": 1e-3}
+PREFIXES |= {"u": 1e-6, "µ": 1e-6, "μ": 1e-6, "n": 1e-9}
+PREFIXED = ("hz", "s", "m")  # units that come with prefixes
+_VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\D{1,12}?)\s*")
+
+
+def unit_of(key: str) -> str | None:
+    """The last word of a key's last name, where it is a unit: "hz" of `radar.prf_hz`."""
+    named = next((name for name in reversed(key.split(".")) if not name.isdecimal()), "")
+    stem, _, last = named.rpartition("_")
+    return last if stem and last in UNITS else None
+
+
+def factor_of(written: str, unit: str) -> float | None:
+    """How many of our unit one of the written unit is; None where it is of another kind."""
+    name, others = UNITS[unit]
+    spellings = {name.lower(): 1.0, **{other.lower(): value for other, value in others.items()}}
+    if written.lower() in spellings:
+        return spellings[written.lower()]
+    prefix, base = written[:1], written[1:]
+    if unit not in PREFIXED or base.lower() != name.lower():
+        return None
+    if unit == "hz" and prefix in "tgm":  # nobody has a radar of millihertz
+        prefix = prefix.upper()
+    return PREFIXES.get(prefix)
+
+
+def value_with_unit(key: str, value: object) -> str | None:
+    """What a number with a unit should be, as in `3.5 kHz` of `radar.prf_hz`; None of others."""
+    unit = unit_of(key)
+    match = _VALUE.fullmatch(value) if isinstance(value, str) else None
+    if unit is None or match is None:
+        return None
+    factor = factor_of(match[2], unit)
+    if factor is None:
+        return None
+    return f"should be {_written(float(match[1]) * factor)}, a number in {UNITS[unit][0]}"
+
+
+def key_in_our_unit(name: str, value: object, known: Iterable[str]) -> str | None:
+    """Advice on an unknown key that is one of the known in another unit, such as `carrier_ghz`."""
+    stem, _, last = name.rpartition("_")
+    for key in known:
+        unit = unit_of(f".{key}")
+        if not stem or unit is None or key.rpartition("_")[0] != stem:
+            continue
+        factor = factor_of(last, unit)
+        if factor is None:
+            continue
+        ours = UNITS[unit][0]
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return f"should be {key}: {_written(value * factor)}, a number in {ours}"
+        return f"should be {key}, {_written(factor)} times the value, in {ours}"
+    return None
+
+
+def _written(number: float) -> str:
+    """A number with a power of 1000 where it is large or small, as in 24e9."""
+    if number == 0 or 1e-3 <= abs(number) < 1e6:
+        return f"{number:.10g}"
+    power = 3 * floor(log10(abs(number)) / 3)
+    return f"{number / 10.0**power:.10g}e{power}"

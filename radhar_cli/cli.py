@@ -78,9 +78,11 @@ def main() -> None:
         except BaseException as error:
             if interrupts.status() is None:
                 status = _tell(error)
-        if (stopped := interrupts.status()) is not None and interrupts.tell_once():
-            how = "interrupted" if stopped == INTERRUPTED else "terminated"
+        how = "interrupted" if interrupts.received() == INTERRUPTED else "terminated"
+        if interrupts.status() is not None and interrupts.tell_once():
             print(f"{how}: what was not finished is not kept", file=sys.stderr)
+        if (result := interrupts.outlived()) is not None:
+            print(f"{how} after the end: {shown(result)} is complete", file=sys.stderr)
         sys.exit(interrupts.status() or status)
 
 

@@ -15,6 +15,7 @@ from radhar_cli.errors import INTERRUPTED, TERMINATED
 _STATUS = {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}
 _received: list[int] = []
 _told: list[bool] = []
+_complete: list[str] = []
 
 
 @contextmanager
@@ -23,6 +24,7 @@ def handled() -> Iterator[None]:
     hook = sys.unraisablehook
     _received.clear()
     _told.clear()
+    _complete.clear()
     signal.signal(signal.SIGTERM, _receive)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not of a background job
         signal.signal(signal.SIGINT, _receive)
@@ -34,6 +36,7 @@ def handled() -> Iterator[None]:
             signal.signal(number, signal.SIG_IGN)
         sys.unraisablehook = hook
         _received.clear()
+        _complete.clear()
 
 
 def tell_once() -> bool:
@@ -43,9 +46,28 @@ def tell_once() -> bool:
     return first
 
 
-def status() -> int | None:
-    """Exit status for the first signal that came, or None."""
+def complete(result: str) -> None:
+    """Let no signal end the program from now on, nor one that came before and was swallowed.
+
+    Args:
+        result: what is complete, for the line that says so if there was a signal.
+    """
+    _complete.append(result)
+
+
+def outlived() -> str | None:
+    """What was complete when a signal asked to stop, or None."""
+    return _complete[0] if _received and _complete else None
+
+
+def received() -> int | None:
+    """Exit status that belongs to the first signal that came, or None."""
     return _STATUS[signal.Signals(_received[0])] if _received else None
+
+
+def status() -> int | None:
+    """Exit status for the first signal that came before the work was complete, or None."""
+    return None if _complete else received()
 
 
 def check() -> None:
@@ -55,10 +77,11 @@ def check() -> None:
         KeyboardInterrupt: Ctrl-C.
         SystemExit: SIGTERM, with its status.
     """
-    if status() == INTERRUPTED:
+    stopped = status()
+    if stopped == INTERRUPTED:
         raise KeyboardInterrupt
-    if _received:
-        raise SystemExit(status())
+    if stopped is not None:
+        raise SystemExit(stopped)
 
 
 def _receive(number: int, frame: Any) -> None:

@@ -3,6 +3,8 @@
 import ctypes
 import os
 import platform
+import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -13,6 +15,7 @@ _M_MMAP_THRESHOLD = -3
 _M_MMAP_MAX = -4
 _KEPT = 64 * 2**20
 _LARGEST_OLD_THRESHOLD = 32 * 2**20
+PARENT_CHECK_S = 0.5
 _THREADS = (
     "OMP_NUM_THREADS",
     "OPENBLAS_NUM_THREADS",
@@ -36,6 +39,21 @@ def prepare_process() -> None:
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     threadpool_limits(limits=1)
     keep_memory(_KEPT)
+
+
+@cache
+def end_with(parent_pid: int) -> None:
+    """End this process soon after that parent, however it ended and whatever is under way here.
+
+    Nobody waits for what it makes then, and a new run may be at work in the same folder.
+    """
+    threading.Thread(target=_watch, args=(parent_pid,), daemon=True, name="parent").start()
+
+
+def _watch(parent_pid: int) -> None:
+    while os.getppid() == parent_pid:
+        time.sleep(PARENT_CHECK_S)
+    os._exit(1)
 
 
 @contextmanager

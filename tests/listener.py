@@ -8,7 +8,7 @@ class Listener:
         self.messages: list[str] = []
         self.stages: list[str] = []
 
-    def stage(self, name: str, total: int, done: int) -> None:
+    def stage(self, name: str, total: int, done: int, unit: str | None = None) -> None:
         self.stages.append(name)
 
     def advance(self, samples: int) -> None:

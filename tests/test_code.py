@@ -31,6 +31,7 @@ PACKAGES = (
     "untrusted",
     "randomness",
     "progress",
+    "time_limit",
     "worker_process",
     "motion",
     "activity",

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from radhar_cli.commands.learning_options import AnyMap, Classes
+from radhar_cli.commands.options import ReplaceResults, refuse_to_replace_results
 from radhar_cli.commands.tell import report, tell
 
 
@@ -24,6 +25,7 @@ def compare(
         ),
     ] = 200,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random subset.")] = 1,
+    overwrite: ReplaceResults = False,
 ) -> None:
     """Measure how much simulated maps differ from measured ones.
 
@@ -40,10 +42,12 @@ def compare(
     needs("train", ("sklearn",))
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.learning.images.classes import read_classes
+    from radhar_cli.learning.report_folder import NUMBERS
     from radhar_cli.two_sample.comparison import compare as compared
     from radhar_cli.two_sample.report import write
 
     apart(out, [simulated, measured])
+    refuse_to_replace_results(out, (NUMBERS,), overwrite)
     names = read_classes(classes)
     with BarProgress("map") as progress:
         comparison = compared(simulated, measured, progress, map_, names, per_class, seed)

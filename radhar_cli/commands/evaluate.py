@@ -1,12 +1,15 @@
 """`radhar eval`: how good trained networks are, in numbers and figures."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from radhar_cli.commands.learning_options import Classes, Device, Resize, Split, TrainedMap
+from radhar_cli.commands.options import ReplaceResults
 from radhar_cli.commands.tell import report, tell
+from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 SCORES = ("accuracy", "mean_average_precision", "mpjpe_cm")
 
@@ -39,6 +42,7 @@ def evaluate(
     resize: Resize = False,
     classes: Classes = None,
     device: Device = "auto",
+    overwrite: ReplaceResults = False,
 ) -> None:
     """Evaluate trained networks on data sets.
 
@@ -69,7 +73,11 @@ def evaluate(
     if out is None:
         refuse_links(inside, folder)
     apart(folder, data)
-    evaluation = test(runs, data, options, choose_device(device), BarProgress())
+    of_what = {"of": [str(path.resolve()) for path in (*runs, *data)]}
+    _refuse_another_report(folder, of_what | {"split": options.split}, overwrite)
+    with BarProgress("image") as bars:
+        evaluation = test(runs, data, options, choose_device(device), bars)
+    evaluation.numbers |= of_what
     evaluation.write(folder)
     found: dict[str, dict[str, dict[str, float]]] = {}
     for run, about in evaluation.numbers["runs"].items():
@@ -78,3 +86,18 @@ def evaluate(
             found.setdefault(score, {}).setdefault(run, {})[tested] = numbers[score]
     report(page=folder / "report.html", numbers=folder / "report.json", **found)
     tell(f"{folder / 'report.html'}: {len(evaluation.figures)} figures; numbers in report.json")
+
+
+def _refuse_another_report(folder: Path, about: dict[str, Any], replace: bool) -> None:
+    """Refuse a folder that holds the report of other runs, data or another split."""
+    path = folder / "report.json"
+    if replace or not path.exists():
+        return
+    try:
+        there = read_json(path)
+    except FolderError:
+        there = None
+    if not isinstance(there, dict) or any(there.get(key) != about[key] for key in about):
+        raise FolderError(
+            f"{folder}: holds another report; --overwrite replaces it, -o names another folder"
+        )

@@ -6,12 +6,14 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import Run
+from radhar_cli.commands.options import Replace, refuse_to_replace
 from radhar_cli.commands.tell import report, tell
 
 
 def export(
     run: Run,
     out: Annotated[Path, typer.Option("-o", "--out", help="File to write, such as model.onnx.")],
+    overwrite: Replace = False,
 ) -> None:
     """Write a network as ONNX, checked with ONNX Runtime.
 
@@ -23,11 +25,9 @@ def export(
 
     needs_torch()
     needs("onnx", ("onnx", "onnxscript", "onnxruntime"))
-    from radhar_cli.errors import FolderError
     from radhar_cli.learning.onnx_export import TOLERANCE, export
 
-    if out.is_dir():
-        raise FolderError(f"{out}: is a folder; -o should name a file, such as model.onnx")
+    refuse_to_replace(out, overwrite, "model.onnx")
     worst = export(run, out)
     size = out.stat().st_size
     report(file=out, bytes=size, largest_difference=float(worst), allowed=TOLERANCE)

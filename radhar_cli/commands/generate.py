@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from radhar_cli import interrupts
 from radhar_cli.commands.options import Overrides, StartOver, Tolerance, resumable, with_tolerance
 from radhar_cli.commands.tell import tell
 from radhar_cli.errors import ConfigError
@@ -81,15 +82,16 @@ def generate(
             raise ConfigError(
                 f"{config}: recordings: --recordings MANIFEST should say where they lie"
             )
-        jobs = jobs or (cores() if factory else jobs_that_pay(loaded))
         if dry_run:
             print_plan(made, jobs)
         else:
+            jobs = jobs or (cores() if factory else jobs_that_pay(loaded))
             part = None if shard is None else DataSetPart.parse(shard)
             most = min(jobs, len(Rows.of(made)))
             where = nullcontext(jobs) if cluster is None else on_cluster(cluster, most)
             with BarProgress() as progress, where as jobs:
                 outcome = build(made, out, jobs, progress, overwrite, batch, factory, part)
+            interrupts.complete(str(out) if part is None else f"part {part} of {out}")
             if part is None:
                 print_outcome(made, outcome)
             else:

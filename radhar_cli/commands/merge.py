@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli import interrupts
 from radhar_cli.commands.options import resumable
 
 
@@ -32,4 +33,5 @@ def merge(
 
     with resumable("every part"), BarProgress() as progress:
         config, outcome = merge_parts(out, parts or [], jobs or cores(), progress)
+        interrupts.complete(str(out))
     print_outcome(config, outcome)

@@ -1,6 +1,6 @@
 """Options that several commands share."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, TypeAlias
@@ -25,7 +25,8 @@ Nominal: TypeAlias = Annotated[
     bool, typer.Option("--nominal", help="Use nominal values, draw nothing.")
 ]
 Maps: TypeAlias = Annotated[
-    str | None, typer.Option(help="Comma-separated maps; override the config.")
+    str | None,
+    typer.Option(help="Comma-separated maps, or `all` that the radar makes; override the config."),
 ]
 Figures: TypeAlias = Annotated[
     bool, typer.Option("--figures/--no-figures", help="Draw the figures.")
@@ -34,6 +35,9 @@ StartOver: TypeAlias = Annotated[
     bool, typer.Option("--overwrite", help="Start over in an existing folder.")
 ]
 Replace: TypeAlias = Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")]
+ReplaceResults: TypeAlias = Annotated[
+    bool, typer.Option("--overwrite", help="Replace the results of an earlier run.")
+]
 Tolerance: TypeAlias = Annotated[
     float | None,
     typer.Option(metavar="DB", help="Tolerance of the direct engine; overrides the config."),
@@ -63,6 +67,20 @@ def refuse_to_replace(path: Path, replace: bool, example: str) -> None:
         raise FolderError(f"{path}: is a folder; -o should name a file, such as {example}")
     if path.exists() and not replace:
         raise FolderError(f"{path}: already exists; --overwrite replaces it")
+
+
+def refuse_to_replace_results(out: Path, names: Iterable[str], replace: bool) -> None:
+    """Refuse a folder that holds files of these names, results of an earlier run.
+
+    Raises:
+        FolderError: there are some, and they are not to be replaced.
+    """
+    held = [name for name in names if (out / name).exists()]
+    if held and not replace:
+        raise FolderError(
+            f"{out}: holds {', '.join(held[:3])}{', ...' if len(held) > 3 else ''} of an earlier "
+            "run; --overwrite replaces them, another folder keeps them"
+        )
 
 
 def with_tolerance(overrides: list[str] | None, tolerance: float | None) -> list[str]:

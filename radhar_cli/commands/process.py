@@ -5,7 +5,13 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import Figures, Maps, Overrides
+from radhar_cli.commands.options import (
+    Figures,
+    Maps,
+    Overrides,
+    ReplaceResults,
+    refuse_to_replace_results,
+)
 from radhar_cli.commands.tell import counted, report, tell
 
 
@@ -26,6 +32,7 @@ def process(
         typer.Option(min=0, help="Use only this receiver; default: the sum of all powers."),
     ] = None,
     figures: Figures = True,
+    overwrite: ReplaceResults = False,
 ) -> None:
     """Compute the maps of a recording and track the torso.
 
@@ -51,10 +58,11 @@ def process(
 
     loaded = load_config(config, set_ or [], ConfigOfRecordings)
     fixed = nominal_scene(loaded, loaded.every_class[0]).config
-    names = loaded.maps if maps is None else map_names(maps.split(","))
+    names = loaded.maps if maps is None else map_names(maps.split(","), loaded)
     refuse_file(out)
     for name in maps_file.FILES:
         refuse_links(out, out / name)
+    refuse_to_replace_results(out, maps_file.FILES, overwrite)
     frames = [product for name in names for product in OF_FRAMES.get(name, ())]
     signals = tuple(name for name in names if name not in OF_FRAMES)
     with Recording(recording) as opened:

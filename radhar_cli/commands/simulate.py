@@ -1,7 +1,7 @@
-"""`radhar simulate`: one scene with all maps, ground truth and figures."""
+"""`radhar simulate`: one scene with maps, ground truth and figures."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,7 +12,9 @@ from radhar_cli.commands.options import (
     Maps,
     Nominal,
     Overrides,
+    ReplaceResults,
     Tolerance,
+    refuse_to_replace_results,
     with_tolerance,
 )
 from radhar_cli.commands.tell import report, tell
@@ -65,10 +67,12 @@ def simulate(
         bool, typer.Option("--html", help="Write view.html: skeleton, maps and clouds in motion.")
     ] = False,
     figures: Figures = True,
+    overwrite: ReplaceResults = False,
 ) -> None:
     """Simulate one scene: maps, ground truth and an animation.
 
-    Writes scene.h5, scene.json, maps.png and an animated stickman.
+    Writes scene.h5, scene.json, maps.png and an animated stickman. The maps are those of the
+    config; `--maps all` has every map that its radar makes.
 
     Example:
 
@@ -77,6 +81,7 @@ def simulate(
     if html:
         needs("view", ("plotly",))
 
+    from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.config import load_config
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file, refuse_foreign_files
@@ -99,15 +104,18 @@ def simulate(
                     f"--{option} {value}: should go with --motion, whose file it reads"
                 )
     loaded = load_config(config, overrides)
-    chosen = None if maps is None else map_names(maps.split(","))
+    chosen = None if maps is None else map_names(maps.split(","), loaded)
     refuse_file(out)
     if not any((out / name).exists() for name in scene_file.FILES):
         refuse_foreign_files(out, "scene of radhar's", allowed=())
     for name in (*scene_file.FILES, RECORDING):
         refuse_links(out, out / name)
-    simulation = simulate_scene(
-        loaded, activity, seed, index=index, nominal=nominal, joint=joint, maps=chosen, raw=raw
-    )
+    refuse_to_replace_results(out, (*scene_file.FILES, RECORDING), overwrite)
+    which: dict[str, Any] = {"index": index, "nominal": nominal, "joint": joint}
+    with BarProgress() as bars:
+        simulation = simulate_scene(
+            loaded, activity, seed, **which, maps=chosen, raw=raw, progress=bars
+        )
     samples, warnings = loaded.samples_of(simulation.activity), list[str]()
     if index >= samples and not nominal:
         warnings.append(
@@ -200,8 +208,8 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
 
     if simulation.maps:
         maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), out / MAPS)
-    with BarProgress("frame") as bars:
-        bars.stage(ANIMATION, stickman.frame_count(simulation))
+    with BarProgress() as bars:
+        bars.stage(ANIMATION, stickman.frame_count(simulation), unit="frame")
         stickman.draw_stickman(simulation, out / ANIMATION, bars.advance)
         if simulation.board is not None and simulation.frames.keys() - {"cube"}:
             from radhar_cli.figures import frames_panel
@@ -209,6 +217,6 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
             frames = frames_panel.of_simulation(simulation)
             frames_panel.draw_frames(frames, out / FRAMES)
             if "cloud" in simulation.frames:
-                bars.stage(CLOUD, simulation.board.frames)
+                bars.stage(CLOUD, simulation.board.frames, unit="frame")
                 frames_panel.draw_cloud(frames, out / CLOUD, bars.advance)
     return [out / one for one in (MAPS, ANIMATION, FRAMES, CLOUD) if (out / one).exists()]

@@ -25,16 +25,17 @@ class BarProgress(Closing):
         self._unit = unit
         self._bar: tqdm[Any] | None = None
 
-    def stage(self, name: str, total: int, done: int = 0) -> None:
+    def stage(self, name: str, total: int, done: int = 0, unit: str | None = None) -> None:
         """Show a bar instead of the one before."""
         self.close()
+        unit = unit or self._unit
         if 0 < done < total:
-            self.say(f"resuming: {done} of {total} {self._unit}s are finished")
+            self.say(f"resuming: {done} of {total} {unit}s are finished")
         self._bar = tqdm(
             total=total,
             initial=done,
             desc=name,
-            unit=self._unit,
+            unit=unit,
             leave=False,
             disable=is_quiet() or None,
             file=sys.stderr,
@@ -63,7 +64,7 @@ class TrainingView(BarProgress):
 
     def epoch(self, number: int, epochs: int, steps: int) -> None:
         self._epochs = epochs
-        self.stage(f"epoch {number}/{epochs}", steps)
+        self.stage(f"epoch {number}/{epochs}", steps, unit="batch")
 
     def step(self, loss: float, accuracy: float) -> None:
         self.advance(1)
@@ -120,11 +121,14 @@ def print_part(outcome: "BuildOutcome", out: Path, part: str) -> None:
     tell(f"  when all parts are: radhar merge {out}")
 
 
-def print_plan(config: "AnyConfig", jobs: int) -> None:
-    """Print stages, samples, bytes and time; write nothing."""
+def print_plan(config: "AnyConfig", jobs: int | None) -> None:
+    """Print stages, samples, bytes and time, found within DRY_RUN_S; write nothing.
+
+    Args:
+        jobs: processes; None for as many as pay.
+    """
     from radhar_cli.config.schema import MeasuredConfig
-    from radhar_cli.dataset.batch import check_scenes
-    from radhar_cli.dataset.estimate import estimate
+    from radhar_cli.dataset.estimate import DRY_RUN_S, plan_build
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
     from radhar_cli.pipeline.products import plan_images
@@ -136,27 +140,32 @@ def print_plan(config: "AnyConfig", jobs: int) -> None:
         tell(f"{samples}\nnothing was written")
         return
     products = plan_images(config).products
-    checked, found = check_scenes(config)
-    cost = estimate(config, jobs)
-    redrawn = sum(scene.attempt > 0 for scene in checked)
-    warnings = split_warnings(config, split_rows(config))
-    warnings += [one["message"] for one in found]
+    with BarProgress() as bars:
+        found = plan_build(config, jobs, bars, DRY_RUN_S)
+    cost, warnings = found.cost, split_warnings(config, split_rows(config))
+    warnings += [one["message"] for one in found.warnings]
     report(
         stages=[product.name for product in products],
         classes=_class_counts(rows),
         maps=config.maps,
-        jobs=jobs,
-        checked=len(checked),
-        redrawn=redrawn,
+        jobs=found.jobs,
+        checked=found.checked,
+        redrawn=found.redrawn,
         warnings=warnings,
         **vars(cost),
     )
     for product in products:
         tell(f"stage       {product.name}: {product.does}")
     tell(samples)
-    tell(f"scenes      {len(checked)} of {len(rows)} checked: {redrawn} drawn again")
-    tell(f"on disk     dataset.h5 {_mib(cost.hdf5_bytes)}, png {_mib(cost.png_bytes)}")
-    tell(f"time        about {cost.seconds:.1f} s with --jobs {jobs}")
+    short = f", then {DRY_RUN_S:g} s were over" if found.cut_short else ""
+    tell(f"scenes      {found.checked} of {len(rows)} checked: {found.redrawn} drawn again{short}")
+    if cost.seconds is None or cost.hdf5_bytes is None or cost.png_bytes is None:
+        tell(f"on disk     not known: no sample was made within {found.waited:.0f} s")
+        tell("time        not known")
+    else:
+        tell(f"on disk     dataset.h5 {_mib(cost.hdf5_bytes)}, png {_mib(cost.png_bytes)}")
+        timed = f", by {counted(cost.probes, 'sample')}" if found.cut_short else ""
+        tell(f"time        about {cost.seconds:.1f} s with --jobs {found.jobs}{timed}")
     for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from radhar_cli.commands.options import Overrides
+from radhar_cli.commands.options import Overrides, ReplaceResults, refuse_to_replace_results
 from radhar_cli.commands.tell import report
 
 
@@ -16,6 +16,7 @@ def tradeoff(
         bool, typer.Option("--quick", help="Only three activities and three rounds.")
     ] = False,
     set_: Overrides = None,
+    overwrite: ReplaceResults = False,
 ) -> None:
     """Measure what accuracy costs: tolerances, engines, physics.
 
@@ -30,12 +31,13 @@ def tradeoff(
     needs("tradeoff", ["skimage"])
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.folder import refuse_file
-    from radhar_cli.tradeoff.report import write_report
+    from radhar_cli.tradeoff.report import FILES, write_report
     from radhar_cli.tradeoff.settings import Scenes
     from radhar_cli.tradeoff.study import ROUNDS, run_sweep
     from radhar_cli.worker_process import prepare_process
 
     refuse_file(out)
+    refuse_to_replace_results(out, FILES, overwrite)
     scenes = Scenes(config, tuple(set_ or ()), quick)
     scenes.config()
     command = " ".join(

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli import interrupts
 from radhar_cli.commands.learning_options import Classes
 from radhar_cli.commands.options import Overrides, StartOver, resumable
 from radhar_cli.commands.tell import report, tell
@@ -84,6 +85,7 @@ def train(
         outcome = training.train(
             settings, data, out, view, overwrite, names, init, resize, tensorboard
         )
+        interrupts.complete(str(out))
     best = outcome.best
     report(
         folder=out,

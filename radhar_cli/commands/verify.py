@@ -28,9 +28,11 @@ def verify(
 
       radhar verify datasets/quickstart --samples 24
     """
+    from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.verify import verify as verify_folder
 
-    outcome = verify_folder(out, samples, motion)
+    with BarProgress() as bars:
+        outcome = verify_folder(out, samples, motion, bars)
     report(**vars(outcome))
     if outcome.other_versions:
         tell("built with other versions, compared within one grey level:")

@@ -4,6 +4,7 @@ import os
 import platform
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,9 @@ from radhar_cli.dataset.workers import NO_PARENT
 from radhar_cli.errors import MachineError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import FLAG_TYPE, Flags, draw_valid_scene, warnings
+from radhar_cli.progress import NO_PROGRESS, Progress
 from radhar_cli.scene import Scene
+from radhar_cli.time_limit import time_limit
 from radhar_cli.worker_process import prepare_process
 
 CHECKED_SCENES = 24  # before a build; each is checked as it is made
@@ -44,10 +47,22 @@ class Batch:
     factory: RowFactory | None = None
 
 
-def check_scenes(config: Config) -> tuple[list[Scene], list[dict[str, Any]]]:
-    """Draw some scenes, spread over the classes; return them and what to warn of in them."""
-    rows = Rows.of(config)
-    drawn = [draw_valid_scene(config, *rows[row]) for row in rows.spread(CHECKED_SCENES)]
+def check_scenes(
+    config: Config, seconds: float = inf, progress: Progress = NO_PROGRESS
+) -> tuple[list[Scene], list[dict[str, Any]]]:
+    """Draw some scenes, spread over the classes; return them and what to warn of in them.
+
+    Args:
+        seconds: no more are drawn when that time is over; the first ones are of all classes.
+        progress: is told of every scene.
+    """
+    rows, drawn = Rows.of(config), list[tuple[Scene, Flags]]()
+    places = rows.scattered(CHECKED_SCENES)
+    progress.stage("checking scenes", len(places), 0, "scene")
+    with time_limit(seconds):
+        for row in places:
+            drawn.append(draw_valid_scene(config, *rows[row]))
+            progress.advance(1)
     counts = {flag: sum(flag in found for _, found in drawn) for flag in Flags}
     # Without the motions that they hold.
     return [replace(scene) for scene, _ in drawn], warnings(config, counts, len(drawn))

@@ -1,26 +1,35 @@
 """What a build will take: bytes and time, from a few samples made in memory there and then."""
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import inf
 from time import perf_counter, process_time
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from radhar_cli.arrays import Float
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.batch import CHECKED_SCENES, check_scenes
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table, encode_png
-from radhar_cli.dataset.sample import synthesise
+from radhar_cli.dataset.sample import Synthesised, synthesise
 from radhar_cli.dataset.shards import encode_shard
 from radhar_cli.dataset.workers import cores
 from radhar_cli.errors import RadharError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import FLAG_TYPE, draw_valid_scene
+from radhar_cli.progress import NO_PROGRESS, Progress
+from radhar_cli.time_limit import time_limit
 from radhar_cli.worker_process import prepare_process
 
 PROBES = 24
 PROBE_SECONDS = 8.0
+DRY_RUN_S = 10.0  # of a dry run, whatever a sample takes
+CHECK_SHARE = 0.4  # of it, for the check of scenes
+TRIAL_S = 3.0  # of a sample, to see whether it is worth a process
 PARALLEL_EFFICIENCY = 0.75
 WORKER_START_S = 1.5
 PAYS_S = 0.6  # of work, from which on a worker is worth its start
@@ -30,21 +39,58 @@ FILE_WRITE_S = 0.0002
 
 @dataclass(frozen=True)
 class Estimate:
-    """An estimate of a whole build."""
+    """An estimate of a whole build; what no sample was finished for is None."""
 
     samples: int  # in the data set
     probes: int  # samples timed
-    seconds_per_sample: float  # of one process
-    hdf5_bytes: int
-    png_bytes: int
-    seconds: float  # wall time with the jobs asked for
+    seconds_per_sample: float | None  # of one process
+    hdf5_bytes: int | None
+    png_bytes: int | None
+    seconds: float | None  # wall time with the jobs asked for
+
+
+@dataclass(frozen=True)
+class BuildPlan:
+    """What a dry run found out within its time."""
+
+    jobs: int  # processes of the build
+    checked: int  # scenes
+    redrawn: int  # of them, drawn more than once
+    warnings: list[dict[str, Any]]  # of the checked scenes and the config
+    cost: Estimate
+    waited: float  # for a sample, s
+    cut_short: bool  # fewer scenes were checked than usual
+
+
+def plan_build(config: Config, jobs: int | None, progress: Progress, seconds: float) -> BuildPlan:
+    """Check scenes and time samples, for so many seconds at most; nothing is written.
+
+    Args:
+        jobs: processes of the build; None for as many as pay.
+    """
+    start = perf_counter()
+    scenes, found = check_scenes(config, CHECK_SHARE * seconds, progress)
+    left = seconds - (perf_counter() - start)
+    cost = estimate(config, jobs or 1, left, progress)
+    if jobs is None:
+        jobs = _paid_jobs(len(Rows.of(config)), cost.seconds_per_sample or PAYS_S)
+        cost = replace(cost, seconds=_build_seconds(cost, jobs))
+    return BuildPlan(
+        jobs,
+        len(scenes),
+        sum(scene.attempt > 0 for scene in scenes),
+        found,
+        cost,
+        left,
+        len(scenes) < min(CHECKED_SCENES, cost.samples),
+    )
 
 
 def jobs_that_pay(config: Config) -> int:
     """Processes for a build: one a core, but each with more to do than its start takes."""
     rows, seconds = Rows.of(config), PAYS_S  # of a sample
     if cores() > 1:
-        with suppress(RadharError):  # which the build will tell
+        with suppress(RadharError), time_limit(TRIAL_S):  # errors, which the build will tell
             plan, place = plan_images(config), rows[len(rows) // 2]
             for _ in range(2):  # the first imports
                 start = process_time()
@@ -52,43 +98,77 @@ def jobs_that_pay(config: Config) -> int:
                 seconds = process_time() - start
                 if seconds > PAYS_S:
                     break
-    return max(1, min(cores(), int(len(rows) * seconds / PAYS_S)))
+    return _paid_jobs(len(rows), seconds)
 
 
-def estimate(config: Config, jobs: int) -> Estimate:
-    """Time samples spread over the classes and scale up; nothing is written."""
+def _paid_jobs(samples: int, seconds: float) -> int:
+    """Processes that pay for samples of so many seconds each."""
+    return max(1, min(cores(), int(samples * seconds / PAYS_S)))
+
+
+class _Probe(NamedTuple):
+    """A sample that was made to be timed."""
+
+    sample: Synthesised
+    scene_values: Float  # [fields]
+    png_bytes: int
+    seconds: float
+
+
+def estimate(
+    config: Config, jobs: int, seconds: float = inf, progress: Progress = NO_PROGRESS
+) -> Estimate:
+    """Time samples spread over the classes and scale up; nothing is written.
+
+    Args:
+        seconds: no more samples are made when that time is over.
+        progress: is told of every sample.
+    """
     prepare_process()
     rows, plan, columns = Rows.of(config), plan_images(config), scene_fields.fields(config)
     table = colour_table(config.image.colour_map) if config.output.png else None
-    samples, values, png_bytes = [], [], 0
-    # Imports, tables and caches are not part of a sample.
-    synthesise(draw_valid_scene(config, *rows[0])[0], plan)
-    start = perf_counter()
-    for row in rows.spread(PROBES):
-        scene, _ = draw_valid_scene(config, *rows[row])
-        sample = synthesise(scene, plan)
-        samples.append(sample)
-        values.append(scene_fields.values(scene, columns, sample.error_db))
-        if table is not None:
-            level, images = config.output.png_level, sample.images.values()
-            png_bytes += sum(len(encode_png(one.levels, table, level)) for one in images)
-        if perf_counter() - start > PROBE_SECONDS:
-            break
-    done = len(samples)
-    flags = np.zeros(done, FLAG_TYPE)
-    shard = encode_shard(
-        config, identity_hash(identity(config)), 0, samples, np.stack(values), flags
-    )
-    per_sample = (perf_counter() - start) / done
+    places, probes = rows.scattered(PROBES), list[_Probe]()
+    progress.stage("timing samples", len(places), 0)
+    with time_limit(seconds):
+        # Imports, tables and caches are not part of a sample: the first counts if it is the only.
+        for number, row in enumerate([places[0], *places]):
+            start = perf_counter()
+            scene, _ = draw_valid_scene(config, *rows[row])
+            sample, png_bytes = synthesise(scene, plan), 0
+            values = scene_fields.values(scene, columns, sample.error_db)
+            if table is not None:
+                level, images = config.output.png_level, sample.images.values()
+                png_bytes = sum(len(encode_png(one.levels, table, level)) for one in images)
+            probes.append(_Probe(sample, values, png_bytes, perf_counter() - start))
+            progress.advance(int(number > 0))
+            if sum(probe.seconds for probe in probes[1:]) > PROBE_SECONDS:
+                break
+    probes = probes[1:] or probes
+    done = len(probes)
+    if not probes:
+        return Estimate(len(rows), 0, None, None, None, None)
+    start, flags = perf_counter(), np.zeros(done, FLAG_TYPE)
+    samples, values_of = [one.sample for one in probes], np.stack([p.scene_values for p in probes])
+    whose = identity_hash(identity(config))
+    shard = encode_shard(config, whose, 0, samples, values_of, flags)
+    per_sample = (sum(probe.seconds for probe in probes) + perf_counter() - start) / done
     if config.output.png:
         per_sample += FILE_WRITE_S * len(config.maps)
-    workers = 1 if jobs == 1 else 1 + (jobs - 1) * PARALLEL_EFFICIENCY
-    seconds = FIXED_S + per_sample * len(rows) / workers + (WORKER_START_S if jobs > 1 else 0)
-    return Estimate(
+    cost = Estimate(
         samples=len(rows),
         probes=done,
         seconds_per_sample=per_sample,
         hdf5_bytes=len(shard) * len(rows) // done,
-        png_bytes=png_bytes * len(rows) // done,
-        seconds=seconds,
+        png_bytes=sum(probe.png_bytes for probe in probes) * len(rows) // done,
+        seconds=None,
     )
+    return replace(cost, seconds=_build_seconds(cost, jobs))
+
+
+def _build_seconds(cost: Estimate, jobs: int) -> float | None:
+    """Wall time of a build by so many processes."""
+    if cost.seconds_per_sample is None:
+        return None
+    workers = 1 if jobs == 1 else 1 + (jobs - 1) * PARALLEL_EFFICIENCY
+    work = cost.seconds_per_sample * cost.samples / workers
+    return FIXED_S + work + (WORKER_START_S if jobs > 1 else 0)

@@ -23,6 +23,14 @@ def write_whole(folder: Path, path: Path, data: bytes) -> None:
         unfinished.write_bytes(data)
 
 
+def write_result(folder: Path, path: Path, data: bytes) -> None:
+    """Write a file inside a folder that no run holds, atomically; it has no work folder."""
+    refuse_links(folder, path.parent)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(path) as unfinished:
+        unfinished.write_bytes(data)
+
+
 def unfinished_path(folder: Path) -> Path:
     """A name that no other process uses, on the same file system as the output."""
     return folder / WORK / "unfinished" / f"{os.getpid()}-{uuid.uuid4().hex}"

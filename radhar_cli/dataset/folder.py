@@ -29,7 +29,10 @@ def refuse_file(folder: Path) -> None:
 
 @contextmanager
 def folder_lock(folder: Path) -> Iterator[None]:
-    """Hold an output folder; a second run on it is refused. A dead run's lock is free at once."""
+    """Hold an output folder; a second run on it is refused. A dead run's lock is free at once.
+
+    Nothing unfinished is left in it at the end, also of runs that were killed before.
+    """
     refuse_file(folder)
     refuse_links(folder, folder / WORK)
     try:
@@ -40,7 +43,10 @@ def folder_lock(folder: Path) -> Iterator[None]:
     lock = FileLock(folder / WORK / "lock")
     try:
         with lock.acquire(timeout=0):
-            yield
+            try:
+                yield
+            finally:
+                remove_unfinished(folder)
     except Timeout:
         raise FolderError(
             f"{folder}: another run is writing here; wait for it or stop it"
@@ -76,7 +82,12 @@ def reserve(
         refuse_differences(folder, "data set", differences(old, new))
     else:
         _name(folder, new)
-    shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
+    remove_unfinished(folder)
+
+
+def remove_unfinished(folder: Path) -> None:
+    """Remove files that were not finished, in a folder that this process holds."""
+    shutil.rmtree(unfinished_path(folder).parent, ignore_errors=True)
 
 
 def refuse_foreign_files(
@@ -146,7 +157,7 @@ def clean_up(folder: Path) -> None:
     """Mark a folder as built (dataset.h5 may be damaged later); remove what only a build needs."""
     (folder / WORK / layout.BUILT).touch()
     _remove_batches(folder)
-    shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
+    remove_unfinished(folder)
     (folder / WORK / layout.IDENTITY).unlink(missing_ok=True)
 
 

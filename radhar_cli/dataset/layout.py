@@ -153,6 +153,13 @@ class Rows:
         count = min(count, len(self))
         return [(2 * place + 1) * len(self) // (2 * count) for place in range(count)]
 
+    def scattered(self, count: int) -> list[int]:
+        """As `spread`, in an order in which the first few are spread over the classes, too."""
+        rows = self.spread(count)
+        bits = len(rows).bit_length()  # places by their bits from right to left: each step halves
+        order = sorted(range(len(rows)), key=lambda place: int(f"{place:0{bits}b}"[::-1], 2))
+        return [rows[place] for place in order]
+
     def name(self, row: int) -> str:
         """A row's index within its class in digits, as many for all of a class: names sort."""
         activity, index = self[row]

@@ -27,6 +27,7 @@ from radhar_cli.dataset.untrusted_hdf5 import DIGESTS
 from radhar_cli.errors import FolderError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.progress import NO_PROGRESS, Progress
 from radhar_cli.worker_process import prepare_process
 
 # Of a mask's pixels that may differ under other versions of the libraries.
@@ -50,7 +51,9 @@ class Verification:
     problems: list[str] = field(default_factory=list)  # everything that is wrong
 
 
-def verify(folder: Path, samples: int, motion: Path | None = None) -> Verification:
+def verify(
+    folder: Path, samples: int, motion: Path | None = None, progress: Progress = NO_PROGRESS
+) -> Verification:
     """Verify the data set in `folder` (or the dataset.h5 itself).
 
     Args:
@@ -58,6 +61,7 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
         samples: how many to synthesise anew, spread evenly over the rows.
         motion: folder of the motion files of its classes; None re-synthesises no sample of them: a
             stored config is not trusted to name files.
+        progress: is told of each checksum, sample and PNG file.
     """
     if motion is not None and not motion.is_dir():
         raise FolderError(f"{motion}: no such folder; should hold the motion files of the data set")
@@ -71,12 +75,12 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
             if stored[library] != here
         ]
         if _structure(data, report):
-            _checksums(data, report)
+            _checksums(data, report, progress)
             _attributes(data, report)
             if isinstance(data.config, Config):  # recordings may lie anywhere
-                _resynthesise(data, data.config, samples, report, motion)
+                _resynthesise(data, data.config, samples, report, motion, progress)
             if (beside / PNG).is_dir():
-                _pngs(data, beside, report)
+                _pngs(data, beside, report, progress)
             elif (beside / WORK).is_dir() and data.config.output.png:
                 report.problems.append(f"{PNG}: is missing; `radhar generate` makes it again")
             if (beside / WORK).is_dir():
@@ -102,12 +106,14 @@ def _structure(data: Dataset, report: Verification) -> bool:
     return not report.problems
 
 
-def _checksums(data: Dataset, report: Verification) -> None:
+def _checksums(data: Dataset, report: Verification, progress: Progress) -> None:
+    progress.stage("checksums", len(data) * len(data.large), 0, "checksum")
     for name, chunks in data.large.items():
         stored = data.sha256[name][:]
         for row in range(len(data)):
             if hashlib.sha256(chunks[row].tobytes()).hexdigest().encode() != stored[row]:
                 report.problems.append(f"/{name}[{row}]: does not match its checksum")
+            progress.advance(1)
     stored_digests = _mapping(data, "columns_sha256", report)
     for name, column in data.small.items():
         if name.startswith(checksum_of("")):
@@ -152,7 +158,12 @@ def _config_and_table(data: Dataset, folder: Path, report: Verification) -> None
 
 
 def _resynthesise(
-    data: Dataset, config: Config, samples: int, report: Verification, motion: Path | None
+    data: Dataset,
+    config: Config,
+    samples: int,
+    report: Verification,
+    motion: Path | None,
+    progress: Progress,
 ) -> None:
     config = config if motion is None else with_folder(config, motion)
     rows, plan = Rows.of(config), plan_images(config)
@@ -160,7 +171,10 @@ def _resynthesise(
     scene_values = {field.name: data.scene[field.name][:] for field in columns}
     entropies = {name: data.entropy(name) for name in data.maps}
     allowed, masks = 1 if report.other_versions else 0, config.image.kind == "cfar"
-    for row in rows.spread(samples):
+    again = rows.spread(samples)
+    progress.stage("samples again", len(again), 0)
+    for number, row in enumerate(again):
+        progress.advance(int(number > 0))
         activity, index = rows[row]
         if motion is None and config.files_of(activity) is not None:
             report.unmade += 1
@@ -220,7 +234,7 @@ def _same(there: NDArray[Any], right: NDArray[Any], exactly: bool) -> bool:
     return near and np.array_equal(np.isnan(there), gone)
 
 
-def _pngs(data: Dataset, folder: Path, report: Verification) -> None:
+def _pngs(data: Dataset, folder: Path, report: Verification, progress: Progress) -> None:
     config = data.config
     rows, split = Rows.of(config), split_rows(config)
     table = colour_table(config.image.colour_map)
@@ -234,11 +248,13 @@ def _pngs(data: Dataset, folder: Path, report: Verification) -> None:
             report.problems.append(f"{path}: is missing; `radhar generate` makes it again")
         except FolderError as error:
             report.problems.append(str(error))
+    progress.stage("PNG files", len(data) * len(config.maps), 0, "file")
     for name in config.maps:
         if not (folder / PNG / name).is_dir():
             report.problems.append(f"{PNG}/{name}: is missing")
             continue
         for row in range(len(data)):
+            progress.advance(1)
             levels = data.maps[name][row]
             path = rows.png_path(name, split[row], row)
             try:

@@ -3,6 +3,7 @@
 import logging
 import os
 import signal
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -13,7 +14,7 @@ from typing import Any, TypeVar
 from radhar_cli.activity import Activity, know_activities, own_activities
 from radhar_cli.errors import MachineError, UnfinishedError
 from radhar_cli.registry import know_products, own_products
-from radhar_cli.worker_process import prepare_process
+from radhar_cli.worker_process import end_with, prepare_process
 
 T = TypeVar("T")
 NO_PARENT = 0  # parent of workers on other machines, which end with their scheduler
@@ -53,8 +54,15 @@ def run_tasks(
     )
     try:
         with _interrupts_blocked():
-            results = pool(delayed(_with_own)(own, function, *task) for task in tasks)
-        yield from results
+            here = os.getpid()
+            results = pool(delayed(_with_parent)(here, own, function, *task) for task in tasks)
+        try:
+            for result in results:  # noqa: UP028 - `yield from` would close it before, and warn
+                yield result
+        finally:
+            with warnings.catch_warnings():  # of joblib: that tasks under way are cancelled
+                warnings.simplefilter("ignore", UserWarning)
+                results.close()
     except UnboundLocalError as error:  # of loky, on its way out where it finds no more files
         raise error.__context__ or error from None
     except TerminatedWorkerError:
@@ -71,6 +79,12 @@ def _with_own(
     know_activities(own[0])
     know_products(own[1])
     return function(*task)
+
+
+def _with_parent(parent_pid: int, *task: Any) -> Any:
+    """As `_with_own`, in a worker on this machine, which ends with its parent."""
+    end_with(parent_pid)
+    return _with_own(*task)
 
 
 def _run_on(client: Any, tasks: Iterable[tuple[Any, ...]]) -> Iterator[Any]:

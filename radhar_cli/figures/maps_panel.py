@@ -65,8 +65,9 @@ def of_simulation(simulation: Simulation, overlay: bool) -> Shown:
 def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
     """Draw one map with its axes and its entropy."""
     image, power_map = shown.image, shown.maps[name]
-    is_range = power_map.rows.name == "range"
-    unit = 1.0 if is_range or power_map.rows.values.max() < 2000 else 1e3
+    rows, columns = power_map.rows, power_map.columns
+    is_range, is_doppler = rows.name == "range", rows.name == "frequency"
+    unit = 1e3 if is_doppler and rows.values.max() >= 2000 else 1.0
     left, right, low, high = power_map.extent
     look: dict[str, Any] = {"cmap": image.colour_map, "origin": "lower", "aspect": "auto"}
     if power_map.real is None:
@@ -79,13 +80,15 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
     cells = columns_that_show(cells)
     extent = (left, right, low / unit, high / unit)
     drawn = axes.imshow(cells, extent=extent, interpolation="antialiased", **look)
-    axes.set_title(f"{TITLES[name]}   {power_map.entropy:.2f} bit", fontsize=9)
+    axes.set_title(f"{TITLES.get(name, name)}   {power_map.entropy:.2f} bit", fontsize=9)
     axes.set_xlim(left, right)
-    axes.set_xlabel("time (s)", fontsize=8)
+    axes.set_xlabel(f"{columns.name} ({columns.unit})", fontsize=8)
     axes.tick_params(labelsize=7)
     if is_range:
         axes.set_ylabel("range (m)", fontsize=8)
         axes.set_ylim(0, min(high, shown.farthest))
+    elif not is_doppler:
+        axes.set_ylabel(f"{rows.name} ({rows.unit})", fontsize=8)
     else:
         axes.set_ylabel("Doppler (kHz)" if unit > 1 else "Doppler (Hz)", fontsize=8)
         speed = SPEED_OF_LIGHT / (2 * shown.f0) * unit
@@ -93,7 +96,7 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
         second = axes.secondary_yaxis("right", functions=scale)
         second.set_ylabel("approaching (m/s)", fontsize=8)
         second.tick_params(labelsize=7)
-    if shown.over is not None:
+    if shown.over is not None and columns.name == "time":
         shown.over(axes, name, unit)
     return drawn
 
@@ -110,7 +113,7 @@ def columns_that_show(cells: Float) -> Float:
 
 def _draw_truth(simulation: Simulation, axes: Axes, map_name: str, unit: float) -> None:
     """Curves of everybody's true Doppler, folded into +-PRF/2 as the map is."""
-    if map_name == "rtm":
+    if simulation.maps[map_name].rows.name != "frequency":
         return
     truth, prf = simulation.truth, simulation.waveform.prf
     joint, names = simulation.joint, simulation.motion.names
@@ -134,7 +137,7 @@ def folded(doppler: Float, prf: float) -> Float:
 
 def draw_maps(shown: Shown, path: Path) -> None:
     """Write maps.png: the maps that were computed, one colour bar in dB."""
-    names = [name for name in TITLES if name in shown.maps]
+    names = [name for name in dict.fromkeys((*TITLES, *shown.maps)) if name in shown.maps]
     rows = 1 if len(names) <= ONE_ROW else 2
     columns = -(-len(names) // rows)
     figure = page(max(11.0, 3.7 * columns + 1), 4.1 * rows, apart=0.12)

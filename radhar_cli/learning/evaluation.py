@@ -25,6 +25,7 @@ from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.models.build import features_and_logits
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
+from radhar_cli.progress import NO_PROGRESS, Progress
 
 WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
 PREDICT_BATCH = 32
@@ -158,9 +159,13 @@ def predict(
     rows: Index,
     device: torch.device,
     batch: int,
+    progress: Progress = NO_PROGRESS,
 ) -> Predictions:
     """Predictions of a model for rows of a labelled set."""
-    batches = list(predict_batches(model, metadata, images.pixels, rows, device, batch))
+    batches = []
+    for found in predict_batches(model, metadata, images.pixels, rows, device, batch):
+        batches.append(found)
+        progress.advance(len(found[0]))
     return Predictions(
         images=images,
         rows=rows,

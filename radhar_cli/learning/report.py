@@ -27,7 +27,7 @@ from radhar_cli.learning.single_result import (
     open_run,
 )
 from radhar_cli.learning.targets import LOSSES, SCORES
-from radhar_cli.progress import Messages
+from radhar_cli.progress import Progress
 
 NETWORK = ("model", "parameters", "multiply_adds", "best_epoch")
 
@@ -37,7 +37,7 @@ def evaluate(
     data: Sequence[Path],
     options: EvalOptions,
     device: torch.device,
-    progress: Messages,
+    progress: Progress,
 ) -> Report:
     """Evaluate every run on every data set."""
     opened = [open_run(name, path, device) for name, path in _named(runs).items()]
@@ -85,7 +85,9 @@ def evaluate(
             stem = "" if one else f"_{run.name}__{data_name}"
             eval_set = eval_sets[run.name, data_name]
             report.section(f"{run.name} on {data_name}, {eval_set.split}")
-            numbers = evaluate_one(report, run, data_name, eval_set, stem, options, device)
+            numbers = evaluate_one(
+                report, run, data_name, eval_set, stem, options, device, progress
+            )
             results[data_name] = numbers
             say(f"  {data_name}, {numbers['split']}: {_found(numbers)}")
             if "accuracy" in numbers:

@@ -8,7 +8,7 @@ from typing import Any
 
 from jinja2 import Environment
 
-from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.files import write_result
 from radhar_cli.learning.report_folder import csv_text, write_report
 
 PAGE = "report.html"
@@ -127,7 +127,7 @@ class Report:
         page = Environment(autoescape=True).from_string(_PAGE)
         shown = [section for section in self.sections if section.parts]
         text = page.render(title=self.title, about=self.about, sections=shown)
-        write_whole(folder, folder / PAGE, text.encode("utf-8", "backslashreplace"))
+        write_result(folder, folder / PAGE, text.encode("utf-8", "backslashreplace"))
         write_report(folder, files, self.numbers)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.files import write_result
 from radhar_cli.errors import FolderError
 from radhar_cli.plain_json import plain
 from radhar_cli.untrusted import read_json
@@ -25,9 +25,9 @@ def write_report(folder: Path, files: Mapping[str, bytes], numbers: dict[str, An
     for name in set(ours) - set(files):
         (folder / name).unlink(missing_ok=True)
     for name, content in files.items():
-        write_whole(folder, folder / name, content)
+        write_result(folder, folder / name, content)
     text = json.dumps(plain({**numbers, "files": sorted(files)}), indent=2) + "\n"
-    write_whole(folder, folder / NUMBERS, text.encode())
+    write_result(folder, folder / NUMBERS, text.encode())
 
 
 def csv_text(header: Sequence[object], rows: Iterable[Iterable[object]]) -> str:

@@ -35,6 +35,7 @@ from radhar_cli.learning.run_folder import (
     read_trained_on,
 )
 from radhar_cli.learning.skeleton_result import evaluate_skeletons, found_and_true
+from radhar_cli.progress import Progress
 
 MIN_EMBEDDED = 2
 MAX_MISTAKES, FEW = 12, 4  # images that are shown
@@ -116,11 +117,13 @@ def evaluate_one(
     stem: str,
     options: EvalOptions,
     device: torch.device,
+    progress: Progress,
 ) -> dict[str, Any]:
     """Numbers of a run on a data set; its figures and tables, named with `stem`, go to `report`."""
     images, rows, split = eval_set.images, eval_set.rows, eval_set.split
     title = f"{run.name} on {data_name}, {split}"
-    asked = (run.model, run.metadata, images, rows, device, options.batch)
+    asked = (run.model, run.metadata, images, rows, device, options.batch, progress)
+    progress.stage(title, len(rows), 0, "image" if images.kind in ("rgb", "gray") else "sequence")
     about = {
         "seen_in_training": seen_in_training(run, images, rows),
         "split": split,

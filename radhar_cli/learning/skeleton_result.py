@@ -14,6 +14,7 @@ from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_folder import RunMetadata
 from radhar_cli.learning.targets import NEAR_M
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.progress import NO_PROGRESS, Progress
 
 AXES = ("ahead", "left", "up")
 DISTANCE = "mean distance between found and true joint (cm)"
@@ -27,11 +28,15 @@ def found_and_true(
     rows: Index,
     device: torch.device,
     batch: int,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Float, Float]:
     """Joints that a network finds, and those that are there, [N, T, joint, 3] in m."""
-    found = joint_batches(model, metadata, images.pixels, rows, device, batch)
+    found = list[Float]()
+    for joints in joint_batches(model, metadata, images.pixels, rows, device, batch):
+        found.append(joints)
+        progress.advance(len(joints))
     true = [images.skeletons[int(row)] for row in rows]
-    return np.concatenate(list(found)), np.stack(true)
+    return np.concatenate(found), np.stack(true)
 
 
 def evaluate_skeletons(

@@ -12,6 +12,7 @@ from radhar_cli.pipeline import physics
 from radhar_cli.pipeline.plan import Plan, Product, plan
 from radhar_cli.pipeline.products import products, products_of_signals
 from radhar_cli.processing.signal import Signal
+from radhar_cli.progress import NO_PROGRESS, Progress
 from radhar_cli.scene import Scene
 
 
@@ -26,21 +27,31 @@ class Results:
         return self.products[name]
 
 
-def run(steps: Plan, given: Mapping[str, Any]) -> Results:
-    """Make the products of a plan from those that are given."""
+def run(steps: Plan, given: Mapping[str, Any], progress: Progress = NO_PROGRESS) -> Results:
+    """Make the products of a plan from those that are given.
+
+    Args:
+        progress: is told of every product that is made.
+    """
     there, recording = dict(given), Results()
+    progress.stage("synthesis", len(steps.products), 0, "step")
     for product in steps.products:
         start = process_time()
         there[product.name] = product.make(*(there[need] for need in product.needs))
         recording.seconds[product.name] = process_time() - start
         for name in steps.released_after[product.name]:
             del there[name]
+        progress.advance(1)
     recording.products = {name: there[name] for name in steps.asked}
     return recording
 
 
 def record(
-    scene: Scene, asked: Iterable[str], more: Iterable[Product] = (), **given: Any
+    scene: Scene,
+    asked: Iterable[str],
+    more: Iterable[Product] = (),
+    progress: Progress = NO_PROGRESS,
+    **given: Any,
 ) -> Results:
     """Make products of a scene, by name (`radhar_cli.pipeline.products`).
 
@@ -50,7 +61,7 @@ def record(
     """
     table = products(scene.config) | {product.name: product for product in more}
     given = {"scene": scene, **given}
-    return run(plan(table, asked, given), given)
+    return run(plan(table, asked, given), given, progress)
 
 
 def process(

@@ -64,7 +64,7 @@ MAX_ATTEMPTS = 1000
 # Draws after which there are no more where none comes near, without and with lists to choose from.
 FAR_DRAWS, FAR_CHOICES = 50, 200
 TORSOS_APART_M = 0.5
-ROOM = "their motion.range_m and motion.cross_range_m should leave room"
+CROWDED = "their motion.range_m and motion.cross_range_m should leave room"
 CHUNK = 65536
 GRID_CHUNK = 16384
 FLOOR_MARGIN_M = 1e-3  # for rounding, and the paper's ankles in the floor
@@ -136,6 +136,7 @@ class SceneCheck:
     # half-band (HALF_BAND), m; 0 where none is
     inside_wall: float = 0.0
     beyond_band: float = 0.0
+    outside: tuple[float, str] = (0.0, "")  # how far somebody leaves room.box_m, m, and where
 
     @property
     def too_close(self) -> bool:
@@ -151,9 +152,12 @@ class SceneCheck:
                 f"({ANTENNA_KEYS[c.antenna]}) at t = {c.time:.3f} s; "
                 f"the model holds from {MIN_DISTANCE_M * 100:g} cm on"
             )
-        for flag in (Flags.WALL, Flags.RADAR):
-            if flag in self.flags:
-                return _WORDING[flag]
+        if self.outside[1]:
+            return f"the body leaves room.box_m, at {self.outside[1]}"
+        if Flags.WALL in self.flags:
+            return "the body passes through the wall"
+        if Flags.RADAR in self.flags:
+            return _WORDING[Flags.RADAR]
         if Flags.HALF_BAND in self.flags:
             return "a scatterer leaves the range half-band"
         return None
@@ -185,7 +189,8 @@ def _check_people(scene: Scene, people: tuple[Person, ...]) -> SceneCheck:
         p, start, antennas = room.positions(np.zeros(1)), np.zeros(1), antennas_of(scene)
         legs = leg(p, antennas.tx), leg(p, antennas.rx)
         closest = min(closest, _nearest(room.names, start, *legs))
-    return replace(checks[0], closest=closest, flags=flags)
+    outside = max(check.outside for check in checks)
+    return replace(checks[0], closest=closest, flags=flags, outside=outside)
 
 
 def _checked(scene: Scene, person: Person) -> SceneCheck:
@@ -204,7 +209,7 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     flags = Flags.RUNS_OUT if getattr(motion, "stops", False) else Flags(0)
     flags |= Flags.SEAM if getattr(motion, "slides", False) else Flags(0)
     near, c = list[Approach](), scene.config
-    inside_wall = beyond_band = 0.0
+    inside_wall, beyond_band, outside = 0.0, 0.0, (0.0, "")
     shared = not c.people and c.room.faces is None and c.radar.cfg is None
     ahead = list[Float]()
     for asked, places, pulses in _grid(motion, w, shared):
@@ -224,8 +229,8 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
             deepest = float(wall.depth(p).max())
             if deepest >= 0:
                 flags, inside_wall = flags | Flags.WALL, max(inside_wall, deepest)
-        if box is not None and (outside := box.beyond(p)) > 0:
-            flags, inside_wall = flags | Flags.WALL, max(inside_wall, outside)
+        if box is not None:
+            outside = max(outside, box.farthest_outside(p))
         if (beyond := tau.max() * SPEED_OF_LIGHT / 2 - w.half_band_range) >= 0:
             flags, beyond_band = flags | Flags.HALF_BAND, max(beyond_band, float(beyond))
         rate = np.abs(np.diff(tau)).max(axis=0, initial=0.0) / np.maximum(np.diff(t), 1e-300)
@@ -242,9 +247,10 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
             clear = (body.clearance(antenna, t) for antenna in (antennas.tx, antennas.rx))
             one = _nearest(tuple(segment.name for segment in body.segments), t, *clear)
             near.append(one._replace(distance=max(one.distance, 0.0)))
+    flags |= Flags.WALL if outside[1] else Flags(0)
     if min(part.min() for part in ahead) < -BEHIND_M and ahead[0][0] > 0:
         flags |= Flags.BEHIND
-    return SceneCheck(min(near), flags, inside_wall, beyond_band)
+    return SceneCheck(min(near), flags, max(inside_wall, outside[0]), beyond_band, outside)
 
 
 def _meets(torso: Float, top: Float, antennas: Antennas) -> bool:
@@ -350,7 +356,7 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
         misses.append(check.miss)
         if len(misses) == MAX_ATTEMPTS or config.on_invalid != "redraw" or hopeless(misses, draws):
             break
-    why, cure = f"{check.invalid}{_drawn(scene.people[0])}", _cure(config, check)
+    why, cure = f"{check.invalid}{_drawn(scene.people[0])}", _cure(scene.people[0], check)
     if config.on_invalid == "redraw":
         counted = "1 draw, and nothing is drawn again" if draws == 1 else f"{len(misses)} draws"
         raise SceneError(
@@ -387,7 +393,7 @@ def _with_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Fla
     """The scene of an own person who stays; others are drawn until they fit, one by one."""
     again = [0] * len(config.people)
     for number in range(1, len(config.people) + 1):
-        why: str | None = None
+        why, cure = None, CROWDED
         for again[number - 1] in range(MAX_PLACES):
             scene = draw_scene(config, scene.activity, scene.index, scene.attempt, tuple(again))
             person = next((one for one in scene.people if one.number == number), None)
@@ -396,15 +402,16 @@ def _with_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Fla
             check = _checked(scene, person)
             kept = config.on_invalid != "redraw" and not check.too_close
             why = None if kept and config.on_invalid == "keep" else check.invalid
+            cure = _leave_room(person, check) if why else CROWDED
             why = why and why + _drawn(person)
             if why is None and too_near(scene, number) is None:
                 flags |= check.flags & ~Flags.GATE  # which follows the sample's own person
                 break
             if why is not None and config.on_invalid != "redraw":
-                raise SceneError(f"{scene.name}: people.{number - 1}: {why}; {ROOM}")
+                raise SceneError(f"{scene.name}: people.{number - 1}: {why}; {cure}")
         else:
             why = f"people.{number - 1}: {why}" if why else _crowded(number)
-            raise SceneError(f"{scene.name}: {why} in {MAX_PLACES} draws; {ROOM}")
+            raise SceneError(f"{scene.name}: {why} in {MAX_PLACES} draws; {cure}")
     return scene, flags
 
 
@@ -431,8 +438,13 @@ def too_near(scene: Scene, last: int | None = None) -> int | None:
     return None
 
 
+def _key_prefix(person: Person) -> str:
+    """What the keys of one of the people begin with in the config."""
+    return f"people.{person.number - 1}." if person.number else ""
+
+
 def _drawn(person: Person) -> str:
-    whose = f"people.{person.number - 1}." if person.number else ""
+    whose = _key_prefix(person)
     drawn = {one: getattr(person.motion, one) for one in ("range_m", "cross_range_m")}
     shown = (f"{whose}motion.{key} = {one:.4g}" for key, one in drawn.items() if one is not None)
     return f", with {', '.join(shown)}"
@@ -442,8 +454,23 @@ def _crowded(number: int) -> str:
     return f"people.{number - 1} comes within {TORSOS_APART_M} m of another person"
 
 
-def _cure(config: Config, check: SceneCheck) -> str:
+def _leave_room(person: Person, check: SceneCheck) -> str:
+    """What would give one of the people room to move."""
+    whose = _key_prefix(person)
+    keys = f"{whose}motion.range_m and {whose}motion.cross_range_m"
+    if not check.outside[1]:
+        return f"{keys} should leave room"
+    human = person.number or person.config.motion.model == "human"
+    turns = human and "walking" in person.activity.movements and not person.motion.lane_m
+    turn = f"{whose}motion.lane_m lets people turn round; " if turns else ""
+    return f"{turn}{keys}, room.box_m and duration_s should leave room"
+
+
+def _cure(person: Person, check: SceneCheck) -> str:
     """What would make another scene of this one."""
+    config = person.config
+    if check.outside[1] and not check.too_close:
+        return _leave_room(person, check)
     if check.too_close and check.closest.joint.startswith("reflector "):
         return "room.reflectors should be elsewhere"
     if check.flags & Flags.HALF_BAND and config.radar.cfg is not None and not check.too_close:
@@ -547,11 +574,13 @@ def scene_warnings(scene: Scene) -> list[str]:
     """Check one scene, which keeps 5 cm from antennas, and return what to warn of, in words."""
     number = too_near(scene)
     if number is not None:
-        raise SceneError(f"{scene.name}: {_crowded(number)}; {ROOM}")
+        raise SceneError(f"{scene.name}: {_crowded(number)}; {CROWDED}")
     check = check_scene(scene)
     if check.too_close:
-        raise SceneError(f"{scene.name}: {check.invalid}; {_cure(scene.config, check)}")
+        raise SceneError(f"{scene.name}: {check.invalid}; {_cure(scene.people[0], check)}")
     outside = [_words(flag, scene.config) for flag in Flags if flag in check.flags]
+    if check.outside[1] and check.invalid is not None:
+        outside[0] = check.invalid
     return (
         outside + config_warnings(scene.config) + timing_warnings(scene.config, (scene.activity,))
     )

@@ -34,14 +34,26 @@ class Box(NamedTuple):
         ends = {"front": front, "back": back, "right": right, "left": left}
         return {**ends, "floor": 0.0, "ceiling": self.height}
 
-    def beyond(self, p: Float) -> float:
-        """How far the farthest of positions p [3, ...] (m) is beyond a wall or the ceiling, m.
+    def farthest_outside(self, p: Float) -> tuple[float, str]:
+        """How far positions p [3, ...] (m) go beyond the walls or the ceiling, m, and where.
 
-        It is 0 or less where all are inside.
+        Returns:
+            Distance of the farthest, 0 where all are inside; the place in words.
         """
         x, y, z = p
-        ends = (self.x[0] - x, x - self.x[1], self.y[0] - y, y - self.y[1], z - self.height)
-        return max(float(one.max()) for one in ends)
+        ends = [
+            ("x", float(x.max()), self.x[1], 1),
+            ("x", float(x.min()), self.x[0], -1),
+            ("y", float(y.max()), self.y[1], 1),
+            ("y", float(y.min()), self.y[0], -1),
+            ("z", float(z.max()), self.height, 1),
+        ]
+        outside = [
+            (sign * (at - end), f"{axis} = {at:.3g} m, beyond {end:g} m")
+            for axis, at, end, sign in ends
+        ]
+        farthest = max(outside)
+        return farthest if farthest[0] > 0 else (0.0, "")
 
 
 class Face(NamedTuple):

@@ -96,7 +96,7 @@ def _write_person(group: h5py.Group, truth: Truth, motion: Motion) -> None:
 
 
 def describe(simulation: Simulation) -> dict[str, Any]:
-    """Every parameter with its unit, warnings, entropies and times, as plain values."""
+    """Every parameter with its unit, warnings and entropies, as plain values."""
     waveform, scene, kind = simulation.waveform, simulation.scene, simulation.config.engine.kind
     fallback = kind == "direct" and simulation.accuracy is None
     return {
@@ -119,7 +119,6 @@ def describe(simulation: Simulation) -> dict[str, Any]:
         },
         "warnings": simulation.warnings,
         "entropy_bits": {name: one.entropy for name, one in simulation.maps.items()},
-        "seconds": simulation.seconds,
     }
 
 

@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from radhar_cli.processing.look import Look, ProfileSamples
 from radhar_cli.processing.points import Cloud
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, shown_pulses
+from radhar_cli.progress import NO_PROGRESS, Progress
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.layers import Layers
@@ -43,6 +44,7 @@ from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.scene import Person, Scene, draw_scene, nominal_scene
 from radhar_cli.simulation.truth import PathTruth, Truth, path_truth, truth
 
+ALL: Literal["all"] = "all"  # instead of names of maps
 # {what may be asked for of a board: the products behind it}
 FRAMES = {
     **{name: (name,) for name in FRAME_MAPS},
@@ -128,20 +130,23 @@ def simulate(
     index: int = 0,
     nominal: bool = False,
     joint: str | None = None,
-    maps: tuple[str, ...] | None = None,
+    maps: tuple[str, ...] | Literal["all"] | None = None,
     raw: bool = False,
+    progress: Progress = NO_PROGRESS,
 ) -> Simulation:
     """Simulate one sample of one activity.
 
     Args:
-        config: ranges are drawn from it; `maps`, image and split are not used. Or its path.
+        config: ranges are drawn from it; image and split are not used. Or its path.
         activity: slug, label or Activity; None where the config has but one.
         seed: instead of the config's.
         index: number of the sample within its class.
         nominal: use the middle of every range instead of random draws.
         joint: keep only this scatterer of the sample's main person.
-        maps: which to compute; None for all that the config allows.
+        maps: which to compute; None for those of the config, "all" for every map that its radar
+            makes, and the cube of a board.
         raw: compute the raw beat matrix too, static returns included.
+        progress: is told of every product that is made.
 
     Raises:
         ConfigError: unknown activity or joint, a map that there cannot be, or as `load_config`.
@@ -151,9 +156,8 @@ def simulate(
     """
     config = as_config(config)
     activity = activity_of(activity, config)
-    possible = possible_maps(config)
-    fitting = tuple(name for name in possible if not problems_of_maps(config, (name,)))
-    maps = fitting if maps is None else maps
+    fitting = _fitting_maps(config)
+    maps = config.maps if maps is None else fitting if maps == ALL else maps
     if wrong := problems_of_maps(config, maps):
         lines = (f"{one.key} = {json.dumps(one.value, default=str)}: {one.right}" for one in wrong)
         raise ConfigError("\n".join(dict.fromkeys(lines)))
@@ -173,7 +177,8 @@ def simulate(
     asked += ["accuracy"] if config.engine.kind == "direct" else []
     asked += ["raw_echo"] if raw and not board else []
     more = [RAW_PROFILES if config.radar.waveform == "impulse" else RAW_ECHO]
-    recorded = record(scene, asked, more, motions=(kept, *(others if joint is None else ())))
+    motions = (kept, *(others if joint is None else ()))
+    recorded = record(scene, asked, more, progress, motions=motions)
     radar = {name: recorded[name] for name in ("antennas", "wall", "waveform")}
     accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):
@@ -233,9 +238,21 @@ def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> S
     return draw_scene(config, activity, index)
 
 
-def map_names(chosen: list[str]) -> tuple[str, ...]:
-    """The maps of these names, in our order; ConfigError of an unknown one."""
-    names, known = [name.strip() for name in chosen], (*MAP_NAMES, *FRAMES)
+def _fitting_maps(config: Config) -> tuple[str, ...]:
+    """The maps that the radar of a config makes with its processing."""
+    return tuple(one for one in possible_maps(config) if not problems_of_maps(config, (one,)))
+
+
+def map_names(chosen: list[str], config: Config) -> tuple[str, ...]:
+    """The maps of these names, in our order; `all` are those that the radar makes.
+
+    Raises:
+        ConfigError: there is no map of that name.
+    """
+    if [name.strip() for name in chosen] == [ALL]:
+        return _fitting_maps(config)
+    names = [name.strip() for name in chosen]
+    known = dict.fromkeys((*MAP_NAMES, *FRAMES, *config.maps))  # products of one's own, too
     for name in names:
         if name not in known:
             hint = did_you_mean(name, known, "there are " + ", ".join(known))

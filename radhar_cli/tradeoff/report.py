@@ -6,11 +6,11 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
-from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.files import write_result
 from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.tradeoff.study import Record
 
-CSV, JSON, TEXT = "tradeoff.csv", "tradeoff.json", "tradeoff.md"
+FILES = CSV, JSON, TEXT = "tradeoff.csv", "tradeoff.json", "tradeoff.md"
 ENGINES = ("budget", "precision", "engine")
 COLUMNS = {
     "setting": "{setting}{marked}",
@@ -37,7 +37,7 @@ def write_report(
         TEXT: markdown(title, command, rows, conditions).encode(),
     }
     for name, data in files.items():
-        write_whole(folder, folder / name, data)
+        write_result(folder, folder / name, data)
     return [folder / name for name in files]
 
 

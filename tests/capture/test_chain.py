@@ -63,7 +63,7 @@ def test_a_simulated_recording_gives_the_maps_of_its_scene(
 ) -> None:
     """But for rounding; compensation and gate go by the track that was found, not by the truth."""
     config = config_of(tmp_path, *overrides)
-    scene = simulate(config, seed=3, raw=True)
+    scene = simulate(config, seed=3, raw=True, maps="all")
     assert scene.beat is not None
     write_simulated(tmp_path / "r.h5", scene.beat[None], scene.waveform, Label(label="walking"))
     names = possible_maps(config)
@@ -105,17 +105,18 @@ def test_radars_without_chirps_are_recorded_too(
 ) -> None:
     """CW as slow time, impulses as range profiles; real samples are stored as such."""
     config = config_of(tmp_path, "duration_s=1", "maps=[stft]", *overrides)
-    command = ("simulate", tmp_path / "scene.yaml", "--raw", "--no-figures", "-o", tmp_path)
+    command = ("simulate", tmp_path / "scene.yaml", "--raw", "--no-figures")
+    command = (*command, "--maps", "all", "-o", tmp_path / "out")
     sets = [word for one in ("duration_s=1", "maps=[stft]", *overrides) for word in ("--set", one)]
     done = radhar(*command, *sets, "--seed", 3)
     assert done.returncode == 0, done.stderr
-    with Recording(tmp_path / "recording.h5") as recording:
+    with Recording(tmp_path / "out/recording.h5") as recording:
         assert recording.info.holds == holds
         assert recording.samples.parts == (2 if CW in overrides else 1)
         static = recording.beat(0, 8).mean(axis=2)
     names = [name for name in possible_maps(config) if "compensated" not in name]
-    found = processed(tmp_path / "recording.h5", config, *names).maps
-    with h5py.File(tmp_path / "scene.h5") as scene:
+    found = processed(tmp_path / "out/recording.h5", config, *names).maps
+    with h5py.File(tmp_path / "out/scene.h5") as scene:
         for name in names:
             right, rows = scene[f"maps/{name}"][:], found[name].rows
             assert np.allclose(rows.values, scene[f"axes/{name}/{rows.name}"][:])

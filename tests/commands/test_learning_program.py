@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+import shutil
 
 import pytest
 from command_line import ok, radhar
@@ -42,6 +43,24 @@ def test_eval_writes_its_report_into_the_run_folder(place):
     assert json.loads((place / "run/eval/report.json").read_text())["split"] == "train"
     assert "12 of these 12 images" in done.stderr
     assert "were trained on" in (place / "run/eval/report.html").read_text()
+
+
+def test_eval_replaces_the_report_of_other_data_only_if_it_is_told_to(place):
+    """The same command again is the same report; another data set or split is not."""
+    out, other = place / "report", place / "other"
+    shutil.copytree(place / "tree", other)
+    again = ("eval", place / "run", place / "tree", "-o", out)
+    ok(*again)
+    before = (out / "report.json").read_text()
+    ok(*again)
+    for more in ((place / "run", other), (place / "run", place / "tree", "--split", "train")):
+        refused = radhar("eval", *more, "-o", out)
+        assert refused.returncode == 2
+        assert f"{out}: holds another report; --overwrite replaces it" in refused.stderr
+        assert json.loads((out / "report.json").read_text())["of"] == json.loads(before)["of"]
+    ok("eval", place / "run", other, "-o", out, "--overwrite")
+    assert json.loads((out / "report.json").read_text())["of"][1] == str(other)
+    assert not list(place.rglob("*unfinished*"))
 
 
 def test_predict_prints_the_class_and_probabilities(place):

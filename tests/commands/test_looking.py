@@ -4,8 +4,11 @@ import json
 from pathlib import Path
 from shutil import copytree
 
+import h5py
 from command_line import ok, radhar
 from small import small_config
+
+from radhar_cli.config.schema import MAP_NAMES
 
 
 def test_simulate_writes_everything(tmp_path):
@@ -85,7 +88,38 @@ def test_simulate_refuses_a_folder_of_other_things(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["small.yaml"]
     assert radhar(*once, out).returncode == 0
     (out / "notes.txt").touch()
-    assert radhar(*once, out).returncode == 0, "a folder with a scene may be used again"
+    assert radhar(*once, out, "--overwrite").returncode == 0, "a folder with a scene may be used"
+    assert (out / "notes.txt").exists()
+
+
+def test_simulate_replaces_nothing_unless_it_is_told_to(tmp_path):
+    """A recording of an earlier run is neither removed nor overwritten."""
+    scene = ("simulate", small_config(tmp_path), "-a", "S8", "--no-figures", "--maps", "rtm")
+    scene = (*scene, "-o", tmp_path / "out")
+    ok(*scene, "--raw")
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    assert "recording.h5" in before
+    for raw in ((), ("--raw",)):
+        refused = radhar(*scene, *raw, "--seed", 2)
+        assert refused.returncode == 2
+        assert "holds scene.h5, scene.json, scene.yaml, ... of an earlier run" in refused.stderr
+        assert "--overwrite replaces them" in refused.stderr
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+    ok(*scene, "--seed", 2, "--overwrite")
+    assert not (tmp_path / "out/recording.h5").exists(), "of another scene"
+
+
+def test_simulate_makes_the_maps_of_the_config_or_all(tmp_path):
+    scene = ("simulate", small_config(tmp_path), "-a", "S8", "--no-figures")
+    for name, more, maps in (
+        ("own", (), {"rtm", "stft", "fsst_compensated"}),
+        ("all", ("--maps", "all"), set(MAP_NAMES)),
+        ("one", ("--maps", "fsst"), {"fsst"}),
+    ):
+        ok(*scene, *more, "-o", tmp_path / name)
+        with h5py.File(tmp_path / name / "scene.h5") as file:
+            assert set(file["maps"]) == maps
+            assert file["slow_time/raw"].size
 
 
 def test_an_index_that_no_data_set_has_is_warned_of(tmp_path):

@@ -1,6 +1,7 @@
 """What every command prints: for people, for programs (--json), nothing (--quiet); its status."""
 
 import ast
+import contextlib
 import io
 import json
 import sys
@@ -10,10 +11,11 @@ from typing import Any
 import pytest
 from command_line import ROOT, ok, radhar
 from documented import KEYS
+from learning.patterns import BASE, split_tree
 from small import small_config
 
 from radhar_cli import commands
-from radhar_cli.cli import program
+from radhar_cli.cli import main, program
 from radhar_cli.commands import tell
 from radhar_cli.commands.terminal import BarProgress
 
@@ -223,3 +225,39 @@ def test_a_data_set_needs_no_base(tmp_path):
     stored = radhar("generate", out / "config.yaml", "-o", out)
     assert "is complete: 3 samples" in stored.stdout
     assert radhar("verify", out, "--samples", 1).returncode == 0
+
+
+def on_a_terminal(monkeypatch, *words):
+    """What a command writes to a terminal beside its results."""
+    screen = Screen(True)
+    monkeypatch.setattr(sys, "argv", ["radhar", *map(str, words)])
+    with (
+        contextlib.redirect_stderr(screen),
+        contextlib.redirect_stdout(io.StringIO()),
+        pytest.raises(SystemExit) as ended,
+    ):
+        main()
+    assert not ended.value.code, screen.getvalue()
+    return screen.getvalue()
+
+
+def test_long_commands_show_how_far_they_are(small_set, tmp_path, monkeypatch):
+    config = small_config(tmp_path)
+    commands = {
+        ("verify", small_set): ("checksum/s", "samples again", "sample/s", "PNG files", "file/s"),
+        ("simulate", config, "-a", "walking", "-o", tmp_path / "scene"): ("step/s", "frame/s"),
+        ("generate", config, "-o", tmp_path / "set", "--dry-run"): ("scene/s", "timing samples"),
+    }
+    for words, bars in commands.items():
+        shown = on_a_terminal(monkeypatch, *words)
+        assert [bar for bar in bars if bar not in shown] == [], words
+
+
+def test_learning_counts_batches_and_evaluation_images(tmp_path, monkeypatch):
+    data = split_tree(tmp_path / "tree")
+    (tmp_path / "train.json").write_text(json.dumps({**BASE, "epochs": 1}))
+    run = ("train", data, "-o", tmp_path / "run", "--config", tmp_path / "train.json")
+    training = on_a_terminal(monkeypatch, *run)
+    assert "batch/s" in training
+    assert "sample/s" not in training
+    assert "image/s" in on_a_terminal(monkeypatch, "eval", tmp_path / "run", data)

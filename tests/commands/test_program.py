@@ -57,7 +57,7 @@ def test_dry_run_refuses_what_the_build_would_refuse(tmp_path):
     dry, built = radhar(*command, "--dry-run"), radhar(*command, "--jobs", 1)
     assert (dry.returncode, dry.stdout) == (built.returncode, built.stdout) == (2, "")
     assert dry.stderr == built.stderr
-    assert "walking/0: a scatterer leaves the range half-band" in dry.stderr
+    assert ": a scatterer leaves the range half-band" in dry.stderr
     assert "on_invalid: redraw draws such scenes again" in dry.stderr
     kept = radhar(*command[:-1], "on_invalid=keep", "--dry-run", "--json")
     found = json.loads(kept.stdout)

@@ -15,7 +15,9 @@ from small import SMALL, small_config
 from typer.testing import CliRunner
 
 from radhar_cli.cli import main, program
+from radhar_cli.commands.tell import report
 from radhar_cli.commands.terminal import TrainingView
+from radhar_cli.dataset.folder import clean_up
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 TERMINATED = 143
@@ -71,31 +73,80 @@ def swallow_in_assembly(self, name, total, done):
         Swallowing()
 
 
-def swallow_at_the_end(*_):
-    Swallowing()
-
-
-@pytest.mark.parametrize(
-    ("place", "swallow", "finished"),
-    [
-        ("radhar_cli.commands.terminal.BarProgress.stage", swallow_in_assembly, False),
-        ("radhar_cli.dataset.build.clean_up", swallow_at_the_end, True),
-    ],
-)
-def test_a_signal_that_python_swallows_ends_the_build_all_the_same(
-    place, swallow, finished, tmp_path, monkeypatch, capsys
-):
+def test_a_signal_that_python_swallows_ends_the_build_all_the_same(tmp_path, monkeypatch, capsys):
     command = ["generate", small_config(tmp_path), "-o", tmp_path / "set", "--jobs", 1]
     with monkeypatch.context() as patched:
-        patched.setattr(place, swallow)
+        stage = "radhar_cli.commands.terminal.BarProgress.stage"
+        patched.setattr(stage, swallow_in_assembly)
         assert status(patched, *command) == TERMINATED
     printed = capsys.readouterr()
     assert (printed.out, "Traceback" in printed.err) == ("", False)
     assert printed.err.strip().splitlines()[-1] == (
         f"terminated: what is finished in {tmp_path / 'set'} is kept; the same command resumes"
     )
-    assert (tmp_path / "set/dataset.h5").exists() == finished
+    assert not (tmp_path / "set/dataset.h5").exists()
     assert not status(monkeypatch, *command)
+
+
+def swallow_after(function):
+    """That function, and at its end a signal that Python swallows."""
+
+    def swallowing(*given):
+        result = function(*given)
+        Swallowing()
+        return result
+
+    return swallowing
+
+
+def raise_after(function, number):
+    """That function, and at its end a signal."""
+
+    def raising(*given, **named):
+        result = function(*given, **named)
+        signal.raise_signal(number)
+        return result
+
+    return raising
+
+
+def test_a_signal_in_the_last_moment_of_a_build_says_that_it_is_complete(
+    tmp_path, monkeypatch, capsys
+):
+    command = ["generate", small_config(tmp_path), "-o", tmp_path / "set", "--jobs", 1]
+    with monkeypatch.context() as patched:
+        patched.setattr("radhar_cli.dataset.build.clean_up", swallow_after(clean_up))
+        assert not status(patched, *command)
+    printed = capsys.readouterr()
+    last = f"terminated after the end: {tmp_path / 'set'} is complete"
+    assert printed.err.strip().splitlines()[-1] == last
+    assert "9 new" in printed.out
+    assert not status(monkeypatch, *command)
+    assert "is complete: 9 samples; nothing to do" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("number", "how"), [(signal.SIGTERM, "terminated"), (signal.SIGINT, "interrupted")]
+)
+def test_a_signal_at_the_end_of_train_says_whether_the_run_is_complete(
+    number, how, tmp_path, monkeypatch, capsys
+):
+    data, run = split_tree(tmp_path / "tree"), tmp_path / "run"
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    (tmp_path / "train.json").write_text(json.dumps({**BASE, "epochs": 1}))
+    command = ["train", data, "-o", run, "--config", tmp_path / "train.json"]
+    summary = "radhar_cli.learning.training.write_run_summary"
+    with monkeypatch.context() as patched:  # after the last epoch, before its curves
+        patched.setattr(summary, raise_after(lambda *_: None, number))
+        assert status(patched, *command) == 128 + number
+    assert f"{how}: the last finished epoch in {run} is kept" in capsys.readouterr().err
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    with monkeypatch.context() as patched:  # when all is written
+        patched.setattr("radhar_cli.commands.train.report", raise_after(report, number))
+        assert not status(patched, *command)
+    printed = capsys.readouterr()
+    assert printed.err.strip().splitlines()[-1] == f"{how} after the end: {run} is complete"
+    assert "best epoch 1" in printed.out
 
 
 def wait_for(done, run):

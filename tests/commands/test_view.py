@@ -59,7 +59,7 @@ def test_simulate_writes_a_page_that_needs_nothing_else(tmp_path):
     assert len(text) < 4e6
     ok(*what, "-o", tmp_path / "again")
     assert (tmp_path / "again/view.html").read_text() == text
-    ok(*what[:4], "--no-figures", "--maps", "rtm", "-o", out)
+    ok(*what[:4], "--no-figures", "--maps", "rtm", "-o", out, "--overwrite")
     assert not page.exists(), "that of an earlier scene"
 
 

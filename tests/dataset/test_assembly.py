@@ -79,7 +79,7 @@ class AtAssembly(Listener):
         super().__init__()
         self.action = action
 
-    def stage(self, name: str, total: int, done: int) -> None:
+    def stage(self, name: str, total: int, done: int, unit: str | None = None) -> None:
         if name == "assembling":
             self.action()
 

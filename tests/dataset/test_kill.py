@@ -76,6 +76,7 @@ def test_builds_killed_at_random_moments_resume_to_the_same_bytes(trial, uninter
     last = subprocess.run(command(folder), capture_output=True, text=True)
     assert last.returncode == 0, last.stderr
     assert fingerprint(folder) == uninterrupted
+    assert not list(folder.rglob("*unfinished*"))
 
 
 def amid_the_work(folder):

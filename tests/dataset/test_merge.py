@@ -102,6 +102,12 @@ def test_damaged_shards_are_replaced_by_shards_of_other_rows(config, out, whole)
     assert merged(out) == whole
 
 
+def test_nothing_unfinished_is_left_in_a_part_or_the_whole(made, out):
+    assert not list(made.rglob("*unfinished*"))
+    merge(out, [], 1, Listener())
+    assert not list(out.rglob("*unfinished*"))
+
+
 def test_a_finished_part_makes_nothing_again(config, out):
     assert build(config, out, 1, Listener(), part=DataSetPart(4, 2)).already_complete
 

@@ -1,5 +1,6 @@
 """What the field adds next is added through public names, in about 20 lines each."""
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -380,6 +381,21 @@ def test_products_of_ones_own_reach_a_data_set(tmp_path: Path, engine: str, jobs
     plain = record(scene, ["stft"], [Product("receiver", (), tuple, "nothing")])["stft"]
     ours = record(scene, ["stft"])["stft"].power.sum(axis=1)
     assert ours.argmax() == len(plain.rows.values) // 2, "the offset is at zero Doppler"
+
+
+@pytest.mark.usefixtures("own")
+def test_a_map_of_ones_own_is_simulated_and_drawn(tmp_path: Path) -> None:
+    for product in (RAW_ECHO, OWN["a map"]):
+        registry.add_product(product)
+    config = tmp_path / "own.yaml"
+    document = CONFIG.model_dump(mode="json", exclude_defaults=True)
+    config.write_text(json.dumps(document | {"maps": ["stft", "range_speed"]}))
+    for name, more in (("own", ()), ("one", ("--maps", "range_speed"))):
+        out = tmp_path / name
+        command_line.ok("simulate", config, "-a", "walking", "-o", out, *more)
+        with h5py.File(out / "scene.h5") as file:
+            assert "range_speed" in file["maps"]
+        assert (out / "maps.png").exists()
 
 
 @pytest.mark.usefixtures("own")

@@ -1,5 +1,6 @@
 """Scenes outside the model are found before any echo: kept with a warning, redrawn or refused."""
 
+import re
 from math import radians
 from typing import Any
 
@@ -581,3 +582,40 @@ def test_who_walks_through_the_radar_is_drawn_again_or_refused() -> None:
         assert scene_numbers(scene)["motion.range_m"] > 4
     with pytest.raises(SceneError, match=r"a person walks through the radar: .*motion\.range_m"):
         draw_valid_scene(Config(**walker("human"), on_invalid="error"), WALKING, 0)
+
+
+ROOM = {"box_m": {"x": [0, 7], "y": [-3, 3]}, "faces": {"left": "concrete"}}
+STILL = {"range_m": 3.0, "angle_deg": 0.0}
+
+
+def room_error(**document):
+    base = {"room": ROOM, "activities": ["stationary"], "on_invalid": "error"}
+    config = Config.model_validate(base | document)
+    with pytest.raises(SceneError) as caught:
+        draw_valid_scene(config, config.chosen_activities[0], 0)
+    return str(caught.value)
+
+
+def test_another_person_who_walks_out_of_the_room_is_named_with_the_remedy():
+    """There is no wall, and the sample's own person stands still."""
+    walker = {"activity": "walking", "motion": {"range_m": 4.0, "angle_deg": 0, "speed_mps": 1.2}}
+    said = room_error(motion=STILL, people=[walker], duration_s=8)
+    assert "people.0: the body leaves room.box_m, at x = " in said
+    assert ", beyond 7 m, with people.0.motion.range_m = 4" in said
+    assert "people.0.motion.lane_m lets people turn round" in said
+    assert "wall" not in said
+
+
+def test_a_walker_who_leaves_the_room_is_told_of_the_lane():
+    said = room_error(activities=["walking"], motion={"range_m": 5, "angle_deg": 0}, duration_s=8)
+    assert "the body leaves room.box_m, at x = " in said
+    assert said.endswith(
+        "motion.lane_m lets people turn round; motion.range_m and "
+        "motion.cross_range_m, room.box_m and duration_s should leave room"
+    )
+
+
+def test_who_reaches_out_of_the_room_is_told_where_and_of_no_lane():
+    said = room_error(motion={"range_m": 6.95, "angle_deg": 0.0})
+    assert re.search(r"the body leaves room.box_m, at x = 7\.\d+ m, beyond 7 m", said)
+    assert "lane_m" not in said

@@ -198,7 +198,7 @@ def test_unknown_names_suggest_the_nearest(change: dict[str, str], expected: str
     with pytest.raises(ConfigError, match=expected):
         simulate(load_config(WALL), **{"activity": "S1", **change})
     with pytest.raises(ConfigError, match="'fsst'"):
-        map_names(["fsts"])
+        map_names(["fsts"], load_config(WALL))
 
 
 def test_too_close_is_refused() -> None:

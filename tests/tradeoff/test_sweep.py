@@ -79,6 +79,9 @@ class TestCommand:
         text = (out / "tradeoff.md").read_text()
         assert all(name in text for name in rows)
         assert str(config) in text
+        assert {path.name for path in out.iterdir()} == {
+            f"tradeoff.{x}" for x in ("csv", "json", "md")
+        }
 
     def test_numbers_are_what_they_should_be(self, done):
         rows = rows_of(done[1])

@@ -1,0 +1,47 @@
+"""Work that is left when its time is over, such as a trial of what a build would do."""
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import inf
+from typing import Any
+
+AGAIN_S = 0.25
+
+
+class _OutOfTime(BaseException):
+    """Leaves the work, past handlers of errors."""
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Leave the block quietly after so many seconds; what it has put aside by then counts.
+
+    A call of a library is finished first. HDF5 should not be called within: what is raised while it
+    writes crashes it. There is no limit in a thread, which no signal reaches.
+
+    Args:
+        seconds: inf for no limit.
+    """
+    main = threading.current_thread() is threading.main_thread()
+    if seconds == inf or not main or not hasattr(signal, "setitimer"):
+        yield
+        return
+    over = False
+
+    def leave(number: int, frame: Any) -> None:
+        if not over:
+            raise _OutOfTime
+
+    before = signal.signal(signal.SIGALRM, leave)
+    # Again and again, as Python swallows what is raised within a `__del__`.
+    remaining, interval = signal.setitimer(signal.ITIMER_REAL, max(seconds, 1e-6), AGAIN_S)
+    try:
+        yield
+    except _OutOfTime:
+        pass
+    finally:
+        over = True
+        signal.setitimer(signal.ITIMER_REAL, remaining, interval)
+        signal.signal(signal.SIGALRM, before)

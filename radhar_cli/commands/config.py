@@ -27,7 +27,7 @@ def group() -> typer.Typer:
           radhar config show configs/quickstart.yaml
         """
     )
-    for command in (init, show):
+    for command in (init, show, schema):
         app.command()(command)
     return app
 
@@ -91,6 +91,31 @@ def show(
     loaded = load_section(_kind(train), config, set_ or [])
     report(**resolved(loaded))
     tell(as_yaml(loaded), nl=False)
+
+
+def schema(
+    out: Annotated[Path | None, typer.Argument(help="File to write; the terminal if none.")] = None,
+    train: Training = False,
+) -> None:
+    """Print the JSON schema of configs, for editors that complete keys.
+
+    Example:
+
+      radhar config schema radhar.schema.json
+    """
+    import json
+
+    from radhar_cli.config.json_schema import json_schema
+    from radhar_cli.replacing import write_text
+
+    text = json.dumps(json_schema(_kind(train)), indent=1)
+    if out is None:
+        tell(text)
+        return
+    write_text(out, f"{text}\n")
+    report(file=out)
+    tell(f"{out}: a config whose first line is the next one is completed by editors")
+    tell(f"  # yaml-language-server: $schema={out}")
 
 
 def _kind(train: bool) -> "type[Config] | type[TrainConfig]":

@@ -16,6 +16,7 @@ from pydantic import (
     ConfigDict,
     Field,
     GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
     TypeAdapter,
     model_validator,
 )
@@ -205,6 +206,12 @@ class _Plainly:
 
     def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(_number)
+
+    def __get_pydantic_json_schema__(
+        self, _: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        forms = [handler(kind.__pydantic_core_schema__) for kind in FORMS.values()]
+        return {"anyOf": [{"type": "number"}, *forms]}
 
 
 Number: TypeAlias = Annotated[float | Uniform | Normal | Choice | Vary, _Plainly()]

@@ -1084,7 +1084,10 @@ class ImageConfig(Section):
 
     size_px: Annotated[
         tuple[Pixels, Pixels],
-        BeforeValidator(lambda one: (one, one) if isinstance(one, int) else one),
+        BeforeValidator(
+            lambda one: (one, one) if isinstance(one, int) else one,
+            json_schema_input_type=Pixels | tuple[Pixels, Pixels],
+        ),
     ] = (256, 256)
     """Image size [height, width]; one number is a square."""
     kind: Literal["decibel", "cfar", "signed"] = "decibel"

@@ -1,0 +1,37 @@
+"""The JSON schema of configs, by which editors complete keys and say what they mean."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from radhar_cli.config.documents import BASE
+from radhar_cli.config.schema import Section
+
+
+def json_schema(kind: type[Section]) -> dict[str, Any]:
+    """JSON schema (draft 2020-12) of a config file, each key with the text that stands under it.
+
+    It knows keys, types and choices; bounds and what sections ask of each other are checked by
+    radhar alone.
+    """
+    schema = kind.model_json_schema()
+    known = {section.__name__: section for section in _sections(Section)}
+    for name, part in schema.get("$defs", {}).items():
+        if name in known:
+            _describe(part, known[name])
+    _describe(schema, kind)
+    what = "Another file, whose values hold where this one says nothing."
+    schema["properties"][BASE] = {"type": "string", "description": what}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def _describe(part: dict[str, Any], section: type[Section]) -> None:
+    """Put the description of each key into the schema of a section."""
+    for key, text in section.descriptions().items():
+        if key in part.get("properties", {}):
+            part["properties"][key]["description"] = " ".join(text.split())
+
+
+def _sections(kind: type[Section]) -> Iterator[type[Section]]:
+    for one in kind.__subclasses__():
+        yield one
+        yield from _sections(one)

@@ -10,7 +10,7 @@ from radhar_cli.config.schema import FRAME_MAPS, Config, MeasuredConfig
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.errors import FolderError, RadharError, did_you_mean
+from radhar_cli.errors import FolderError, RadharError
 from radhar_cli.figures import scene_page
 from radhar_cli.figures.scene_page import Entry, SceneView, ShownBody
 from radhar_cli.figures.sides import bones
@@ -21,6 +21,7 @@ from radhar_cli.processing.frame_maps import doppler_axis, range_axis
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
 from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.vocabulary import FROM_FILES, advice_on
 
 MOST = 50  # samples of a page
 
@@ -42,7 +43,9 @@ def chosen_rows(data: Dataset, samples: Sequence[str]) -> list[int]:
         slug, _, index = sample.partition("/")
         if slug not in known:
             names = [one.slug for one, _ in classes]
-            hint = did_you_mean(slug, names, f"there are {', '.join(sorted(names))}")
+            there = f"there are {', '.join(sorted(names))}"
+            meant = advice_on(slug, names, there)
+            hint = there if meant == FROM_FILES else meant
             raise FolderError(f"--sample {sample}: no such class; {hint}")
         start, stop = known[slug].start, known[slug].stop
         if not index.isdecimal() or int(index) >= stop - start:

@@ -81,7 +81,8 @@ def test_repeated_compare_writes_the_same_bytes_and_removes_old_files(place, tmp
     done = ok(*few(place, tmp_path / "a"))
     for word in ("walking: ", "% told apart (", "all classes: "):
         assert word in done.stdout
-    again = radhar(*few(place, other), "-q")
+    assert "--overwrite replaces them" in radhar(*few(place, other)).stderr
+    again = radhar(*few(place, other), "-q", "--overwrite")
     assert (again.returncode, again.stdout) == (0, "")
     files = sorted(p.name for p in (tmp_path / "a").iterdir() if p.is_file())
     assert files == [

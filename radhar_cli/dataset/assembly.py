@@ -156,8 +156,7 @@ def _copy_shards(
                 source = part.chunks(name, dtype, (rows, *shape))
                 chunks[name] += [source.stored(row) for row in range(rows)]
             for name in config.stored:
-                if part.column(layout.count_of(name), np.int64, (rows,))[:].any():
-                    products[name].append(part.samples(f"products/{name}"))
+                products[name].append(part.samples(f"products/{name}", may_be_empty=True))
             for column, (target, kind, shape) in small.items():
                 found = part.column(column, kind, (rows, *shape))[:]
                 target.append(found)

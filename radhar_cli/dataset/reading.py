@@ -105,9 +105,11 @@ class Dataset(Closing):
         named = (f"scene/{field.name}" for field in self.fields)
         self.small = small | dict(zip(named, self.scene.values(), strict=False))
         self.products = {
-            name: Ragged(file.samples(f"products/{name}"), small[layout.count_of(name)][:])
+            name: Ragged(
+                file.samples(f"products/{name}", may_be_empty=True),
+                small[layout.count_of(name)][:],
+            )
             for name in config.stored
-            if small[layout.count_of(name)][:].any()
         }
         labelled = names if config.output.column_labels else ()
         self.column_label = {name: small[f"{layout.COLUMN_LABEL}/{name}"] for name in labelled}

@@ -210,15 +210,24 @@ class UntrustedFile(Closing):
                 )
         return Column(where, dataset, filters)
 
-    def samples(self, name: str) -> "NumberColumn":
-        """Real or complex numbers of any shape, plain or gzip, read in pieces."""
+    def samples(self, name: str, may_be_empty: bool = False) -> "NumberColumn":
+        """Real or complex numbers of any shape, plain or gzip, read in pieces.
+
+        Args:
+            name: Dataset in the file.
+            may_be_empty: Whether it may have no rows.
+
+        Raises:
+            FolderError: The dataset is missing, damaged, of another type, or holds nothing.
+        """
         where = f"{self.path}: /{name}"
         with _refusing_damage(where):
             dataset = self._dataset(name, where, None, None)
             filters = _filters(dataset, where, [], [_DEFLATE], [_SHUFFLE, _DEFLATE])
             found = NumberColumn(where, dataset, filters)
             size, chunk = dataset.dtype.itemsize * prod(dataset.shape), dataset.chunks
-            if not dataset.shape or size == 0:
+            lengths = dataset.shape[1:] if may_be_empty else dataset.shape
+            if not dataset.shape or prod(lengths) == 0:
                 raise FolderError(f"{where}: has the shape {dataset.shape}; should hold numbers")
             if chunk is None and dataset.id.get_storage_size() != size:
                 raise FolderError(f"{where}: should be stored in {size} bytes; it is truncated")

@@ -196,7 +196,7 @@ def _resynthesise(
                 if not _same(stored[row], right, exactly=not report.other_versions):
                     report.problems.append(f"/{name}[{row}] ({scene.name}): differs")
         for name, right in made.products.items():
-            there = data.products[name][row] if name in data.products else right[:0]
+            there = data.products[name][row]
             if not _same(there, right, exactly=not report.other_versions):
                 report.problems.append(f"/products/{name}[{row}] ({scene.name}): differs")
         for name, labels in made.labels.items():

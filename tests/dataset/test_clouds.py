@@ -114,3 +114,25 @@ def test_images_alone_have_no_clouds(tmp_path, place):
     with pytest.raises(FolderError, match="has no points; mars needs"):
         convert(tmp_path / "set", tmp_path / "out", "mars", Listener())
     assert not (tmp_path / "out").exists()
+
+
+def test_clouds_without_a_point_are_stored_with_zero_rows(tmp_path):
+    # No cell exceeds its neighbours by this threshold, the largest number of a .cfg.
+    (tmp_path / "board.cfg").write_text(CFG.replace("3 0 1130", "3 0 32767"))
+    few = CLOUDS.replace("samples_per_class: 5", "samples_per_class: 2").replace(
+        "{train: 0.6, validation: 0.4}", "{train: 0.5, validation: 0.5}"
+    )
+    (tmp_path / "config.yaml").write_text(few)
+    config, out = tmp_path / "config.yaml", tmp_path / "set"
+    made = radhar("generate", config, "-o", out, "--jobs", "1", "-q")
+    assert made.returncode == 0, made.stderr
+    with open_dataset(out) as data:
+        assert data.products["points"].shape == (0, 8)
+        assert data.products["points_person"].shape[0] == 0
+        for row in range(len(data)):
+            clouds = clouds_of(data, row)
+            assert len(clouds.xyz) == len(clouds.person) == 0
+            assert len(clouds.joints) == len(data.products["points_start"][row]) - 1
+    for arguments in (["verify", out], ["convert", out, "-o", tmp_path / "mars", "--to", "mars"]):
+        made = radhar(*arguments, "-q")
+        assert made.returncode == 0, made.stderr

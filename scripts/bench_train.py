@@ -41,7 +41,7 @@ if "complex" in changes:
         return torch.fft.ifft2(torch.fft.fft2(x.to(self.weight.dtype)) * k).real
     GlobalFilter.forward = full
 device = machine.choose_device("auto")
-machine.repeatable(device)
+machine.use_deterministic_algorithms(device)
 if "returned" not in changes:
     keep_memory()
 precision = machine.choose_precision("auto", device)

@@ -96,7 +96,7 @@ def learned_from(
     """
     count, mass = len(labelled), sum(map(len, mix))
     split = np.repeat(np.array([TRAIN, VALIDATION], np.uint8), count)
-    twice = replace(labelled.some(np.tile(np.arange(count), 2)), split=split)
+    twice = replace(labelled.take(np.tile(np.arange(count), 2)), split=split)
     images, shown = joined([twice, *mix]), max(SHOWN, count)
     return (
         replace(images, classes=metadata.classes, label=labels_for(images, metadata.classes)),
@@ -158,7 +158,7 @@ def few_shots(
         here, seed = out / f"{k}_a_class" / str(repeat + 1), (own.seed + repeat) % 2**63
         ways = {TUNED: here / "fine_tuned"} if k else {AS_TRAINED: run}
         beside = Mixed(joined(mixed)) if mixed else None
-        labelled = measured.images.some(draw.labelled)
+        labelled = measured.images.take(draw.labelled)
         if k:
             images, weights = learned_from(opened.metadata, labelled, mixed, MAX_SHOWN)
             chosen = tuned.model_copy(update={"data_weights": weights, "seed": seed})

@@ -109,7 +109,7 @@ class Study(NamedTuple):
             opened, cpu = open_run("run", run, torch.device("cpu")), torch.device("cpu")
             data = open_eval_set(opened, self.data(on, "tested"), EvalOptions("all"))
             made = predict(opened.model, opened.metadata, data.images, data.rows, cpu, 64)
-            shown = data.images.shows(opened.metadata.classes) > 0
+            shown = data.images.multi_hot(opened.metadata.classes) > 0
             each = [(made.predicted == made.truth).mean()]
             if row.target == "labels":
                 right = ((made.probabilities > 0.5) == shown).all(axis=1)

@@ -39,7 +39,7 @@ from radhar_cli.capture.images import listed, read_image
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.two_samples import Picture, pictures_png
-from radhar_cli.learning.evaluation import open_for, predict
+from radhar_cli.learning.evaluation import open_for_model, predict
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import load_best
@@ -222,7 +222,7 @@ class Measured:
     def predicted(self, run: Path) -> "Predicted":
         """What a run makes of them."""
         metadata, model = load_best(run)
-        images = open_for(metadata, self.folder, None)
+        images = open_for_model(metadata, self.folder, None)
         result = predict(
             model, metadata, images, images.rows("all"), torch.device("cpu"), batch=128
         )
@@ -403,7 +403,7 @@ def report(results: dict[str, tuple[Measured, Path, list[Path]]], out: Path, qui
         correct[kind] = some = [measured.predicted(run) for run in runs]
         for run, one in zip(runs, some, strict=True):
             print(f"\n{run.name}, {kind}; rows are true classes\n{one.confusion}")
-        if drawn := mistakes_png(some[0], open_for(load_best(runs[0])[0], images, None)):
+        if drawn := mistakes_png(some[0], open_for_model(load_best(runs[0])[0], images, None)):
             figure = out / f"mistakes_{kind.replace(' ', '_')}.png"
             figure.write_bytes(drawn)
             print(f"what it takes for something else, beside simulated maps: {figure}")

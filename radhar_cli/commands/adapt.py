@@ -57,7 +57,7 @@ def adapt(
     needs_torch()
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.learning import adaptation
-    from radhar_cli.learning.images.image_set import split_named
+    from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.machine import choose_device
 
     if mix and epochs == 0:
@@ -69,7 +69,7 @@ def adapt(
         out,
         choose_device(device),
         map_,
-        split_named(split),
+        check_split_name(split),
         resize,
         overwrite,
         epochs,

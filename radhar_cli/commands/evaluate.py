@@ -58,7 +58,7 @@ def evaluate(
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.learning.images.classes import read_classes
-    from radhar_cli.learning.images.image_set import split_named
+    from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.report import evaluate as test
     from radhar_cli.learning.single_result import EvalOptions
@@ -66,7 +66,7 @@ def evaluate(
     runs, data = runs_and_data(paths)
     names = read_classes(classes)
     options = EvalOptions(
-        split_named(split), map_, tsne, in_place_vs_moving, batch, resize, names, filters
+        check_split_name(split), map_, tsne, in_place_vs_moving, batch, resize, names, filters
     )
     inside = runs[0] if runs[0].is_dir() else runs[0].parent
     folder = out or inside / "eval"

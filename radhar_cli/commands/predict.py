@@ -40,10 +40,10 @@ def predict(
 
     needs_torch()
     from radhar_cli.learning.evaluation import predict_paths
-    from radhar_cli.learning.images.image_set import split_named
+    from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.machine import choose_device
 
-    chosen, part = choose_device(device), split_named(split)
+    chosen, part = choose_device(device), check_split_name(split)
     if out is not None:
         from radhar_cli.learning.found_joints import check_joints_file, predict_joints
 

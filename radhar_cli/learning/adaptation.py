@@ -23,12 +23,12 @@ from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning import run_folder
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.batches import Reader, pieces
-from radhar_cli.learning.evaluation import open_for, rows_of, training_images
+from radhar_cli.learning.batches import Reader, batches_in_order
+from radhar_cli.learning.evaluation import open_for_model, rows_of, training_images
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.scan import content_hash
-from radhar_cli.learning.machine import repeatable
+from radhar_cli.learning.machine import use_deterministic_algorithms
 from radhar_cli.learning.run_files import TRAINED_ON
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
 from radhar_cli.learning.starting_point import is_of_last_layer
@@ -58,7 +58,7 @@ class Mixed:
         rng = stream(config.seed, TRAINING, epoch, name="adaptation mixed")
         drawn = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
         labels = labels_for(self.images, metadata.classes)
-        change = Augmentation(config.augment, config.seed) if config.reads == "gray" else None
+        change = Augmentation(config.augment, config.seed) if config.input_kind == "gray" else None
         yield from Reader(self.images.pixels, labels, change)(list(drawn), epoch)
 
 
@@ -93,7 +93,7 @@ def adapt(
     metadata, model = load_best(run)
     epochs = _epochs(run, metadata, model, epochs, bool(mix))
     if isinstance(data, Path):
-        images = open_for(metadata, data, map_name, labelled=False, resize=resize)
+        images = open_for_model(metadata, data, map_name, labelled=False, resize=resize)
         rows, _ = rows_of(images, split)
     else:
         images, rows = data
@@ -114,7 +114,7 @@ def adapt(
         raise ConfigError(
             f"{images.where}: has {rows.size} images; should have at least {MIN_IMAGES}"
         )
-    repeatable(device)
+    use_deterministic_algorithms(device)
     if device.type == "cpu":
         keep_memory()
     learner = _Learner(model.to(device), metadata, images, rows, device)
@@ -235,7 +235,7 @@ class _Learner:
         seed = int(self.metadata.config.get("seed", 0))
         rng = stream(seed, TRAINING, epoch, name="adaptation")
         order = self.rows[rng.permutation(self.rows.size)]
-        return pieces(order, -(-order.size // max(1, order.size // BATCH)))
+        return batches_in_order(order, -(-order.size // max(1, order.size // BATCH)))
 
     def _levels(self, batches: list[Index]) -> Iterator[Tensor]:
         """The network's input [B, 3, H, W] of each batch."""

@@ -127,6 +127,6 @@ class Reader:
             raise FolderError(str(error).strip().rpartition("FolderError: ")[2]) from None
 
 
-def pieces(rows: Index, size: int) -> list[Index]:
+def batches_in_order(rows: Index, size: int) -> list[Index]:
     """Rows in their order, `size` at a time."""
     return [rows[start : start + size] for start in range(0, rows.size, size)]

@@ -13,12 +13,12 @@ PERPLEXITY = 30.0
 SIDE = 64
 
 
-def chosen(count: int) -> Index:
+def select_rows(count: int) -> Index:
     """At most 2,000 of `count` rows, evenly spread."""
     return np.unique(np.linspace(0, count - 1, min(count, MAX_POINTS)).astype(int))
 
 
-def shrunk(rgb: Levels) -> Float:
+def shrink(rgb: Levels) -> Float:
     """An image [H, W, 3] as a vector: one channel, averaged down to at most 64 x 64."""
     gray = rgb.mean(2)
     down, across = -(-gray.shape[0] // SIDE), -(-gray.shape[1] // SIDE)

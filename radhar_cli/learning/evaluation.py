@@ -15,10 +15,10 @@ from radhar_cli.arrays import Float, Index
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.split import TRAIN
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.batches import Reader, pieces
-from radhar_cli.learning.images.classes import known_to, refuse_mistyped
-from radhar_cli.learning.images.colours import in_colours
-from radhar_cli.learning.images.folder import image_files, is_image, pictures
+from radhar_cli.learning.batches import Reader, batches_in_order
+from radhar_cli.learning.images.classes import keep_known_classes, refuse_mistyped
+from radhar_cli.learning.images.colours import recolour
+from radhar_cli.learning.images.folder import image_files, is_image, open_pictures
 from radhar_cli.learning.images.image_set import ImageSet, Pixels, labels_for, resized
 from radhar_cli.learning.images.opening import is_h5, is_tree, open_inputs
 from radhar_cli.learning.images.scan import content_hash
@@ -52,7 +52,7 @@ class Predictions:
         return winners
 
 
-def open_for(
+def open_for_model(
     metadata: RunMetadata,
     path: Path,
     map_name: str | None,
@@ -74,7 +74,7 @@ def open_for(
     """
     images = open_inputs(
         path,
-        map_name or _map_there(metadata, path),
+        map_name or _map_to_open(metadata, path),
         metadata.settings,
         metadata.size if resize else None,
     )
@@ -83,13 +83,13 @@ def open_for(
         raise FolderError(
             f"{path}: images are {images.shape}; the model was trained on {metadata.shape}{cure}"
         )
-    images = in_colours(images, metadata.colours)
+    images = recolour(images, metadata.colours)
     if metadata.finds_joints:
         return images.renamed(names or {})
     if labelled:
         refuse_mistyped(names or {}, metadata.classes)
         images = images.renamed(names or {}).learned_as(metadata.settings.target)
-        images = known_to(images, metadata.classes)
+        images = keep_known_classes(images, metadata.classes)
         if images.split is None:
             with suppress(FolderError):
                 cut = images.cut(metadata.settings.validation_share, metadata.settings.seed)
@@ -99,7 +99,7 @@ def open_for(
     return images
 
 
-def _map_there(metadata: RunMetadata, path: Path) -> str | None:
+def _map_to_open(metadata: RunMetadata, path: Path) -> str | None:
     """The model's map if a data set has several; a tree of images has its own and no other."""
     if not is_h5(path):
         inside = metadata.map is not None and (path / metadata.map).is_dir()
@@ -116,8 +116,8 @@ def _map_there(metadata: RunMetadata, path: Path) -> str | None:
 def training_images(metadata: RunMetadata, path: Path) -> ImageSet:
     """Training images of a data set, of the classes that a run knows."""
     config = metadata.settings
-    images = open_for(metadata, path, None).cut(config.validation_share, config.seed)
-    images = images.some(images.rows("train"))
+    images = open_for_model(metadata, path, None).cut(config.validation_share, config.seed)
+    images = images.take(images.rows("train"))
     return replace(images, split=np.full(len(images), TRAIN, np.uint8))
 
 
@@ -141,7 +141,7 @@ def predict_batches(
     """
     reader = Reader(pixels, None)
     with torch.inference_mode():
-        for levels, _ in reader(pieces(rows, batch)):
+        for levels, _ in reader(batches_in_order(rows, batch)):
             features, logits = features_and_logits(model, metadata.normalisation(levels.to(device)))
             if not logits.isfinite().all():
                 raise RunError(
@@ -231,17 +231,17 @@ def open_unlabelled(
     files = image_files(path, path) if is_tree(path) else [p for p in (path,) if is_image(p)]
     if files:
         size = None if resize else metadata.size
-        images = in_colours(pictures(path, files, metadata.input, size), metadata.colours)
+        images = recolour(open_pictures(path, files, metadata.input, size), metadata.colours)
         if resize:
             images = resized(images, metadata.size)
         return Inputs(images.pixels, np.arange(len(files)), images.names, images.notes)
-    images = open_for(metadata, path, map_name, labelled=False, resize=resize)
+    images = open_for_model(metadata, path, map_name, labelled=False, resize=resize)
     rows, _ = rows_of(images, split)
     names = tuple(f"{path}: {images.names[row]}" for row in rows)
     return Inputs(images.pixels, rows, names, images.notes)
 
 
-def speed(
+def measure_speed(
     run: Path, images: ImageSet, row: int, device: torch.device, batch: int
 ) -> dict[str, float]:
     """Time one image and a batch, from levels in memory to the network's answer on the CPU.

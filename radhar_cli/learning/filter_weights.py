@@ -10,7 +10,7 @@ from radhar_cli.arrays import Float
 from radhar_cli.learning.models.fftnet import GlobalFilter
 
 
-def magnitudes(model: nn.Module) -> list[Float]:
+def filter_magnitudes(model: nn.Module) -> list[Float]:
     """|H| averaged over channels, [H, W] in FFT order, of every filter from first to last.
 
     H is the Hermitian part of the stored weight, the only part that acts.

@@ -11,7 +11,7 @@ from torch import nn
 
 from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import ConfigError, FolderError
-from radhar_cli.learning.batches import Reader, pieces
+from radhar_cli.learning.batches import Reader, batches_in_order
 from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled
 from radhar_cli.learning.images.image_set import Pixels
 from radhar_cli.learning.images.sequences import SequenceReader
@@ -85,7 +85,7 @@ def joint_batches(
     The model is in evaluation mode and on the device; float32, whatever it was trained in.
     """
     with torch.inference_mode():
-        for values, _ in Reader(pixels, None)(pieces(rows, batch)):
+        for values, _ in Reader(pixels, None)(batches_in_order(rows, batch)):
             joints = model(metadata.normalisation(values.to(device))).cpu().numpy()
             if not np.isfinite(joints).all():
                 raise RunError(f"the network {metadata.model}: finds joints that are not finite")

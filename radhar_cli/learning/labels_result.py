@@ -21,7 +21,7 @@ def evaluate_labels(
     Figures and tables go to `report`. A label is found where its probability is above 1/2.
     """
     images, rows = predictions.images, predictions.rows
-    shown = images.shows(names)[rows] > 0
+    shown = images.multi_hot(names)[rows] > 0
     found = predictions.probabilities > 0.5
     exact, there = (found == shown).all(axis=1), np.flatnonzero(shown.any(axis=0)).tolist()
     precision = [
@@ -29,7 +29,7 @@ def evaluate_labels(
     ]
     present = [names[n] for n in there]
     counts = [int(shown[:, n].sum()) for n in there]
-    done = images.done
+    done = images.activities
     people = np.array([len(done[row]) for row in rows])
     # A label that every image has says nothing: any network has all of its precision.
     told_apart = [p for p, count in zip(precision, counts, strict=True) if count < rows.size]

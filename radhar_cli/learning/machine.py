@@ -11,7 +11,7 @@ from radhar_cli.learning.settings import Auto
 CUDA_WORKERS = 8
 
 
-def repeatable(device: torch.device) -> None:
+def use_deterministic_algorithms(device: torch.device) -> None:
     """Ask for algorithms that give the same bits each time; elsewhere than on the CPU, if it can.
 
     cuBLAS needs its workspace fixed before its first use. No layer reads memory that it did not

@@ -60,7 +60,7 @@ def calibration_error(truth: Index, probabilities: Float) -> float:
     return calibration(truth, probabilities).error
 
 
-def summary(truth: Index, probabilities: Float, classes: Sequence[str]) -> dict[str, Any]:
+def summarise(truth: Index, probabilities: Float, classes: Sequence[str]) -> dict[str, Any]:
     """Everything of report.json: accuracy, macro F1, calibration, per class, confusion matrix.
 
     `confusion` is counts [true class, predicted class]. Precision, recall and F1 are 0 where they

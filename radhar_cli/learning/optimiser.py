@@ -11,7 +11,7 @@ from radhar_cli.learning.settings import TrainConfig
 _ADAM = {"step", "exp_avg", "exp_avg_sq"}
 
 
-def rate(config: TrainConfig, epoch: int, step: int, steps: int) -> float:
+def learning_rate_of_step(config: TrainConfig, epoch: int, step: int, steps: int) -> float:
     """Learning rate of a step (from 0) of an epoch (from 0) that has `steps` of them.
 
     A linear rise over the first `warmup_epochs` that reaches the initial rate with their last

@@ -12,9 +12,9 @@ from radhar_cli.build_version import build_version
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
-from radhar_cli.learning.evaluation import SPEEDS, speed
-from radhar_cli.learning.filter_weights import filter_table, magnitudes
-from radhar_cli.learning.images.classes import unknown_message
+from radhar_cli.learning.evaluation import SPEEDS, measure_speed
+from radhar_cli.learning.filter_weights import filter_magnitudes, filter_table
+from radhar_cli.learning.images.classes import left_out_message
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import RunMetadata, best_epoch
@@ -40,9 +40,9 @@ def evaluate(
     progress: Progress,
 ) -> Report:
     """Evaluate every run on every data set."""
-    opened = [open_run(name, path, device) for name, path in _named(runs).items()]
+    opened = [open_run(name, path, device) for name, path in _name_paths(runs).items()]
     check_options(opened, options)
-    named_data = _named(data)
+    named_data = _name_paths(data)
     eval_sets = {  # all opened first: data that do not fit are reported before any computing
         (run.name, name): open_eval_set(run, path, options)
         for run in opened
@@ -72,7 +72,7 @@ def evaluate(
     for note in dict.fromkeys(n for one in eval_sets.values() for n in one.images.notes):
         say(note)
     for message in dict.fromkeys(
-        unknown_message(eval_set.images, options.names) for eval_set in eval_sets.values()
+        left_out_message(eval_set.images, options.names) for eval_set in eval_sets.values()
     ):
         if message:
             say(f"warning: {message}")
@@ -89,12 +89,12 @@ def evaluate(
                 report, run, data_name, eval_set, stem, options, device, progress
             )
             results[data_name] = numbers
-            say(f"  {data_name}, {numbers['split']}: {_found(numbers)}")
+            say(f"  {data_name}, {numbers['split']}: {_result_in_words(numbers)}")
             if "accuracy" in numbers:
                 interval = numbers["accuracy_95"]
                 point = Point(data_name, eval_set.images.snr_db, numbers["accuracy"], *interval)
                 lines.setdefault(run.name, []).append(point)
-            if run.metadata.settings.target == "labels" and eval_set.images.everybody is None:
+            if run.metadata.settings.target == "labels" and eval_set.images.person_classes is None:
                 say(f"  warning: {data_name} says of one person alone what they do")
             seen = numbers["seen_in_training"]
             if any(seen.values()):
@@ -104,20 +104,20 @@ def evaluate(
                     "on unseen data"
                 )
         first = eval_sets[run.name, next(iter(named_data))]
-        timed = speed(run.folder, first.images, int(first.rows[0]), device, options.batch)
-        report.numbers["runs"][run.name] = _about(run) | {"speed": timed, "data": results}
+        timed = measure_speed(run.folder, first.images, int(first.rows[0]), device, options.batch)
+        report.numbers["runs"][run.name] = _describe_run(run) | {"speed": timed, "data": results}
     about = report.numbers["runs"].items()
     networks = ([n, *(one[key] for key in NETWORK), *one["speed"].values()] for n, one in about)
     report.section("Networks" if len(opened) > 1 else "Network")
     listed = [*networks]
     report.table("networks.csv", ["run", *NETWORK, *SPEEDS], listed)
     _show_networks(report, listed)
-    _compare(report, opened, lines)
+    _add_curves(report, opened, lines)
     if options.filters:
         _show_filters(report, opened)
     report.section("How they were trained")
     for run in opened:
-        report.details(run.name, _trained_how(run.metadata))
+        report.details(run.name, _training_as_json(run.metadata))
     return report
 
 
@@ -134,7 +134,7 @@ def _show_networks(report: Report, rows: Sequence[Sequence[object]]) -> None:
     report.show_table("Size and speed", head, lines)
 
 
-def _trained_how(metadata: RunMetadata) -> str:
+def _training_as_json(metadata: RunMetadata) -> str:
     """Data, settings and versions of a run, as JSON."""
     about = {
         "data": metadata.data["path"],
@@ -147,7 +147,7 @@ def _trained_how(metadata: RunMetadata) -> str:
     return json.dumps(about, indent=2, ensure_ascii=False)
 
 
-def _about(run: Run) -> dict[str, Any]:
+def _describe_run(run: Run) -> dict[str, Any]:
     """What report.json says of a run, whatever it is evaluated on."""
     metadata, price = run.metadata, run.metadata.cost
     return {
@@ -162,7 +162,7 @@ def _about(run: Run) -> dict[str, Any]:
     }
 
 
-def _found(numbers: Mapping[str, Any]) -> str:
+def _result_in_words(numbers: Mapping[str, Any]) -> str:
     """What was found, in words."""
     if "mpjpe_cm" in numbers:
         in_place = numbers["mpjpe_of_the_mean_pose_in_place_cm"]
@@ -184,7 +184,7 @@ def _found(numbers: Mapping[str, Any]) -> str:
     )
 
 
-def _compare(report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[Point]]) -> None:
+def _add_curves(report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[Point]]) -> None:
     """Curves of the runs, and their accuracy over several data sets."""
     with_history = {run.name: run.history for run in runs if run.history}
     if with_history:
@@ -207,7 +207,7 @@ def _compare(report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[P
 
 def _show_filters(report: Report, runs: Sequence[Run]) -> None:
     """The paper's figure of weights: a row for every network, a column for every global filter."""
-    weights = {run.name: magnitudes(run.model) for run in runs}
+    weights = {run.name: filter_magnitudes(run.model) for run in runs}
     weights = {name: filters for name, filters in weights.items() if filters}
     caption = (
         "Weight heat maps of the global filters (the paper's figure): magnitude of the effective "
@@ -222,7 +222,7 @@ def _show_filters(report: Report, runs: Sequence[Run]) -> None:
     report.table("filters.csv", ["run", *keys], every)
 
 
-def _named(paths: Sequence[Path]) -> dict[str, Path]:
+def _name_paths(paths: Sequence[Path]) -> dict[str, Path]:
     """A short name for every path: its last part, with more of it where two are alike.
 
     dataset.h5 and best.safetensors go by their folder.

@@ -113,7 +113,7 @@ class Report:
         self, title: str, header: Sequence[object], rows: Iterable[Iterable[object]]
     ) -> None:
         """Add a table that the page alone has."""
-        shown = [[_short(value) for value in row] for row in rows]
+        shown = [[_as_people_read(value) for value in row] for row in rows]
         self._add("table", title=title, head=list(header), rows=shown)
 
     def _add(self, kind: str, **what: object) -> None:
@@ -131,7 +131,7 @@ class Report:
         write_report(folder, files, self.numbers)
 
 
-def _short(value: object) -> object:
+def _as_people_read(value: object) -> object:
     """A number as a person reads it; anything else as it is."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return "" if value is None else value

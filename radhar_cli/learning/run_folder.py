@@ -101,7 +101,7 @@ class RunMetadata(Section):
 
     @property
     def settings(self) -> TrainConfig:
-        """Of the run."""
+        """Config of the run."""
         return TrainConfig.model_validate(self.config)
 
     @property
@@ -127,7 +127,7 @@ class RunMetadata(Section):
 
     @property
     def cost(self) -> Cost:
-        """Of the network."""
+        """Parameters and multiply-adds of the network."""
         return cost(self.model, self._outputs, self.size, self.finds_joints, self.channels)
 
     @property
@@ -211,10 +211,12 @@ def read_metadata(folder: Path) -> RunMetadata:
     except FileNotFoundError:
         raise RunError(f"{folder}: holds no training run ({ABOUT} is missing)") from None
     except ValidationError as error:
-        raise RunError(f"{path}: is damaged, or is not from radhar ({_first(error)})") from None
+        raise RunError(
+            f"{path}: is damaged, or is not from radhar ({_first_problem(error)})"
+        ) from None
 
 
-def _first(error: ValidationError) -> str:
+def _first_problem(error: ValidationError) -> str:
     item = error.errors(include_url=False)[0]
     return f"{'.'.join(map(str, item['loc']))}: {item['msg']}"
 
@@ -265,10 +267,10 @@ def read_history(folder: Path) -> list[Epoch]:
 
 
 def checked_history(history: list[Epoch]) -> list[Epoch]:
-    """The same epochs.
+    """Epochs of a history that was read, unchanged, if they can be those of a run.
 
     Raises:
-        ValueError: they are not numbered 1, 2, 3, or hold a value that is not finite.
+        ValueError: epochs are not numbered 1, 2, 3, or hold a value that is not finite.
     """
     for number, row in enumerate(history, start=1):
         if row.epoch != number or not all(map(math.isfinite, vars(row).values())):
@@ -307,14 +309,14 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
         if header > min(MAX_HEADER, size):
             raise ValueError(f"it claims a header of {header} bytes")
         with safe_open(path, framework="pt") as file:
-            return _opened(path, file)
+            return _load_network(path, file)
     except OSError as error:
         raise RunError(f"{path}: {error.strerror or error}") from None
     except (SafetensorError, ValueError, MemoryError, RuntimeError) as error:
         raise RunError(f"{path}: is not a safetensors file, or is truncated ({error})") from None
 
 
-def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
+def _load_network(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
     """Take weights whose names, types and shapes are those of the network described."""
     header = file.metadata() or {}
     if "radhar" not in header:
@@ -336,7 +338,7 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
         model = metadata.network()
         model.load_state_dict(weights)
     except ValidationError as error:
-        raise RunError(f"{path}: its description is damaged ({_first(error)})") from None
+        raise RunError(f"{path}: its description is damaged ({_first_problem(error)})") from None
     except ModelError as error:
         raise RunError(f"{path}: {error}") from None
     except RuntimeError as error:

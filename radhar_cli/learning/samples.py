@@ -13,7 +13,7 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.on_demand import Recipe
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.errors import ConfigError
-from radhar_cli.learning.images.image_set import SPLIT_NAMES, split_named
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, check_split_name
 from radhar_cli.worker_process import prepare_process
 
 
@@ -47,7 +47,7 @@ class Samples(Dataset[dict[str, Any]]):
         self.config = self._recipe.config
         self._rows = Rows.of(self.config)
         numbers = np.arange(len(self._rows))
-        if split_named(split) != "all":
+        if check_split_name(split) != "all":
             numbers = np.flatnonzero(split_rows(self.config) == SPLIT_NAMES[split])
         if not numbers.size:
             raise ConfigError(f"split.{split}: leaves no sample for it; should be larger")

@@ -11,12 +11,12 @@ from torch.utils.data import Dataset
 from radhar_cli.arrays import Index
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError
-from radhar_cli.learning.images.image_set import SPLIT_NAMES, split_named
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, check_split_name
 from radhar_cli.learning.images.sequences import (
     CLOUDS,
     POINTS,
     SequenceReader,
-    longest,
+    longest_sequence,
     sequence_product,
 )
 
@@ -62,8 +62,8 @@ class Sequences(Dataset[dict[str, Any]]):
                 raise ConfigError(f"{key} = {value}: should be at least 1")
         with open_dataset(path) as data:
             product = sequence_product(data, "clouds" if of == CLOUDS else "frames", of)
-            self.frames = frames or longest(data, product)
-            wanted = split_named(split)
+            self.frames = frames or longest_sequence(data, product)
+            wanted = check_split_name(split)
             some = wanted == "all" or data.split == SPLIT_NAMES.get(wanted)
             self._rows = np.flatnonzero(np.broadcast_to(some, data.split.shape))
             self.label: Index = data.label[self._rows].astype(np.intp)

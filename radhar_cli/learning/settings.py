@@ -10,9 +10,11 @@ from radhar_cli.config.schema import Section
 
 
 def _auto_or(least: int) -> BeforeValidator:
+    """Validator of a key that is auto, or a whole number of at least `least`."""
+
     def check(value: object) -> object:
-        whole = isinstance(value, int) and not isinstance(value, bool) and value >= least
-        if value != "auto" and not whole:
+        is_whole_number = isinstance(value, int) and not isinstance(value, bool) and value >= least
+        if value != "auto" and not is_whole_number:
             raise wrong(f"should be auto or a whole number of at least {least}")
         return value
 
@@ -24,7 +26,7 @@ STEPS_AN_EPOCH, SMALLEST_BATCH, LARGEST_BATCH = 24, 4, 128  # of batch_size: aut
 Auto = Literal["auto"] | int
 Target = Literal["classes", "labels", "count", "skeleton"]
 Kind = Literal["rgb", "gray", "frames", "clouds"]
-OF_SEQUENCES: dict[str, Kind] = {"framenet": "frames", "cloudnet": "clouds"}
+KIND_OF_SEQUENCES: dict[str, Kind] = {"framenet": "frames", "cloudnet": "clouds"}
 Count = Annotated[int, Field(ge=1, le=1_000_000, strict=True)]
 Rate = Annotated[float, Field(gt=0, le=1e3, strict=True)]
 Weight = Annotated[float, Field(ge=0, le=1000, strict=True)]
@@ -39,11 +41,11 @@ class ScheduleConfig(Section):
     """
 
     kind: Literal["step", "cosine", "constant"] = "cosine"
-    """How the rate falls."""
+    """How the learning rate falls."""
     every_epochs: Count = 10
-    """Of step."""
+    """Epochs between two falls of a schedule of kind step."""
     factor: Annotated[float, Field(gt=0, le=1, strict=True)] = 0.1
-    """Of step."""
+    """Factor of each fall of a schedule of kind step."""
 
 
 Fraction = Annotated[float, Field(ge=0, le=1, strict=True)]
@@ -53,25 +55,25 @@ class AugmentConfig(Section):
     """How far training images are changed, anew in every epoch; all 0 changes nothing."""
 
     time_shift: Fraction = 0.0
-    """Largest shift either way, a fraction of the image."""
+    """Largest shift in time either way, a fraction of the width."""
     time_stretch: Fraction = 0.0
-    """x: factors from e^-x to e^x about the middle."""
+    """x: the time axis is scaled by factors from e^-x to e^x about the middle."""
     doppler_shift: Fraction = 0.0
-    """As time_shift."""
+    """Largest shift of Doppler either way, a fraction of the height."""
     doppler_scale: Fraction = 0.0
-    """As time_stretch."""
+    """x: the Doppler axis is scaled by factors from e^-x to e^x about the middle."""
     contrast: Fraction = 0.0
-    """x: distance from the brightest level times 1 - x to 1 + x, as another SNR has it."""
+    """x: distances from the brightest level are scaled by 1 - x to 1 + x, as at another SNR."""
     noise: Fraction = 0.0
     """Largest share of pixels that take the level of another place."""
     morphology: Fraction = 0.0
     """Probability of a dilation or erosion by one pixel."""
     time_bands: Annotated[int, Field(ge=0, le=16, strict=True)] = 0
-    """Most bands that are blanked."""
+    """Largest number of bands of time that are blanked."""
     doppler_bands: Annotated[int, Field(ge=0, le=16, strict=True)] = 0
-    """Most bands that are blanked."""
+    """Largest number of bands of Doppler that are blanked."""
     band_width: Fraction = 0.1
-    """Largest width of one, a fraction of the image."""
+    """Largest width of a blanked band, a fraction of that axis."""
 
 
 class TrainConfig(Section):
@@ -86,15 +88,15 @@ class TrainConfig(Section):
     """The main person's class; labels: what anybody does; count: how many people; skeleton, of
     sequences: the joints in every frame."""
     map: str | None = None
-    """Which map; null is the first one."""
+    """Map that is learned from; null is the first one of the data set."""
     input: Literal["rgb", "gray"] = "rgb"
-    """Colours as in the PNGs, or one channel three times; of images."""
+    """Channels of images: colours as in the PNGs, or the levels three times."""
     frames: Annotated[Auto, _auto_or(1)] = "auto"
-    """Of a sequence, the middle ones of a longer sample; auto is as many as the longest."""
+    """Frames of a sequence, the middle ones of a longer sample; auto is as many as the longest."""
     points: Annotated[Count, Field(le=4096)] = 64
-    """Most points of a frame, those of the highest SNR."""
+    """Largest number of points of a frame; of more, those of the highest SNR stay."""
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
-    """Of first weights, order of the images, dropout."""
+    """Seed of first weights, order of the images and dropout."""
     epochs: Count = 30
     """Passes over the training images."""
     batch_size: Annotated[Auto, _auto_or(2)] = "auto"
@@ -102,36 +104,41 @@ class TrainConfig(Section):
     optimiser: Literal["adam", "adamw", "sgd"] = "adamw"
     """adamw has decoupled decay, sgd a momentum of 0.9."""
     learning_rate: Rate = 0.003
-    """The initial one."""
+    """Learning rate after the warm-up, from which the schedule falls."""
     weight_decay: Annotated[float, Field(ge=0, le=1e3, strict=True)] = 0.01
-    """Of weights, L2 but with adamw; biases and norms are left free."""
+    """Decay of weights, as L2 penalty or, with adamw, decoupled; biases and norms have none."""
     label_smoothing: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.1
     """zeta: a label is y (1 - zeta) + zeta/K."""
     schedule: ScheduleConfig = ScheduleConfig()
     warmup_epochs: Annotated[float, Field(ge=0, le=1e6, strict=True)] = 1.0
-    """Linear rise of the rate, step by step; may be a fraction."""
+    """Epochs of the linear rise of the rate, step by step; may be a fraction."""
     gradient_clip_norm: Rate | None = None
-    """Largest norm of the gradient; null is none."""
+    """Largest norm of the gradient, which is scaled down to it; null leaves it."""
     average_last: Annotated[float, Field(ge=0, le=1, strict=True)] = 0.0
     """Share of the steps, at the end, whose weights are averaged; 0 keeps those of an epoch."""
     validation_share: Share = 0.2
-    """Of images that come without a split."""
+    """Share of each class that validates, where images come without a split."""
     data_weights: tuple[Weight, ...] | None = None
-    """Of several data sets: how often an epoch shows an image of each."""
+    """How often an epoch shows an image of each of several data sets; null is once."""
     sampling: Literal["all", "balanced"] = "all"
-    """balanced: every class equally often."""
+    """Images of an epoch: all once, or balanced, every class equally often."""
     augment: AugmentConfig = AugmentConfig()
     device: Literal["auto", "cpu", "cuda", "mps"] = "auto"
-    """auto takes cuda, mps, cpu in that order."""
+    """Device of the network; auto takes cuda, mps, cpu in that order."""
     precision: Literal["auto", "float32", "bfloat16"] = "auto"
-    """auto: bfloat16 where the device computes in it."""
+    """Precision of the passes; auto is bfloat16 where the device computes in it."""
     workers: Annotated[Auto, _auto_or(0)] = "auto"
-    """Reading processes."""
+    """Processes that read images; auto is none on the CPU."""
     threads: Annotated[Auto, _auto_or(1)] = "auto"
-    """Of the CPU."""
+    """Threads of the CPU; auto leaves the choice to PyTorch."""
 
-    def for_images(self, count: int, frames: int = 1) -> "TrainConfig":
-        """The same with a batch size for so many training images, and frames, where it is auto."""
+    def with_batch_size_for(self, count: int, frames: int = 1) -> "TrainConfig":
+        """Copy of the config in which `batch_size` and `frames` are numbers where they were auto.
+
+        Args:
+            count: number of training images.
+            frames: number of frames of a sequence; 1 for images.
+        """
         update = {"frames": frames} if self.frames == "auto" else {}
         if self.batch_size == "auto":
             fitting = 2 ** round(log2(max(count, 1) / STEPS_AN_EPOCH))
@@ -140,22 +147,22 @@ class TrainConfig(Section):
 
     @property
     def images_a_step(self) -> int:
-        """The batch size, of a config that `for_images` made."""
+        """Batch size of a config that `with_batch_size_for` made."""
         assert self.batch_size != "auto"
         return self.batch_size
 
     @property
-    def reads(self) -> Kind:
-        """What the model is given: sequences where it is one of these, else images."""
-        return OF_SEQUENCES.get(self.model, self.input)
+    def input_kind(self) -> Kind:
+        """Kind of input of the model: frames or clouds for networks of sequences, else images."""
+        return KIND_OF_SEQUENCES.get(self.model, self.input)
 
     @model_validator(mode="after")
     def _fits(self) -> "TrainConfig":
         if self.warmup_epochs > self.epochs:
             raise wrong("should have warmup_epochs of at most epochs")
-        if self.target == "skeleton" and self.model not in OF_SEQUENCES:
+        if self.target == "skeleton" and self.model not in KIND_OF_SEQUENCES:
             raise wrong("should have model: cloudnet or framenet for target: skeleton")
-        if self.augment != AugmentConfig() and self.model in OF_SEQUENCES:
+        if self.augment != AugmentConfig() and self.model in KIND_OF_SEQUENCES:
             raise wrong("should have no augment, which is of images")
         if self.augment != AugmentConfig() and self.input != "gray":
             raise wrong("should have input: gray for augment, which changes grey levels")

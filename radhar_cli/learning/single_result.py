@@ -20,7 +20,7 @@ from radhar_cli.figures.evaluation import (
     reliability_png,
 )
 from radhar_cli.learning import metrics
-from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_of
+from radhar_cli.learning.evaluation import Predictions, open_for_model, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.labels_result import evaluate_labels
@@ -34,7 +34,7 @@ from radhar_cli.learning.run_folder import (
     read_history,
     read_trained_on,
 )
-from radhar_cli.learning.skeleton_result import evaluate_skeletons, found_and_true
+from radhar_cli.learning.skeleton_result import evaluate_skeletons, predict_skeletons
 from radhar_cli.progress import Progress
 
 MIN_EMBEDDED = 2
@@ -58,11 +58,13 @@ class EvalOptions:
 
 @dataclass(frozen=True)
 class Run:
-    name: str
-    folder: Path
+    """A training run that is evaluated."""
+
+    name: str  # in tables and figures
+    folder: Path  # or the weights' file
     metadata: RunMetadata
-    model: nn.Module
-    history: list[Epoch]
+    model: nn.Module  # on the device, in evaluation mode
+    history: list[Epoch]  # empty where only the weights are there
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,9 @@ class EvalSet:
 
 def open_eval_set(run: Run, path: Path, options: EvalOptions) -> EvalSet:
     """Open a data set for a run."""
-    images = open_for(run.metadata, path, options.map, resize=options.resize, names=options.names)
+    images = open_for_model(
+        run.metadata, path, options.map, resize=options.resize, names=options.names
+    )
     return EvalSet(images, *rows_of(images, options.split))
 
 
@@ -100,6 +104,16 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
 
 
 def open_run(name: str, path: Path, device: torch.device) -> Run:
+    """Open a run for evaluation.
+
+    Args:
+        name: name of the run in tables and figures.
+        path: folder of the run, or a copy of its weights alone.
+        device: device that the network is moved to.
+
+    Raises:
+        RunError: it is no run, or is damaged.
+    """
     metadata, model = load_best(path)
     folder = path if path.is_dir() else path.parent
     try:
@@ -132,14 +146,14 @@ def evaluate_one(
         "left_out": dict(images.left_out),
     }
     if run.metadata.finds_joints:
-        joints = found_and_true(*asked)
+        joints = predict_skeletons(*asked)
         return evaluate_skeletons(report, *joints, images, rows, stem, title) | about
     predictions = predict(*asked)
     names = run.metadata.classes
     if run.metadata.settings.target == "labels":
         return evaluate_labels(report, predictions, names, stem, title) | about
-    numbers = metrics.summary(predictions.truth, predictions.probabilities, names) | about
-    shown = _Shown(report, predictions, names, stem, title)
+    numbers = metrics.summarise(predictions.truth, predictions.probabilities, names) | about
+    shown = _ClassFigures(report, predictions, names, stem, title)
     counts, right = np.array(numbers["confusion"]), 100 * numbers["accuracy"]
     caption = f"Confusion matrix of {shown.title}: counts, and shares of the true class."
     title = f"{shown.title}: {right:.2f} % of {rows.size}"
@@ -167,7 +181,7 @@ def seen_in_training(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
 
 
 @dataclass(frozen=True)
-class _Shown:
+class _ClassFigures:
     """Predictions of classes `names`, and the report that shows them under a title."""
 
     report: Report
@@ -268,13 +282,13 @@ class _Shown:
 
     def tsne(self) -> dict[str, float | None]:
         """Silhouettes of maps and of features."""
-        from radhar_cli.learning.embedding import chosen, embed, separation, shrunk
+        from radhar_cli.learning.embedding import embed, select_rows, separation, shrink
 
         found = self.predictions
         if found.rows.size < MIN_EMBEDDED:
             raise RunError(f"--tsne: needs at least {MIN_EMBEDDED} images; there is one")
-        picked = chosen(found.rows.size)
-        maps = np.stack([shrunk(found.images.pixels.read(int(row))) for row in found.rows[picked]])
+        picked = select_rows(found.rows.size)
+        maps = np.stack([shrink(found.images.pixels.read(int(row))) for row in found.rows[picked]])
         features, label = found.features[picked], found.truth[picked]
         before, after = separation(maps, label), separation(features, label)
         panels = {"input maps": embed(maps), "features before the last layer": embed(features)}

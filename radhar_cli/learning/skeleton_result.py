@@ -21,7 +21,7 @@ DISTANCE = "mean distance between found and true joint (cm)"
 SHOWN = 6  # skeletons of the figure
 
 
-def found_and_true(
+def predict_skeletons(
     model: torch.nn.Module,
     metadata: RunMetadata,
     images: ImageSet,

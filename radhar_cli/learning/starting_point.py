@@ -31,7 +31,7 @@ def start_from(run: Path, model: nn.Module, config: TrainConfig, images: ImageSe
     metadata, earlier = load_best(run)
     for what, theirs, ours in (
         ("model", metadata.model, config.model),
-        ("input", metadata.input, config.reads),
+        ("input", metadata.input, config.input_kind),
         ("image size", metadata.size, images.size),
         ("target", metadata.settings.target, config.target),
         ("list of joints", metadata.joints, images.joints),

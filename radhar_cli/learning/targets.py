@@ -20,7 +20,7 @@ LOSSES = {
 }
 
 
-def loss_and_right(
+def loss_and_score(
     target: Target, outputs: Tensor, wanted: Tensor, smoothing: float
 ) -> tuple[Tensor, float]:
     """Sums over a batch of the loss of a target, and of what is right.

@@ -76,5 +76,5 @@ def torch_dataset(
     if input not in ("rgb", "gray"):
         raise ConfigError(f"input = {input!r}: should be rgb or gray")
     images = open_images(Path(path), map, input)
-    images = images.some(images.rows(split))
+    images = images.take(images.rows(split))
     return LabelledImages(images, 1 if input == "gray" else 3, transform)

@@ -10,7 +10,7 @@ from torch import Tensor, nn
 from radhar_cli.arrays import Float
 from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled, predict_batches
 from radhar_cli.learning.found_joints import FoundJoints, find_joints
-from radhar_cli.learning.images.image_set import split_named
+from radhar_cli.learning.images.image_set import check_split_name
 from radhar_cli.learning.machine import choose_device
 from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
 
@@ -85,7 +85,7 @@ class TrainedRun:
         Raises:
             FolderError: no such data, or images of another size.
         """
-        where, part = Path(path), split_named(split)
+        where, part = Path(path), check_split_name(split)
         if self.metadata.finds_joints:
             return find_joints(self.metadata, self.network, [where], self.device, map, part)
         inputs = open_unlabelled(self.metadata, where, map, part, resize)

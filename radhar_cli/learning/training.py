@@ -20,20 +20,20 @@ from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import machine, run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.batches import Labels, Reader, epoch_batches, epoch_order, pieces
+from radhar_cli.learning.batches import Labels, Reader, batches_in_order, epoch_batches, epoch_order
 from radhar_cli.learning.images.classes import renamed
-from radhar_cli.learning.images.colours import in_colours
+from radhar_cli.learning.images.colours import recolour
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_inputs
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.models.build import build_model
-from radhar_cli.learning.optimiser import check_state, optimiser_for, rate
+from radhar_cli.learning.optimiser import check_state, learning_rate_of_step, optimiser_for
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
 from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
-from radhar_cli.learning.targets import SCORES, loss_and_right
+from radhar_cli.learning.targets import SCORES, loss_and_score
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.worker_process import keep_memory
@@ -114,12 +114,12 @@ def train(
     else:
         images = checked_images(config, data, names, earlier.size if earlier and resize else None)
     if earlier is not None:
-        images = in_colours(images, earlier.colours)
-    config = config.for_images(images.rows("train").size, images.frames)
+        images = recolour(images, earlier.colours)
+    config = config.with_batch_size_for(images.rows("train").size, images.frames)
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = machine.choose_device(config.device)
-    machine.repeatable(device)
+    machine.use_deterministic_algorithms(device)
     if device.type == "cpu":
         keep_memory()
     with folder_lock(folder):
@@ -169,7 +169,7 @@ def checked_images(
     if len(images.classes) < 2:
         raise FolderError(f"{path}: has the class {images.classes[0]!r} alone; should have two")
     rows = images.rows("train")
-    learned = _shown_classes(config, images, rows)
+    learned = _occurring_classes(config, images, rows)
     for index, name in enumerate(images.classes):
         if index not in learned:
             raise FolderError(f"{path}: the class {name!r} has no training image")
@@ -205,7 +205,7 @@ class _Training:
         notes = started.notes if started else ()
         for message in (*images.notes, *_warnings(config, images), *notes):
             progress.say(message)
-        self.metadata, learned = _metadata(config, images, self.precision, started)
+        self.metadata, learned = _describe(config, images, self.precision, started)
         run.reserve_run(folder, self.metadata, overwrite)
         run.write_trained_on(folder, learned)
         self.model.to(device)
@@ -229,7 +229,10 @@ class _Training:
         augmentation = None
         if config.augment != AugmentConfig():
             augmentation = Augmentation(config.augment, config.seed)
-        wanted, workers = _wanted(config, images), machine.reading_workers(config.workers, device)
+        wanted, workers = (
+            _training_targets(config, images),
+            machine.reading_workers(config.workers, device),
+        )
         pin = device.type == "cuda"
         reader = Reader(images.pixels, wanted, augmentation, workers, pin)
         for epoch in range(resumed, config.epochs):
@@ -316,7 +319,7 @@ class _Training:
         self.model.train()
         loss_sum, right, count = 0.0, 0.0, 0
         for step, (levels, labels) in enumerate(reader(batches, epoch)):
-            learning_rate = rate(config, epoch, step, len(batches))
+            learning_rate = learning_rate_of_step(config, epoch, step, len(batches))
             for parameters in self.optimiser.param_groups:
                 parameters["lr"] = learning_rate
             loss, right_here = self._step(levels, labels)
@@ -348,7 +351,7 @@ class _Training:
         with machine.autocast(self.device, self.precision):
             outputs: Tensor = network(x)
         wanted, smoothing = labels.to(self.device), self.config.label_smoothing
-        return loss_and_right(self.config.target, outputs.float(), wanted, smoothing)
+        return loss_and_score(self.config.target, outputs.float(), wanted, smoothing)
 
     def _statistics_of_average(self, reader: Reader, epoch: int) -> None:
         """Take the batch-norm statistics of averaged weights from images as they are stored.
@@ -368,7 +371,7 @@ class _Training:
         model.eval()
         loss_sum, right = 0.0, 0.0
         with torch.no_grad():
-            for levels, labels in reader(pieces(rows, self.config.images_a_step)):
+            for levels, labels in reader(batches_in_order(rows, self.config.images_a_step)):
                 loss, right_here = self._loss(model, levels, labels)
                 loss_sum += float(loss)
                 right += right_here
@@ -408,24 +411,24 @@ class _Training:
         self.progress.epoch_done(row, best)
 
 
-def _shown_classes(config: TrainConfig, images: ImageSet, rows: Index) -> set[int]:
+def _occurring_classes(config: TrainConfig, images: ImageSet, rows: Index) -> set[int]:
     """Numbers of the classes that some rows show: of labels, whoever does them."""
     if config.target == "labels":
-        return set(np.flatnonzero(images.shows(images.classes)[rows].any(0)).tolist())
+        return set(np.flatnonzero(images.multi_hot(images.classes)[rows].any(0)).tolist())
     return set(images.label[rows].tolist())
 
 
-def _wanted(config: TrainConfig, images: ImageSet) -> Labels:
+def _training_targets(config: TrainConfig, images: ImageSet) -> Labels:
     """What is to be learned of each row."""
     match config.target:
         case "skeleton":
             return images.skeletons
         case "labels":
-            return images.shows(images.classes)
+            return images.multi_hot(images.classes)
     return images.label
 
 
-def _metadata(
+def _describe(
     config: TrainConfig, images: ImageSet, precision: torch.dtype, started: StartingPoint | None
 ) -> tuple[RunMetadata, list[tuple[str, str, str]]]:
     """Metadata of the run, and (name, fingerprint, that of the scene) of every training image."""
@@ -439,7 +442,7 @@ def _metadata(
         size=images.size,
         map=images.map,
         channels=images.channels,
-        input=config.reads,
+        input=config.input_kind,
         joints=images.joints,
         colours=images.colours,
         mean=statistics.mean,
@@ -464,7 +467,7 @@ def _metadata(
 
 def _warnings(config: TrainConfig, images: ImageSet) -> list[str]:
     """Warnings of classes that are not validated, and of epochs too short to learn much in."""
-    validated = _shown_classes(config, images, images.rows("val"))
+    validated = _occurring_classes(config, images, images.rows("val"))
     warnings = [
         f"warning: the class {name!r} has no validation image; the best epoch is chosen without it"
         for index, name in enumerate(images.classes)

@@ -67,7 +67,7 @@ class SceneErrors:
     """All settings in one scene; what several of them refer to is made once."""
 
     def __init__(self, scenes: Scenes, slug: str) -> None:
-        self._sample = cache(partial(_sample, scenes, slug))
+        self._sample = cache(partial(_simulate_sample, scenes, slug))
 
     def of(self, setting: Setting) -> Errors:
         """How far the setting's data are from its reference, without noise."""
@@ -81,7 +81,7 @@ class SceneErrors:
         )
 
 
-def _sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> SettingData:
+def _simulate_sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> SettingData:
     config = scenes.config(overrides)
     name = config.maps[0]
     asked = ["signal", f"image:{name}"] + ["accuracy"] * (config.engine.kind == "direct")
@@ -108,16 +108,16 @@ def time_setting(scenes: Scenes, setting: Setting, turn: int) -> Times:
     for step in range(turn, turn + len(names)):
         slug = names[step % len(names)]
         if step % 2:
-            usual += _seconds(scenes, slug, setting.baseline)
-        own += _seconds(scenes, slug, setting.overrides)
+            usual += _cpu_seconds(scenes, slug, setting.baseline)
+        own += _cpu_seconds(scenes, slug, setting.overrides)
         if not step % 2:
-            usual += _seconds(scenes, slug, setting.baseline)
+            usual += _cpu_seconds(scenes, slug, setting.baseline)
         if own + usual > SECONDS:
             break
     return Times(1e3 * own / (step - turn + 1), own / usual)
 
 
-def _seconds(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> float:
+def _cpu_seconds(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> float:
     config = scenes.config(overrides)
     scene, plan = scenes.draw(slug, config), plan_images(config)
     start = process_time()

@@ -71,10 +71,10 @@ class Setting:
 
 def sweep(config: Config) -> list[Setting]:
     """The settings that make sense for a config."""
-    return [*_engines(), *_switches(config)]
+    return [*_engine_settings(), *_switch_settings(config)]
 
 
-def _engines() -> list[Setting]:
+def _engine_settings() -> list[Setting]:
     budgets = sorted({*BUDGETS, round(EngineConfig().tolerance_db)}, reverse=True)
     rows: dict[tuple[str, str], tuple[str, ...]] = {
         ("budget", f"{db} dB"): ("engine.kind=direct", f"engine.tolerance_db={db:g}")
@@ -92,7 +92,7 @@ CORRIDOR = (
 BEAM = "radar.beam={azimuth_deg: 70, elevation_deg: 30}"
 
 
-def _switches(config: Config) -> list[Setting]:
+def _switch_settings(config: Config) -> list[Setting]:
     """Physics and transforms that a config may leave out; clutter changes the length."""
     own, clutter = config.body.scatterers, config.processing.clutter
     other = "points" if own == "segments" else "segments"
@@ -105,11 +105,11 @@ def _switches(config: Config) -> list[Setting]:
         "interference line at PRF/8": (*DIRECT, f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"),
     }
     switches = [
-        _switch(f"scatterers: {other} instead of {own}", f"body.scatterers={other}"),
-        _over("shadowing", bodies, "segments without shadowing"),
-        _over("range_sum: gated instead of coherent", gates, "the coherent STFT"),
+        switch_off_by_default(f"scatterers: {other} instead of {own}", f"body.scatterers={other}"),
+        switch_with_baseline("shadowing", bodies, "segments without shadowing"),
+        switch_with_baseline("range_sum: gated instead of coherent", gates, "the coherent STFT"),
         *(
-            _over(
+            switch_with_baseline(
                 f"clutter: {kind} instead of {clutter}",
                 [(f"processing.clutter={one}",) for one in (kind, clutter)],
                 "the default",
@@ -117,49 +117,51 @@ def _switches(config: Config) -> list[Setting]:
             for kind in CLUTTER
             if kind != clutter
         ),
-        _switch("room: 3 reflectors", "room.reflectors=[{}, {}, {}]"),
+        switch_off_by_default("room: 3 reflectors", "room.reflectors=[{}, {}, {}]"),
         *(Setting("switch", name, on, DIRECT, on, noisy=True) for name, on in noises.items()),
-        _switch("residual video phase", "radar.residual_video_phase=true"),
+        switch_off_by_default("residual video phase", "radar.residual_video_phase=true"),
         Setting("switch", "motion within the chirp", turning, CUBE, turning, CUBE, "the cube"),
-        _over(
+        switch_with_baseline(
             "FSST at every sample",
             [("maps=[fsst]", dense), ("maps=[fsst]",)],
             "the FSST at the STFT's hop",
         ),
     ]
     if config.motion.model == "human" and not config.people:
-        switches.append(_switch("another person, who walks", "people=[{}]"))
+        switches.append(switch_off_by_default("another person, who walks", "people=[{}]"))
     if config.radar.beam is None:
-        switches.append(_switch("beams of 70 x 30 degrees", BEAM))
+        switches.append(switch_off_by_default("beams of 70 x 30 degrees", BEAM))
     if config.room.faces is None and config.room.back_wall_m is None:
         order_2 = (*CORRIDOR, "room.order=2")
         switches += [
-            _switch("a corridor of concrete, 8 m wide", *CORRIDOR),
-            _switch("the corridor with two bounces", *order_2),
-            _over("the same seen by beams", [(*CORRIDOR, BEAM), (BEAM,)], "beams in the open"),
+            switch_off_by_default("a corridor of concrete, 8 m wide", *CORRIDOR),
+            switch_off_by_default("the corridor with two bounces", *order_2),
+            switch_with_baseline(
+                "the same seen by beams", [(*CORRIDOR, BEAM), (BEAM,)], "beams in the open"
+            ),
         ]
     if config.wall is not None:
         on, off = ((*CUBE, "wall.rays=plane", f"wall.echoes={kind}") for kind in ("exact", "none"))
         switches += [
             Setting("switch", "reflections inside the wall", on, off, on, off, "the cube"),
             *(
-                _switch(f"{rays} rays", f"wall.rays={rays}")
+                switch_off_by_default(f"{rays} rays", f"wall.rays={rays}")
                 for rays in ("straight", "plane", "refracted")
                 if rays != config.wall.rays
             ),
-            _switch("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
-            _switch("Fresnel, parallel", "wall.fresnel=parallel"),
+            switch_off_by_default("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
+            switch_off_by_default("Fresnel, parallel", "wall.fresnel=parallel"),
         ]
     return switches
 
 
-def _over(name: str, on_off: Sequence[Sequence[str]], off_name: str) -> Setting:
+def switch_with_baseline(name: str, on_off: Sequence[Sequence[str]], off_name: str) -> Setting:
     """A switch that is compared with something other than the default."""
     on, off = on_off
     without, exact = (*DIRECT, *off), (*CUBE, *on)
     return Setting("switch", name, (*DIRECT, *on), without, exact, without, off_name)
 
 
-def _switch(name: str, *on: str) -> Setting:
+def switch_off_by_default(name: str, *on: str) -> Setting:
     """Physics that is off by default: what it costs, and what is missed without it."""
     return Setting("switch", name, (*DIRECT, *on), DIRECT, (*CUBE, *on))

@@ -17,7 +17,11 @@ Record: TypeAlias = dict[str, Any]  # a setting in plain numbers, None where the
 
 def run_sweep(scenes: Scenes, progress: Progress) -> list[Record]:
     """Measure; return a row for every setting."""
-    settings, names, rounds = possible(scenes, progress), scenes.names(), ROUNDS[scenes.quick]
+    settings, names, rounds = (
+        allowed_settings(scenes, progress),
+        scenes.names(),
+        ROUNDS[scenes.quick],
+    )
     found: dict[Setting, list[Errors | None]] = {setting: [] for setting in settings}
     progress.stage("errors", len(names) * len(settings), 0)
     for slug in names:
@@ -38,7 +42,7 @@ def run_sweep(scenes: Scenes, progress: Progress) -> list[Record]:
     return [_row(setting, times[setting], found[setting]) for setting in settings]
 
 
-def possible(scenes: Scenes, progress: Progress) -> list[Setting]:
+def allowed_settings(scenes: Scenes, progress: Progress) -> list[Setting]:
     """The settings that the config allows; the others are named, with the reason."""
     settings = []
     for setting in sweep(scenes.config()):

@@ -56,7 +56,7 @@ class Difference(NamedTuple):
 
 
 @dataclass(frozen=True)
-class ClassCompared:
+class ClassComparison:
     """One class."""
 
     name: str
@@ -72,7 +72,7 @@ class Comparison:
     """Two data sets compared."""
 
     pair: Pair
-    classes: tuple[ClassCompared, ...]
+    classes: tuple[ClassComparison, ...]
     warnings: tuple[str, ...]  # what a reader should know
 
     def unit(self, statistic: str) -> str:
@@ -94,7 +94,7 @@ class Comparison:
             "classes": {one.name: self._of_class(one) for one in self.classes},
         }
 
-    def _of_class(self, one: ClassCompared) -> dict[str, Any]:
+    def _of_class(self, one: ClassComparison) -> dict[str, Any]:
         return {
             "maps": one.rows[0].size,
             "test": interval([] if one.tested is None else [one.tested]),
@@ -129,16 +129,16 @@ def compare(
             are drawn at random.
     """
     pair = open_sides(simulated, measured, map_name, names or {})
-    drawn = {name: _drawn(pair, name, most, seed) for name in pair.sides[0].classes}
+    drawn = {name: _draw_rows(pair, name, most, seed) for name in pair.sides[0].classes}
     progress.stage("measuring", 2 * sum(one.size for one, _ in drawn.values()), 0)
     classes = []
     for name, rows in drawn.items():
-        classes.append(_class(name, rows, pair, seed))
+        classes.append(_compare_class(name, rows, pair, seed))
         progress.advance(2 * rows[0].size)
     return Comparison(pair, tuple(classes), tuple(_warnings(pair, classes)))
 
 
-def _drawn(pair: Pair, name: str, most: int, seed: int) -> tuple[Index, Index]:
+def _draw_rows(pair: Pair, name: str, most: int, seed: int) -> tuple[Index, Index]:
     """Rows of a class, as many of either side."""
     rows = [side.classes[name] for side in pair.sides]
     count = min(most, *(some.size for some in rows))
@@ -147,20 +147,20 @@ def _drawn(pair: Pair, name: str, most: int, seed: int) -> tuple[Index, Index]:
     return first, second
 
 
-def _class(name: str, rows: tuple[Index, Index], pair: Pair, seed: int) -> ClassCompared:
+def _compare_class(name: str, rows: tuple[Index, Index], pair: Pair, seed: int) -> ClassComparison:
     both = list(zip(pair.sides, rows, strict=True))
     features = np.array([[_features(side, row, pair) for row in some] for side, some in both])
     names = [key for key, one in STATISTICS.items() if pair.power or not one.of_power]
     found = {key: difference(*features[:, :, column]) for column, key in enumerate(names)}
     order = sorted(found, key=lambda key: -np.nan_to_num(found[key].distance, nan=-1))
-    right = told_rightly(
+    right = correct_predictions(
         np.concatenate(features),
         np.repeat([True, False], rows[0].size),
         np.concatenate([side.group[some] for side, some in both]),
         int(stream(seed, TRAINING, name=f"compare test {name}").integers(2**31)),
     )
     tested = None if right is None else (right, 2 * rows[0].size)
-    return ClassCompared(name, rows, {key: found[key] for key in order}, tested)
+    return ClassComparison(name, rows, {key: found[key] for key in order}, tested)
 
 
 def _features(side: Side, row: int, pair: Pair) -> Float:
@@ -204,7 +204,7 @@ def _spread(values: Float) -> Spread:
     return Spread(float(values.mean()), float(values.std()), values.size)
 
 
-def told_rightly(features: Float, truth: Bool, group: Index, seed: int) -> int | None:
+def correct_predictions(features: Float, truth: Bool, group: Index, seed: int) -> int | None:
     """How many samples a classifier that has learned from others tells rightly.
 
     Args:
@@ -257,7 +257,7 @@ def interval(tests: Sequence[tuple[int, int]]) -> dict[str, Any] | None:
     }
 
 
-def _warnings(pair: Pair, classes: Sequence[ClassCompared]) -> Iterator[str]:
+def _warnings(pair: Pair, classes: Sequence[ClassComparison]) -> Iterator[str]:
     """What a reader should know, in words."""
     simulated, measured = pair.sides
     here, there = (side.images.where for side in pair.sides)

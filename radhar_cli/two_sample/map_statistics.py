@@ -117,7 +117,7 @@ def decibel(above: float, below: float) -> float:
     return 10 * float(np.log10(above / below)) if min(above, below) > 0 else np.nan
 
 
-def body_of(occupied: Bool, at_zero: Bool) -> Bool:
+def select_body_cells(occupied: Bool, at_zero: Bool) -> Bool:
     """Cells [rows, columns] of who moves: pieces that touch the rows `at_zero` or are tall.
 
     The others are stray: lines of interference, single cells of noise.
@@ -148,7 +148,7 @@ def mask_statistics(
     rows, columns = occupied.shape
     row, column = abs(doppler[0] - doppler[-1]) / max(1, rows - 1), seconds / columns
     at_zero = np.abs(doppler) <= zero
-    body = body_of(occupied, at_zero)
+    body = select_body_cells(occupied, at_zero)
     beyond = body & ~at_zero[:, None]
     cells, counts = max(1, (~at_zero).sum() * columns), beyond.sum(axis=0)
     active = counts > 0

@@ -10,7 +10,7 @@ from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.capture.images import is_image
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError, did_you_mean
-from radhar_cli.learning.images.folder import our_map
+from radhar_cli.learning.images.folder import map_of_folder
 from radhar_cli.learning.images.image_set import ImageSet, Resized
 from radhar_cli.learning.images.opening import is_h5, open_images
 
@@ -103,7 +103,7 @@ def open_sides(
         if name not in known:
             hint = did_you_mean(name, known, f"they have {', '.join(known)}")
             raise FolderError(f"{simulated}, {measured}: no class {name!r} (--classes); {hint}")
-    rows = [_rows(one, names) for one in given]
+    rows = [_class_rows(one, names) for one in given]
     both = [name for name in rows[0] if name in rows[1]]
     if not both:
         raise FolderError(
@@ -120,13 +120,13 @@ def open_sides(
 
 def _open(path: Path, map_name: str | None) -> ImageSet:
     """A foreign tree names no map: it has what it has."""
-    foreign = path.is_dir() and not is_h5(path) and our_map(path) is None
+    foreign = path.is_dir() and not is_h5(path) and map_of_folder(path) is None
     if foreign and map_name is not None and not (path / map_name).is_dir():
         map_name = None
     return open_images(path, map_name, "gray")
 
 
-def _rows(images: ImageSet, names: Mapping[str, str | None]) -> dict[str, Index]:
+def _class_rows(images: ImageSet, names: Mapping[str, str | None]) -> dict[str, Index]:
     """{common name: rows}, in the order of the images' own classes."""
     numbers: dict[str, list[int]] = {}
     for number, name in enumerate(images.classes):

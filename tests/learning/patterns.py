@@ -13,7 +13,7 @@ from safetensors.torch import load_file
 
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.evaluation import open_for, predict
+from radhar_cli.learning.evaluation import open_for_model, predict
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import train
 
@@ -107,7 +107,7 @@ def plant(out, data, margin=5.0):
     tell a few images apart.
     """
     metadata, model = run.load_best(out)
-    images = open_for(metadata, data, None)
+    images = open_for_model(metadata, data, None)
     found = predict(model, metadata, images, images.rows("all"), torch.device("cpu"), 8)
     middle = found.features.mean(axis=0)
     wanted = margin * (np.eye(len(metadata.classes))[found.truth] - 1 / len(metadata.classes))

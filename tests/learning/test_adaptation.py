@@ -10,7 +10,7 @@ from torch import nn
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning import adaptation
 from radhar_cli.learning.adaptation import Mixed, adapt
-from radhar_cli.learning.evaluation import open_for, predict, training_images
+from radhar_cli.learning.evaluation import open_for_model, predict, training_images
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.run_folder import RunError, load_best
 
@@ -19,7 +19,7 @@ CPU = torch.device("cpu")
 
 def accuracy(run, data):
     metadata, model = load_best(run)
-    images = open_for(metadata, data, None)
+    images = open_for_model(metadata, data, None)
     found = predict(model, metadata, images, np.arange(len(images)), CPU, 32)
     return float((found.predicted == found.truth).mean())
 
@@ -97,7 +97,7 @@ def test_statistics_alone_change_and_labels_do_not_matter(normed, tmp_path):
 def information(run, data):
     """Mutual information of images and predictions: entropy of the mean less mean entropy, nats."""
     metadata, model = load_best(run)
-    images = open_for(metadata, data, None)
+    images = open_for_model(metadata, data, None)
     p = predict(model, metadata, images, np.arange(len(images)), CPU, 32).probabilities
     entropy = -(p * np.log(p)).sum(1).mean()
     return float(-(p.mean(0) * np.log(p.mean(0))).sum() - entropy)

@@ -10,7 +10,7 @@ from PIL import Image
 import radhar_cli
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.errors import ConfigError
-from radhar_cli.learning.evaluation import open_for, predict
+from radhar_cli.learning.evaluation import open_for_model, predict
 from radhar_cli.learning.images.colour_maps import KNOWN, colour_map_of, levels_behind
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.run_folder import load_best
@@ -51,7 +51,7 @@ def viridis(tmp_path_factory):
 
 def accuracy(run, data, **more):
     metadata, model = load_best(run)
-    images = open_for(metadata, data, None, **more)
+    images = open_for_model(metadata, data, None, **more)
     found = predict(model, metadata, images, np.arange(len(images)), CPU, 8)
     return float((found.predicted == found.truth).mean()), images
 

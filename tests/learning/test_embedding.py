@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from radhar_cli.learning.embedding import MAX_POINTS, chosen, embed, separation, shrunk
+from radhar_cli.learning.embedding import MAX_POINTS, embed, select_rows, separation, shrink
 
 
 @given(st.integers(1, 10_000))
 def test_chosen_rows_are_distinct_spread_and_few(count):
-    rows = chosen(count)
+    rows = select_rows(count)
     assert rows[0] == 0
     assert rows[-1] == count - 1
     assert rows.size == min(count, MAX_POINTS) or count == 1
@@ -20,11 +20,11 @@ def test_chosen_rows_are_distinct_spread_and_few(count):
 def test_shrunk_averages_blocks():
     image = np.zeros((128, 96, 3), np.uint8)
     image[:2, :2] = [[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [0, 0, 0]]]
-    vector = shrunk(image)
+    vector = shrink(image)
     assert vector.shape == (64 * 48,)
     assert vector[0] == pytest.approx(0.25)
     assert vector[1:].max() == 0
-    assert shrunk(np.zeros((32, 32, 3), np.uint8)).shape == (1024,)
+    assert shrink(np.zeros((32, 32, 3), np.uint8)).shape == (1024,)
 
 
 def test_separate_clouds_stay_separate():

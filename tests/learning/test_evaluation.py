@@ -18,7 +18,7 @@ from small import small_config
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import FolderError, RadharError
-from radhar_cli.learning.evaluation import open_for, predict, predict_paths, speed
+from radhar_cli.learning.evaluation import measure_speed, open_for_model, predict, predict_paths
 from radhar_cli.learning.onnx_export import export
 from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.run_files import BEST
@@ -154,7 +154,7 @@ def test_weights_alone_are_evaluated_without_curves(learned, tmp_path):
 
 def test_batch_size_does_not_change_predictions(learned):
     metadata, model = load_best(learned[0])
-    images = open_for(metadata, learned[1], None)
+    images = open_for_model(metadata, learned[1], None)
     rows = images.rows("val")[::-1].copy()
     one, many = (predict(model, metadata, images, rows, CPU, batch) for batch in (1, 5))
     np.testing.assert_allclose(one.probabilities, many.probabilities, atol=1e-5)
@@ -203,7 +203,7 @@ def test_tsne_needs_two_images(learned, tmp_path):
 
 def test_speed_times_what_the_paper_times(learned):
     metadata, _ = load_best(learned[0])
-    found = speed(learned[0], open_for(metadata, learned[1], None), 0, CPU, 3)
+    found = measure_speed(learned[0], open_for_model(metadata, learned[1], None), 0, CPU, 3)
     assert set(found) == {
         *("load_s", "image_s", "load_and_image_s"),
         *("batch", "images_per_s", "images_per_s_with_loading"),
@@ -249,7 +249,7 @@ def test_onnx_runtime_gives_the_same_probabilities(learned, tmp_path):
     assert json.loads(stored["classes"]) == ["punching", "kicking", "walking"]
     session = onnxruntime.InferenceSession(path, providers=["CPUExecutionProvider"])
     metadata, model = load_best(learned[0])
-    images = open_for(metadata, learned[1], None)
+    images = open_for_model(metadata, learned[1], None)
     rows = images.rows("val")
     levels = np.stack([images.pixels.read(int(r)).transpose(2, 0, 1) for r in rows])
     (logits,) = session.run(["logits"], {"pixels": levels})

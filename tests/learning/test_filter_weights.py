@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from radhar_cli.learning.filter_weights import filter_table, magnitudes
+from radhar_cli.learning.filter_weights import filter_magnitudes, filter_table
 from radhar_cli.learning.models.fftnet import FFTNet, GlobalFilter
 
 
@@ -14,12 +14,12 @@ def test_magnitude_is_that_of_the_whole_hermitian_part(size):
     k = torch.view_as_complex(layer.weight).detach().numpy()
     rows, columns = (-np.arange(n) % n for n in size)
     hermitian = (k + k[:, rows][:, :, columns].conj()) / 2
-    (found,) = magnitudes(torch.nn.Sequential(layer))
+    (found,) = filter_magnitudes(torch.nn.Sequential(layer))
     np.testing.assert_allclose(found, np.abs(hermitian).mean(0), rtol=1e-5, atol=1e-8)
 
 
 def test_network_has_six():
-    found = magnitudes(FFTNet(3, 64, 32))
+    found = filter_magnitudes(FFTNet(3, 64, 32))
     assert [f.shape for f in found] == [(16, 8)] * 2 + [(8, 4)] * 2 + [(4, 2)] * 2
 
 

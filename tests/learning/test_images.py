@@ -19,7 +19,7 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.image_file import luminance, read_gray, read_rgb
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.image_set import ImageSet, labels_for, split_named
+from radhar_cli.learning.images.image_set import ImageSet, check_split_name, labels_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.training import checked_images
@@ -298,9 +298,9 @@ def test_a_class_without_training_images_is_named(tmp_path):
 
 
 def test_an_unknown_split_is_refused_with_a_suggestion():
-    assert split_named("all") == "all"
+    assert check_split_name("all") == "all"
     with pytest.raises(FolderError, match="did you mean 'train'"):
-        split_named("trian")
+        check_split_name("trian")
 
 
 def test_persons_come_from_data_sets(tmp_path):

@@ -55,12 +55,12 @@ def images(place: Path, name: str = "several") -> ImageSet:
 
 def test_what_is_shown_and_counted(place: Path) -> None:
     stored = images(place)
-    assert stored.everybody is not None
+    assert stored.person_classes is not None
     labels, count = stored.learned_as("labels"), stored.learned_as("count")
     assert labels.classes == ("walking", "punching", "sitting_down")
     assert count.classes == ("1 person", "2 people")
-    shown = labels.shows(labels.classes)
-    for row, names in enumerate(stored.everybody):
+    shown = labels.multi_hot(labels.classes)
+    for row, names in enumerate(stored.person_classes):
         assert names[0] == stored.classes[stored.label[row]] == labels.classes[labels.label[row]]
         assert {labels.classes[n] for n in np.flatnonzero(shown[row])} == set(names)
         assert count.classes[count.label[row]].split()[0] == str(len(names))
@@ -69,8 +69,8 @@ def test_what_is_shown_and_counted(place: Path) -> None:
 
 def test_of_one_person_it_is_what_that_person_does(place: Path) -> None:
     alone = images(place, "alone")
-    assert alone.everybody is None
-    shown = alone.learned_as("labels").shows(alone.classes)
+    assert alone.person_classes is None
+    shown = alone.learned_as("labels").multi_hot(alone.classes)
     np.testing.assert_array_equal(shown.argmax(axis=1), alone.label)
     assert (shown.sum(axis=1) == 1).all()
     assert alone.learned_as("count").classes == ("1 person",)
@@ -78,19 +78,19 @@ def test_of_one_person_it_is_what_that_person_does(place: Path) -> None:
 
 def test_rows_names_and_joined_sets_keep_everybody(place: Path) -> None:
     stored, alone = images(place), images(place, "alone")
-    assert stored.everybody is not None
-    some = stored.some(np.array([3, 15]))
-    assert some.everybody == (stored.everybody[3], stored.everybody[15])
+    assert stored.person_classes is not None
+    some = stored.take(np.array([3, 15]))
+    assert some.person_classes == (stored.person_classes[3], stored.person_classes[15])
     seated = stored.renamed({"sitting_down": "seated", "walking": None})
-    assert seated.everybody is not None
+    assert seated.person_classes is not None
     assert len(seated) == 10
-    assert {name for names in seated.everybody for name in names} == {"punching", "seated"}
+    assert {name for names in seated.person_classes for name in names} == {"punching", "seated"}
     both = joined([alone, stored])
-    assert both.everybody is not None
-    assert both.everybody[20:] == stored.everybody
-    assert all(len(names) == 1 for names in both.everybody[:20])
+    assert both.person_classes is not None
+    assert both.person_classes[20:] == stored.person_classes
+    assert all(len(names) == 1 for names in both.person_classes[:20])
     rows = np.arange(len(stored))
-    others = replace(stored, everybody=tuple(names[:1] for names in stored.everybody))
+    others = replace(stored, person_classes=tuple(names[:1] for names in stored.person_classes))
     assert content_hash(stored, rows) != content_hash(others, rows)
 
 

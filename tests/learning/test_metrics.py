@@ -42,7 +42,7 @@ def test_summary_of_a_planted_confusion():
     """Everything of class 1 is taken for class 2; class 3 does not occur."""
     truth = np.array([0, 0, 1, 1, 1, 2, 2])
     predicted = np.array([0, 0, 2, 2, 2, 2, 2])
-    numbers = metrics.summary(truth, np.eye(4)[predicted], ["a", "b", "c", "d"])
+    numbers = metrics.summarise(truth, np.eye(4)[predicted], ["a", "b", "c", "d"])
     assert numbers["confusion"] == [[2, 0, 0, 0], [0, 0, 3, 0], [0, 0, 2, 0], [0, 0, 0, 0]]
     assert (numbers["images"], numbers["right"]) == (7, 4)
     assert numbers["accuracy"] == pytest.approx(4 / 7)

@@ -25,8 +25,8 @@ from radhar_cli.cli import program
 from radhar_cli.errors import FolderError, ModelError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.batches import Reader, pieces
-from radhar_cli.learning.evaluation import open_for, predict_paths, rows_of
+from radhar_cli.learning.batches import Reader, batches_in_order
+from radhar_cli.learning.evaluation import open_for_model, predict_paths, rows_of
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.run_folder import RunError
@@ -120,11 +120,11 @@ def test_eval_reproduces_the_split_of_training(tmp_path):
     root = tree(tmp_path / "t", parts={"": 5})
     trained(root, tmp_path / "run", epochs=1)
     metadata = run.read_metadata(tmp_path / "run")
-    images = open_for(metadata, root, None)
+    images = open_for_model(metadata, root, None)
     rows, split = rows_of(images, "val")
     assert (split, rows.size) == ("val", metadata.data["val"])
     (root / "walking/000.png").unlink()
-    rows, split = rows_of(open_for(metadata, root, None), "val")
+    rows, split = rows_of(open_for_model(metadata, root, None), "val")
     assert (split, rows.size) == ("all", 14), "another set: the split that was used is named"
 
 
@@ -143,11 +143,11 @@ def test_a_run_on_unnamed_images_needs_a_map(tmp_path):
     trained(ours / "png/stft", tmp_path / "run", epochs=1)
     metadata = run.read_metadata(tmp_path / "run")
     assert metadata.map == "stft", "the folder's name says so"
-    assert open_for(metadata, ours, None).map == "stft"
+    assert open_for_model(metadata, ours, None).map == "stft"
     foreign = shutil.copytree(ours / "png/stft", tmp_path / "foreign")
     trained(foreign, tmp_path / "other", epochs=1)
     with clear_line(FolderError, "rtm, stft", "--map"):
-        open_for(run.read_metadata(tmp_path / "other"), ours, None)
+        open_for_model(run.read_metadata(tmp_path / "other"), ours, None)
     with pytest.raises(FolderError, match="has no map 'stft'"):
         open_images(foreign, "stft", "rgb")
 
@@ -178,7 +178,11 @@ def test_a_broken_file_in_a_worker_is_one_line(tmp_path):
     images = open_images(root, None, "rgb")
     (root / "train/kicking/001.png").write_bytes(b"no more")
     with pytest.raises(FolderError) as caught:
-        list(Reader(images.pixels, images.label, workers=1)(pieces(np.arange(len(images)), 4)))
+        list(
+            Reader(images.pixels, images.label, workers=1)(
+                batches_in_order(np.arange(len(images)), 4)
+            )
+        )
     one_clear_line(caught.value, "001.png: is not an image")
     assert "Traceback" not in str(caught.value)
 
@@ -188,7 +192,9 @@ def test_workers_leave_the_random_state_of_the_network_alone(data):
     drawn = []
     for workers in (0, 1):
         torch.manual_seed(5)
-        list(Reader(images.pixels, images.label, workers=workers)(pieces(np.arange(4), 2)))
+        list(
+            Reader(images.pixels, images.label, workers=workers)(batches_in_order(np.arange(4), 2))
+        )
         drawn.append(float(torch.rand(1)))
     assert drawn[0] == drawn[1]
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from learning.patterns import settings
 
 from radhar_cli.config.reading import load_section
-from radhar_cli.learning.optimiser import rate
+from radhar_cli.learning.optimiser import learning_rate_of_step
 from radhar_cli.learning.settings import TrainConfig
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def at(config, epoch, done):
     """The rate of the step of an epoch before which the share `done` of a hundred is behind."""
-    return rate(config, epoch, round(100 * done), 100)
+    return learning_rate_of_step(config, epoch, round(100 * done), 100)
 
 
 def test_the_papers_rate_falls_tenfold_every_ten_epochs():

@@ -14,15 +14,15 @@ from torch.utils.data import DataLoader
 import radhar_cli
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.evaluation import open_for
+from radhar_cli.learning.evaluation import open_for_model
 from radhar_cli.learning.images.h5 import h5_sequences
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.images.scan import scan
-from radhar_cli.learning.images.sequences import cloud_frames, of_length
+from radhar_cli.learning.images.sequences import cloud_frames, fit_length
 from radhar_cli.learning.models.build import build_model
-from radhar_cli.learning.models.cloudnet import centres
+from radhar_cli.learning.models.cloudnet import moving_centroid
 from radhar_cli.learning.run_folder import load_best
-from radhar_cli.learning.skeleton_result import found_and_true
+from radhar_cli.learning.skeleton_result import predict_skeletons
 from radhar_cli.learning.targets import skeleton_loss
 from tests.boards import CFG, CLOUDS
 
@@ -50,9 +50,9 @@ def trained(boards: Path, model: str, target: str, *words: object) -> Path:
 
 def test_the_longest_sequences_are_cut_in_the_middle_and_short_ones_filled_up() -> None:
     values = np.arange(5.0)[:, None]
-    np.testing.assert_array_equal(of_length(values, 3, 0)[:, 0], [1, 2, 3])
+    np.testing.assert_array_equal(fit_length(values, 3, 0)[:, 0], [1, 2, 3])
     np.testing.assert_array_equal(
-        of_length(values, 7, np.nan)[:, 0], [0, 1, 2, 3, 4, *[np.nan] * 2]
+        fit_length(values, 7, np.nan)[:, 0], [0, 1, 2, 3, 4, *[np.nan] * 2]
     )
 
 
@@ -118,7 +118,7 @@ def test_cloudnet_heeds_neither_the_order_nor_the_missing_ones_of_points(per_fra
 def test_the_centre_of_a_frame_without_points_is_that_of_all() -> None:
     clouds = torch.zeros(1, 6, 11, 4)
     clouds[0, :3, 0], clouds[0, 5, 0] = 2.0, 1.0
-    torch.testing.assert_close(centres(clouds), torch.full((1, 3, 11), 2.0))
+    torch.testing.assert_close(moving_centroid(clouds), torch.full((1, 3, 11), 2.0))
 
 
 @pytest.mark.parametrize("per_frame", [False, True])
@@ -153,7 +153,7 @@ def test_statistics_of_frames_are_of_all_of_them_and_clouds_have_none(boards: Pa
 
 def test_joined_and_chosen_sequences_keep_their_skeletons(boards: Path) -> None:
     clouds = h5_sequences(boards / "data", None, "clouds")
-    both = joined([clouds, clouds]).some(np.array([12, 3]))
+    both = joined([clouds, clouds]).take(np.array([12, 3]))
     for row, of in enumerate((2, 3)):
         np.testing.assert_array_equal(both.skeletons[row], clouds.skeletons[of])
         np.testing.assert_array_equal(both.pixels.read(row), clouds.pixels.read(of))
@@ -181,9 +181,9 @@ def test_joints_are_found_nearer_than_by_a_person_who_stands_still(boards: Path)
     report = json.loads((boards / "eval_joints/report.json").read_text())
     numbers = report["runs"][run.name]["data"]["data"]
     metadata, model = load_best(run)
-    images = open_for(metadata, boards / "data", None)
+    images = open_for_model(metadata, boards / "data", None)
     rows = images.rows("val")
-    found, true = found_and_true(model, metadata, images, rows, torch.device("cpu"), 3)
+    found, true = predict_skeletons(model, metadata, images, rows, torch.device("cpu"), 3)
     off = 100 * np.linalg.norm(found - true, axis=3)
     assert numbers["frames"] == 20
     assert numbers["mpjpe_cm"] == pytest.approx(off.mean(), rel=1e-5)
@@ -270,7 +270,7 @@ def test_joints_go_to_a_file_to_python_and_to_onnx_alike(boards: Path, model: st
     session = onnxruntime.InferenceSession(
         boards / f"{model}.onnx", providers=["CPUExecutionProvider"]
     )
-    images = open_for(loaded.metadata, data, None)
+    images = open_for_model(loaded.metadata, data, None)
     levels = images.pixels.read(int(images.rows("val")[0])).transpose(2, 0, 1)[None]
     (answer,) = session.run(["joints"], {session.get_inputs()[0].name: levels})
     np.testing.assert_allclose(answer[0], joints[0], atol=1e-3)

@@ -164,14 +164,14 @@ def test_every_target_works_or_is_refused_in_a_line(
 
 def test_joints_of_classes_that_no_network_knows_are_evaluated(place: Path, tmp_path: Path) -> None:
     """A network of joints has no classes: another movement than those of its training counts."""
-    from radhar_cli.learning.evaluation import open_for
+    from radhar_cli.learning.evaluation import open_for_model
     from radhar_cli.learning.run_folder import load_best
 
     run, classes = tmp_path / "run", tmp_path / "classes.yaml"
     classes.write_text("walking: null\n")
     done = train(place, "joints of clouds", run, "--classes", classes)
     assert done.returncode == 0, done.stderr
-    images = open_for(load_best(run)[0], place / "board2", None)
+    images = open_for_model(load_best(run)[0], place / "board2", None)
     assert set(images.classes) == {"punching", "walking"}
     assert len(images) == 18
     assert not images.left_out

@@ -199,8 +199,8 @@ def test_statistics_of_averaged_weights_are_those_of_stored_images(data, tmp_pat
 
 @pytest.mark.parametrize(("images", "size"), [(8, 4), (60, 4), (192, 8), (2000, 64), (10**5, 128)])
 def test_the_batch_follows_from_the_number_of_images(images, size):
-    assert TrainConfig().for_images(images).images_a_step == size
-    assert TrainConfig(batch_size=32).for_images(images).images_a_step == 32
+    assert TrainConfig().with_batch_size_for(images).images_a_step == size
+    assert TrainConfig(batch_size=32).with_batch_size_for(images).images_a_step == 32
 
 
 @pytest.mark.parametrize(("size", "warned"), [(12, True), (2, False)])

@@ -29,7 +29,7 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.summary import summarise
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import RadharError
-from radhar_cli.learning.evaluation import open_for
+from radhar_cli.learning.evaluation import open_for_model
 from radhar_cli.learning.evaluation import predict as ask
 from radhar_cli.learning.run_folder import load_best, read_history, read_metadata, read_trained_on
 from radhar_cli.simulation.scene_file import write_all
@@ -104,7 +104,7 @@ def targets(
 
     def use_run(folder: Path) -> None:
         about, model = load_best(folder)
-        images = open_for(about, good_set, None)
+        images = open_for_model(about, good_set, None)
         found = ask(model, about, images, np.arange(len(images)), CPU, 4).probabilities
         np.testing.assert_allclose(found.sum(1), 1, atol=1e-5)
         read_history(folder)

@@ -143,7 +143,7 @@ class TestSettings:
         """A high-pass above PRF/2 cannot be, the other settings can."""
         listener = Listener()
         scenes = self.scenes(config, "processing.highpass.cutoff_hz=600")
-        possible = study.possible(scenes, listener)
+        possible = study.allowed_settings(scenes, listener)
         assert not any("highpass" in setting.name for setting in possible)
         (message,) = listener.messages
         assert "processing.highpass" in message
@@ -176,5 +176,5 @@ class TestSettings:
 
     def test_gates_are_compared_without_maps_that_forbid_them(self, config):
         scenes = self.scenes(config, "maps=[stft, fsst]")
-        names = [setting.name for setting in study.possible(scenes, Listener())]
+        names = [setting.name for setting in study.allowed_settings(scenes, Listener())]
         assert "range_sum: gated instead of coherent" in names

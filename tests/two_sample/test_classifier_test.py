@@ -3,7 +3,7 @@
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.two_sample.comparison import interval, told_rightly
+from radhar_cli.two_sample.comparison import correct_predictions, interval
 
 COUNT = 40
 
@@ -20,7 +20,7 @@ TRUTH = np.repeat([True, False], COUNT)
 
 
 def held_out(x, group, seed=0):
-    right = told_rightly(x, TRUTH, group, seed)
+    right = correct_predictions(x, TRUTH, group, seed)
     assert right is not None
     found = interval([(right, 2 * COUNT)])
     assert found is not None
@@ -57,7 +57,7 @@ def test_features_that_identify_persons_tell_nothing():
 
 def test_one_person_cannot_be_held_out():
     x = features(np.random.default_rng(0))
-    assert told_rightly(x, TRUTH, np.zeros(2 * COUNT, np.intp), 0) is None
+    assert correct_predictions(x, TRUTH, np.zeros(2 * COUNT, np.intp), 0) is None
 
 
 def test_numbers_that_are_missing_or_constant_tell_nothing():

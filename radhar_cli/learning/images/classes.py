@@ -10,7 +10,14 @@ from radhar_cli.learning.images.image_set import ImageSet
 
 
 def read_classes(path: Path | None) -> dict[str, str | None]:
-    """Read `foreign name: our name`, or `null` for a class to leave out; none without a file."""
+    """Read a file of `foreign name: our name`, or `null` for a class to leave out.
+
+    Returns:
+        {foreign name: our name, or None}; empty without a file.
+
+    Raises:
+        ConfigError: a value is neither a name nor null.
+    """
     names = read_document(path)[0] if path else {}
     for foreign, ours in names.items():
         if ours is not None and (not isinstance(ours, str) or not ours):
@@ -22,7 +29,11 @@ def read_classes(path: Path | None) -> dict[str, str | None]:
 
 
 def renamed(images: ImageSet, names: Mapping[str, str | None]) -> ImageSet:
-    """The images under the names that `--classes FILE` gives them."""
+    """Images whose classes have the names that `--classes FILE` gives them.
+
+    Raises:
+        FolderError: `names` has a class that the images do not have.
+    """
     for name in names:
         if name not in images.classes:
             hint = did_you_mean(name, images.classes, f"it has {', '.join(images.classes)}")
@@ -31,16 +42,28 @@ def renamed(images: ImageSet, names: Mapping[str, str | None]) -> ImageSet:
 
 
 def refuse_mistyped(names: Mapping[str, str | None], known: Sequence[str]) -> None:
-    """Refuse names of classes that neither the model nor radhar knows."""
-    every = [*known, *(activity.slug for activity in ACTIVITIES if activity.slug not in known)]
+    """Refuse names of classes that neither the model nor radhar knows.
+
+    Args:
+        names: {foreign name: our name, or None}.
+        known: classes of the model.
+
+    Raises:
+        ConfigError: one of our names is unknown.
+    """
+    accepted = [*known, *(activity.slug for activity in ACTIVITIES if activity.slug not in known)]
     for foreign, ours in names.items():
-        if ours is not None and ours not in every:
-            hint = did_you_mean(ours, every, f"the model knows {', '.join(known)}")
+        if ours is not None and ours not in accepted:
+            hint = did_you_mean(ours, accepted, f"the model knows {', '.join(known)}")
             raise ConfigError(f"--classes: {foreign} = {ours!r}: should be a class or null; {hint}")
 
 
-def known_to(images: ImageSet, known: Sequence[str]) -> ImageSet:
-    """The images of the classes that a model knows."""
+def keep_known_classes(images: ImageSet, known: Sequence[str]) -> ImageSet:
+    """Images of the classes that a model knows.
+
+    Raises:
+        FolderError: it knows none of them.
+    """
     unknown = [name for name in images.classes if name not in known]
     if len(unknown) == len(images.classes):
         hint = did_you_mean(unknown[0], known, f"the model knows {', '.join(known)}")
@@ -52,13 +75,17 @@ def known_to(images: ImageSet, known: Sequence[str]) -> ImageSet:
     return images.renamed(dict.fromkeys(unknown)) if unknown else images
 
 
-def unknown_message(images: ImageSet, names: Mapping[str, str | None]) -> str | None:
-    """Warning of images left out as the model does not know their class, if there are any."""
-    unasked = {name: n for name, n in images.left_out.items() if name not in names}
-    if not unasked:
+def left_out_message(images: ImageSet, names: Mapping[str, str | None]) -> str | None:
+    """Warning of images that are left out as the model does not know their class, None if all stay.
+
+    Args:
+        names: {foreign name: our name, or None} of `--classes FILE`; its classes are not warned of.
+    """
+    excluded = {name: n for name, n in images.left_out.items() if name not in names}
+    if not excluded:
         return None
-    listed = ", ".join(f"{name} ({n})" for name, n in unasked.items())
+    listed = ", ".join(f"{name} ({n})" for name, n in excluded.items())
     return (
-        f"{images.where}: left out {sum(unasked.values())} images of classes that the model does "
+        f"{images.where}: left out {sum(excluded.values())} images of classes that the model does "
         f"not know: {listed}; --classes FILE maps them, or ignores them with null"
     )

@@ -14,7 +14,7 @@ from radhar_cli.dataset.files import read_bytes
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_gray, read_rgb
 from radhar_cli.dataset.layout import CLASSES, CONFIG, PNG
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.colour_maps import PICTURES, colour_map_of, levels_behind
+from radhar_cli.learning.images.colour_maps import PICTURES_LOOKED_AT, colour_map_of, levels_behind
 from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet, repeated
 from radhar_cli.untrusted import refuse_outside
 
@@ -38,17 +38,19 @@ class FilePixels:
         """RGB [H, W, 3] of a row, or one channel three times."""
         if self.kind == "rgb":
             return read_rgb(self.files[row], self.size)
-        behind = None if self.colours is None else partial(levels_behind, name=self.colours)
-        return repeated(read_gray(self.files[row], self.size, behind or luminance))
+        levels_of = None if self.colours is None else partial(levels_behind, name=self.colours)
+        return repeated(read_gray(self.files[row], self.size, levels_of or luminance))
 
-    def recognised(self) -> "FilePixels":
-        """The same files, with the colour map that some of them are drawn in."""
-        spread = np.linspace(0, len(self.files) - 1, min(PICTURES, len(self.files))).astype(int)
-        pictures = (read_rgb(self.files[row], self.size) for row in spread.tolist())
-        return replace(self, colours=colour_map_of(pictures))
+    def with_recognised_colours(self) -> "FilePixels":
+        """Pixels of these files that know the colour map in which some of them are drawn."""
+        spread = np.linspace(
+            0, len(self.files) - 1, min(PICTURES_LOOKED_AT, len(self.files))
+        ).astype(int)
+        samples = (read_rgb(self.files[row], self.size) for row in spread.tolist())
+        return replace(self, colours=colour_map_of(samples))
 
     def notes(self, where: Path) -> tuple[str, ...]:
-        """What is said of pictures whose levels are taken from their colours."""
+        """Note that levels are taken from the colours of the pictures, where they are."""
         if self.kind == "rgb" or self.colours in (None, DEFAULT_COLOUR_MAP, "gray"):
             return ()
         return (f"{where}: drawn in {self.colours}; its levels are learned from, not brightness",)
@@ -58,31 +60,42 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
     """Open a tree of images: class folders, or train, val and test with class folders in them.
 
     Args:
+        root: folder of the tree, or one that holds a tree for each map.
+        map_name: map to open where there are several; None takes `root` itself.
+        kind: "rgb" or "gray".
         any_size: images may differ in size; `size` is that of the first.
+
+    Raises:
+        FolderError: no such map, no class folders with images, a class without any, images of
+            several sizes, or a link that leads out of `root`.
     """
-    own, inside = our_map(root), root
-    if map_name is not None and map_name != own:
-        if map_name not in _folders(root, inside):
+    folder_map, tree = map_of_folder(root), root
+    if map_name is not None and map_name != folder_map:
+        if map_name not in _folders(root, tree):
             raise FolderError(f"{root}: has no map {map_name!r}; it is a tree of images")
         root = root / map_name
-        own = map_name
-    folders = _folders(root, inside)
-    parts = {name: SPLIT_NAMES[name.lower()] for name in folders if name.lower() in SPLIT_NAMES}
-    if parts:
+        folder_map = map_name
+    folders = _folders(root, tree)
+    split_folders = {
+        name: SPLIT_NAMES[name.lower()] for name in folders if name.lower() in SPLIT_NAMES
+    }
+    if split_folders:
         images = [
             (split, name, file)
-            for part, split in sorted(parts.items(), key=lambda item: item[1])
-            for name in _folders(root / part, inside)
-            for file in image_files(root / part / name, inside)
+            for split_folder, split in sorted(split_folders.items(), key=lambda item: item[1])
+            for name in _folders(root / split_folder, tree)
+            for file in image_files(root / split_folder / name, tree)
         ]
-        empty = {name for part in parts for name in _folders(root / part, inside)}
+        empty = {
+            name for split_folder in split_folders for name in _folders(root / split_folder, tree)
+        }
     else:
-        images = [(-1, name, file) for name in folders for file in image_files(root / name, inside)]
+        images = [(-1, name, file) for name in folders for file in image_files(root / name, tree)]
         empty = set(folders)
     empty -= {name for _, name, _ in images}
     if not images:
-        maps = [name for name in folders if _folders(root / name, inside)]
-        hint = f"--map {maps[0]} takes one of its maps" if maps and not parts else _WANTED
+        maps = [name for name in folders if _folders(root / name, tree)]
+        hint = f"--map {maps[0]} takes one of its maps" if maps and not split_folders else _WANTED
         raise FolderError(f"{root}: holds no class folders with images; {hint}")
     if empty:
         raise FolderError(
@@ -95,34 +108,38 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
     files = tuple(file for _, _, file in images)
     size = image_size(files[0])
     return replace(
-        pictures(root, files, kind, None if any_size else size),
-        map=own,
+        open_pictures(root, files, kind, None if any_size else size),
+        map=folder_map,
         classes=classes,
         label=np.array([classes.index(name) for _, name, _ in images], dtype=np.intp),
-        split=np.array([split for split, _, _ in images], dtype=np.uint8) if parts else None,
+        split=np.array([split for split, _, _ in images], dtype=np.uint8)
+        if split_folders
+        else None,
         names=_names(images),
         size=size,
     )
 
 
 def _empty_hint(empty: set[str], images: Sequence[tuple[int, str, Path]]) -> str:
-    """What a folder without images beside others with images may mean."""
+    """Advice on folders without images beside others that have some."""
     classes = sorted({name for _, name, _ in images})
     if len(classes) < 2:
         return f"{classes[0]!r} alone has images, so this may be no data set; {_WANTED}"
     return "every folder beside those of the classes should hold images of its class"
 
 
-def pictures(
+def open_pictures(
     where: Path, files: Sequence[Path], kind: str, size: tuple[int, int] | None
 ) -> ImageSet:
-    """Pictures of which nothing is known but the colour map that they are drawn in.
+    """Image set of files of which nothing is known but the colour map that they are drawn in.
 
     Args:
+        where: file or folder that messages name.
+        files: image files, one a row.
         kind: "rgb" or "gray".
         size: (H, W) that all of them should have, None for any.
     """
-    pixels = FilePixels(tuple(files), kind, size).recognised()
+    pixels = FilePixels(tuple(files), kind, size).with_recognised_colours()
     return ImageSet(
         where=where,
         map=None,
@@ -139,7 +156,7 @@ def pictures(
 
 
 def _classes(root: Path, present: set[str]) -> tuple[str, ...]:
-    """Name of every label of a tree: those of its classes.txt, else by the alphabet.
+    """Name of every label of a tree: names of its classes.txt, else of the folders by the alphabet.
 
     `generate` writes that file beside the splits of a map; ImageFolder numbers by the alphabet.
     """
@@ -154,20 +171,22 @@ def _classes(root: Path, present: set[str]) -> tuple[str, ...]:
 
 def _names(images: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
     """<class>/<image> of (split, class, file), with the ending where only that tells two apart."""
-    alike = Counter((split, name, file.stem) for split, name, file in images)
+    stem_counts = Counter((split, name, file.stem) for split, name, file in images)
     names = []
     for split, name, file in images:
-        below = file.name if file.parent.name == name else f"{file.parent.name}/{file.name}"
-        names.append(f"{name}/{file.stem if alike[split, name, file.stem] == 1 else below}")
+        file_name = file.name if file.parent.name == name else f"{file.parent.name}/{file.name}"
+        names.append(
+            f"{name}/{file.stem if stem_counts[split, name, file.stem] == 1 else file_name}"
+        )
     return tuple(names)
 
 
-def our_map(inside: Path) -> str | None:
+def map_of_folder(folder: Path) -> str | None:
     """The map whose images lie in a folder that `radhar generate` wrote, None elsewhere."""
-    whole = inside.resolve()
-    for folder, below in zip(whole.parents, (whole, *whole.parents), strict=False):
-        if folder.name == PNG and (folder.parent / CONFIG).is_file():
-            return below.name
+    resolved = folder.resolve()
+    for parent, child in zip(resolved.parents, (resolved, *resolved.parents), strict=False):
+        if parent.name == PNG and (parent.parent / CONFIG).is_file():
+            return child.name
     return None
 
 
@@ -182,9 +201,9 @@ def _folders(root: Path, inside: Path) -> list[str]:
 
 def image_files(folder: Path, inside: Path) -> list[Path]:
     """Image files of a class folder and of numbered folders in it, in the order of their names."""
-    numbered = (p for p in _visible(folder, inside) if p.name.isdecimal() and p.is_dir())
-    places = (folder, *sorted(numbered))
-    return sorted(p for place in places for p in _visible(place, inside) if is_image(p))
+    numbered_folders = (p for p in _visible(folder, inside) if p.name.isdecimal() and p.is_dir())
+    folders = (folder, *sorted(numbered_folders))
+    return sorted(p for place in folders for p in _visible(place, inside) if is_image(p))
 
 
 def _visible(folder: Path, inside: Path) -> Iterator[Path]:

@@ -19,7 +19,7 @@ from radhar_cli.learning.images.sequences import (
     Opened,
     SequenceReader,
     joint_names,
-    longest,
+    longest_sequence,
     sequence_product,
 )
 from radhar_cli.learning.settings import Auto, Kind
@@ -32,7 +32,7 @@ _WHO_AND_HOW = (
 
 @dataclass
 class H5Pixels(Opened):
-    """Rows of one map through a table [256, 3]."""
+    """Rows of one map of a dataset.h5, whose levels become colours of a table [256, 3]."""
 
     map: str
     table: Levels
@@ -44,13 +44,21 @@ class H5Pixels(Opened):
 
 
 def h5_images(path: Path, map_name: str | None, kind: Kind) -> ImageSet:
-    """Open one map of a dataset.h5, or of the folder it lies in, as images."""
+    """Open one map of a dataset.h5, or of the folder it lies in, as images.
+
+    Args:
+        map_name: map to open; None takes the first one.
+        kind: "rgb" as the PNGs are coloured, or "gray", the levels in three equal channels.
+
+    Raises:
+        FolderError: it is no data set, or has no such map.
+    """
     with open_dataset(path) as data:
         name = data.map_name(map_name)
         colours = colour_table(data.config.image.colour_map)
         table = colours if kind == "rgb" else repeated(np.arange(256, dtype=np.uint8))
         pixels = H5Pixels(data.path, name, table)
-        images = _labelled(data, path, name, pixels, data.config.image.size_px)
+        images = _image_set(data, path, name, pixels, data.config.image.size_px)
         colour_map = data.config.image.colour_map if kind == "rgb" else None
         return replace(images, colours=colour_map)
 
@@ -61,47 +69,53 @@ def h5_sequences(
     """Open the frames or clouds of a dataset.h5, or of the folder it lies in.
 
     Args:
-        product: which; the first of that kind if None.
-        frames: of a sequence; auto is as many as the longest sample has.
-        points: most points of a frame.
+        product: product to open; None takes the first of that kind.
+        kind: frames or clouds.
+        frames: number of frames of a sequence; auto is that of the longest sample.
+        points: largest number of points of a frame.
+
+    Raises:
+        FolderError: it is no data set, or has no such product.
     """
     with open_dataset(path) as data:
         name = sequence_product(data, kind, product)
-        count = longest(data, name) if frames == "auto" else frames
+        count = longest_sequence(data, name) if frames == "auto" else frames
         pixels = SequenceReader(data.path, name, count, points)
         size, channels = data.products[name].shape[1:], count
         if kind == "clouds":
             size, channels = (count, points), len(COLUMNS)
-        images = _labelled(data, path, name, pixels, (size[0], size[1]))
+        images = _image_set(data, path, name, pixels, (size[0], size[1]))
         return replace(images, kind=kind, channels=channels, joints=joint_names(data))
 
 
-def _labelled(
+def _image_set(
     data: Dataset, where: Path, name: str, pixels: Pixels, size: tuple[int, int]
 ) -> ImageSet:
-    """An image set of what reads the rows of a data set."""
+    """Image set of the rows of a data set, which `pixels` reads."""
     rows, snr_db = Rows.of(data.config), data.config.snr_db
-    slug = np.array(data.classes)[data.label]
+    slugs = np.array(data.classes)[data.label]
     return ImageSet(
         where=where,
         map=name,
         classes=data.classes,
         label=data.label.astype(np.intp),
         split=data.split,
-        names=tuple(f"{s}/{rows.name(row)}" for row, s in enumerate(slug)),
-        scenes=_scenes(data, slug.tolist()),
+        names=tuple(f"{s}/{rows.name(row)}" for row, s in enumerate(slugs)),
+        scenes=_scenes(data, slugs.tolist()),
         size=size,
         pixels=pixels,
         snr_db=float(snr_db) if isinstance(snr_db, (int, float)) else None,
         persons=_persons(data),
-        everybody=None
+        person_classes=None
         if data.person_label is None
-        else tuple(tuple(data.class_slugs[n] for n in one if n >= 0) for one in data.person_label),
+        else tuple(
+            tuple(data.class_slugs[n] for n in numbers if n >= 0) for numbers in data.person_label
+        ),
     )
 
 
 def _persons(data: Dataset) -> tuple[str, ...] | None:
-    """Who is in each row; of a recording that does not say, which recording it was cut from."""
+    """Person of each row [N], or its recording where that names none; None if neither is known."""
     if isinstance(data.config, MeasuredConfig):
         parts = (window.part for window in windows(data.config))
         return tuple(f"file {p.file}" if p.person is None else p.person for p in parts)
@@ -122,12 +136,14 @@ def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
     table = np.stack(columns, axis=1) if columns else np.zeros((len(slugs), 0))
     known = ~np.isnan(table)
     patterns, pattern = np.unique(known, axis=0, return_inverse=True)
-    names = [" ".join(np.array([f.name for f in fields])[one].tolist()) for one in patterns]
-    prints = []
+    names = [
+        " ".join(np.array([f.name for f in fields])[is_known].tolist()) for is_known in patterns
+    ]
+    fingerprints = []
     for row, slug in enumerate(slugs):
         others = () if data.person_label is None else tuple(data.person_label[row, 1:])
-        who = [slug, *(data.class_slugs[n] for n in others if n >= 0)]
-        text = f"{' '.join(who)}\n{names[pattern.flat[row]]}\n"
-        whole = text.encode() + table[row, known[row]].tobytes()
-        prints.append(hashlib.blake2b(whole, digest_size=8).hexdigest())
-    return tuple(prints)
+        activities = [slug, *(data.class_slugs[n] for n in others if n >= 0)]
+        text = f"{' '.join(activities)}\n{names[pattern.flat[row]]}\n"
+        content = text.encode() + table[row, known[row]].tobytes()
+        fingerprints.append(hashlib.blake2b(content, digest_size=8).hexdigest())
+    return tuple(fingerprints)

@@ -34,6 +34,7 @@ class Resized:
     size: tuple[int, int]
 
     def read(self, row: int) -> Levels:
+        """RGB [size[0], size[1], 3] of a row."""
         rgb = self.pixels.read(row)
         if rgb.shape[:2] == self.size:
             return rgb
@@ -42,19 +43,19 @@ class Resized:
 
 
 def resized(images: "ImageSet", size: tuple[int, int]) -> "ImageSet":
-    """The same images brought to (H, W)."""
+    """Images of any size brought to (H, W) when they are read."""
     return replace(images, size=size, pixels=Resized(images.pixels, size))
 
 
 @dataclass(frozen=True)
 class TrueSkeletons:
-    """Joints [T, joint, 3] of every row of pixels that have them."""
+    """Joints [T, joint, 3] (m, radar's axes) of every row of pixels that have them."""
 
     pixels: Any
 
     def __getitem__(self, row: int) -> Float:
-        found: Float = self.pixels.joints(row)
-        return found
+        joints: Float = self.pixels.joints(row)
+        return joints
 
 
 @dataclass(frozen=True)
@@ -66,19 +67,19 @@ class Chosen:
     rows: Index
 
     def read(self, row: int) -> Levels:
-        parts, which = self.parts, int(self.part[row])
-        return parts[which].read(int(self.rows[row]))
+        """RGB [H, W, 3] of a row, or a sequence, as its part reads it."""
+        return self.parts[int(self.part[row])].read(int(self.rows[row]))
 
     def joints(self, row: int) -> Float:
-        """As `SequenceReader.joints`."""
+        """Joints [T, joint, 3] of a row of sequences, m; NaN after the end of a sample."""
         return TrueSkeletons(self.parts[int(self.part[row])])[int(self.rows[row])]
 
 
 @dataclass(frozen=True)
 class ImageSet:
-    """Images or sequences of one size, each with a class and a split."""
+    """Images or sequences of one size, each with a class and a split; N is their number."""
 
-    where: Path  # the file or folder they came from
+    where: Path  # file or folder that the images came from
     map: str | None  # name of the map, None for a tree that names none
     # name of every label: the data set's, of a tree without classes.txt by the alphabet
     classes: tuple[str, ...]
@@ -89,7 +90,7 @@ class ImageSet:
     scenes: tuple[str, ...] | None
     size: tuple[int, int]  # (H, W) in pixels
     pixels: Pixels
-    snr_db: float | None = None  # of all of them, None where they differ or the source does not say
+    snr_db: float | None = None  # of all images; None where it differs or is not known
     # {class: images of it that the source has and this set does not}
     left_out: Mapping[str, int] = field(default_factory=dict)
     # [N] which of several joined sets each came from
@@ -99,8 +100,8 @@ class ImageSet:
     kind: Kind = "rgb"
     channels: int = 3  # colours, columns of a cloud, or frames of a sequence of frames
     joints: tuple[str, ...] = ()  # names of what `pixels.joints` reads
-    # [N] class of everybody in each, the sample's main person first; None where there is one person
-    everybody: tuple[tuple[str, ...], ...] | None = None
+    # [N] classes of all persons in each, the main person's first; None where there is one person
+    person_classes: tuple[tuple[str, ...], ...] | None = None
     colours: str | None = None  # colour map of RGB pictures, where it is known
     notes: tuple[str, ...] = ()  # what was done to make the images fit, to be said
 
@@ -118,42 +119,47 @@ class ImageSet:
 
     @property
     def shape(self) -> str:
-        """Of an image, in words."""
+        """Size of an image or a sequence, in words."""
         return shape_in_words(self.kind, self.size, self.channels)
 
     @property
     def frames(self) -> int:
-        """Of a sequence; 1 of an image."""
+        """Number of frames of a sequence; 1 of an image."""
         return {"clouds": self.size[0], "frames": self.channels}.get(self.kind, 1)
 
     @property
-    def done(self) -> tuple[tuple[str, ...], ...]:
-        """What everybody does in each [N], of one person the class."""
-        return self.everybody or tuple((self.classes[label],) for label in self.label)
+    def activities(self) -> tuple[tuple[str, ...], ...]:
+        """Activities of everybody in each image [N], the main person's first."""
+        return self.person_classes or tuple((self.classes[label],) for label in self.label)
 
-    def shows(self, classes: Sequence[str]) -> Levels:
-        """What anybody does in each [N, classes], 1 or 0."""
+    def multi_hot(self, classes: Sequence[str]) -> Levels:
+        """Multi-hot labels [N, classes]: 1 for an activity that anybody does in the image, else 0.
+
+        Args:
+            classes: names of the columns; activities of no such name are left out.
+        """
         numbers = {name: number for number, name in enumerate(classes)}
-        found = np.zeros((len(self), len(classes)), np.uint8)
-        for row, names in zip(found, self.done, strict=True):
+        labels = np.zeros((len(self), len(classes)), np.uint8)
+        for row, names in zip(labels, self.activities, strict=True):
             row[[numbers[name] for name in names if name in numbers]] = 1
-        return found
+        return labels
 
     def learned_as(self, target: Target) -> "ImageSet":
-        """The same images with the classes of a target: numbers of people, or all that are shown.
+        """Images with the classes of a target: numbers of people, or all activities of anybody.
 
-        The label of target labels is still that of the sample's main person.
+        The label of target labels is still that of the sample's main person. The images of other
+        targets stay as they are.
         """
         if target == "labels":
-            shown = {name for names in self.done for name in names}
-            others = sorted(shown.difference(self.classes))
+            activities = {name for names in self.activities for name in names}
+            others = sorted(activities.difference(self.classes))
             return replace(self, classes=(*self.classes, *others))
         if target != "count":
             return self
-        counts = np.array([len(names) for names in self.done])
-        known, label = np.unique(counts, return_inverse=True)
-        classes = tuple(f"{n} {'person' if n == 1 else 'people'}" for n in known)
-        return replace(self, classes=classes, label=label, everybody=None)
+        counts = np.array([len(names) for names in self.activities])
+        occurring, label = np.unique(counts, return_inverse=True)
+        classes = tuple(f"{n} {'person' if n == 1 else 'people'}" for n in occurring)
+        return replace(self, classes=classes, label=label, person_classes=None)
 
     @property
     def skeletons(self) -> TrueSkeletons:
@@ -161,7 +167,11 @@ class ImageSet:
         return TrueSkeletons(self.pixels)
 
     def rows(self, split: str) -> Index:
-        """Rows of a split: train, val, test or all."""
+        """Rows of a split: train, val, test or all.
+
+        Raises:
+            FolderError: there are no such images, or no splits.
+        """
         if split == "all":
             return np.arange(len(self))
         if self.split is None:
@@ -169,34 +179,51 @@ class ImageSet:
         numbers = np.flatnonzero(self.split == SPLIT_NAMES[split])
         if not numbers.size:
             counts = np.bincount(self.split, minlength=3)
-            has = ", ".join(f"{n} {name}" for n, name in zip(counts, SPLITS, strict=True) if n)
-            raise FolderError(f"{self.where}: has no {split} images (it has {has})")
+            available = ", ".join(
+                f"{n} {name}" for n, name in zip(counts, SPLITS, strict=True) if n
+            )
+            raise FolderError(f"{self.where}: has no {split} images (it has {available})")
         return numbers
 
     def renamed(self, names: Mapping[str, str | None]) -> "ImageSet":
-        """The same images with some classes under other names; None leaves a class out."""
+        """Images with some classes under other names; images of a class left out are counted.
+
+        Args:
+            names: {class: new name, or None to leave it out}; others stay. Two classes of one new
+                name become one.
+
+        Raises:
+            FolderError: no class is left.
+        """
         new = [names.get(name, name) for name in self.classes]
         classes = tuple(dict.fromkeys(name for name in new if name is not None))
         if not classes:
             raise FolderError(f"{self.where}: --classes leaves no class of it")
-        number = np.array([-1 if name is None else classes.index(name) for name in new])
-        label = number[self.label]
+        new_number = np.array([-1 if name is None else classes.index(name) for name in new])
+        label = new_number[self.label]
         rows = np.flatnonzero(label >= 0)
-        if self.everybody is not None:
-            others = ([names.get(one, one) for one in self.everybody[row]] for row in rows)
-            kept = tuple(tuple(one for one in each if one is not None) for each in others)
-            return replace(replace(self, everybody=None).renamed(names), everybody=kept)
+        if self.person_classes is not None:
+            new_names = (
+                [names.get(name, name) for name in self.person_classes[row]] for row in rows
+            )
+            activities = tuple(
+                tuple(name for name in person_names if name is not None)
+                for person_names in new_names
+            )
+            return replace(
+                replace(self, person_classes=None).renamed(names), person_classes=activities
+            )
         if rows.size == label.size:
             return replace(self, classes=classes, label=label)
-        lost = np.bincount(self.label[label < 0], minlength=len(new)).tolist()
-        left_out = {name: n for name, n in zip(self.classes, lost, strict=True) if n}
+        image_counts = np.bincount(self.label[label < 0], minlength=len(new)).tolist()
+        left_out = {name: n for name, n in zip(self.classes, image_counts, strict=True) if n}
         return replace(
-            replace(self, classes=classes, label=label).some(rows),
+            replace(self, classes=classes, label=label).take(rows),
             left_out={**self.left_out, **left_out},
         )
 
-    def some(self, rows: Index) -> "ImageSet":
-        """The images of some rows, in their order; a row may come twice."""
+    def take(self, rows: Index) -> "ImageSet":
+        """Set of the images of some rows, in their order; a row may come twice."""
         return replace(
             self,
             label=self.label[rows],
@@ -206,29 +233,44 @@ class ImageSet:
             pixels=Chosen((self.pixels,), np.zeros_like(rows), rows),
             source=self.source[rows],
             persons=None if self.persons is None else tuple(self.persons[row] for row in rows),
-            everybody=None if self.everybody is None else tuple(self.everybody[r] for r in rows),
+            person_classes=None
+            if self.person_classes is None
+            else tuple(self.person_classes[r] for r in rows),
         )
 
     def cut(self, share: float, seed: int) -> "ImageSet":
-        """The same images, split class by class into train and validation if they have no split."""
+        """Set with a split: its own, or each class cut at random into train and validation.
+
+        Args:
+            share: share of each class that validates, at least one image and not all.
+            seed: seed of the cut.
+
+        Raises:
+            FolderError: a class has a single image.
+        """
         if self.split is not None:
             return self
         split = np.full(len(self), TRAIN, dtype=np.uint8)
         for index, name in enumerate(self.classes):
-            mine = np.flatnonzero(self.label == index)
-            order = stream(seed, TRAINING, name=f"cut {name}").permutation(mine.size)
-            if mine.size < 2:
+            class_rows = np.flatnonzero(self.label == index)
+            order = stream(seed, TRAINING, name=f"cut {name}").permutation(class_rows.size)
+            if class_rows.size < 2:
                 raise FolderError(
                     f"{self.where}: the class {name!r} has one image; should have two, one to "
                     "learn from and one to validate with"
                 )
-            held_out = min(max(1, half_up(share, mine.size)), mine.size - 1)
-            split[mine[order[:held_out]]] = VALIDATION
+            held_out = min(max(1, half_up(share, class_rows.size)), class_rows.size - 1)
+            split[class_rows[order[:held_out]]] = VALIDATION
         return replace(self, split=split)
 
 
 def shape_in_words(kind: Kind, size: tuple[int, int], channels: int) -> str:
-    """What an image or a sequence measures."""
+    """Size of an image or a sequence, in words.
+
+    Args:
+        size: (H, W) of an image or a frame; (frames, points) of clouds.
+        channels: number of frames of a sequence of frames.
+    """
     height, width = size
     if kind == "clouds":
         return f"{height} frames of {width} points"
@@ -236,17 +278,21 @@ def shape_in_words(kind: Kind, size: tuple[int, int], channels: int) -> str:
 
 
 def labels_for(images: ImageSet, known: Sequence[str]) -> Index:
-    """Labels [N] in the numbering of another list of classes, which has all of theirs, by name."""
+    """Labels [N] in the numbering of `known`, a list that has every class of the images."""
     return np.array([list(known).index(name) for name in images.classes])[images.label]
 
 
 def repeated(levels: Levels) -> Levels:
-    """One channel [...] three times, [..., 3]."""
+    """Levels [...] in three equal channels, [..., 3]."""
     return np.repeat(levels[..., None], 3, axis=-1)
 
 
-def split_named(name: str) -> str:
-    """Check the name of a split."""
+def check_split_name(name: str) -> str:
+    """Name of a split: train, val (or validation, valid), test or all.
+
+    Raises:
+        FolderError: there is no such split.
+    """
     known = {**SPLIT_NAMES, "all": -1}
     if name not in known:
         hint = did_you_mean(name, known, "the splits are train, val, test and all")

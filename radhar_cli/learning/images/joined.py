@@ -9,12 +9,12 @@ import numpy as np
 
 from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.colours import in_colours
+from radhar_cli.learning.images.colours import recolour
 from radhar_cli.learning.images.image_set import Chosen, ImageSet
 
 
 def joined(sets: Sequence[ImageSet]) -> ImageSet:
-    """One set of all images, classes matched by name, colours brought to those of the first set.
+    """Set of all images, classes matched by name, colours brought to those of the first set.
 
     Raises:
         FolderError: they differ in map, kind, size or joints. A tree of images that does not say
@@ -23,76 +23,82 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
     if len(sets) == 1:
         return sets[0]
     _refuse_unlike(sets)
-    colours = next((one.colours for one in sets if one.colours is not None), None)
-    sets = [in_colours(one, colours) for one in sets]
-    several = any(one.everybody for one in sets)
-    classes = tuple(dict.fromkeys(name for one in sets for name in one.classes))
-    numbers = [np.array([classes.index(name) for name in one.classes]) for one in sets]
-    source = np.repeat(np.arange(len(sets)), [len(one) for one in sets])
-    rows = np.concatenate([np.arange(len(one)) for one in sets])
-    scenes = [one.scenes or ("",) * len(one) for one in sets]
+    colours = next((images.colours for images in sets if images.colours is not None), None)
+    sets = [recolour(images, colours) for images in sets]
+    has_several_people = any(images.person_classes for images in sets)
+    classes = tuple(dict.fromkeys(name for images in sets for name in images.classes))
+    numbers = [np.array([classes.index(name) for name in images.classes]) for images in sets]
+    source = np.repeat(np.arange(len(sets)), [len(images) for images in sets])
+    rows = np.concatenate([np.arange(len(images)) for images in sets])
+    scenes = [images.scenes or ("",) * len(images) for images in sets]
     left_out = Counter[str]()
-    for one in sets:
-        left_out.update(one.left_out)
+    for images in sets:
+        left_out.update(images.left_out)
     return replace(
         sets[0],
-        where=Path(" and ".join(str(one.where) for one in sets)),
-        map=next((one.map for one in sets if one.map is not None), None),
+        where=Path(" and ".join(str(images.where) for images in sets)),
+        map=next((images.map for images in sets if images.map is not None), None),
         colours=colours,
-        notes=tuple(dict.fromkeys(note for one in sets for note in one.notes)),
+        notes=tuple(dict.fromkeys(note for images in sets for note in images.notes)),
         classes=classes,
-        label=np.concatenate([n[one.label] for n, one in zip(numbers, sets, strict=True)]),
-        split=np.concatenate([one.split for one in sets if one.split is not None]),
-        names=tuple(name for one in sets for name in one.names),
-        scenes=tuple(scene for each in scenes for scene in each),
-        pixels=Chosen(tuple(one.pixels for one in sets), source, rows),
-        snr_db=sets[0].snr_db if len({one.snr_db for one in sets}) == 1 else None,
+        label=np.concatenate(
+            [label_of[images.label] for label_of, images in zip(numbers, sets, strict=True)]
+        ),
+        split=np.concatenate([images.split for images in sets if images.split is not None]),
+        names=tuple(name for images in sets for name in images.names),
+        scenes=tuple(scene for set_scenes in scenes for scene in set_scenes),
+        pixels=Chosen(tuple(images.pixels for images in sets), source, rows),
+        snr_db=sets[0].snr_db if len({images.snr_db for images in sets}) == 1 else None,
         left_out=dict(left_out),
         source=source,
         persons=None,
-        everybody=tuple(names for one in sets for names in one.done) if several else None,
+        person_classes=tuple(names for images in sets for names in images.activities)
+        if has_several_people
+        else None,
     )
 
 
 def _refuse_unlike(sets: Sequence[ImageSet]) -> None:
     """Refuse sets that no network can read as one."""
     first = sets[0]
-    named = next((one for one in sets if one.map is not None), first)
-    for one in sets:
-        if one.kind != first.kind:
+    mapped = next((other for other in sets if other.map is not None), first)
+    for other in sets:
+        if other.kind != first.kind:
             raise FolderError(
-                f"{one.where}: has {one.kind}, {first.where} {first.kind}; should be of one kind"
+                f"{other.where}: has {other.kind}, {first.where} {first.kind}; should be of one "
+                "kind"
             )
-        if one.map not in (None, named.map):
+        if other.map not in (None, mapped.map):
             raise FolderError(
-                f"{one.where}: its map is {one.map}, that of {named.where} {named.map}; --map "
-                "should name one that all data sets have"
+                f"{other.where}: its map is {other.map}, that of {mapped.where} {mapped.map}; "
+                "--map should name one that all data sets have"
             )
-        if (one.size, one.channels) != (first.size, first.channels):
+        if (other.size, other.channels) != (first.size, first.channels):
             cure = "; --set frames=N makes sequences of one length" if first.frames > 1 else ""
             raise FolderError(
-                f"{one.where}: images are {one.shape}, those of {first.where} {first.shape}; "
+                f"{other.where}: images are {other.shape}, those of {first.where} {first.shape}; "
                 f"should be of one size{cure}"
             )
-        if one.joints != first.joints:
+        if other.joints != first.joints:
             raise FolderError(
-                f"{one.where}: its skeletons have {len(one.joints)} joints, those of {first.where} "
-                f"{len(first.joints)}; should be the same"
+                f"{other.where}: its skeletons have {len(other.joints)} joints, those of "
+                f"{first.where} {len(first.joints)}; should be the same"
             )
 
 
 def sampling_weights(
-    images: ImageSet, rows: Index, of_sets: Sequence[float] | None, balanced: bool
+    images: ImageSet, rows: Index, set_weights: Sequence[float] | None, balanced: bool
 ) -> Float:
-    """How often an epoch shows each of these rows on average [rows].
+    """Mean number of times that an epoch shows each row [len(rows)].
 
     Args:
-        of_sets: weight of every joined set; 1 each if None.
+        rows: rows of `images` that an epoch is made of.
+        set_weights: weight of every joined set; None is 1 each.
         balanced: every class as often as the others, the epoch's length unchanged.
     """
     weights = np.ones(rows.size)
-    if of_sets is not None:
-        weights = np.array(of_sets, dtype=float)[images.source[rows]]
+    if set_weights is not None:
+        weights = np.array(set_weights, dtype=float)[images.source[rows]]
     if balanced:
         label = images.label[rows]
         mass = np.bincount(label, weights, len(images.classes))

@@ -13,7 +13,7 @@ from radhar_cli.learning.images.folder import FilePixels, folder_images
 from radhar_cli.learning.images.h5 import h5_images, h5_sequences
 from radhar_cli.learning.images.image_set import ImageSet, resized
 from radhar_cli.learning.run_files import is_run
-from radhar_cli.learning.settings import OF_SEQUENCES, Kind, TrainConfig
+from radhar_cli.learning.settings import KIND_OF_SEQUENCES, Kind, TrainConfig
 
 
 def open_inputs(
@@ -22,14 +22,26 @@ def open_inputs(
     config: TrainConfig,
     resize: tuple[int, int] | None = None,
 ) -> ImageSet:
-    """Open what a network reads: images as `open_images`, or sequences of a dataset.h5."""
-    if config.model not in OF_SEQUENCES:
+    """Open what the network of a config reads: images, or sequences of a dataset.h5.
+
+    Args:
+        path: data set, or tree of images.
+        map_name: map or product to open; None takes the first one.
+        config: model, kind of input, frames and points.
+        resize: (H, W) to bring every image to.
+
+    Raises:
+        FolderError: data that cannot be used.
+    """
+    if config.model not in KIND_OF_SEQUENCES:
         return open_images(path, map_name, config.input, resize)
     if resize is not None:
-        raise FolderError(f"--resize: {config.model} reads {config.reads}, which have no size")
+        raise FolderError(f"--resize: {config.model} reads {config.input_kind}, which have no size")
     if not is_h5(path):
-        raise FolderError(f"{path}: is no data set with {config.reads}, which {config.model} reads")
-    return h5_sequences(path, map_name, config.reads, config.frames, config.points)
+        raise FolderError(
+            f"{path}: is no data set with {config.input_kind}, which {config.model} reads"
+        )
+    return h5_sequences(path, map_name, config.input_kind, config.frames, config.points)
 
 
 def open_images(
@@ -38,9 +50,12 @@ def open_images(
     """Open a data set: dataset.h5, a folder that `radhar generate` wrote, or a tree of images.
 
     Args:
-        map_name: which map; the first one if None.
-        kind: "rgb" as the PNGs are coloured, or "gray", one channel three times.
+        map_name: map to open; None takes the first one.
+        kind: "rgb" as the PNGs are coloured, or "gray", the levels in three equal channels.
         resize: (H, W) to bring every image to; they may then differ in size.
+
+    Raises:
+        FolderError: it is no data set, is damaged, or has no such map.
     """
     if not path.exists():
         raise FolderError(f"{path}: no such file or folder")
@@ -71,17 +86,17 @@ def is_h5(path: Path) -> bool:
 
 
 def summarise_tree(root: Path) -> dict[str, Any]:
-    """Count the images of a tree by class, split and size; pixels are not read."""
+    """Numbers of images of a tree by class, split and size, for `inspect`; pixels are not read."""
     images = open_images(root, None, "rgb")
     assert isinstance(images.pixels, FilePixels)
     files = images.pixels.files
     sizes = Counter(map(image_size, files))
 
     def counts(label: int) -> dict[str, int]:
-        mine = images.label == label
+        in_class = images.label == label
         if images.split is None:
-            return {"images": int(mine.sum())}
-        by_split = np.bincount(images.split[mine], minlength=len(SPLITS))
+            return {"images": int(in_class.sum())}
+        by_split = np.bincount(images.split[in_class], minlength=len(SPLITS))
         return dict(zip(SPLITS, by_split.tolist(), strict=True))
 
     return {

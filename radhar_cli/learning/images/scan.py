@@ -16,9 +16,8 @@ class Scan:
     """Digests and statistics of some images."""
 
     digests: tuple[str, ...]  # [rows] of each image's pixels
-    # of each channel, of levels from 0 to 1; of all frames of a sequence together
-    mean: tuple[float, ...]
-    sd: tuple[float, ...]  # standard deviation of each, 1 where it is constant
+    mean: tuple[float, ...]  # of each channel, levels from 0 to 1; of all frames of a sequence
+    sd: tuple[float, ...]  # standard deviation of each channel, 1 where it is constant
 
 
 def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
@@ -46,11 +45,16 @@ def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
 
 
 def content_hash(images: ImageSet, rows: Index, digests: Sequence[str] | None = None) -> str:
-    """SHA-256 of what a training run depends on: classes, labels, splits, pixels (`scan`)."""
+    """SHA-256 of what a training run depends on: classes, labels, splits, pixels.
+
+    Args:
+        rows: rows of `images` that count.
+        digests: [len(rows)] digests of their pixels; None has `scan` compute them.
+    """
     digests = scan(images, rows).digests if digests is None else digests
     split = None if images.split is None else images.split[rows].tolist()
     about = [images.classes, images.label[rows].tolist(), split, list(digests)]
-    if images.everybody is not None:
-        about.append([images.everybody[row] for row in rows])
+    if images.person_classes is not None:
+        about.append([images.person_classes[row] for row in rows])
     text = json.dumps(about)
     return hashlib.sha256(text.encode()).hexdigest()

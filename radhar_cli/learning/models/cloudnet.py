@@ -16,7 +16,7 @@ WIDTHS = (64, 128)
 NEAR = 5  # frames whose points make the centre of one
 
 
-def over_time(channels: int) -> nn.Sequential:
+def temporal_convolutions(channels: int) -> nn.Sequential:
     """Two convolutions over five frames of [B, C, T]."""
     layers: list[nn.Module] = []
     for _ in range(2):
@@ -25,7 +25,7 @@ def over_time(channels: int) -> nn.Sequential:
     return nn.Sequential(*layers)
 
 
-def centres(x: Tensor) -> Tensor:
+def moving_centroid(x: Tensor) -> Tensor:
     """Mean place [B, 3, T] of the points of five frames; of all frames where those are empty."""
     present = x[:, -1:]
     sums, counts = (x[:, :3] * present).sum(3), present.sum(3)
@@ -69,13 +69,13 @@ class CloudNet(OverTime):
             nn.Conv2d(first, second, 1),
             nn.ReLU(inplace=True),
         )
-        self.time = over_time(second)
+        self.time = temporal_convolutions(second)
         self.head = nn.Linear(second, outputs)
 
     def forward_features(self, x: Tensor) -> Tensor:
         """[B, 6, T, K] to features [B, 128, T]."""
         present = x[:, -1:]
-        each = torch.cat([x[:, :3] - centres(x)[..., None], x[:, :-1]], 1)
+        each = torch.cat([x[:, :3] - moving_centroid(x)[..., None], x[:, :-1]], 1)
         features: Tensor = self.time((self.points(each * present) * present).amax(3))
         return features
 
@@ -85,4 +85,4 @@ class CloudNet(OverTime):
         if not self.per_frame:
             return outputs
         places = outputs.view(*outputs.shape[:2], -1, 3)
-        return places + centres(x).transpose(1, 2)[:, :, None]
+        return places + moving_centroid(x).transpose(1, 2)[:, :, None]

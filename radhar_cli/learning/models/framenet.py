@@ -2,7 +2,7 @@
 
 from torch import Tensor, nn
 
-from radhar_cli.learning.models.cloudnet import OverTime, over_time
+from radhar_cli.learning.models.cloudnet import OverTime, temporal_convolutions
 from radhar_cli.learning.models.smallnet import block
 
 NAME = "framenet"
@@ -30,7 +30,7 @@ class FrameNet(OverTime):
             nn.Flatten(),
             nn.Linear(WIDTHS[-1] * GRID**2, FEATURES),
         )
-        self.time = over_time(FEATURES)
+        self.time = temporal_convolutions(FEATURES)
         self.head = nn.Linear(FEATURES, outputs)
 
     def forward_features(self, x: Tensor) -> Tensor:

@@ -9,7 +9,7 @@ from torch.library import Library
 
 from radhar_cli.errors import ModelError, did_you_mean
 from radhar_cli.learning.models import fftnet, smallnet
-from radhar_cli.learning.settings import OF_SEQUENCES
+from radhar_cli.learning.settings import KIND_OF_SEQUENCES
 
 _OPERATORS: Any = Library("torchvision", "FRAGMENT")  # type: ignore[no-untyped-call]  # forgets what it defines when it is let go
 OURS = (fftnet.NAME, smallnet.NAME, smallnet.WITH_BATCH_NORM)
@@ -34,7 +34,7 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
         ) from None
     if not timm.is_model(name):
         hint = did_you_mean(
-            name, (*OF_SEQUENCES, *timm.list_models()), "timm.list_models() has them all"
+            name, (*KIND_OF_SEQUENCES, *timm.list_models()), "timm.list_models() has them all"
         )
         raise ModelError(
             f"model {name!r}: is none of {', '.join(OURS)} nor a name of timm's; {hint}"

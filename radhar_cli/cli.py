@@ -1,4 +1,4 @@
-"""The `radhar` program: registers the commands, turns our errors into one message and a status."""
+"""The `radhar` program: registers the commands, and turns errors into a message and a status."""
 
 import io
 import os
@@ -30,7 +30,7 @@ STATUSES = (
 
 
 def program() -> "typer.Typer":
-    """The program and its commands."""
+    """Make the program with all its commands."""
     import typer
 
     from radhar_cli.commands import config, version
@@ -51,11 +51,11 @@ def program() -> "typer.Typer":
             command = getattr(import_module(f"radhar_cli.commands.{module}"), module)
             app.command(name, rich_help_panel=heading)(command)
     app.add_typer(config.group(), name="config", no_args_is_help=True, rich_help_panel=DATA_SETS)
-    _with_output_options(app)
+    _add_output_options(app)
     return app
 
 
-def _with_output_options(app: "typer.Typer") -> None:
+def _add_output_options(app: "typer.Typer") -> None:
     """Give --json and --quiet to every command."""
     from radhar_cli.commands.tell import with_output_options
 
@@ -64,11 +64,11 @@ def _with_output_options(app: "typer.Typer") -> None:
         command.callback = with_output_options(command.callback)
     for group in app.registered_groups:
         assert group.typer_instance is not None
-        _with_output_options(group.typer_instance)
+        _add_output_options(group.typer_instance)
 
 
 def main() -> None:
-    """Run the program; our errors end with their message and status."""
+    """Run the program and exit with its status; errors of radhar end with one message."""
     status: int | None = None
     with interrupts.handled():
         try:
@@ -77,7 +77,7 @@ def main() -> None:
             sys.stdout.flush()
         except BaseException as error:
             if interrupts.status() is None:
-                status = _tell(error)
+                status = _report_error(error)
         how = "interrupted" if interrupts.received() == INTERRUPTED else "terminated"
         if interrupts.status() is not None and interrupts.tell_once():
             print(f"{how}: what was not finished is not kept", file=sys.stderr)
@@ -86,30 +86,37 @@ def main() -> None:
         sys.exit(interrupts.status() or status)
 
 
-def _tell(error: BaseException) -> int:
-    """Say in a line what ended the program, unless it is a mistake of ours; return the status."""
-    status, said = 1, ""
+def _report_error(error: BaseException) -> int:
+    """Print in a line what ended the program, and return the status.
+
+    Raises:
+        BaseException: the error itself, where it is a mistake of radhar.
+    """
+    status, message = 1, ""
     if isinstance(error, RadharError):
-        status, said = error.status, str(error)
+        status, message = error.status, str(error)
     elif isinstance(error, KeyboardInterrupt):
         return INTERRUPTED
     elif isinstance(error, MemoryError):
         why = f" ({error})" if str(error) else ""
-        said = f"out of memory{why}; smaller images or fewer --jobs need less"
+        message = f"out of memory{why}; smaller images or fewer --jobs need less"
     elif isinstance(error, OSError) and error.errno is not None:
         with suppress(OSError, ValueError):  # or Python would write what it holds again at its end
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(error, BrokenPipeError):
-            said = f"{error.filename or 'output'}: {error.strerror}"
+            message = f"{error.filename or 'output'}: {error.strerror}"
     else:
         raise error
-    if said:
-        print(f"radhar: {shown(said)}", file=sys.stderr)
+    if message:
+        print(f"radhar: {shown(message)}", file=sys.stderr)
     return status
 
 
 def _open_standard_streams() -> None:
-    """Open to nothing what the shell closed, or pipes of ours take its place; print anywhere."""
+    """Open streams that the shell closed to nothing, or our pipes take their numbers.
+
+    Characters that standard output cannot encode are printed escaped.
+    """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
             os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # takes the lowest number
@@ -119,7 +126,11 @@ def _open_standard_streams() -> None:
 
 
 def _run(arguments: list[str]) -> int | None:
-    """Run the program and return its status."""
+    """Run the program with arguments and return its status.
+
+    Raises:
+        RadharError: the arguments cannot be used.
+    """
     import typer
 
     usage_error = typer.BadParameter.__mro__[1]  # of click, or of the copy that newer typers hold

@@ -1,4 +1,4 @@
-"""`radhar adapt`: a trained network is fitted to unlabelled images of another radar."""
+"""`radhar adapt`: a trained network is adapted to unlabelled images of another radar."""
 
 from pathlib import Path
 from typing import Annotated
@@ -14,9 +14,9 @@ from radhar_cli.errors import ConfigError
 def adapt(
     run: Run,
     data: Annotated[
-        Path, typer.Argument(help="A data set or a tree of images; its classes are not used.")
+        Path, typer.Argument(help="Data set, or tree of class folders; its labels are not used.")
     ],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the adapted run.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write the adapted run to.")],
     map_: TrainedMap = None,
     split: Split = "all",
     epochs: Annotated[
@@ -24,25 +24,26 @@ def adapt(
         typer.Option(
             min=0,
             max=1000,
-            help="Epochs of training on the images: towards confident predictions, with all "
-            "classes equally frequent. 0 adapts batch norm only; default: 0 if the network has "
-            "batch norm and there is no --mix, else 20.",
+            help="Epochs of training on the unlabelled images; the loss is the mean entropy of the "
+            "predictions less the entropy of their mean. 0 recomputes batch-norm statistics only. "
+            "The default is 0 for a network with batch norm and without --mix, else 20.",
         ),
     ] = None,
     mix: Annotated[
         list[Path] | None,
         typer.Option(
             metavar="DATA",
-            help="Labelled data that RUN was trained on, used in the same epochs; may repeat.",
+            help="Labelled data that RUN was trained on, used in the same epochs; may be repeated.",
         ),
     ] = None,
     resize: Resize = False,
     overwrite: StartOver = False,
     device: Device = "auto",
 ) -> None:
-    """Adapt a copy of a run to another radar's images, without labels.
+    """Adapt a trained network to another radar's images, without labels.
 
-    Batch-norm statistics are recomputed on the images; in epochs the copy is trained on them.
+    The run is copied. The copy's batch-norm statistics are recomputed on the images; with --epochs,
+    its weights are trained on them, too.
 
     Example:
 
@@ -52,7 +53,7 @@ def adapt(
     The classes should be about as frequent in the images as in later use; with --epochs, about
     equally frequent.
     """
-    from radhar_cli.commands.learning_options import apart, needs_torch
+    from radhar_cli.commands.learning_options import needs_torch, refuse_output_inside_data
 
     needs_torch()
     from radhar_cli.commands.terminal import BarProgress
@@ -62,7 +63,7 @@ def adapt(
 
     if mix and epochs == 0:
         raise ConfigError("--mix: needs --epochs, during which its data are used")
-    apart(out, [data, *(mix or [])])
+    refuse_output_inside_data(out, [data, *(mix or [])])
     adapted = adaptation.adapt(
         run,
         data,

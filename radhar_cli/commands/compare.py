@@ -1,4 +1,4 @@
-"""`radhar compare`: how far two data sets of maps are apart, class by class."""
+"""`radhar compare`: how far two data sets of maps are refuse_output_inside_data, class by class."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,16 +12,19 @@ from radhar_cli.commands.tell import report, tell
 
 def compare(
     simulated: Annotated[
-        Path, typer.Argument(help="Data set: a folder of `generate`, or a tree of class folders.")
+        Path,
+        typer.Argument(
+            help="Simulated data set: a folder that `generate` wrote, or class folders."
+        ),
     ],
-    measured: Annotated[Path, typer.Argument(help="Data set of measured maps, in either form.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the report.")],
+    measured: Annotated[Path, typer.Argument(help="Measured data set, in either form.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write the report to.")],
     map_: AnyMap = None,
     classes: Classes = None,
     per_class: Annotated[
         int,
         typer.Option(
-            min=2, max=5000, help="Maximum maps per class and data set (a random subset)."
+            min=2, max=5000, help="Largest number of maps per class and data set, a random subset."
         ),
     ] = 200,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random subset.")] = 1,
@@ -37,31 +40,32 @@ def compare(
 
     The test trains a classifier: 50 % means that it cannot tell simulated from measured maps.
     """
-    from radhar_cli.commands.learning_options import apart, needs
+    from radhar_cli.commands.learning_options import needs, refuse_output_inside_data
 
     needs("train", ("sklearn",))
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.report_folder import NUMBERS
-    from radhar_cli.two_sample.comparison import compare as compared
+    from radhar_cli.two_sample.comparison import compare as compare_maps
     from radhar_cli.two_sample.report import write
 
-    apart(out, [simulated, measured])
+    refuse_output_inside_data(out, [simulated, measured])
     refuse_to_replace_results(out, (NUMBERS,), overwrite)
     names = read_classes(classes)
     with BarProgress("map") as progress:
-        comparison = compared(simulated, measured, progress, map_, names, per_class, seed)
+        comparison = compare_maps(simulated, measured, progress, map_, names, per_class, seed)
     for warning in comparison.warnings:
         tell(f"warning: {warning}", err=True)
     files = write(comparison, out)
     numbers = comparison.numbers()
-    for name, one in numbers["classes"].items():
-        tell(f"{name}: {_test(one['test'])}")
-    tell(f"all classes: {_test(numbers['test'])}")
+    for name, of_class in numbers["classes"].items():
+        tell(f"{name}: {_accuracy_text(of_class['test'])}")
+    tell(f"all classes: {_accuracy_text(numbers['test'])}")
     report(files=files, **{key: numbers[key] for key in ("test", "classes", "warnings")})
 
 
-def _test(test: dict[str, Any] | None) -> str:
+def _accuracy_text(test: dict[str, Any] | None) -> str:
+    """Accuracy of a two-sample test with its 95 % interval, as text."""
     if test is None:
         return "not tested"
     low, high = test["accuracy_95"]

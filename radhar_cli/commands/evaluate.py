@@ -19,26 +19,33 @@ def evaluate(
         list[Path],
         typer.Argument(
             metavar="RUN... DATA...",
-            help="Training runs, and the data to evaluate them on; one or more of each.",
+            help="Training runs, and data sets to evaluate them on; one or more of each.",
         ),
     ],
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="Folder of the report; default: RUN/eval.")
+        Path | None,
+        typer.Option("-o", "--out", help="Folder of the report. The default is RUN/eval."),
     ] = None,
     split: Split = "val",
     map_: TrainedMap = None,
     tsne: Annotated[
-        bool, typer.Option("--tsne", help="Draw t-SNE plots of the maps and of the last features.")
+        bool,
+        typer.Option(
+            "--tsne", help="Draw t-SNE plots of the maps and of the network's last features."
+        ),
     ] = False,
     filters: Annotated[
         bool,
-        typer.Option("--filters", help="Draw the weights of the global filters (fftnet)."),
+        typer.Option("--filters", help="Draw the weights of the global filters, of fftnet only."),
     ] = False,
     in_place_vs_moving: Annotated[
         bool,
-        typer.Option("--in-place-vs-moving", help="Also report the groups S1 to S7 and S8 to S12."),
+        typer.Option(
+            "--in-place-vs-moving",
+            help="Also report S1 to S7 (in place) against S8 to S12 (moving).",
+        ),
     ] = False,
-    batch: Annotated[int, typer.Option(min=1, help="Batch size.")] = 32,
+    batch: Annotated[int, typer.Option(min=1, help="Number of images per batch.")] = 32,
     resize: Resize = False,
     classes: Classes = None,
     device: Device = "auto",
@@ -52,7 +59,11 @@ def evaluate(
 
     Several runs or data sets give a comparison, such as training at one SNR and testing at all.
     """
-    from radhar_cli.commands.learning_options import apart, needs_torch, runs_and_data
+    from radhar_cli.commands.learning_options import (
+        needs_torch,
+        refuse_output_inside_data,
+        split_runs_and_data,
+    )
 
     needs_torch()
     from radhar_cli.commands.terminal import BarProgress
@@ -60,10 +71,10 @@ def evaluate(
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.machine import choose_device
-    from radhar_cli.learning.report import evaluate as test
+    from radhar_cli.learning.report import evaluate as evaluate_runs
     from radhar_cli.learning.single_result import EvalOptions
 
-    runs, data = runs_and_data(paths)
+    runs, data = split_runs_and_data(paths)
     names = read_classes(classes)
     options = EvalOptions(
         check_split_name(split), map_, tsne, in_place_vs_moving, batch, resize, names, filters
@@ -72,19 +83,19 @@ def evaluate(
     folder = out or inside / "eval"
     if out is None:
         refuse_links(inside, folder)
-    apart(folder, data)
-    of_what = {"of": [str(path.resolve()) for path in (*runs, *data)]}
-    _refuse_another_report(folder, of_what | {"split": options.split}, overwrite)
+    refuse_output_inside_data(folder, data)
+    inputs = {"of": [str(path.resolve()) for path in (*runs, *data)]}
+    _refuse_another_report(folder, inputs | {"split": options.split}, overwrite)
     with BarProgress("image") as bars:
-        evaluation = test(runs, data, options, choose_device(device), bars)
-    evaluation.numbers |= of_what
+        evaluation = evaluate_runs(runs, data, options, choose_device(device), bars)
+    evaluation.numbers |= inputs
     evaluation.write(folder)
-    found: dict[str, dict[str, dict[str, float]]] = {}
+    scores: dict[str, dict[str, dict[str, float]]] = {}
     for run, about in evaluation.numbers["runs"].items():
         for tested, numbers in about["data"].items():
-            score = next(one for one in SCORES if one in numbers)
-            found.setdefault(score, {}).setdefault(run, {})[tested] = numbers[score]
-    report(page=folder / "report.html", numbers=folder / "report.json", **found)
+            score = next(key for key in SCORES if key in numbers)
+            scores.setdefault(score, {}).setdefault(run, {})[tested] = numbers[score]
+    report(page=folder / "report.html", numbers=folder / "report.json", **scores)
     tell(f"{folder / 'report.html'}: {len(evaluation.figures)} figures; numbers in report.json")
 
 
@@ -94,10 +105,10 @@ def _refuse_another_report(folder: Path, about: dict[str, Any], replace: bool) -
     if replace or not path.exists():
         return
     try:
-        there = read_json(path)
+        stored = read_json(path)
     except FolderError:
-        there = None
-    if not isinstance(there, dict) or any(there.get(key) != about[key] for key in about):
+        stored = None
+    if not isinstance(stored, dict) or any(stored.get(key) != about[key] for key in about):
         raise FolderError(
             f"{folder}: holds another report; --overwrite replaces it, -o names another folder"
         )

@@ -10,13 +10,17 @@ from radhar_cli.commands.tell import report, tell
 
 
 def fit(
-    recordings: Annotated[list[Path], typer.Argument(help="Recordings of one radar.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Config to write.")],
+    recordings: Annotated[
+        list[Path], typer.Argument(help="Recordings of one radar, made by `import`.")
+    ],
+    out: Annotated[
+        Path, typer.Option("-o", "--out", help="Config file to write, such as measured.yaml.")
+    ],
     overwrite: Replace = False,
 ) -> None:
     """Estimate a config from recordings: waveform, SNR and ranges.
 
-    The noise floor is printed, and drawn with the SNRs next to the config, as .png.
+    Prints the noise floor, and draws it with the SNRs in a .png file beside the config.
 
     Example:
 

@@ -18,35 +18,45 @@ if TYPE_CHECKING:
 
 def generate(
     config: Annotated[Path, typer.Argument(help="YAML file that describes the data set.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the data set.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write the data set to.")],
     set_: Overrides = None,
     tolerance: Tolerance = None,
     jobs: Annotated[
         int | None,
-        typer.Option("--jobs", "-j", min=1, help="Processes; default: a core each, if it pays."),
+        typer.Option(
+            "--jobs",
+            "-j",
+            min=1,
+            help="Number of worker processes. The default is one for each core, fewer for data "
+            "sets too small to gain from as many.",
+        ),
     ] = None,
     batch: Annotated[
-        int | None, typer.Option(min=1, help="Samples per batch; does not change the result.")
+        int | None,
+        typer.Option(min=1, help="Number of samples per batch; changes no byte of the result."),
     ] = None,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Print the plan and an estimate; write nothing.")
+        bool,
+        typer.Option(
+            "--dry-run", help="Print the plan, and an estimate of size and time; write nothing."
+        ),
     ] = False,
     shard: Annotated[
-        str | None, typer.Option(metavar="K/N", help="Make part K of N, for `radhar merge`.")
+        str | None, typer.Option(metavar="K/N", help="Make only part K of N, for `radhar merge`.")
     ] = None,
     cluster: Annotated[
         str | None,
         typer.Option(
             metavar="ADDRESS",
-            help="Run on the workers of a dask scheduler, tcp://host:8786, or `local`.",
+            help="Dask scheduler to run on, such as tcp://host:8786; `local` starts one here.",
         ),
     ] = None,
     recordings: Annotated[
         Path | None,
         typer.Option(
             metavar="MANIFEST",
-            help="Use recordings instead of scenes: CSV or YAML (file, label, person, start, "
-            "stop), a tree of class folders, or an .npz of masks.",
+            help="Use recordings instead of simulated scenes. MANIFEST is a CSV or YAML list "
+            "(file, label, person, start, stop), a tree of class folders, or an .npz of images.",
         ),
     ] = None,
     overwrite: StartOver = False,

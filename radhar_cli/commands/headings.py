@@ -1,4 +1,4 @@
-"""`radhar --help` lists its commands under the headings that they were given."""
+"""`radhar --help` with its commands under headings."""
 
 from typing import Any
 
@@ -6,10 +6,10 @@ from typer.core import TyperGroup
 
 
 class Headings(TyperGroup):
-    """A group whose help has a section for each `rich_help_panel`, without importing rich."""
+    """Group of commands whose help has a section for each `rich_help_panel`, without rich."""
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Write the sections."""
+        """Write a section for each heading, in the order of the commands."""
         sections: dict[str, list[tuple[str, str]]] = {}
         width = max(map(len, self.commands))
         for name, command in self.commands.items():

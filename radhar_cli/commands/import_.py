@@ -14,32 +14,35 @@ def import_(
         list[Path],
         typer.Argument(
             metavar="CAPTURE...",
-            help=".bin of a DCA1000 (name only the first), .npy, .npz, .mat or HDF5.",
+            help="Capture: .bin of a DCA1000 (name only the first), .npy, .npz, .mat, HDF5.",
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")],
     radar: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help="Header: mmWave Studio's JSON, a .cfg, or YAML of radhar's keys."
+            metavar="FILE",
+            help="Header: mmWave Studio's JSON, TI's .cfg, or YAML of radhar's keys.",
         ),
     ] = None,
     set_: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Override a header field; may repeat."),
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="Override a header field; may be repeated."
+        ),
     ] = None,
-    label: Annotated[str | None, typer.Option(help="Activity label.")] = None,
-    person: Annotated[str | None, typer.Option(help="Subject ID.")] = None,
+    label: Annotated[str | None, typer.Option(help="Activity that was recorded.")] = None,
+    person: Annotated[str | None, typer.Option(help="Person who was recorded.")] = None,
     overwrite: Replace = False,
 ) -> None:
-    """Read a capture of a real radar into a recording file.
+    """Convert a capture of a real radar into a recording file.
 
     Example:
 
       radhar import adc_data_Raw_0.bin --radar setup.mmwave.json --label walking -o walk.h5
 
-    Findings in the samples (offset binary, sign of the beat, gaps, losses, saturation) are printed
-    and can be overridden: --set coding=signed, --set beat=positive. Keys: docs/guide/measured.md
+    Prints what is found in the samples: offset binary, sign of the beat, gaps, losses, saturation.
+    --set coding=signed and --set beat=positive override it. All keys: docs/guide/measured.md
     """
     import json
 

@@ -9,7 +9,9 @@ from radhar_cli.commands.tell import report, tell
 
 
 def inspect(
-    path: Annotated[Path, typer.Argument(help="What radhar wrote, or a tree of class folders.")],
+    path: Annotated[
+        Path, typer.Argument(help="Folder or file that radhar wrote, or a tree of class folders.")
+    ],
 ) -> None:
     """Summarise a data set, a scene, a recording or a tree of images.
 
@@ -31,16 +33,16 @@ def inspect(
 
 
 def print_summary(summary: dict[str, Any]) -> None:
-    """Print plain values as YAML."""
+    """Print a summary, which is plain values, as YAML with six significant digits."""
     from radhar_cli.config.identity import yaml_text
 
-    tell(yaml_text(_short(summary)), nl=False)
+    tell(yaml_text(_round_values(summary)), nl=False)
 
 
-def _short(value: Any) -> Any:
-    """The same values with six digits."""
+def _round_values(value: Any) -> Any:
+    """Plain values, every float of which is rounded to six significant digits."""
     if isinstance(value, dict):
-        return {key: _short(inner) for key, inner in value.items()}
+        return {key: _round_values(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_short(inner) for inner in value]
+        return [_round_values(inner) for inner in value]
     return float(f"{value:.6g}") if isinstance(value, float) else value

@@ -8,33 +8,51 @@ import typer
 
 from radhar_cli.errors import FolderError, MachineError
 
-Run: TypeAlias = Annotated[Path, typer.Argument(help="Folder of a run, or its .safetensors file.")]
+Run: TypeAlias = Annotated[
+    Path, typer.Argument(help="Folder of a training run, or its .safetensors file.")
+]
 TrainedMap: TypeAlias = Annotated[
-    str | None, typer.Option("--map", help="Another map than the one trained on.")
+    str | None, typer.Option("--map", help="Use this map instead of the one trained on.")
 ]
 AnyMap: TypeAlias = Annotated[
-    str | None, typer.Option("--map", help="Which map; default: the first one.")
+    str | None, typer.Option("--map", help="Name of the map. The default is the first one.")
 ]
-Split: TypeAlias = Annotated[str, typer.Option(help="train, val, test or all.")]
-Device: TypeAlias = Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")]
+Split: TypeAlias = Annotated[str, typer.Option(help="Part of the split: train, val, test or all.")]
+Device: TypeAlias = Annotated[
+    str, typer.Option(help="Device to compute on: auto, cpu, cuda or mps.")
+]
 Resize: TypeAlias = Annotated[
     bool, typer.Option("--resize", help="Resize images to the size used in training.")
 ]
 Classes: TypeAlias = Annotated[
     Path | None,
     typer.Option(
-        metavar="FILE", help="YAML that renames classes, `theirs: ours`; null leaves a class out."
+        metavar="FILE",
+        help="YAML file that renames classes of the data, `old_name: new_name`; null leaves a "
+        "class out.",
     ),
 ]
 
 
 def needs_torch() -> None:
-    """Check that PyTorch and what else training needs are installed."""
+    """Check that PyTorch and the other packages that training needs are installed.
+
+    Raises:
+        MachineError: one is not.
+    """
     needs("train", ("torch", "safetensors", "sklearn", "jinja2"))
 
 
 def needs(extra: str, modules: Sequence[str]) -> None:
-    """Check that the modules of an extra are installed."""
+    """Check that the modules of an extra are installed.
+
+    Args:
+        extra: name of the extra, for the advice in the message: `pip install 'radhar[extra]'`.
+        modules: names to import.
+
+    Raises:
+        MachineError: one is not installed.
+    """
     from importlib.util import find_spec
 
     for module in modules:
@@ -45,8 +63,12 @@ def needs(extra: str, modules: Sequence[str]) -> None:
             )
 
 
-def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
-    """Tell trained networks from data: a run holds best.safetensors or run.json."""
+def split_runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
+    """Split paths into (trained networks, data): a run holds best.safetensors or run.json.
+
+    Raises:
+        FolderError: a path is missing or given twice, or there are no runs or no data.
+    """
     from radhar_cli.learning.run_files import is_run
 
     for path in paths:
@@ -63,8 +85,8 @@ def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
     return runs, data
 
 
-def apart(out: Path, data: Sequence[Path]) -> None:
-    """Refuse an output folder that lies in the data, or that is data."""
+def refuse_output_inside_data(out: Path, data: Sequence[Path]) -> None:
+    """Refuse an output that is a file, or a folder that is data or lies inside data."""
     from radhar_cli.dataset.folder import refuse_file
 
     for path in data:

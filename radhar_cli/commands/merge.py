@@ -10,18 +10,18 @@ from radhar_cli.commands.options import resumable
 
 
 def merge(
-    out: Annotated[Path, typer.Argument(help="Folder of the data set.")],
+    out: Annotated[Path, typer.Argument(help="Folder of the data set to make.")],
     parts: Annotated[
         list[Path] | None,
         typer.Argument(help="Parts, or folders that hold parts, in addition to those below OUT."),
     ] = None,
     jobs: Annotated[
-        int | None, typer.Option("--jobs", "-j", min=1, help="Processes that write PNGs.")
+        int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes that write PNGs.")
     ] = None,
 ) -> None:
-    """Merge the parts of a data set; the parts are not changed.
+    """Merge the parts of a data set, which are not changed.
 
-    If rows are missing, prints them with the --shard that makes them, and exits with status 1.
+    If rows are missing, prints them and the --shard that makes them; the exit status is then 1.
 
     Example:
 

@@ -11,7 +11,7 @@ from radhar_cli.commands.tell import report, tell
 
 def motion(
     config: Annotated[Path, typer.Argument(help="YAML config that the scene is drawn from.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="The .bvh file to write.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="BVH file to write, such as walk.bvh.")],
     activity: Activity = None,
     index: Annotated[int, typer.Option(min=0, help="Number of the sample within its class.")] = 0,
     nominal: Nominal = False,
@@ -19,9 +19,9 @@ def motion(
     overwrite: Replace = False,
     set_: Overrides = None,
 ) -> None:
-    """Write the motion of one scene as BVH, for Blender and others.
+    """Write the motion of one scene as a BVH file, for Blender and others.
 
-    y is up, lengths are in cm, joints have Mixamo's names.
+    The y axis points up, lengths are in cm, and joints have Mixamo's names.
 
     Example:
 

@@ -14,25 +14,31 @@ from radhar_cli.errors import INTERRUPTED, FolderError
 Overrides: TypeAlias = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", metavar="KEY=VALUE", help="Override a key: radar.prf_hz=128; may repeat."
+        "--set",
+        metavar="KEY=VALUE",
+        help="Override a config key, as in radar.prf_hz=128; may be repeated.",
     ),
 ]
 Activity: TypeAlias = Annotated[
     str | None,
-    typer.Option("--activity", "-a", help="Slug or label; optional if there is only one."),
+    typer.Option(
+        "--activity", "-a", help="Activity, by slug or label; optional if there is only one."
+    ),
 ]
 Nominal: TypeAlias = Annotated[
-    bool, typer.Option("--nominal", help="Use nominal values, draw nothing.")
+    bool, typer.Option("--nominal", help="Use nominal values instead of drawn ones.")
 ]
 Maps: TypeAlias = Annotated[
     str | None,
-    typer.Option(help="Comma-separated maps, or `all` that the radar makes; override the config."),
+    typer.Option(
+        help="Comma-separated names of maps, or `all` that the radar makes; overrides the config."
+    ),
 ]
 Figures: TypeAlias = Annotated[
-    bool, typer.Option("--figures/--no-figures", help="Draw the figures.")
+    bool, typer.Option("--figures/--no-figures", help="Whether to draw figures.")
 ]
 StartOver: TypeAlias = Annotated[
-    bool, typer.Option("--overwrite", help="Start over in an existing folder.")
+    bool, typer.Option("--overwrite", help="Start over in a folder that holds earlier results.")
 ]
 Replace: TypeAlias = Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")]
 ReplaceResults: TypeAlias = Annotated[
@@ -40,13 +46,24 @@ ReplaceResults: TypeAlias = Annotated[
 ]
 Tolerance: TypeAlias = Annotated[
     float | None,
-    typer.Option(metavar="DB", help="Tolerance of the direct engine; overrides the config."),
+    typer.Option(
+        metavar="DB",
+        help="Largest relative error of the direct engine's signal, in dB; overrides "
+        "engine.tolerance_db.",
+    ),
 ]
 
 
 @contextmanager
 def resumable(kept: str) -> Iterator[None]:
-    """Report what is kept when Ctrl-C (status 130) or SIGTERM (status 143) ends the work."""
+    """Context of work that Ctrl-C (status 130) or SIGTERM (status 143) may end.
+
+    Args:
+        kept: what is kept then, for the message.
+
+    Raises:
+        typer.Exit: the work was ended so, with that status.
+    """
     try:
         yield
         interrupts.check()
@@ -62,7 +79,16 @@ def resumable(kept: str) -> Iterator[None]:
 
 
 def refuse_to_replace(path: Path, replace: bool, example: str) -> None:
-    """Refuse an output file that is there, or is a folder."""
+    """Refuse an output file that exists, or that is a folder.
+
+    Args:
+        path: the file.
+        replace: whether an existing file may be replaced.
+        example: a file name, for the message.
+
+    Raises:
+        FolderError: it is refused.
+    """
     if path.is_dir():
         raise FolderError(f"{path}: is a folder; -o should name a file, such as {example}")
     if path.exists() and not replace:
@@ -70,7 +96,7 @@ def refuse_to_replace(path: Path, replace: bool, example: str) -> None:
 
 
 def refuse_to_replace_results(out: Path, names: Iterable[str], replace: bool) -> None:
-    """Refuse a folder that holds files of these names, results of an earlier run.
+    """Refuse an output folder that holds results of an earlier run: files of these names.
 
     Raises:
         FolderError: there are some, and they are not to be replaced.
@@ -84,6 +110,6 @@ def refuse_to_replace_results(out: Path, names: Iterable[str], replace: bool) ->
 
 
 def with_tolerance(overrides: list[str] | None, tolerance: float | None) -> list[str]:
-    """The overrides, and --tolerance as one of them."""
+    """Overrides of the config (KEY=VALUE), with --tolerance, where it is given, as the last."""
     named = [] if tolerance is None else [f"--tolerance engine.tolerance_db={tolerance!r}"]
     return [*(overrides or []), *named]

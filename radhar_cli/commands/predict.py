@@ -12,12 +12,14 @@ from radhar_cli.commands.tell import counted, report, tell
 def predict(
     run: Run,
     paths: Annotated[
-        list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images or data sets.")
+        list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images, or data sets.")
     ],
-    top: Annotated[int, typer.Option(min=1, help="Classes to print, most likely first.")] = 3,
+    top: Annotated[
+        int, typer.Option(min=1, help="Number of classes to print, most likely first.")
+    ] = 3,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="Of a network that finds joints: file .npz or .csv."),
+        typer.Option("-o", "--out", help="For a network that estimates joints: .npz or .csv file."),
     ] = None,
     map_: TrainedMap = None,
     split: Split = "all",
@@ -43,22 +45,22 @@ def predict(
     from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.machine import choose_device
 
-    chosen, part = choose_device(device), check_split_name(split)
+    chosen, split_part = choose_device(device), check_split_name(split)
     if out is not None:
         from radhar_cli.learning.found_joints import check_joints_file, predict_joints
 
         check_joints_file(out)
-        found = predict_joints(run, paths, chosen, map_, part)
-        found.write(out)
-        count = len(found.samples)
-        report(file=out, samples=count, joints=list(found.names))
-        tell(f"{out}: {len(found.names)} joints in {counted(count, 'sequence')}")
+        sequences = predict_joints(run, paths, chosen, map_, split_part)
+        sequences.write(out)
+        count = len(sequences.samples)
+        report(file=out, samples=count, joints=list(sequences.names))
+        tell(f"{out}: {len(sequences.names)} joints in {counted(count, 'sequence')}")
         return
 
     def warn(note: str) -> None:
         tell(note, err=True)
 
-    for name, probabilities in predict_paths(run, paths, chosen, map_, part, resize, warn):
+    for name, probabilities in predict_paths(run, paths, chosen, map_, split_part, resize, warn):
         ranked = sorted(probabilities.items(), key=lambda item: -item[1])
         report(**{"image": name, "class": ranked[0][0], "probabilities": probabilities})
         likely = ", ".join(f"{label} {100 * p:.1f} %" for label, p in ranked[:top])

@@ -12,13 +12,15 @@ from radhar_cli.commands.tell import report, tell
 def preview(
     dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
     map_: AnyMap = None,
-    per_class: Annotated[int, typer.Option(min=1, max=50, help="Samples per class.")] = 4,
+    per_class: Annotated[int, typer.Option(min=1, max=50, help="Number of samples per class.")] = 4,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="PNG; default: preview_<map>.png beside the data."),
+        typer.Option(
+            "-o", "--out", help="PNG file. The default is preview_<map>.png beside the data."
+        ),
     ] = None,
 ) -> None:
-    """Draw a contact sheet of a data set.
+    """Draw a contact sheet of a data set: some samples of every class.
 
     Example:
 

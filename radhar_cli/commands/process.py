@@ -20,21 +20,27 @@ def process(
         Path, typer.Argument(help="Recording written by import or simulate --raw.")
     ],
     config: Annotated[
-        Path, typer.Option(help="YAML file; its processing, image and maps are used.")
+        Path, typer.Option(help="YAML config, whose processing, image and maps are used.")
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     set_: Overrides = None,
     maps: Maps = None,
-    start: Annotated[float | None, typer.Option(min=0, help="Start time, s.")] = None,
-    stop: Annotated[float | None, typer.Option(min=0, help="Stop time, s.")] = None,
+    start: Annotated[
+        float | None, typer.Option(min=0, help="Start of the part to process, in s.")
+    ] = None,
+    stop: Annotated[
+        float | None, typer.Option(min=0, help="End of the part to process, in s.")
+    ] = None,
     receiver: Annotated[
         int | None,
-        typer.Option(min=0, help="Use only this receiver; default: the sum of all powers."),
+        typer.Option(
+            min=0, help="Number of the receiver to use. The default is the sum of all powers."
+        ),
     ] = None,
     figures: Figures = True,
     overwrite: ReplaceResults = False,
 ) -> None:
-    """Compute the maps of a recording and track the torso.
+    """Compute the maps of a recording, and track the torso.
 
     Writes maps.h5 and maps.png.
 
@@ -68,27 +74,27 @@ def process(
     with Recording(recording) as opened:
         info, gaps = opened.info, len(opened.segments) - 1
         first, last, _ = pulses_between(opened, start, stop)
-        given = resolved(fixed) | {"duration_s": (last - first) / info.prf_hz}
-        radar = as_recorded(given["radar"], radar_of(info))
-        given |= {"maps": signals or ("rtm",), "radar": radar}
-        validated(ProcessedConfig, given, str(config), *loaded._places)
-        made = maps_of(opened, fixed, signals, start, stop, receiver)
+        document = resolved(fixed) | {"duration_s": (last - first) / info.prf_hz}
+        radar = as_recorded(document["radar"], radar_of(info))
+        document |= {"maps": signals or ("rtm",), "radar": radar}
+        validated(ProcessedConfig, document, str(config), *loaded._places)
+        results = maps_of(opened, fixed, signals, start, stop, receiver)
         if frames:
-            made.frames, made.board = frames_of_recording(opened, fixed, frames, start, stop)
+            results.frames, results.board = frames_of_recording(opened, fixed, frames, start, stop)
     if gaps:
         tell(f"{counted(gaps, 'gap')}: the stretches between are processed separately")
-    for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *made.notes]:
+    for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *results.notes]:
         tell(f"warning: {note}", err=True)
-    written = maps_file.write_maps(made, loaded, info, out)
+    written = maps_file.write_maps(results, loaded, info, out)
     if figures:
-        labels = ", ".join(one.label for one in info.labels) or "no label"
+        labels = ", ".join(label.label for label in info.labels) or "no label"
         title = f"{recording.name}   |   {labels}   |   {info.carrier_hz / 1e9:g} GHz"
         title += f", PRF {info.prf_hz:.6g} Hz"
-        written += maps_file.draw(made, loaded, title, out)
-    if made.track is not None:
-        track = made.track
+        written += maps_file.draw(results, loaded, title, out)
+    if results.track is not None:
+        track = results.track
         tell(
             f"torso from {track.range.min():.2f} to {track.range.max():.2f} m, up to "
             f"{abs(track.velocity).max():.2f} m/s, confidence {track.confidence.mean():.2f}"
         )
-    report(files=written, gaps=gaps, warnings=made.notes, maps=names)
+    report(files=written, gaps=gaps, warnings=results.notes, maps=names)

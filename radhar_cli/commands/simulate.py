@@ -34,37 +34,41 @@ def simulate(
         int, typer.Option(min=0, help="Number of the sample within its class, as in /sample_key.")
     ] = 0,
     seed: Annotated[
-        int | None, typer.Option(min=0, max=2**63 - 1, help="Seed; overrides the config.")
+        int | None,
+        typer.Option(min=0, max=2**63 - 1, help="Seed of the scene; overrides the config."),
     ] = None,
     nominal: Nominal = False,
     motion: Annotated[
-        Path | None, typer.Option("--motion", help="Play this motion file (.bvh, .amc, .npz).")
+        Path | None,
+        typer.Option("--motion", help="Motion file that the person follows (.bvh, .amc, .npz)."),
     ] = None,
     up: Annotated[
-        str | None, typer.Option(help="With --motion: axis of the file that points up, such as y.")
+        str | None, typer.Option(help="With --motion: axis that points up in the file, such as y.")
     ] = None,
     joints: Annotated[
         Path | None,
-        typer.Option(help="With --motion: YAML of our joints and the file's names of them."),
+        typer.Option(
+            help="With --motion: YAML file of radhar's joints and their names in the motion file."
+        ),
     ] = None,
     skeleton: Annotated[
-        Path | None, typer.Option(help="With --motion: the .asf of an .amc, if not beside it.")
+        Path | None, typer.Option(help="With --motion: .asf file of an .amc, if not beside it.")
     ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,
     maps: Maps = None,
     joint: Annotated[
-        str | None, typer.Option(help="Keep only this scatterer, such as right_ankle.")
+        str | None, typer.Option(help="Simulate only this scatterer, such as right_ankle.")
     ] = None,
     overlay: Annotated[
         bool, typer.Option("--overlay", help="Draw the true Doppler of every joint over the maps.")
     ] = False,
     raw: Annotated[
         bool,
-        typer.Option("--raw", help="Write recording.h5: the beat matrix, static returns included."),
+        typer.Option("--raw", help="Also write recording.h5: the beat matrix with static echoes."),
     ] = False,
     html: Annotated[
-        bool, typer.Option("--html", help="Write view.html: skeleton, maps and clouds in motion.")
+        bool, typer.Option("--html", help="Also write view.html: skeleton, maps, clouds in motion.")
     ] = False,
     figures: Figures = True,
     overwrite: ReplaceResults = False,
@@ -72,7 +76,7 @@ def simulate(
     """Simulate one scene: maps, ground truth and an animation.
 
     Writes scene.h5, scene.json, maps.png and an animated stickman. The maps are those of the
-    config; `--maps all` has every map that its radar makes.
+    config; `--maps all` makes every map that its radar can make.
 
     Example:
 
@@ -95,8 +99,8 @@ def simulate(
     overrides = with_tolerance(set_, tolerance)
     if motion is not None:
         activity = activity or FROM_FILE
-        reading = _how_to_read(activity, up, joints, skeleton)
-        overrides = [*_looking_at(motion, activity), *reading, *overrides]
+        reading = _reader_overrides(activity, up, joints, skeleton)
+        overrides = [*_motion_file_overrides(motion, activity), *reading, *overrides]
     else:
         for option, value in (("up", up), ("joints", joints), ("skeleton", skeleton)):
             if value is not None:
@@ -111,10 +115,10 @@ def simulate(
     for name in (*scene_file.FILES, RECORDING):
         refuse_links(out, out / name)
     refuse_to_replace_results(out, (*scene_file.FILES, RECORDING), overwrite)
-    which: dict[str, Any] = {"index": index, "nominal": nominal, "joint": joint}
+    sample: dict[str, Any] = {"index": index, "nominal": nominal, "joint": joint}
     with BarProgress() as bars:
         simulation = simulate_scene(
-            loaded, activity, seed, **which, maps=chosen, raw=raw, progress=bars
+            loaded, activity, seed, **sample, maps=chosen, raw=raw, progress=bars
         )
     samples, warnings = loaded.samples_of(simulation.activity), list[str]()
     if index >= samples and not nominal:
@@ -127,23 +131,24 @@ def simulate(
     written = scene_file.write_all(simulation, out)
     (out / RECORDING).unlink(missing_ok=True)  # of an earlier scene
     if raw:
-        written.append(_record(simulation, out / RECORDING))
+        written.append(_write_recording(simulation, out / RECORDING))
     if figures:
-        written += _draw(simulation, out, overlay)
+        written += _draw_figures(simulation, out, overlay)
     if html:
         from radhar_cli.figures.scene_page import of_simulation, write_page
 
         write_page([of_simulation(simulation)], out / scene_file.PAGE)
         written.append(out / scene_file.PAGE)
-    _say(simulation, written)
+    _print_summary(simulation, written)
 
 
-def _say(simulation: "Simulation", written: list[Path]) -> None:
-    """Print what was simulated and where it lies."""
+def _print_summary(simulation: "Simulation", written: list[Path]) -> None:
+    """Print what was simulated, and where the files lie."""
     from radhar_cli.simulation.scene_file import describe
 
-    one, took = simulation.activity, sum(simulation.seconds.values())
-    tell(f"{one.label} {one.slug}: synthesised in {took:.2f} s")
+    activity = simulation.activity
+    elapsed_s = sum(simulation.seconds.values())
+    tell(f"{activity.label} {activity.slug}: synthesised in {elapsed_s:.2f} s")
     file = describe(simulation)["motion_file"]
     if file is not None:
         tell(
@@ -151,11 +156,17 @@ def _say(simulation: "Simulation", written: list[Path]) -> None:
             f"{file['lasts_s']:.2f} s{', in a loop' if file['loops'] else ''}; {file['up']} is up; "
             f"leg length of a person of {file['stature_m']:.2f} m"
         )
-    shown = {"seconds": took, "warnings": simulation.warnings, "files": written}
-    report(activity=one.slug, label=one.label, **shown)
+    report(
+        activity=activity.slug,
+        label=activity.label,
+        seconds=elapsed_s,
+        warnings=simulation.warnings,
+        files=written,
+    )
 
 
-def _record(simulation: "Simulation", path: Path) -> Path:
+def _write_recording(simulation: "Simulation", path: Path) -> Path:
+    """Write the beat matrix of a scene as a recording; return its path."""
     from radhar_cli.capture.importing import write_simulated
     from radhar_cli.capture.recording import Label
 
@@ -171,37 +182,38 @@ def _record(simulation: "Simulation", path: Path) -> Path:
     return path
 
 
-def _looking_at(motion: Path, slug: str) -> list[str]:
-    """Overrides by which a class has this one file: from its beginning, at its speed, as it is."""
+def _motion_file_overrides(motion: Path, slug: str) -> list[str]:
+    """Overrides that give a class one motion file: from its start, at its speed, not mirrored."""
     import json
 
     path = json.dumps(str(motion.absolute()))
-    one = f"classes.{slug}"
-    as_it_is = [f"{one}.start=0", f"{one}.playback_speed=1", f"{one}.mirror=0"]
-    return [f"{one}.files=[{path}]", f"activities=[{slug}]", *as_it_is]
+    section = f"classes.{slug}"
+    unchanged = [f"{section}.start=0", f"{section}.playback_speed=1", f"{section}.mirror=0"]
+    return [f"{section}.files=[{path}]", f"activities=[{slug}]", *unchanged]
 
 
-def _how_to_read(
+def _reader_overrides(
     slug: str, up: str | None, joints: Path | None, skeleton: Path | None
 ) -> list[str]:
-    """Overrides of what options say of a motion file."""
+    """Overrides that tell how to read the motion file of a class: --up, --joints, --skeleton."""
     import json
 
     from radhar_cli.config.documents import read_document
 
-    said = (
+    options = (
         ("up", up),
         ("joints", None if joints is None else read_document(joints)[0]),
         ("skeleton", None if skeleton is None else str(skeleton.absolute())),
     )
     return [
         f"--{key} classes.{slug}.{key}={json.dumps(value)}"
-        for key, value in said
+        for key, value in options
         if value is not None
     ]
 
 
-def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
+def _draw_figures(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
+    """Write maps.png, the animation, and a board's frames and cloud; return their paths."""
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.figures import maps_panel, stickman
     from radhar_cli.simulation.scene_file import ANIMATION, CLOUD, FRAMES, MAPS
@@ -219,4 +231,4 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
             if "cloud" in simulation.frames:
                 bars.stage(CLOUD, simulation.board.frames, unit="frame")
                 frames_panel.draw_cloud(frames, out / CLOUD, bars.advance)
-    return [out / one for one in (MAPS, ANIMATION, FRAMES, CLOUD) if (out / one).exists()]
+    return [out / name for name in (MAPS, ANIMATION, FRAMES, CLOUD) if (out / name).exists()]

@@ -1,4 +1,4 @@
-"""Output of the commands, with --json and --quiet; nothing else in them writes to the terminal.
+"""Output of the commands, with --json and --quiet; they write to the terminal only through it.
 
 A command tells people lines (`tell`) and programs values (`report`); the program gives the two
 options to every command (`with_output_options`).
@@ -17,7 +17,7 @@ from radhar_cli import interrupts
 from radhar_cli.plain_json import plain
 from radhar_cli.untrusted import shown
 
-Json = Annotated[bool, typer.Option("--json", help="Print only values, as JSON, for programs.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON, for programs.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors only.")]
 
 
@@ -25,30 +25,37 @@ _output = SimpleNamespace(json=False, quiet=False)
 
 
 def is_quiet() -> bool:
-    """Whether no progress is shown."""
+    """Whether --quiet is given: no progress is shown."""
     return bool(_output.quiet)
 
 
 def tell(message: object, *, err: bool = False, nl: bool = True) -> None:
-    """Print a line of text; control characters are escaped."""
+    """Print a line of text, unless --json or --quiet is given; control characters are escaped.
+
+    Args:
+        message: the line.
+        err: print to standard error, also with --json and --quiet.
+        nl: end the line.
+    """
     if err or not (_output.json or _output.quiet):
         typer.echo(shown(message), err=err, nl=nl)
 
 
-def wanted(message: str) -> bool:
-    """Whether a progress message is shown: warnings always."""
+def is_shown(message: str) -> bool:
+    """Whether a message of progress is shown; with --quiet only warnings are."""
     return not _output.quiet or message.lstrip().startswith("warning")
 
 
 def counted(count: int, noun: str) -> str:
-    """1 sample, 2 samples."""
+    """A number and its noun, in the plural where it is not one: 1 sample, 2 samples."""
     return f"{count} {noun}{'s' * (count != 1)}"
 
 
 def report(**values: Any) -> None:
-    """With --json, print an object of values on a line; docs/reference/output.md lists all keys.
+    """Report the results of a command: with --json an object on a line, else a line for each file.
 
-    People are told the `files` among them.
+    Args:
+        values: results by key (docs/reference/output.md); `files` are the paths that were written.
     """
     interrupts.check()  # before it is called done
     for path in values.get("files", ()):
@@ -58,7 +65,7 @@ def report(**values: Any) -> None:
 
 
 def with_output_options(command: Callable[..., None]) -> Callable[..., None]:
-    """The command with --json and --quiet."""
+    """Add the options --json and --quiet to a command."""
 
     @wraps(command)
     def run(*, json_: bool, quiet: bool, **arguments: Any) -> None:

@@ -1,4 +1,4 @@
-"""What commands show while they work, and what `generate` prints of its plan and its end."""
+"""Progress bars of the commands, and what `generate` prints of its plan and its results."""
 
 import sys
 from collections import Counter
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tqdm import tqdm
 
 from radhar_cli import interrupts
-from radhar_cli.commands.tell import counted, is_quiet, report, tell, wanted
+from radhar_cli.commands.tell import counted, is_quiet, is_shown, report, tell
 from radhar_cli.untrusted import Closing, shown
 
 if TYPE_CHECKING:
@@ -26,7 +26,14 @@ class BarProgress(Closing):
         self._bar: tqdm[Any] | None = None
 
     def stage(self, name: str, total: int, done: int = 0, unit: str | None = None) -> None:
-        """Show a bar instead of the one before."""
+        """Replace the bar by that of a new stage.
+
+        Args:
+            name: the stage, shown before the bar.
+            total: number of units of the stage.
+            done: number of them that are finished already.
+            unit: what is counted, in the singular.
+        """
         self.close()
         unit = unit or self._unit
         if 0 < done < total:
@@ -42,25 +49,25 @@ class BarProgress(Closing):
         )
 
     def advance(self, count: int) -> None:
-        """Some units are done."""
+        """Move the bar by `count` finished units; stop here if the user has interrupted."""
         interrupts.check()
         if self._bar is not None:
             self._bar.update(count)
 
     def say(self, message: str) -> None:
-        """A line above the bar."""
-        if wanted(message):
+        """Print a line above the bar."""
+        if is_shown(message):
             tqdm.write(shown(message), file=sys.stderr)
 
     def close(self) -> None:
-        """Take the bar away."""
+        """Remove the bar."""
         if self._bar is not None:
             self._bar.close()
             self._bar = None
 
 
 class TrainingView(BarProgress):
-    """A bar and a line per epoch."""
+    """Progress of a training: a bar for each epoch, and a line at its end."""
 
     def epoch(self, number: int, epochs: int, steps: int) -> None:
         self._epochs = epochs
@@ -80,12 +87,14 @@ class TrainingView(BarProgress):
 
 
 def _class_counts(rows: "Rows") -> dict[str, int]:
-    """{class: samples}."""
-    return {one.slug: count for one, count in zip(rows.activities, rows.counts, strict=True)}
+    """Number of samples by slug of the class."""
+    return {
+        activity.slug: count for activity, count in zip(rows.activities, rows.counts, strict=True)
+    }
 
 
 def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
-    """Print what was written and where."""
+    """Print what a build has written, and where."""
     from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
     from radhar_cli.dataset.split import split_rows
 
@@ -114,7 +123,13 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
 
 
 def print_part(outcome: "BuildOutcome", out: Path, part: str) -> None:
-    """Print what a part holds and how to merge it."""
+    """Print what a part of a data set holds, and how to merge it.
+
+    Args:
+        outcome: that of the build of the part.
+        out: folder of the data set.
+        part: the part, as K/N.
+    """
     report(folder=outcome.folder, part=part, samples=outcome.samples, made=outcome.made)
     samples = counted(outcome.samples, "sample")
     tell(f"{outcome.folder}: part {part} is complete: {samples}, {outcome.made} new")
@@ -122,10 +137,11 @@ def print_part(outcome: "BuildOutcome", out: Path, part: str) -> None:
 
 
 def print_plan(config: "AnyConfig", jobs: int | None) -> None:
-    """Print stages, samples, bytes and time, found within DRY_RUN_S; write nothing.
+    """Print stages, samples, bytes and time of a build, estimated within DRY_RUN_S; write nothing.
 
     Args:
-        jobs: processes; None for as many as pay.
+        config: that of the data set.
+        jobs: number of processes; None for as many as pay.
     """
     from radhar_cli.config.schema import MeasuredConfig
     from radhar_cli.dataset.estimate import DRY_RUN_S, plan_build
@@ -141,31 +157,32 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
         return
     products = plan_images(config).products
     with BarProgress() as bars:
-        found = plan_build(config, jobs, bars, DRY_RUN_S)
-    cost, warnings = found.cost, split_warnings(config, split_rows(config))
-    warnings += [one["message"] for one in found.warnings]
+        build_plan = plan_build(config, jobs, bars, DRY_RUN_S)
+    cost, warnings = build_plan.cost, split_warnings(config, split_rows(config))
+    warnings += [warning["message"] for warning in build_plan.warnings]
     report(
         stages=[product.name for product in products],
         classes=_class_counts(rows),
         maps=config.maps,
-        jobs=found.jobs,
-        checked=found.checked,
-        redrawn=found.redrawn,
+        jobs=build_plan.jobs,
+        checked=build_plan.checked,
+        redrawn=build_plan.redrawn,
         warnings=warnings,
         **vars(cost),
     )
     for product in products:
         tell(f"stage       {product.name}: {product.does}")
     tell(samples)
-    short = f", then {DRY_RUN_S:g} s were over" if found.cut_short else ""
-    tell(f"scenes      {found.checked} of {len(rows)} checked: {found.redrawn} drawn again{short}")
+    short = f", then {DRY_RUN_S:g} s were over" if build_plan.cut_short else ""
+    checked = f"{build_plan.checked} of {len(rows)} checked"
+    tell(f"scenes      {checked}: {build_plan.redrawn} drawn again{short}")
     if cost.seconds is None or cost.hdf5_bytes is None or cost.png_bytes is None:
-        tell(f"on disk     not known: no sample was made within {found.waited:.0f} s")
+        tell(f"on disk     not known: no sample was made within {build_plan.waited:.0f} s")
         tell("time        not known")
     else:
         tell(f"on disk     dataset.h5 {_mib(cost.hdf5_bytes)}, png {_mib(cost.png_bytes)}")
-        timed = f", by {counted(cost.probes, 'sample')}" if found.cut_short else ""
-        tell(f"time        about {cost.seconds:.1f} s with --jobs {found.jobs}{timed}")
+        timed = f", by {counted(cost.probes, 'sample')}" if build_plan.cut_short else ""
+        tell(f"time        about {cost.seconds:.1f} s with --jobs {build_plan.jobs}{timed}")
     for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")

@@ -13,12 +13,12 @@ def tradeoff(
     config: Annotated[Path, typer.Argument(help="YAML config whose scenes are measured.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     quick: Annotated[
-        bool, typer.Option("--quick", help="Only three activities and three rounds.")
+        bool, typer.Option("--quick", help="Measure only three activities, in three rounds.")
     ] = False,
     set_: Overrides = None,
     overwrite: ReplaceResults = False,
 ) -> None:
-    """Measure what accuracy costs: tolerances, engines, physics.
+    """Measure what accuracy costs: error and time of tolerances and engines.
 
     Example:
 

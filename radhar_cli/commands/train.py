@@ -20,31 +20,32 @@ def train(
             "are combined (data_weights, sampling)."
         ),
     ],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the run.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write the run to.")],
     config: Annotated[
-        Path | None, typer.Option(help="YAML file; the defaults suit small data sets.")
+        Path | None, typer.Option(help="Training config (YAML). The defaults suit small data sets.")
     ] = None,
     set_: Overrides = None,
     map_: Annotated[
-        str | None, typer.Option("--map", help="Which map to learn from; default: the first one.")
+        str | None, typer.Option("--map", help="Map to learn from. The default is the first one.")
     ] = None,
     model: Annotated[
         str | None,
         typer.Option(
-            help="smallnet, fftnet or a network of timm; for sequences framenet or cloudnet."
+            help="Network: smallnet, fftnet or one of timm; for sequences framenet or cloudnet."
         ),
     ] = None,
     target: Annotated[
         str | None,
         typer.Option(
-            help="classes, labels (of everybody), count (of people), or skeleton (joints)."
+            help="What to learn: classes, labels (of everybody), count (of people) or skeleton."
         ),
     ] = None,
     init: Annotated[
-        Path | None, typer.Option(help="Run whose best weights are used as initial weights.")
+        Path | None, typer.Option(help="Run whose best weights are the initial weights.")
     ] = None,
     resize: Annotated[
-        bool, typer.Option("--resize", help="With --init: resize images to the size of that run.")
+        bool,
+        typer.Option("--resize", help="With --init: resize images to the size used in that run."),
     ] = False,
     tensorboard: Annotated[
         bool, typer.Option("--tensorboard", help="Also write the curves for TensorBoard.")
@@ -65,7 +66,7 @@ def train(
     The same command resumes an interrupted run after its last finished epoch. With --tensorboard,
     `tensorboard --logdir runs` shows the curves of all runs.
     """
-    from radhar_cli.commands.learning_options import apart, needs, needs_torch
+    from radhar_cli.commands.learning_options import needs, needs_torch, refuse_output_inside_data
 
     needs_torch()
     if tensorboard:
@@ -79,7 +80,7 @@ def train(
     named = {"map": map_, "model": model, "target": target}
     overrides = [f"--{key} {key}={value}" for key, value in named.items() if value]
     settings = load_section(TrainConfig, config, [*(set_ or []), *overrides])
-    apart(out, [*data, *([init] if init else [])])
+    refuse_output_inside_data(out, [*data, *([init] if init else [])])
     names = read_classes(classes)
     with resumable(f"the last finished epoch in {out}"), TrainingView() as view:
         outcome = training.train(

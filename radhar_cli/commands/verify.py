@@ -1,4 +1,4 @@
-"""`radhar verify`: is a data set what its config and seed say?"""
+"""`radhar verify`: check that a data set is what its config and seed determine."""
 
 from pathlib import Path
 from typing import Annotated
@@ -15,14 +15,13 @@ def verify(
     ] = 24,
     motion: Annotated[
         Path | None,
-        typer.Option("--motion", help="Folder to which the paths of motion files are relative."),
+        typer.Option("--motion", help="Folder that the paths of motion files are relative to."),
     ] = None,
 ) -> None:
     """Check a data set, and synthesise some of its samples again.
 
-    Checksums, labels and counts are compared.
-
-    Exit status 0 if everything agrees, 1 if something differs.
+    Compares checksums, labels and counts. The exit status is 0 if everything agrees, and 1 if
+    something differs.
 
     Example:
 

@@ -9,8 +9,9 @@ from radhar_cli.commands.tell import tell
 LIBRARIES = ("numpy", "scipy", "h5py", "Pillow", "isal", "numba", "pyfftw", "torch")
 
 
-def _print(asked: bool) -> None:
-    if not asked:
+def _print_versions(requested: bool) -> None:
+    """Print the versions and end the program, if it was requested."""
+    if not requested:
         return
     import platform
     from importlib.metadata import PackageNotFoundError, version
@@ -32,10 +33,10 @@ def options(
         bool,
         typer.Option(
             "--version",
-            callback=_print,
+            callback=_print_versions,
             is_eager=True,
-            help="Print the versions of radhar and libraries.",
+            help="Print the versions of radhar and its libraries, and exit.",
         ),
     ] = False,
 ) -> None:
-    """The options of the program itself."""
+    """Options of the program itself, before any command."""

@@ -1,4 +1,4 @@
-"""`radhar view`: a page to look at samples of a data set."""
+"""`radhar view`: a web page that plays samples of a data set."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,15 +13,19 @@ def view(
     dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
     sample: Annotated[
         list[str] | None,
-        typer.Option(metavar="CLASS/INDEX", help="May repeat; else the first of each class."),
+        typer.Option(
+            metavar="CLASS/INDEX",
+            help="Sample to show; may be repeated. The default is the first of each class.",
+        ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="HTML file; view.html next to the data.")
+        Path | None,
+        typer.Option("-o", "--out", help="HTML file. The default is view.html beside the data."),
     ] = None,
 ) -> None:
-    """Make a page on which samples of a data set move, for any browser.
+    """Make a web page that plays samples of a data set.
 
-    It is one HTML file. Skeletons are simulated again from the stored config.
+    It is one HTML file for any browser. Skeletons are simulated again from the stored config.
 
     Example:
 

@@ -34,9 +34,13 @@ PHASES = (
 def phase_numbers(
     phases: Sequence[tuple[float, str]], t: Float, names: Sequence[str], other: int
 ) -> Levels:
-    """Number in `names` of the phase under way at times t [M] (s), `other` where it has none.
+    """Number of the phase under way at each time [M].
 
-    Phases are (start in s, name), in their order.
+    Args:
+        phases: (start in s, name) of each, in their order.
+        t: Times [M], s.
+        names: Names whose places are the numbers.
+        other: Number where no phase is under way, or one that `names` lacks.
     """
     numbers = np.full(t.size, other, dtype=np.uint8)
     for start, name in phases:

@@ -7,18 +7,18 @@ from typing import Any, Protocol, TypeVar
 from radhar_cli.arrays import Float
 
 T = TypeVar("T")
-KEPT_TIMES = 8  # sets of times of a motion that is remembered: chirps of a board's transmitters
-KEPT_INSTANTS = 2**16  # of all of them together, or of one that is longer
+CACHED_SETS = 8  # sets of times that a cache holds: the chirps of a board's transmitters
+CACHED_INSTANTS = 2**16  # instants of all sets together, or of one that is longer
 
 
 class Motion(Protocol):
-    """Scatterers and where they are at any time, also a little before and after the recording.
+    """Scatterers and their positions at any time, also a little before and after the recording.
 
     Attributes:
-        names: of the I scatterers.
-        parents: number of the scatterer that each one hangs on, None for a root; for drawings.
-        breakpoints: instants (s) at which a position, or a derivative that matters, jumps.
-        highest_frequency: fundamental of the fastest movement, Hz.
+        names: Names of the I scatterers.
+        parents: Number of the scatterer that each one hangs on, None for a root; for drawings.
+        breakpoints: Instants (s) at which a position, or a derivative that matters, jumps.
+        highest_frequency: Fundamental of the fastest movement, Hz.
         phases: (start in s, name) of the movements within it, in their order; may be empty. Names
             of `motion.phases.PHASES` where they fit.
     """
@@ -48,19 +48,19 @@ class Motion(Protocol):
 
 
 @dataclass(frozen=True)
-class Only:
-    """A motion with some of its scatterers alone."""
+class ScattererSubset:
+    """A motion of which only some scatterers are seen, such as one joint of a person."""
 
-    motion: Motion  # the whole
-    kept: tuple[int, ...]  # numbers of the scatterers that are kept
+    motion: Motion
+    numbers: tuple[int, ...]  # places of the scatterers in `motion.names`
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(self.motion.names[i] for i in self.kept)
+        return tuple(self.motion.names[i] for i in self.numbers)
 
     @property
     def parents(self) -> tuple[int | None, ...]:
-        return (None,) * len(self.kept)
+        return (None,) * len(self.numbers)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -75,75 +75,91 @@ class Only:
         return self.motion.phases
 
     def positions(self, t: Float) -> Float:
-        """Positions [3, len(kept), M] (m)."""
-        return self.motion.positions(t)[:, list(self.kept)]
+        """Positions of the chosen scatterers [3, len(numbers), M] (m) at times t [M] (s)."""
+        return self.motion.positions(t)[:, list(self.numbers)]
 
     def cross_sections(self, t: Float) -> Float:
-        """RCS (m^2) [len(kept), M or 1]."""
-        return self.motion.cross_sections(t)[list(self.kept)]
+        """RCS of the chosen scatterers [len(numbers), M or 1], m^2."""
+        return self.motion.cross_sections(t)[list(self.numbers)]
 
     def torso(self, t: Float) -> Float:
-        """Of the whole motion: what is left out still moves."""
+        """Torso of the complete motion [3, 1, M], m: scatterers that are left out move on."""
         return self.motion.torso(t)
 
 
-def remembered(motion: Motion) -> Motion:
-    """A motion that is asked for the same times again and again, such as by several channels.
+def cache_motion(motion: Motion) -> Motion:
+    """Wrap a motion that is asked for the same times again and again, such as by several channels.
 
-    What it returns is not to be changed.
+    Callers must not change the arrays that it returns.
     """
-    if isinstance(motion, Only):
-        return Only(remembered(motion.motion), motion.kept)
-    if isinstance(motion, _Remembered):
+    if isinstance(motion, ScattererSubset):
+        return ScattererSubset(cache_motion(motion.motion), motion.numbers)
+    if isinstance(motion, _CachedMotion):
         return motion
-    return _Remembered(motion)  # the rest of it comes by __getattr__
+    return _CachedMotion(motion)
 
 
-class _Remembered:
+class _CachedMotion:
+    """A motion whose positions are computed once for each set of times; all else passes through."""
+
     def __init__(self, motion: Motion) -> None:
         self._motion = motion
-        self._held: dict[tuple[object, bytes], Any] = {}
+        self._results: dict[tuple[object, bytes], Any] = {}
         self._instants = 0
 
     def __getattr__(self, name: str) -> Any:
-        found = getattr(self._motion, name)
+        value = getattr(self._motion, name)
         if name != "landmark_positions":
-            return found
-        return lambda t: self.kept(name, t, lambda: found(t))
+            return value
+        return lambda t: self.result(name, t, lambda: value(t))
 
     def positions(self, t: Float) -> Float:
-        """Positions [3, I, M] (m), of all landmarks where these are known and begin with them."""
+        """Positions [3, I, M] (m), those of all landmarks where these begin with them."""
         names: tuple[str, ...] = self._motion.names
-        whole = self._held.get(("landmark_positions", t.tobytes()))
-        if whole is not None and self.landmarks[: len(names)] == names:
-            joints: Float = whole[:, : len(names)]
+        landmarks = self._results.get(("landmark_positions", t.tobytes()))
+        if landmarks is not None and self.landmarks[: len(names)] == names:
+            joints: Float = landmarks[:, : len(names)]
             return joints
-        return self.kept("positions", t, lambda: self._motion.positions(t))
+        return self.result("positions", t, lambda: self._motion.positions(t))
 
     def torso(self, t: Float) -> Float:
-        """Positions [3, 1, M] (m), of all joints where these are known."""
+        """Torso [3, 1, M] (m), from the positions of all joints where these are known."""
         if "torso" in self._motion.names:
             place = self._motion.names.index("torso")
             for name in ("positions", "landmark_positions"):
-                if (whole := self._held.get((name, t.tobytes()))) is not None:
-                    torso: Float = whole[:, place : place + 1]
+                if (positions := self._results.get((name, t.tobytes()))) is not None:
+                    torso: Float = positions[:, place : place + 1]
                     return torso
-        return self.kept("torso", t, lambda: self._motion.torso(t))
+        return self.result("torso", t, lambda: self._motion.torso(t))
 
-    def kept(self, name: object, t: Float, make: Callable[[], T]) -> T:
-        """What was made for these times, or is made now."""
+    def result(self, name: object, t: Float, compute: Callable[[], T]) -> T:
+        """Return a result of the times t [M] from the cache, or compute it and keep it there.
+
+        Args:
+            name: Tells results of the same times apart; hashable.
+            t: Times, s.
+            compute: Makes the result; called only where it is not in the cache.
+        """
         key = (name, t.tobytes())
-        if key not in self._held:
-            if len(self._held) >= KEPT_TIMES or self._instants + t.size > KEPT_INSTANTS:
-                self._held.clear()
+        if key not in self._results:
+            if len(self._results) >= CACHED_SETS or self._instants + t.size > CACHED_INSTANTS:
+                self._results.clear()
                 self._instants = 0
             self._instants += t.size
-            self._held[key] = make()
-        found: T = self._held[key]
-        return found
+            self._results[key] = compute()
+        result: T = self._results[key]
+        return result
 
 
-def recalled(motion: Motion, name: object, t: Float, make: Callable[[], T]) -> T:
-    """What was made of a remembered motion for these times; of another it is made anew."""
-    whole = motion.motion if isinstance(motion, Only) else motion
-    return whole.kept(name, t, make) if isinstance(whole, _Remembered) else make()
+def cached_result(motion: Motion, name: object, t: Float, compute: Callable[[], T]) -> T:
+    """Compute something of a motion at times t [M] (s), once for each set of times if it caches.
+
+    Args:
+        motion: What `compute` looks at; the result is kept with it where it comes from
+            `cache_motion`, and is computed anew otherwise.
+        name: Tells results of the same times apart; hashable.
+        t: Times, s.
+        compute: Makes the result.
+    """
+    source = motion.motion if isinstance(motion, ScattererSubset) else motion
+    return source.result(name, t, compute) if isinstance(source, _CachedMotion) else compute()

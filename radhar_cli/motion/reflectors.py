@@ -20,14 +20,15 @@ class Reflectors:
     equal amplitude and standard deviation sd_i, at frequencies from SLOWEST f_i to f_i.
     """
 
-    places: Float  # p [I, 3], m
+    places: Float  # mean positions p [I, 3], m
     rcs: Float  # [I], m^2
-    sd: Float  # of d [I], m
-    fastest: Float  # f [I], Hz
-    # fractions, phases: of each tone, from 0 to 1 in its range and its cycle [I, TONES]
+    sd: Float  # standard deviations of d [I], m
+    fastest: Float  # highest frequencies f [I], Hz
+    # fractions, phases: frequency and phase of each tone [I, TONES], from 0 to 1 in its range and
+    # its cycle
     fractions: Float
     phases: Float
-    towards: Float  # [3], m
+    towards: Float  # point to which the reflectors move, such as the radar [3], m
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -43,17 +44,17 @@ class Reflectors:
         return float(moving.max(initial=0.0)) / HARMONICS
 
     def positions(self, t: Float) -> Float:
-        """Positions [3, I, M] (m) at times t [M] (s)."""
-        sight = self.towards - self.places
-        sight = sight / np.maximum(np.linalg.norm(sight, axis=1, keepdims=True), 1e-9)
+        """Positions [3, I, M] (m) at times t [M] (s): p_i + u_i d_i(t)."""
+        direction = self.towards - self.places
+        direction = direction / np.maximum(np.linalg.norm(direction, axis=1, keepdims=True), 1e-9)
         frequency = self.fastest[:, None] * (SLOWEST + (1 - SLOWEST) * self.fractions)
-        away = np.zeros((len(self.rcs), t.size))
+        displacement = np.zeros((len(self.rcs), t.size))
         for f, phase in zip(frequency.T, self.phases.T, strict=True):
-            away += np.sin(2 * np.pi * (f[:, None] * t + phase[:, None]))
-        away *= self.sd[:, None] * np.sqrt(2 / TONES)
-        p: Float = self.places.T[:, :, None] + sight.T[:, :, None] * away
+            displacement += np.sin(2 * np.pi * (f[:, None] * t + phase[:, None]))
+        displacement *= self.sd[:, None] * np.sqrt(2 / TONES)
+        p: Float = self.places.T[:, :, None] + direction.T[:, :, None] * displacement
         return p
 
     def cross_sections(self, t: Float) -> Float:
-        """RCS (m^2) [I, 1]."""
+        """RCS [I, 1] (m^2), the same at all times."""
         return self.rcs[:, None]

@@ -1,6 +1,6 @@
 """The parts of a body between its joints: limbs, trunk, head, hands and feet as ellipsoids.
 
-They are found by the names of joints (`radhar_cli.motion.skeleton`), so any motion that has some of
+They are known by the names of joints (`radhar_cli.motion.skeleton`), so any motion that has some of
 these has the parts between them. Sizes are those of a person of 1.75 m and 26 kg/m^2.
 """
 
@@ -19,13 +19,18 @@ REFERENCE_STATURE = 1.75
 # head to both sides of its point, in lengths from hip to shoulders; a hand beyond its point, in
 # lengths of the forearm.
 TRUNK = 0.486  # from hip to shoulders, m
-TRUNK_BELOW, TRUNK_ABOVE, HEAD_HALF = 0.72, 0.52, 0.237
-HAND_FROM, HAND_TO = -0.1, 0.5
+TRUNK_BELOW = 0.72
+TRUNK_ABOVE = 0.52
+HEAD_HALF = 0.237
+HAND_FROM = -0.1
+HAND_TO = 0.5
 # Heel and toes behind and ahead of the ankle, m; a foot is flat below the first height of its ankle
 # over the floor and at right angles to the shank above the second.
-HEEL, TOES = 0.05, 0.20
-FLAT_BELOW, BENT_ABOVE = 0.07, 0.17
-SOFTNESS = 0.1  # of directions made of others, which fade where these are parallel
+HEEL = 0.05
+TOES = 0.20
+FLAT_BELOW = 0.07
+BENT_ABOVE = 0.17
+SOFTNESS = 0.1  # length of a cross product of directions below which its direction fades
 
 
 @runtime_checkable
@@ -33,8 +38,8 @@ class Landmarks(Protocol):
     """A motion that knows more points of the body than those that scatter, such as hip joints.
 
     Attributes:
-        landmarks: names; besides the joints, `right_hip`, `left_hip`, `right_toes` and `left_toes`
-            mean something here.
+        landmarks: Names of the points; besides the joints, `right_hip`, `left_hip`, `right_toes`
+            and `left_toes` mean something here.
     """
 
     @property
@@ -46,21 +51,22 @@ class Landmarks(Protocol):
 
 
 class Segment(NamedTuple):
-    """One ellipsoid."""
+    """One ellipsoid of a body, between two points."""
 
-    name: str  # of the part
+    name: str  # name of the part of the body
     # start, end: names of the points between which it lies
     start: str
     end: str
     radius: float  # across, m, the mean of two where it is flat
-    joint: str  # which it goes with when joints are seen alone
-    # whether it is of an arm: its cross axis comes from the back instead of the side
+    joint: str  # joint that it stands for when joints are seen alone
+    # whether it belongs to an arm: its cross axis comes from the back instead of the side
     arm: bool = False
     occludes: bool = False  # whether it is large enough to hide others
     flatness: float = 1.0  # width over the mean radius, and this over depth
 
 
 def _side(side: str) -> tuple[Segment, ...]:
+    """Segments of the arm and the leg of one side."""
     shoulder, elbow, hand, hip, knee, ankle, heel, toes = (
         f"{side}_{point}"
         for point in ("shoulder", "elbow", "hand", "hip", "knee", "ankle", "heel", "toes")
@@ -84,93 +90,118 @@ SEGMENTS: tuple[Segment, ...] = (
 _TRUNK = ("torso", "hip", "right_shoulder", "left_shoulder")
 
 
-def landmarks_of(motion: Motion) -> tuple[str, ...]:
-    """Names of all points of the body that a motion knows."""
+def landmark_names(motion: Motion) -> tuple[str, ...]:
+    """Names of all points of the body that a motion knows, scatterers or not."""
     return motion.landmarks if isinstance(motion, Landmarks) else motion.names
 
 
-def found_segments(names: Iterable[str]) -> tuple[Segment, ...]:
-    """The segments of a motion with points of these names."""
-    have = set(names)
-    if have >= set(_TRUNK):
-        have |= {"trunk_from", "trunk_to"}
-        have |= {"head_from", "head_to"} if "head" in have else set()
+def segments_between(names: Iterable[str]) -> tuple[Segment, ...]:
+    """Segments of a motion that has points of these names.
+
+    Args:
+        names: Joints and further landmarks; ends of trunk, head, hands and feet follow from them.
+
+    Returns:
+        Those of SEGMENTS whose two ends are known, in that order.
+    """
+    known = set(names)
+    if known >= set(_TRUNK):
+        known |= {"trunk_from", "trunk_to"}
+        known |= {"head_from", "head_to"} if "head" in known else set()
     for side in ("right", "left"):
-        if {f"{side}_elbow", f"{side}_hand"} <= have:
-            have |= {f"{side}_hand_from", f"{side}_hand_to"}
-        if "hip" in have:
-            have.add(f"{side}_hip")
-        if {f"{side}_knee", f"{side}_ankle", *_TRUNK} <= have:
-            have |= {f"{side}_heel", f"{side}_toes"}
-    return tuple(one for one in SEGMENTS if {one.start, one.end} <= have)
+        if {f"{side}_elbow", f"{side}_hand"} <= known:
+            known |= {f"{side}_hand_from", f"{side}_hand_to"}
+        if "hip" in known:
+            known.add(f"{side}_hip")
+        if {f"{side}_knee", f"{side}_ankle", *_TRUNK} <= known:
+            known |= {f"{side}_heel", f"{side}_toes"}
+    return tuple(segment for segment in SEGMENTS if {segment.start, segment.end} <= known)
 
 
-def covered(joint: str, segments: Iterable[Segment]) -> tuple[int, ...]:
-    """Which of the segments stand for a joint; hip and shoulders are the trunk's."""
-    there, owner = list(segments), "torso" if joint in _TRUNK else joint
-    own = tuple(n for n, one in enumerate(there) if one.joint == owner)
-    return own or tuple(n for n, one in enumerate(there) if joint in (one.start, one.end))
+def segments_of_joint(joint: str, segments: Iterable[Segment]) -> tuple[int, ...]:
+    """Numbers of the segments that stand for a joint; hip and shoulders belong to the trunk."""
+    listed = list(segments)
+    owner = "torso" if joint in _TRUNK else joint
+    numbers = tuple(n for n, segment in enumerate(listed) if segment.joint == owner)
+    return numbers or tuple(
+        n for n, segment in enumerate(listed) if joint in (segment.start, segment.end)
+    )
 
 
 def thickness(stature: float, weight: float) -> float:
-    """Of a person's limbs over those of the reference: volume goes with weight."""
+    """Factor of the radii of a person's limbs over those of the reference: volume goes with weight.
+
+    Args:
+        stature: m.
+        weight: kg.
+    """
     return stature / REFERENCE_STATURE * sqrt(weight / default_weight(stature))
 
 
-class Placed(NamedTuple):
-    """Segments at M instants, in m."""
+class SegmentPositions(NamedTuple):
+    """Ends and orientation of S segments at M instants, in m."""
 
-    # start, end: of S segments [3, S, M]
+    # start, end: both ends of the segments [3, S, M]
     start: Float
     end: Float
-    beside: Float  # a unit vector of the body that is not along the segment in most poses [3, S, M]
+    beside: Float  # a unit vector of the body, not along the segment in most poses [3, S, M]
 
 
-def place(motion: Motion, segments: tuple[Segment, ...], stature: float, t: Float) -> Placed:
-    """Where segments (`found_segments`) of a motion are at times t [M] (s).
+def segment_positions(
+    motion: Motion, segments: tuple[Segment, ...], stature: float, t: Float
+) -> SegmentPositions:
+    """Ends and orientation of segments of a motion at some times.
 
-    `stature` (m) is for the size of feet.
+    Args:
+        motion: Has the points between which the segments lie.
+        segments: Chosen by `segments_between`.
+        stature: Stature of the person, which sets the size of trunk and feet, m.
+        t: Times [M], s.
     """
     p = motion.landmark_positions(t) if isinstance(motion, Landmarks) else motion.positions(t)
-    at = dict(zip(landmarks_of(motion), p.swapaxes(0, 1), strict=True))
-    left, behind = _add_points(at, stature / REFERENCE_STATURE, t.size)
-    start = np.stack([at[one.start] for one in segments], axis=1)
-    end = np.stack([at[one.end] for one in segments], axis=1)
-    beside = np.stack([behind if one.arm else left for one in segments], axis=1)
-    return Placed(start, end, beside)
+    points = dict(zip(landmark_names(motion), p.swapaxes(0, 1), strict=True))
+    left, behind = _add_points(points, stature / REFERENCE_STATURE, t.size)
+    start = np.stack([points[segment.start] for segment in segments], axis=1)
+    end = np.stack([points[segment.end] for segment in segments], axis=1)
+    beside = np.stack([behind if segment.arm else left for segment in segments], axis=1)
+    return SegmentPositions(start, end, beside)
 
 
-def _add_points(at: dict[str, Float], scale: float, count: int) -> tuple[Float, Float]:
-    """Add the ends that no joint has; return directions to the left and backwards [3, M]."""
-    whole = set(_TRUNK) <= at.keys()
+def _add_points(points: dict[str, Float], scale: float, count: int) -> tuple[Float, Float]:
+    """Add to {name: point [3, M]} the ends that no joint has.
+
+    Returns:
+        Directions to the left and backwards [3, M].
+    """
+    has_trunk = set(_TRUNK) <= points.keys()
     for side in ("right", "left"):
-        elbow, hand = at.get(f"{side}_elbow"), at.get(f"{side}_hand")
+        elbow, hand = points.get(f"{side}_elbow"), points.get(f"{side}_hand")
         if elbow is not None and hand is not None:
-            at[f"{side}_hand_from"] = hand + HAND_FROM * (hand - elbow)
-            at[f"{side}_hand_to"] = hand + HAND_TO * (hand - elbow)
-    if not whole:
+            points[f"{side}_hand_from"] = hand + HAND_FROM * (hand - elbow)
+            points[f"{side}_hand_to"] = hand + HAND_TO * (hand - elbow)
+    if not has_trunk:
         # No body to tell left from right: any fixed directions do.
-        fixed = np.broadcast_to(np.array([[0.48], [0.6], [0.64]]), (3, count))
-        return fixed, fixed
-    up = scale * TRUNK * unit(at["torso"] - at["hip"])
-    at["trunk_from"] = at["torso"] - TRUNK_BELOW * up
-    at["trunk_to"] = at["torso"] + TRUNK_ABOVE * up
-    if "head" in at:
-        at["head_from"] = at["head"] - HEAD_HALF * up
-        at["head_to"] = at["head"] + HEAD_HALF * up
-    left = unit(at["left_shoulder"] - at["right_shoulder"])
+        direction = np.broadcast_to(np.array([[0.48], [0.6], [0.64]]), (3, count))
+        return direction, direction
+    up = scale * TRUNK * unit(points["torso"] - points["hip"])
+    points["trunk_from"] = points["torso"] - TRUNK_BELOW * up
+    points["trunk_to"] = points["torso"] + TRUNK_ABOVE * up
+    if "head" in points:
+        points["head_from"] = points["head"] - HEAD_HALF * up
+        points["head_to"] = points["head"] + HEAD_HALF * up
+    left = unit(points["left_shoulder"] - points["right_shoulder"])
     behind = unit(cross(left, up))
     across = left
-    if "right_hip" in at and "left_hip" in at:
-        across = unit(at["left_hip"] - at["right_hip"])
+    if "right_hip" in points and "left_hip" in points:
+        across = unit(points["left_hip"] - points["right_hip"])
     for side in ("right", "left"):
-        at.setdefault(f"{side}_hip", at["hip"])
-        knee, ankle = at.get(f"{side}_knee"), at.get(f"{side}_ankle")
+        points.setdefault(f"{side}_hip", points["hip"])
+        knee, ankle = points.get(f"{side}_knee"), points.get(f"{side}_ankle")
         if knee is not None and ankle is not None:
-            toes = at.get(f"{side}_toes")
+            toes = points.get(f"{side}_toes")
             foot = _foot(knee, ankle, across, scale) if toes is None else unit(toes - ankle)
-            at[f"{side}_heel"] = ankle - HEEL * scale * foot
-            at[f"{side}_toes"] = ankle + TOES * scale * foot
+            points[f"{side}_heel"] = ankle - HEEL * scale * foot
+            points[f"{side}_toes"] = ankle + TOES * scale * foot
     return left, behind
 
 
@@ -183,20 +214,20 @@ def _foot(knee: Float, ankle: Float, left: Float, scale: float) -> Float:
 
 
 def unit(v: Float) -> Float:
-    """v/|v| [3, ...]; 0 where v is."""
+    """Unit vectors v/|v| [3, ...]; 0 where v is 0."""
     length = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-    one: Float = v / np.maximum(length, np.finfo(float).tiny)
-    return one
+    direction: Float = v / np.maximum(length, np.finfo(float).tiny)
+    return direction
 
 
 def soft_unit(v: Float) -> Float:
-    """v/sqrt(|v|^2 + SOFTNESS^2) [3, ...]: the direction of v, fading to 0 where that is lost."""
-    one: Float = v / np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + SOFTNESS * SOFTNESS)
-    return one
+    """Directions v/sqrt(|v|^2 + SOFTNESS^2) [3, ...], which fade to 0 where v does."""
+    direction: Float = v / np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + SOFTNESS * SOFTNESS)
+    return direction
 
 
 def cross(a: Float, b: Float) -> Float:
-    """a x b [3, ...]; numpy.cross takes ten times as long."""
+    """Cross products a x b [3, ...]; numpy.cross takes ten times as long."""
     return np.array(
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     )

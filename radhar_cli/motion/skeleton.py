@@ -13,7 +13,7 @@ BODY_MASS_INDEX = 26.0
 
 
 class Joint(NamedTuple):
-    """One scatterer; `link` is the vector from the parent to it, for the reference person."""
+    """One scatterer, and its link (m) from the parent and RCS (m^2) in the reference person."""
 
     name: str
     parent: str | None

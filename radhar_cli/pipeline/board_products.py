@@ -13,7 +13,7 @@ from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.motion.protocol import Motion, remembered
+from radhar_cli.motion.protocol import Motion, cache_motion
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.pipeline.bodies import sources_of, together
 from radhar_cli.pipeline.fallback import EchoAccuracy, fall_back
@@ -146,7 +146,7 @@ def channels(
     room: Reflectors | None = None,
 ) -> list[PathSource]:
     """The paths of every virtual channel; all are of the same motions, evaluated once."""
-    once = tuple(remembered(motion) for motion in motions)
+    once = tuple(cache_motion(motion) for motion in motions)
     make = partial(sources_of, scene, once, first=board.antennas(*board.pairs[0]))
     return [together(make(board.antennas(k, r), wall, board.seen_as, room)) for k, r in board.pairs]
 
@@ -155,7 +155,7 @@ def _snr_channels(
     c: Config, scene: Scene, motions: tuple[Motion, ...], board: Board, wall: Wall | None
 ) -> list[PathSource]:
     """The paths of every virtual channel whose power is P_s."""
-    make = partial(snr_paths, c, scene, (remembered(motions[0]),))
+    make = partial(snr_paths, c, scene, (cache_motion(motions[0]),))
     first = board.antennas(*board.pairs[0])
     return [make(board.antennas(k, r), wall, board.seen_as, first) for k, r in board.pairs]
 

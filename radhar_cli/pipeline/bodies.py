@@ -7,9 +7,14 @@ import numpy as np
 
 from radhar_cli.echo import compiled
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.motion.protocol import Motion, Only, remembered
+from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion
 from radhar_cli.motion.reflectors import Reflectors
-from radhar_cli.motion.segments import covered, found_segments, landmarks_of, thickness
+from radhar_cli.motion.segments import (
+    landmark_names,
+    segments_between,
+    segments_of_joint,
+    thickness,
+)
 from radhar_cli.pipeline.motion_paths import MotionPaths, Shade, ShadowedPaths, SumOfPaths
 from radhar_cli.pipeline.physics import body_of, frames_of, ways_of
 from radhar_cli.pipeline.segment_paths import Points, SegmentPaths, draw_points, point_counts
@@ -71,7 +76,7 @@ def sources_of(
     own = len(people) == len(motions)  # not so where one body is seen in parts
     several = own and len(people) > 1 and scene.config.body.shadowing
     if several or images:  # asked for the same times again and again
-        motions = tuple(map(remembered, motions))
+        motions = tuple(map(cache_motion, motions))
     shades = [shade_of(*one) for one in zip(people, motions, strict=True)] if several else []
     for number, motion in enumerate(motions):
         theirs: list[SegmentPaths | SurfacePaths | MotionPaths] = []
@@ -121,11 +126,13 @@ def body_paths(
 ) -> SegmentPaths | SurfacePaths | None:
     """The paths of the segments of a motion or of their surfaces, None where its joints have none.
 
-    The motion is whole, or `Only` some joints of one; `number` is its own among several; points of
+    The motion is whole, or a `ScattererSubset`; `number` is its own among several; points of
     segments are as many as antennas need that are `first` in an array, or these.
     """
     body, config = body_of(person, motion), person.scene.config
-    kept = tuple(sorted({n for joint in motion.names for n in covered(joint, body.segments)}))
+    kept = tuple(
+        sorted({n for joint in motion.names for n in segments_of_joint(joint, body.segments)})
+    )
     if not kept:
         return None
     most, seen = config.body.points_per_segment, (antennas, waveform.fc, wall)
@@ -153,9 +160,11 @@ def _tapered(points: Points) -> Points:
 
 def _without_segments(motion: Motion) -> Motion | None:
     """The joints that no segment stands for, which go on being points."""
-    whole = motion.motion if isinstance(motion, Only) else motion
-    segments = found_segments(landmarks_of(whole))
-    alone = tuple(whole.names.index(name) for name in motion.names if not covered(name, segments))
+    whole = motion.motion if isinstance(motion, ScattererSubset) else motion
+    segments = segments_between(landmark_names(whole))
+    alone = tuple(
+        whole.names.index(name) for name in motion.names if not segments_of_joint(name, segments)
+    )
     if len(alone) == len(whole.names):
         return motion
-    return Only(whole, alone) if alone else None
+    return ScattererSubset(whole, alone) if alone else None

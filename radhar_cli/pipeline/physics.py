@@ -12,9 +12,9 @@ from radhar_cli.config.number import nominal, support
 from radhar_cli.config.schema import AnyConfig, Config
 from radhar_cli.motion.paper.activities import PaperGait, Timing
 from radhar_cli.motion.paper.body import PaperBody
-from radhar_cli.motion.protocol import Motion, Only, remembered
+from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion
 from radhar_cli.motion.reflectors import TONES, Reflectors
-from radhar_cli.motion.segments import found_segments, landmarks_of, thickness
+from radhar_cli.motion.segments import landmark_names, segments_between, thickness
 from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.processing import canceller
 from radhar_cli.processing.cfar import CellAveraging
@@ -158,16 +158,16 @@ def motion_of(person: Person) -> Motion:
 def moving(person: Person) -> Motion:
     """`motion_of`, built once a person; its positions are remembered."""
     if "motion" not in person.held:
-        person.held["motion"] = remembered(motion_of(person))
+        person.held["motion"] = cache_motion(motion_of(person))
     found: Motion = person.held["motion"]
     return found
 
 
 def body_of(person: Person, motion: Motion) -> Body:
     """The body of a person who moves like this, with such segments as the joints have."""
-    whole = motion.motion if isinstance(motion, Only) else motion
+    whole = motion.motion if isinstance(motion, ScattererSubset) else motion
     stature, weight = person.subject.height_m, person.subject.weight_kg
-    return Body(whole, found_segments(landmarks_of(whole)), stature, thickness(stature, weight))
+    return Body(whole, segments_between(landmark_names(whole)), stature, thickness(stature, weight))
 
 
 def beam_of(radar: Numbers) -> Aim | None:

@@ -16,7 +16,7 @@ from radhar_cli.accelerators import machine_code
 from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.motion.segments import SOFTNESS, Placed, Segment, place
+from radhar_cli.motion.segments import SOFTNESS, Segment, SegmentPositions, segment_positions
 from radhar_cli.pipeline.motion_paths import OfMotion
 from radhar_cli.radar import ellipsoid
 from radhar_cli.radar.ellipsoid import Frame, View, square_height
@@ -73,9 +73,9 @@ class Body:
         """Of the segments [S, 1]."""
         return np.array([[one.flatness] for one in self.segments])
 
-    def at(self, t: Float) -> Placed:
+    def at(self, t: Float) -> SegmentPositions:
         """The segments at times t [M] (s)."""
-        return place(self.motion, self.segments, self.stature, t)
+        return segment_positions(self.motion, self.segments, self.stature, t)
 
     def clearance(self, antenna: tuple[float, float, float], t: Float) -> Float:
         """Way [S, M] (m) from an antenna to the nearest point of each segment, below 0 in it."""
@@ -178,7 +178,7 @@ class SegmentPaths(OfMotion):
         for first in range(0, t.size, BLOCK):
             some = slice(first, first + BLOCK)
             self._fill(
-                Placed(*(part[..., some] for part in placed)),
+                SegmentPositions(*(part[..., some] for part in placed)),
                 still,
                 delay[:, some],
                 strength[:, some],
@@ -202,7 +202,7 @@ class SegmentPaths(OfMotion):
         """Numbers of the segments that hide others."""
         return [o for o, one in enumerate(self.body.segments) if one.occludes and self.shadowing]
 
-    def _seen(self, placed: Placed, place: Point) -> tuple[Float, Float]:
+    def _seen(self, placed: SegmentPositions, place: Point) -> tuple[Float, Float]:
         """Frames [11, S, M], and how they are seen [12, S, M], with shadows seen from a place."""
         block, scene = np.concatenate(placed), self._seen_at(place)
         frames, seen = np.empty((11, *block.shape[1:])), np.empty((12, *block.shape[1:]))
@@ -214,7 +214,12 @@ class SegmentPaths(OfMotion):
         return frames, seen
 
     def _fill(
-        self, placed: Placed, still: Bool, delay: Float, strength: Float, cosine: Float | None
+        self,
+        placed: SegmentPositions,
+        still: Bool,
+        delay: Float,
+        strength: Float,
+        cosine: Float | None,
     ) -> None:
         """Fill in delays and amplitudes [I, block] of all points, and angles at a layered wall."""
         if self.antennas.ways[0] == self.antennas.ways[1]:
@@ -239,7 +244,7 @@ class SegmentPaths(OfMotion):
                     cosine[:, some] = angles
 
 
-def frame_of(placed: Placed) -> Frame:
+def frame_of(placed: SegmentPositions) -> Frame:
     """Segments as frames of reference, all numbers of which are arrays [S, M]."""
     start, end, beside = map(tuple, placed)
     return ellipsoid.frame_of(start, end, beside, SOFTNESS)

@@ -15,7 +15,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.paths import Paths, Through
-from radhar_cli.motion.protocol import Motion, recalled
+from radhar_cli.motion.protocol import Motion, cached_result
 from radhar_cli.motion.segments import REFERENCE_STATURE, cross, soft_unit, unit
 from radhar_cli.pipeline.motion_paths import OfMotion
 from radhar_cli.pipeline.segment_paths import Body
@@ -96,7 +96,9 @@ class SurfacePaths(OfMotion):
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s)."""
         places = tuple(way.antenna(self._centre()) for way in self.antennas.ways)
-        p, field_ = recalled(self.motion, ("surface", places), t, lambda: self._seen(t, *places))
+        p, field_ = cached_result(
+            self.motion, ("surface", places), t, lambda: self._seen(t, *places)
+        )
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
         a = amplitude(r_tx, r_rx, field_**2, self.antennas.gain, SPEED_OF_LIGHT / self.fc)

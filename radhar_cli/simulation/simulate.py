@@ -20,7 +20,7 @@ from radhar_cli.echo.impulse import steady_profile
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.static_returns import StaticReturn, leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
-from radhar_cli.motion.protocol import Motion, Only
+from radhar_cli.motion.protocol import Motion, ScattererSubset
 from radhar_cli.pipeline.bodies import sources_of
 from radhar_cli.pipeline.fallback import EchoAccuracy, Fallback
 from radhar_cli.pipeline.physics import motion_of, reflectors_of
@@ -165,7 +165,7 @@ def simulate(
     scene = scene_of(config, activity, index, nominal)
     warnings = scene_warnings(scene)
     motion, *others = map(motion_of, scene.people)
-    kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
+    kept = motion if joint is None else ScattererSubset(motion, (_joint(joint, motion.names),))
     board = config.radar.cfg is not None
     frames = [product for name in maps for product in FRAMES.get(name, ())]
     frames += ["points_kind"] if "points" in maps and config.room.faces else []

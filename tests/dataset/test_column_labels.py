@@ -16,7 +16,7 @@ from radhar_cli.dataset.column_labels import column_labels, label_names
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.verify import verify
 from radhar_cli.motion.phases import PHASES
-from radhar_cli.motion.protocol import Only
+from radhar_cli.motion.protocol import ScattererSubset
 from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import nominal_scene
@@ -106,7 +106,7 @@ def test_every_phase_of_a_sequence_has_a_number():
 
 
 def test_a_motion_without_phases_is_labelled_with_its_class(config):
-    class Silent(Only):
+    class Silent(ScattererSubset):
         phases = ()
 
     scene = nominal_scene(config, config.chosen_activities[0])

@@ -11,7 +11,7 @@ from radhar_cli.config.schema import Config
 from radhar_cli.echo.accuracy import AccuracyError, measured_db
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.errors import SceneError
-from radhar_cli.motion.protocol import Only
+from radhar_cli.motion.protocol import ScattererSubset
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.run import record
@@ -144,7 +144,7 @@ class TestRefusal:
         """Feet that stand still to an ulp, alone: what moves is rounding, in either engine."""
         config = Config.model_validate(CONFIG | {"duration_s": 2.0})
         scene = draw_scene(config, ACTIVITIES[5], 0)
-        foot = Only(motion_of(scene.people[0]), (JOINTS.index("right_ankle"),))
+        foot = ScattererSubset(motion_of(scene.people[0]), (JOINTS.index("right_ankle"),))
         with pytest.raises(
             SceneError, match=r"no tolerance can be kept here .* engine\.fallback: cube"
         ):

@@ -8,13 +8,13 @@ import pytest
 
 from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
-from radhar_cli.motion.protocol import Motion, Only
+from radhar_cli.motion.protocol import Motion, ScattererSubset
 from radhar_cli.motion.segments import (
     SEGMENTS,
-    covered,
-    found_segments,
-    landmarks_of,
-    place,
+    landmark_names,
+    segment_positions,
+    segments_between,
+    segments_of_joint,
     thickness,
 )
 from radhar_cli.motion.skeleton import JOINTS
@@ -36,26 +36,26 @@ def times(count: int = 801, seconds: float = 4.0) -> np.ndarray:
 
 
 def segments_at(who: Motion, t: np.ndarray):
-    return place(who, found_segments(landmarks_of(who)), STATURE, t)
+    return segment_positions(who, segments_between(landmark_names(who)), STATURE, t)
 
 
 class TestFinding:
     def test_the_thirteen_joints_give_all_segments(self):
-        assert found_segments(JOINTS) == SEGMENTS
+        assert segments_between(JOINTS) == SEGMENTS
         assert len(SEGMENTS) == 14
 
     def test_unknown_names_give_no_segments(self):
-        assert found_segments(("ball", "string")) == ()
+        assert segments_between(("ball", "string")) == ()
 
     def test_a_leg_alone_gives_thigh_and_shank(self):
         names = ("right_hip", "right_knee", "right_ankle", "tail")
-        assert [one.name for one in found_segments(names)] == ["right_thigh", "right_shank"]
+        assert [one.name for one in segments_between(names)] == ["right_thigh", "right_shank"]
 
     def test_every_joint_has_a_segment(self):
-        assert all(covered(joint, SEGMENTS) for joint in JOINTS)
-        of_the_hip = [SEGMENTS[n].name for n in covered("hip", SEGMENTS)]
+        assert all(segments_of_joint(joint, SEGMENTS) for joint in JOINTS)
+        of_the_hip = [SEGMENTS[n].name for n in segments_of_joint("hip", SEGMENTS)]
         assert of_the_hip == ["trunk"]
-        assert [SEGMENTS[n].name for n in covered("left_ankle", SEGMENTS)] == [
+        assert [SEGMENTS[n].name for n in segments_of_joint("left_ankle", SEGMENTS)] == [
             "left_shank",
             "left_foot",
         ]
@@ -151,4 +151,4 @@ def test_coincident_points_give_no_nan():
 
 def test_a_selection_of_joints_keeps_its_names():
     who = motion("human")
-    assert landmarks_of(Only(who, (3,))) == (JOINTS[3],)
+    assert landmark_names(ScattererSubset(who, (3,))) == (JOINTS[3],)

@@ -15,8 +15,8 @@ from radhar_cli.config import Config
 from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import MARGIN_DB
 from radhar_cli.errors import SceneError
-from radhar_cli.motion.protocol import Only
-from radhar_cli.motion.segments import SEGMENTS, Segment, found_segments
+from radhar_cli.motion.protocol import ScattererSubset
+from radhar_cli.motion.segments import SEGMENTS, Segment, segments_between
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline.bodies import body_paths
 from radhar_cli.pipeline.physics import motion_of
@@ -193,7 +193,7 @@ PLACES = st.tuples(*(st.floats(-1, 1) for _ in range(3)))
 @st.composite
 def loose_bodies(draw) -> SegmentPaths:
     motion = Loose(draw(st.integers(0, 2**32 - 1)), draw(st.sampled_from([0, 5, len(JOINTS)])))
-    segments = found_segments(JOINTS)
+    segments = segments_between(JOINTS)
     rng = np.random.default_rng(motion.seed)
     points = tuple(draw_points(int(count), rng) for count in rng.integers(1, 21, len(segments)))
     tx = draw(PLACES)
@@ -393,7 +393,7 @@ class TestOneJoint:
         scene = scene_of("walking")
         whole = record(scene, ["paths"])["paths"]
         person = motion_of(scene.people[0])
-        one = Only(person, (JOINTS.index("right_ankle"),))
+        one = ScattererSubset(person, (JOINTS.index("right_ankle"),))
         kept = record(scene, ["paths"], motions=(one,))["paths"]
         names = [part.name for part in SEGMENTS]
         assert [names[n] for n in kept.kept] == ["right_shank", "right_foot"]
@@ -497,5 +497,5 @@ def test_no_segments_no_paths():
     scene = scene_of("walking")
     found = record(scene, ["antennas", "waveform"])
     ball = replace(WithSword(None, None))
-    only = Only(ball, (3,))
+    only = ScattererSubset(ball, (3,))
     assert body_paths(scene.people[0], only, found["antennas"], None, found["waveform"]) is None

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from radhar_cli.config.schema import Config
-from radhar_cli.motion.protocol import remembered
+from radhar_cli.motion.protocol import cache_motion
 from radhar_cli.pipeline.bodies import body_paths
 from radhar_cli.pipeline.motion_paths import leg
 from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
@@ -101,7 +101,7 @@ def test_several_channels_evaluate_a_body_once() -> None:
             asked.append(t.size)
             return motion.landmark_positions(t)  # type: ignore[attr-defined]
 
-    held = remembered(Counting())  # type: ignore[arg-type]
+    held = cache_motion(Counting())  # type: ignore[arg-type]
     antennas, w = antennas_of(one), waveform_of(one)
     for shift in (0.0, 0.01, 0.02):
         moved = replace(antennas, tx=(0.4, -0.1 + shift, 1.5), rx=(0.4, 0.1 - shift, 1.5))

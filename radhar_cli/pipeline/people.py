@@ -409,8 +409,8 @@ def _settling(person: Person, movements: tuple[Movement, ...]) -> Iterable[Fidge
         rng = person.stream("motion.settle_size/fidgets")
         count = next(n for n, one in enumerate(movements, 1) if not isinstance(one, StepTo))
         end = _ends(movements[:count], begin)
-        for channel, to, after, start, length in GESTURES[slug]:
-            yield Fidget(channel, size * to, (end if after else begin) + start, length)
+        for channel, target, after, start, length in GESTURES[slug]:
+            yield Fidget(channel, size * target, (end if after else begin) + start, length)
         for at in sorted(end + rng.uniform(-0.8, 1.2, SETTLING)):
             yield _fidget(rng, size, float(at), (0.4, 1.0))
 

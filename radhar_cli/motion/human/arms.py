@@ -7,17 +7,20 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Axes
 from radhar_cli.motion.human.two_link import two_link
 
-# To where elbows bend, ahead, left and up: of a guard, and above a floor on which the hands are.
+# Directions in which elbows bend, ahead, left and up: in a guard, and with hands on the floor.
 OUTWARDS = np.concatenate([np.full((1, 2), -0.2), 0.45 * SIDES.T, np.full((1, 2), -1.0)])
 STRETCHED = 0.93  # of the arm's length, which a hand on the floor does not exceed
 UPWARDS = np.concatenate([np.full((1, 2), -0.9), 0.6 * SIDES.T, np.full((1, 2), -0.5)])
 SOFTNESS = 25.0  # of that bound, 1/m
 
 
-def swung(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
+def arm_directions(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
     """Unit vectors of upper arms and forearms [3, 2, M] that hang from a trunk.
 
-    Shoulders are flexed ahead and elbows by angles [2, M], right and left, rad.
+    Args:
+        trunk: Axes of the trunk.
+        shoulder: Flexion ahead of the right and left shoulder [2, M], rad.
+        elbow: Flexion of the elbows [2, M], rad.
     """
     angles = np.array([shoulder, shoulder + elbow])
     ahead, down = np.sin(angles), np.cos(angles)
@@ -25,9 +28,13 @@ def swung(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
     return ahead[0] * x - down[0] * z, ahead[1] * x - down[1] * z
 
 
-def raised(trunk: Axes, shoulder: Float, elbow: Float, outwards: Float) -> tuple[Float, Float]:
-    """`swung` arms that are raised outwards too, by angles [2, M], rad."""
-    upper, fore = swung(trunk, shoulder, elbow)
+def raised_arm_directions(
+    trunk: Axes, shoulder: Float, elbow: Float, outwards: Float
+) -> tuple[Float, Float]:
+    """Unit vectors of `arm_directions` [3, 2, M] that are raised outwards too, by angles [2, M],
+    rad.
+    """
+    upper, fore = arm_directions(trunk, shoulder, elbow)
     beside = SIDES * trunk.left[:, None]
     return (
         np.cos(outwards) * upper + np.sin(outwards) * beside,
@@ -35,11 +42,16 @@ def raised(trunk: Axes, shoulder: Float, elbow: Float, outwards: Float) -> tuple
     )
 
 
-def directed(trunk: Axes, hands: Float, poles: Float, arm: float) -> tuple[Float, Float]:
-    """Unit vectors of upper arms and forearms [3, 2, M] whose hands are where they should be.
+def arm_directions_to_hands(
+    trunk: Axes, hands: Float, poles: Float, arm: float
+) -> tuple[Float, Float]:
+    """Unit vectors of upper arms and forearms [3, 2, M] between shoulders and hands.
 
-    In the trunk's frame (ahead, left, up) [3, 2, M]: hands relative to the shoulders, m, and
-    poles, to where the elbows bend. `arm` is the length of upper arm, and of forearm, m.
+    Args:
+        trunk: Axes of the trunk.
+        hands: Hands relative to the shoulders, in the trunk's axes (ahead, left, up) [3, 2, M], m.
+        poles: Directions in which the elbows bend, in the trunk's axes [3, 2, M].
+        arm: Length of the upper arm, and of the forearm, m.
     """
     elbows = two_link(np.zeros_like(hands), hands, arm, arm, poles)
     frame = np.stack([trunk.ahead, trunk.left, trunk.up], axis=1)
@@ -48,19 +60,25 @@ def directed(trunk: Axes, hands: Float, poles: Float, arm: float) -> tuple[Float
     return upper, fore
 
 
-def hanging(body: Physique, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
-    """Hands of `swung` arms relative to the shoulders, and to where their elbows bend [3, 2, M].
+def hanging_hands(body: Physique, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
+    """Where hands of `arm_directions` are, and in which directions their elbows bend.
 
-    Both in the trunk's frame; flexion of shoulders and elbows [2, M], rad.
+    Args:
+        body: Whose arms.
+        shoulder: Flexion of the right and left shoulder [2, M], rad.
+        elbow: Flexion of the elbows [2, M], rad.
+
+    Returns:
+        Hands relative to the shoulders (m) and directions, both in the trunk's axes [3, 2, M].
     """
-    fore, nothing = shoulder + elbow, np.zeros_like(shoulder)
+    fore, zero = shoulder + elbow, np.zeros_like(shoulder)
     hands = body.arm * np.array(
-        [np.sin(shoulder) + np.sin(fore), nothing, -np.cos(shoulder) - np.cos(fore)]
+        [np.sin(shoulder) + np.sin(fore), zero, -np.cos(shoulder) - np.cos(fore)]
     )
-    return hands, np.array([-np.cos(shoulder), nothing, -np.sin(shoulder)])
+    return hands, np.array([-np.cos(shoulder), zero, -np.sin(shoulder)])
 
 
-def supported(
+def arm_directions_near_floor(
     body: Physique,
     trunk: Axes,
     shoulders: Float,
@@ -69,19 +87,31 @@ def supported(
     share: Float,
     elbows: Float = UPWARDS,
 ) -> tuple[Float, Float]:
-    """Arms between hanging (share 0) and hands on the floor (1), as far as they reach.
+    """Unit vectors of arms between hanging (share 0) and hands on the floor (1), as far as they
+    reach.
 
     A hand is on the line from shoulder to floor, at a distance below both the floor's and the
-    stretched arm's: -ln(exp(-k d) + exp(-k d_max))/k. Shoulders, floor [3, 2, M] in m; flexion of
-    hanging shoulders and elbows [2, M] in rad; share [M]. In the trunk's frame [3, 2] `elbows` is
-    to where they bend when the hands are down.
+    stretched arm's: -ln(exp(-k d) + exp(-k d_max))/k.
+
+    Args:
+        body: Whose arms.
+        trunk: Axes of the trunk.
+        shoulders: Right and left shoulder [3, 2, M], m.
+        flexion: Flexion of shoulders and of elbows where the arms hang, each [2, M], rad.
+        floor: Points on the floor that the hands reach for [3, 2, M], m.
+        share: How far the hands are on the floor [M].
+        elbows: Directions in which the elbows bend with hands on the floor, in the trunk's axes [3,
+            2].
+
+    Returns:
+        Upper arms and forearms [3, 2, M].
     """
     frame = np.array([trunk.ahead, trunk.left, trunk.up])
-    way = np.einsum("axm,xim->aim", frame, floor - shoulders)
-    distance = np.sqrt(np.einsum("aim,aim->im", way, way))
-    longest = STRETCHED * 2 * body.arm
-    reached = -np.log(np.exp(-SOFTNESS * distance) + np.exp(-SOFTNESS * longest)) / SOFTNESS
-    hands, poles = hanging(body, *flexion)
-    hands += share * (way * (reached / distance) - hands)
+    to_floor = np.einsum("axm,xim->aim", frame, floor - shoulders)
+    distance = np.sqrt(np.einsum("aim,aim->im", to_floor, to_floor))
+    stretched = STRETCHED * 2 * body.arm
+    reached = -np.log(np.exp(-SOFTNESS * distance) + np.exp(-SOFTNESS * stretched)) / SOFTNESS
+    hands, poles = hanging_hands(body, *flexion)
+    hands += share * (to_floor * (reached / distance) - hands)
     poles += share * (elbows[:, :, None] - poles)
-    return directed(trunk, hands, poles, body.arm)
+    return arm_directions_to_hands(trunk, hands, poles, body.arm)

@@ -18,17 +18,21 @@ Points = tuple[tuple[float, float], ...]
 
 
 def cycle_duration(rv: float) -> float:
-    """T = Rc/Rv (s), with the relative stride Rc = 1.346 sqrt(Rv): a stride is v T = Rc h."""
+    """Duration T = Rc/Rv of a stride (s); the relative stride is Rc = 1.346 sqrt(Rv), a stride v T
+    = Rc h.
+    """
     return 1.346 / sqrt(rv)
 
 
 def support(duration: float) -> float:
-    """Fraction of the stride at which the foot leaves the floor: (0.752 T - 0.143 s)/T."""
+    """Fraction of a stride (duration in s) at which the foot leaves the floor: (0.752 T - 0.143
+    s)/T.
+    """
     return 0.752 - 0.143 / duration
 
 
 def basis(u: Float) -> Float:
-    """1, cos 2 pi k u, sin 2 pi k u for k = 1..8 [17, M]."""
+    """Harmonics [17, M] of phases u [M]: 1, then cos 2 pi k u, then sin 2 pi k u for k = 1..8."""
     b = np.empty((2 * HARMONICS + 1, u.size))
     b[0] = 1
     turn = np.exp(2j * pi * u)
@@ -49,29 +53,31 @@ def harmonic(k: int, amplitude: float, delay: float = 0.0) -> Float:
 
 
 def half_a_stride_later(c: Float) -> Float:
-    """Coefficients of the same curve for the other side: u + 1/2 for u."""
+    """Coefficients [17] of the same curve for the other side: u + 1/2 for u."""
     k = np.arange(1, HARMONICS + 1)
-    other: Float = c * np.concatenate([[1.0], (-1.0) ** k, (-1.0) ** k])
-    return other
+    shifted: Float = c * np.concatenate([[1.0], (-1.0) ** k, (-1.0) ** k])
+    return shifted
 
 
 def pelvis_yaw(rv: float) -> Float:
-    """Right hip ahead, rad."""
+    """Coefficients [17] of the pelvis's turn, right hip ahead, rad."""
     return harmonic(1, radians(4 * rv))
 
 
 def pelvis_roll(rv: float) -> Float:
-    """Left hip down, rad."""
+    """Coefficients [17] of the pelvis's roll, left hip down, rad."""
     return radians(1.66 * rv) * _roll_shape()
 
 
 def thorax_yaw(rv: float) -> Float:
-    """Right shoulder back, rad."""
+    """Coefficients [17] of the thorax's turn, right shoulder back, rad."""
     return radians(rv / 3) * _thorax_shape()
 
 
 def shoulder(rv: float, swing: float) -> Float:
-    """Flexion of the right shoulder, rad; `swing` scales the paper's amplitude."""
+    """Coefficients [17] of the right shoulder's flexion, rad; `swing` scales the paper's
+    amplitude.
+    """
     a = radians(9.88 * rv) * swing
     c = harmonic(1, -a)
     c[0] = radians(3) - 0.5 * a
@@ -79,7 +85,7 @@ def shoulder(rv: float, swing: float) -> Float:
 
 
 def elbow(rv: float) -> Float:
-    """Flexion of the right elbow, rad."""
+    """Coefficients [17] of the right elbow's flexion, rad."""
     if rv < 0.5:
         points: Points = ((0.05, 6 * rv + 3), (0.5, 34 * rv + 3), (0.9, 10 * rv + 3))
     elif rv < 1.3:
@@ -107,24 +113,25 @@ def _roll_shape() -> Float:
 
 
 def _periodic(points: Points) -> Float:
-    """Of PCHIP (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300) through points.
+    """Coefficients [17] of the periodic PCHIP curve through points (u, value).
 
-    That of SciPy is slow to import.
+    Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300; SciPy's PCHIP is slow to import.
     """
     x, y = np.array(points).T
     x, y = np.concatenate([x - 1, x, x + 1]), np.tile(y, 3)
     h, rise = np.diff(x), np.diff(y) / np.diff(x)
-    product, both = rise[:-1] * rise[1:], h[:-1] + h[1:]
-    weighed = (both + h[1:]) * rise[1:] + (both + h[:-1]) * rise[:-1]
+    product, widths = rise[:-1] * rise[1:], h[:-1] + h[1:]
+    weighed = (widths + h[1:]) * rise[1:] + (widths + h[:-1]) * rise[:-1]
     slope = np.zeros(x.size)  # 0 at peaks
-    np.divide(3 * both * product, weighed, out=slope[1:-1], where=product > 0)
+    np.divide(3 * widths * product, weighed, out=slope[1:-1], where=product > 0)
     u = np.arange(_SAMPLES) / _SAMPLES
     i = np.searchsorted(x, u, "right") - 1
     s, start, end, mean = (u - x[i]) / h[i], slope[i], slope[i + 1], rise[i]
-    bent = 3 * mean - 2 * start - end + s * (start + end - 2 * mean)
-    return _coefficients(y[i] + s * h[i] * (start + s * bent))
+    slope_change = 3 * mean - 2 * start - end + s * (start + end - 2 * mean)
+    return _coefficients(y[i] + s * h[i] * (start + s * slope_change))
 
 
 def _coefficients(curve: Float) -> Float:
+    """Coefficients [17] of a curve that is sampled over one stride."""
     spectrum = np.fft.rfft(curve)[: HARMONICS + 1] / curve.size
     return np.concatenate([spectrum.real[:1], 2 * spectrum.real[1:], -2 * spectrum.imag[1:]])

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.arms import raised
+from radhar_cli.motion.human.arms import raised_arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING
-from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
+from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Repetition, Striking, repetitions
@@ -33,20 +33,21 @@ G = 9.81  # m/s^2
 ANKLES_S = 0.1  # for which the ankles stretch before the feet leave the floor, and bend after, s
 CROUCH_S = 0.35  # to the first crouch, and from the last, s
 SIDE = ("right", "left")
-# Of each side: the foot ahead, outwards and up of where it rests, over the stature; the straight
-# leg raised outwards, the arm ahead and outwards, rad.
+# Channels of each side: the foot ahead, outwards and up of where it rests, over the stature; the
+# straight leg raised outwards, the arm ahead and outwards, rad.
 LIMBS = ("ahead", "out", "up", "leg", "forwards", "sideways")
-# The hip ahead, to the left and down, over the stature; the trunk ahead and to the left, rad.
+# Channels of the body: the hip ahead, to the left and down, over the stature; the trunk ahead and
+# to the left, rad.
 BODY = ("hip_ahead", "hip_left", "drop", "pitch", "lean")
 
 REST = (0.0, 0.0, 0.0)
 Knot = tuple[float, tuple[float, float, float]]  # time, and a value with two derivatives
 Span = tuple[float, float]  # from, to; shares of the period
-IN_THE_AIR = None  # of the first hop, and of the second
+IN_THE_AIR = None  # span of a hop: the first one for `out`, the second for `back`
 
 
 class Move(NamedTuple):
-    """A channel changes within a repetition, and changes back."""
+    """A change of a channel within a repetition, and the change back."""
 
     channel: str
     change: float
@@ -54,13 +55,13 @@ class Move(NamedTuple):
     back: Span | None
 
 
-def both(channel: str, *rest: object) -> tuple[Move, ...]:
-    """The same of the right and of the left side."""
-    return tuple(Move(f"{side}_{channel}", *rest) for side in SIDE)  # type: ignore[arg-type]
+def moves_of_both_sides(channel: str, *change_and_spans: object) -> tuple[Move, ...]:
+    """One move in a channel of the right and of the left side."""
+    return tuple(Move(f"{side}_{channel}", *change_and_spans) for side in SIDE)  # type: ignore[arg-type]
 
 
 def _smooth(knots: Sequence[Knot]) -> "BPoly[np.float64]":
-    """Quintics between knots, twice continuously differentiable."""
+    """Quintic curve through knots, twice continuously differentiable."""
     times, values = np.array([at for at, _ in knots]), np.array([value for _, value in knots])
     from scipy.interpolate import BPoly  # slow to import
 
@@ -69,19 +70,19 @@ def _smooth(knots: Sequence[Knot]) -> "BPoly[np.float64]":
 
 @dataclass(frozen=True)
 class Exercise:
-    """One repeated for `duration` s, from rest to rest."""
+    """Repeats an exercise for `duration` s, from rest to rest."""
 
-    name: str
+    name: str  # name of its phase
     moves: tuple[Move, ...]
-    period: float  # of a repetition, s
+    period: float  # duration of a repetition, s
     hops: tuple[float, ...] = ()  # when feet leave the floor, shares of the period
-    flight: float = 0.0  # of a hop, s
-    crouch: float = 0.0  # before and after it, over the stature
+    flight: float = 0.0  # time in the air of a hop, s
+    crouch: float = 0.0  # depth of the crouch before and after a hop, over the stature
     duration: float = inf
-    first: float = 0.5  # s
-    entry: float = 0.2  # of rest at the end, s
+    first: float = 0.5  # time before the first repetition, s
+    entry: float = 0.2  # time of rest at the end, s
     from_rest: bool = True
-    # of each repetition, over the usual ones
+    # paces, sizes: time and size of each repetition, over the usual ones
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
@@ -90,7 +91,7 @@ class Exercise:
 
 
 class Exercising(Striking[Exercise]):
-    """A person who exercises; see `part.Part`."""
+    """The `part.Part` of a person who exercises."""
 
     @property
     def before(self) -> str:
@@ -98,18 +99,20 @@ class Exercising(Striking[Exercise]):
 
     @property
     def name(self) -> str:  # type: ignore[override]
-        """Of the exercise."""
+        """Name of the exercise's phase."""
         return self.strikes.name
 
     @cached_property
     def _repetitions(self) -> list[Repetition]:
-        one = self.strikes
-        start = self.begin + one.first
-        until = min(self.horizon + 1.0, start + one.duration)
-        return repetitions(start, one.period, max(until, start + 1e-9), one.paces, one.sizes)
+        exercise = self.strikes
+        start = self.begin + exercise.first
+        until = min(self.horizon + 1.0, start + exercise.duration)
+        return repetitions(
+            start, exercise.period, max(until, start + 1e-9), exercise.paces, exercise.sizes
+        )
 
     @cached_property
-    def _blows(self) -> list[Step]:
+    def _strike_steps(self) -> list[Step]:
         steps = []
         hops, flights = self.strikes.hops, iter(self._flights)
         for start, pace, size in self._repetitions:
@@ -117,60 +120,62 @@ class Exercising(Striking[Exercise]):
             for channel, change, *spans in self.strikes.moves:
                 for hop, (sign, span) in enumerate(zip((1, -1), spans, strict=True)):
                     if span is IN_THE_AIR:
-                        at, length = in_air[hop]
+                        begin, length = in_air[hop]
                     else:
-                        at, length = start + period * span[0], period * (span[1] - span[0])
-                    steps.append(Step(channel, sign * size * change, at, length))
+                        begin, length = start + period * span[0], period * (span[1] - span[0])
+                    steps.append(Step(channel, sign * size * change, begin, length))
         return steps
 
     @property
-    def _leaves(self) -> float:
+    def _stance_end_s(self) -> float:
         start, pace, _ = self._repetitions[-1]
         end = start + pace * self.strikes.period
         return inf if self.strikes.duration == inf else end + CROUCH_S * bool(self.strikes.hops)
 
     @cached_property
     def course(self) -> Course:
-        """Channels of both sides and of the body."""
+        """Course of the channels of both sides and of the body."""
         limbs = [f"{side}_{channel}" for channel in LIMBS for side in SIDE]
-        return Course.of(dict.fromkeys((*limbs, *BODY), 0.0), self._blows)
+        return Course.of(dict.fromkeys((*limbs, *BODY), 0.0), self._strike_steps)
 
     @cached_property
     def _flights(self) -> list[tuple[float, float]]:
-        """When the feet leave the floor, and for how long they are in the air, s."""
-        one = self.strikes
-        off = [
-            (start + pace * one.period * hop, one.flight * size**0.5)
+        """When the feet leave the floor, and how long they are in the air, s."""
+        exercise = self.strikes
+        take_offs = [
+            (start + pace * exercise.period * hop, exercise.flight * size**0.5)
             for start, pace, size in self._repetitions
-            for hop in one.hops
+            for hop in exercise.hops
         ]
-        after = [at for at, _ in off[1:]] + [inf]
+        next_take_offs = [take_off for take_off, _ in take_offs[1:]] + [inf]
         # Whoever hops faster hops less high: the feet are on the floor in between.
         return [
-            (at, max(min(air, later - at - 2.5 * ANKLES_S), 0.01))
-            for (at, air), later in zip(off, after, strict=False)
+            (take_off, max(min(flight, next_take_off - take_off - 2.5 * ANKLES_S), 0.01))
+            for (take_off, flight), next_take_off in zip(take_offs, next_take_offs, strict=False)
         ]
 
     @cached_property
     def _hop(self) -> "tuple[BPoly[np.float64], BPoly[np.float64]] | None":
-        """Heights of feet and of the hip beyond their course, m, over time."""
+        """Curves over time of the heights of feet and hip above their course, m; None without
+        hops.
+        """
         if not self._flights:
             return None
         feet, hip = list[Knot](), list[Knot]()
         crouch = self.strikes.crouch * self.person.stature
         landed = None
-        for at, air in self._flights:
-            speed = G * air / 2
-            high = speed * ANKLES_S / 2
-            bottom = at - CROUCH_S / 2 if landed is None else (landed + at) / 2
-            rate = 1.5 * speed / (at - bottom)
+        for take_off, flight in self._flights:
+            speed = G * flight / 2
+            height = speed * ANKLES_S / 2
+            bottom = take_off - CROUCH_S / 2 if landed is None else (landed + take_off) / 2
+            rate = 1.5 * speed / (take_off - bottom)
             if landed is None:
                 hip.append((bottom - CROUCH_S, REST))
             hip.append((bottom, (-crouch, 0.0, rate)))
-            off, on = (at, (high, speed, -G)), (at + air, (high, -speed, -G))
-            feet += [(at - ANKLES_S, REST), off, on, (at + air + ANKLES_S, REST)]
-            hip += [off, on]
-            landed = at + air
+            leave, land = (take_off, (height, speed, -G)), (take_off + flight, (height, -speed, -G))
+            feet += [(take_off - ANKLES_S, REST), leave, land, (take_off + flight + ANKLES_S, REST)]
+            hip += [leave, land]
+            landed = take_off + flight
         assert landed is not None
         hip.append((landed + CROUCH_S / 2, (-crouch, 0.0, rate)))
         hip.append((landed + 1.5 * CROUCH_S, REST))
@@ -178,7 +183,9 @@ class Exercising(Striking[Exercise]):
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        knots = [] if self._hop is None else [at for one in self._hop for at in one.x.tolist()]
+        knots = (
+            [] if self._hop is None else [knot for curve in self._hop for knot in curve.x.tolist()]
+        )
         return (*self.course.breakpoints, *knots)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
@@ -186,7 +193,7 @@ class Exercising(Striking[Exercise]):
         values = iter(self.course(t))
         limbs = {channel: np.array([next(values), next(values)]) for channel in LIMBS}
         ahead, left, drop, pitch, lean = values
-        feet, hop = self._risen(t)
+        feet, hop = self._hop_heights(t)
         swing = limbs["leg"]
         out = body.stature * limbs["out"] + body.reach * np.sin(swing)
         up = body.stature * limbs["up"] + body.reach * (1 - np.cos(swing)) + feet
@@ -194,23 +201,23 @@ class Exercising(Striking[Exercise]):
             [body.stature * limbs["ahead"], SIDES * (body.hip + out), body.ankle + up]
         )
         aside = hip_joints(body, np.zeros(t.size), np.zeros(t.size))
-        sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
+        sway = sway_displacement(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
         standing = body.tallest - body.stature * drop + hop
         place = body.stature * np.array([ahead, left])
-        hip = swayed_hip(body, standing, place, aside, ankles, body.softness, sway)
+        hip = hip_point_with_sway(body, standing, place, aside, ankles, body.softness, sway)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         trunk = axes(pitch + idle.pitch, idle.yaw, idle.roll + lean)
-        upper, fore = raised(
+        upper, fore = raised_arm_directions(
             trunk, limbs["forwards"] + idle.shoulders, body.elbow + idle.elbows, limbs["sideways"]
         )
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
 
-    def _risen(self, t: Float) -> tuple[Float, Float]:
-        """Feet and hip at times t [M] (s) above their course, m."""
+    def _hop_heights(self, t: Float) -> tuple[Float, Float]:
+        """Heights of feet and hip above their course at times t [M] (s), each [M], m."""
         if self._hop is None:
             return np.zeros(t.size), np.zeros(t.size)
-        feet, hip = (one(np.clip(t, one.x[0], one.x[-1])) for one in self._hop)
+        feet, hip = (curve(np.clip(t, curve.x[0], curve.x[-1])) for curve in self._hop)
         return feet, hip
 
 
@@ -218,7 +225,8 @@ OUT, BACK = (0.0, 0.42), (0.5, 0.92)
 ARM, LEG = radians(160), radians(38)
 
 
-def _lunges(side: str) -> Iterator[tuple[str, Exercise]]:
+def _lunging_exercises(side: str) -> Iterator[tuple[str, Exercise]]:
+    """(name, exercise) of the lunges of one side."""
     other = SIDE[side == "right"]
     foot = (0.02, 0.34), (0.58, 0.90)
     lift = [Move(f"{side}_up", 0.04, (a, (a + b) / 2), ((a + b) / 2, b)) for a, b in foot]
@@ -238,12 +246,13 @@ def _lunges(side: str) -> Iterator[tuple[str, Exercise]]:
         Move("drop", 0.09, *deep),
         Move("hip_ahead", -0.05, *deep),
         Move("pitch", radians(24), *deep),
-        *both("forwards", radians(50), *deep),
+        *moves_of_both_sides("forwards", radians(50), *deep),
     )
     yield f"{side}_side_lunge", Exercise("lunging", (*lift, *aside), 3.0)
 
 
-def _raised(side: str) -> Iterator[tuple[str, Exercise]]:
+def _raising_exercises(side: str) -> Iterator[tuple[str, Exercise]]:
+    """(name, exercise) in which arm and leg of one side are raised."""
     away = -1.0 if side == "left" else 1.0  # to the left
     arm = Move(f"{side}_sideways", ARM, OUT, BACK)
     leg = (
@@ -263,14 +272,14 @@ EXERCISES = {
             Move("drop", 0.26, (0.0, 0.46), (0.5, 0.96)),
             Move("hip_ahead", -0.045, (0.0, 0.46), (0.5, 0.96)),
             Move("pitch", radians(16), (0.0, 0.46), (0.5, 0.96)),
-            *both("forwards", radians(50), (0.0, 0.4), (0.56, 0.96)),
+            *moves_of_both_sides("forwards", radians(50), (0.0, 0.4), (0.56, 0.96)),
         ),
         2.7,
     ),
     "jumping": Exercise(
         "jumping",
         (
-            *both("forwards", radians(14), (0.05, 0.45), (0.5, 0.95)),
+            *moves_of_both_sides("forwards", radians(14), (0.05, 0.45), (0.5, 0.95)),
             Move("pitch", radians(7), (-0.36, -0.04), (0.0, 0.28)),
             Move("hip_ahead", -0.012, (-0.36, -0.04), (0.0, 0.28)),
         ),
@@ -282,15 +291,19 @@ EXERCISES = {
     "jumping_jacks": Exercise(
         "jumping",
         (
-            *both("out", 0.15, IN_THE_AIR, IN_THE_AIR),
-            *both("sideways", radians(150), (0.0, 0.4), (0.5, 0.9)),
+            *moves_of_both_sides("out", 0.15, IN_THE_AIR, IN_THE_AIR),
+            *moves_of_both_sides("sideways", radians(150), (0.0, 0.4), (0.5, 0.9)),
         ),
         1.3,
         hops=(0.08, 0.58),
         flight=0.22,
         crouch=0.04,
     ),
-    "raising_arms": Exercise("raising", both("sideways", ARM, OUT, BACK), 3.0),
-    "raising_arms_ahead": Exercise("raising", both("forwards", ARM, OUT, BACK), 3.0),
-    **{name: one for side in SIDE for name, one in (*_lunges(side), *_raised(side))},
+    "raising_arms": Exercise("raising", moves_of_both_sides("sideways", ARM, OUT, BACK), 3.0),
+    "raising_arms_ahead": Exercise("raising", moves_of_both_sides("forwards", ARM, OUT, BACK), 3.0),
+    **{
+        name: exercise
+        for side in SIDE
+        for name, exercise in (*_lunging_exercises(side), *_raising_exercises(side))
+    },
 }

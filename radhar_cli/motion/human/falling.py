@@ -14,15 +14,15 @@ from radhar_cli.motion.human.planted import (
     ELBOWS,
     SHOULDERS,
     Planted,
-    at_rest,
-    both,
     posture,
-    timed,
+    resting_channels,
+    scale_steps,
+    steps_of_both_sides,
 )
 
 GIVE = radians(9)  # by how much the trunk goes on over arms that break a fall
-LANDED = 0.7  # of the duration: the knees are down
-SWING = 0.35, 0.45  # of the shanks, up and down, s
+LANDED = 0.7  # share of the duration after which the knees are down
+SWING = 0.35, 0.45  # durations in which the shanks swing up and down, s
 PRONE, SUPINE, ON_FOURS = "lying prone", "lying on the back", "lying on hands and knees"
 ON_FLOOR, PROPPED = "lying against the seat", "lying on the hands"
 
@@ -34,10 +34,11 @@ class Prone:
     knee_height: float = 0.10
     thigh: float = radians(90)
     trunk: float = radians(88)
-    # where they are ahead of and outside the shoulders, fractions of the stature
+    # place of the hands ahead of and outside the shoulders, fractions of the stature
     hands: tuple[float, float] = (0.12, 0.05)
 
     def posture(self, person: Physique) -> dict[str, float]:
+        """Channels of `planted.posture` on the floor, hands beside the head."""
         shank = acos((self.knee_height - person.ankle) / person.leg)
         lying = posture(shank, self.thigh, self.trunk, 0.0, person.elbow, upright=0.0)
         shoulders = person.leg * (sin(shank) + sin(self.thigh))
@@ -50,11 +51,11 @@ class Prone:
 
 @dataclass(frozen=True)
 class OnFours(Prone):
-    """On hands and knees, of who breaks a fall with the hands."""
+    """How people are on hands and knees, who broke a fall with the hands."""
 
     thigh: float = radians(4)
     trunk: float = radians(84)
-    reach: float = 0.57  # of the hands ahead of the ankles, fraction of the stature
+    reach: float = 0.57  # distance of the hands ahead of the ankles, fraction of the stature
 
     def posture(self, person: Physique) -> dict[str, float]:
         hands = {"hands_ahead": self.reach * person.stature, "hands_beside": person.shoulder}
@@ -63,7 +64,7 @@ class OnFours(Prone):
 
 @dataclass(frozen=True)
 class FallForward:
-    """From standing over the knees to lying; `duration` (s) from the loss of balance to impact.
+    """Falls from standing over the knees, within `duration` s from the loss of balance to impact.
 
     Who is `prone` on hands and knees has broken the fall with the hands: the arms give way, then
     push the trunk back.
@@ -76,7 +77,7 @@ class FallForward:
     heels: float = 0.0  # how far the shanks swing up behind the knees on which the body lands, rad
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        rest, prone = at_rest(person), self.prone.posture(person)
+        rest, prone = resting_channels(person), self.prone.posture(person)
         change = {channel: prone[channel] - rest[channel] for channel in rest}
         rest |= {channel: prone[channel] for channel in ("hands_ahead", "hands_beside")}
         steps = [
@@ -85,7 +86,7 @@ class FallForward:
             Step("thigh", -self.buckle, 0.0, 0.50),
             Step("thigh", self.buckle, 0.42, 0.58),
             Step("trunk", change["trunk"], 0.10, 1.0, late=True),
-            *both(SHOULDERS, self.arms, 0.05, 0.7),
+            *steps_of_both_sides(SHOULDERS, self.arms, 0.05, 0.7),
             Step("hands", 1.0, 0.25, 0.65),
         ]
         if self.heels:
@@ -95,9 +96,9 @@ class FallForward:
                 Step("heels", -self.heels, LANDED + up, down),
             ]
         if not isinstance(self.prone, OnFours):
-            return _falling(person, begin, self.duration, rest, steps, PRONE)
+            return _fall_from_standing(person, begin, self.duration, rest, steps, PRONE)
         steps += [Step("trunk", GIVE, 0.7, 0.35), Step("trunk", -GIVE, 1.05, 0.6)]
-        return _falling(person, begin, self.duration, rest, steps, ON_FOURS)
+        return _fall_from_standing(person, begin, self.duration, rest, steps, ON_FOURS)
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,7 @@ class Supine:
     elbow: float = radians(25)
 
     def posture(self, person: Physique) -> dict[str, float]:
-        """The posture on the floor, knees up."""
+        """Channels of `planted.posture` on the back, knees up."""
         rise = (self.hip_height - person.ankle) / person.leg - cos(self.shank)
         return posture(self.shank, -acos(rise), self.trunk, self.shoulder, self.elbow, upright=0.0)
 
@@ -124,10 +125,11 @@ class Sitting:
     shank: float = radians(-55)
     trunk: float = radians(-40)
     feet: float = 0.0  # how far they slid ahead
-    # of the hands behind the hip, and beside the shoulders
+    # place of the hands behind the hip, and beside the shoulders
     hands: tuple[float, float] = (0.22, 0.06)
 
     def posture(self, person: Physique) -> dict[str, float]:
+        """Channels of `planted.posture` on the buttocks, hands on the floor behind them."""
         leg, stature = person.leg, person.stature
         rise = (self.hip_height * stature - person.ankle) / leg - cos(self.shank)
         sitting = posture(self.shank, -acos(rise), self.trunk, 0.0, person.elbow, upright=0.0)
@@ -145,10 +147,10 @@ AGAINST_SEAT = Sitting(shank=radians(-45), trunk=radians(-18), feet=0.30, hands=
 
 @dataclass(frozen=True)
 class FallBackward:
-    """From standing onto the buttocks, then the back, within about `duration` s.
+    """Falls from standing onto the buttocks, then the back, within about `duration` s.
 
-    Who ends `Sitting` has broken the fall with the hands, which land with the pelvis (within
-    0.04 s: Hsiao and Robinovitch, J. Biomechanics 31 (1998) 1).
+    Who ends `Sitting` has broken the fall with the hands, which land with the pelvis (within 0.04
+    s: Hsiao and Robinovitch, J. Biomechanics 31 (1998) 1).
     """
 
     duration: float = 1.1  # to the impact of the trunk, s
@@ -157,25 +159,25 @@ class FallBackward:
     arms: float = radians(55)  # how far the arms go ahead at first, rad
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        rest, supine = at_rest(person), self.supine.posture(person)
+        rest, supine = resting_channels(person), self.supine.posture(person)
         change = {channel: supine[channel] - rest[channel] for channel in rest}
         steps = [
             Step("shank", change["shank"], 0.0, 0.90, late=True),
             Step("thigh", change["thigh"], 0.10, 0.75),
             Step("trunk", self.bow, 0.0, 0.55),
             Step("trunk", change["trunk"] - self.bow, 0.20, 0.90, late=True),
-            *both(SHOULDERS, self.arms, 0.10, 0.50),
-            *both(SHOULDERS, change["right_shoulder"] - self.arms, 0.55, 0.55),
-            *both(ELBOWS, change["right_elbow"], 0.10, 0.90),
+            *steps_of_both_sides(SHOULDERS, self.arms, 0.10, 0.50),
+            *steps_of_both_sides(SHOULDERS, change["right_shoulder"] - self.arms, 0.55, 0.55),
+            *steps_of_both_sides(ELBOWS, change["right_elbow"], 0.10, 0.90),
         ]
         if isinstance(self.supine, Supine):
-            return _falling(person, begin, self.duration, rest, steps, SUPINE)
+            return _fall_from_standing(person, begin, self.duration, rest, steps, SUPINE)
         rest |= {channel: supine[channel] for channel in ("hands_ahead", "hands_beside")}
         steps.append(Step("hands", 1.0, 0.40, 0.48))
-        return _falling(person, begin, self.duration, rest, steps, PROPPED)
+        return _fall_from_standing(person, begin, self.duration, rest, steps, PROPPED)
 
 
-def _falling(
+def _fall_from_standing(
     person: Physique,
     begin: float,
     duration: float,
@@ -183,9 +185,18 @@ def _falling(
     steps: list[Step],
     after: str,
 ) -> Planted:
-    """A fall of some steps, in units of the duration, in which the sway comes to its end."""
+    """Part of a fall in which the sway comes to its end.
+
+    Args:
+        person: Who falls.
+        begin: When the balance is lost, s.
+        duration: Unit of the steps, s.
+        rest: Channels before the fall.
+        steps: Changes of the channels.
+        after: State in which the person lies.
+    """
     steps += [Step("standing", -1.0, 0.0, 0.5), Step("upright", -1.0, 0.0, 1.0)]
-    course = Course.of(rest, timed(steps, begin, duration))
+    course = Course.of(rest, scale_steps(steps, begin, duration))
     end = max(course.breakpoints)
     phases = (Phase(begin, "falling"), Phase(end, "lying"))
     return Planted(person, course, begin, end, phases, STANDING, after)

@@ -13,10 +13,16 @@ from radhar_cli.motion.human.falling import AGAINST_SEAT, ON_FLOOR, PRONE, SUPIN
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import SEATED, Phase
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.planted import ELBOWS, SHOULDERS, Planted, both, timed
+from radhar_cli.motion.human.planted import (
+    ELBOWS,
+    SHOULDERS,
+    Planted,
+    scale_steps,
+    steps_of_both_sides,
+)
 from radhar_cli.motion.human.sitting import Seat
 
-# Share of the way from the seat to the floor, by channel: start and length in units of the
+# Steps from the seat to the floor: channel, share of its change, start and length in units of the
 # duration, and whether the step is late.
 Shares = tuple[tuple[str, float, float, float, bool], ...]
 TOPPLE: Shares = (  # the trunk goes over the knees, which go to the floor; then the hips sink
@@ -36,14 +42,17 @@ MISS: Shares = (  # the hips go down behind the feet, then the trunk
     ("thigh", 1.0, 0.0, 0.80, True),
     ("trunk", 1.0, 0.15, 0.95, True),
 )
-# Half of standing up, rad; in which part of the fall it is undone, ahead and backwards.
+# Angles of half of standing up, rad; in which part of a fall ahead, and of one backwards, they go
+# back.
 RISEN = {"thigh": radians(48), "trunk": radians(36), "shank": radians(10)}
 UNDONE = (0.35, 0.65), (0.0, 0.75)
 
 
 @dataclass(frozen=True)
 class FallFromSeat:
-    """To the floor within about `duration` s, after half of a `rising` that lasts so long, s."""
+    """Falls off a seat to the floor within about `duration` s, after half of a `rising` of so
+    many s.
+    """
 
     duration: float = 1.0
     ahead: bool = True  # or backwards: off the seat's edge, on rising behind the feet
@@ -52,8 +61,8 @@ class FallFromSeat:
     arms: float = radians(45)  # flexion of the shoulders as the hands look for the floor
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        seated, shares, after = self.seat.posture(person), TOPPLE, PRONE
-        lying = Prone().posture(person)
+        seated = self.seat.posture(person)
+        lying, shares, after = Prone().posture(person), TOPPLE, PRONE
         if not self.ahead:
             lying, shares, after = AGAINST_SEAT.posture(person), SLIDE, ON_FLOOR
             if self.rising:
@@ -64,22 +73,24 @@ class FallFromSeat:
             for channel, share, start, length, late in shares
         ]
         steps += [Step(arm, change[arm], 0.1, 0.8) for arm in (*SHOULDERS, *ELBOWS)]
-        steps += both(SHOULDERS, self.arms, 0.05, 0.4) + both(SHOULDERS, -self.arms, 0.5, 0.5)
+        steps += steps_of_both_sides(SHOULDERS, self.arms, 0.05, 0.4) + steps_of_both_sides(
+            SHOULDERS, -self.arms, 0.5, 0.5
+        )
         steps += [Step("upright", -1.0, 0.0, 0.8)]
-        if lying["hands"]:  # of who topples first where the shoulders then are
+        if lying["hands"]:  # who topples first puts the hands where the shoulders are then
             near = lying["hands_ahead"] - (0.3 * person.stature if self.ahead else 0.0)
             seated |= {"hands_ahead": near, "hands_beside": lying["hands_beside"]}
             steps += [
                 Step("hands", 1.0, 0.25, 0.65),
                 Step("hands_ahead", lying["hands_ahead"] - near, 0.8, 0.8),
             ]
-        falls = begin + 0.75 * self.rising
+        fall_start = begin + 0.75 * self.rising
         risen = RISEN.items() if self.rising else ()
-        steps += [Step(one, -angle, *UNDONE[not self.ahead]) for one, angle in risen]
-        steps = timed(steps, falls, self.duration)
-        steps += [Step(one, angle, begin, self.rising) for one, angle in risen]
+        steps += [Step(channel, -angle, *UNDONE[not self.ahead]) for channel, angle in risen]
+        steps = scale_steps(steps, fall_start, self.duration)
+        steps += [Step(channel, angle, begin, self.rising) for channel, angle in risen]
         course = Course.of(seated, steps)
         end = max(course.breakpoints)
         rises = (Phase(begin, "standing up"),) if self.rising else ()
-        phases = (*rises, Phase(falls, "falling"), Phase(end, "lying"))
+        phases = (*rises, Phase(fall_start, "falling"), Phase(end, "lying"))
         return Planted(person, course, begin, end, phases, SEATED, after)

@@ -7,12 +7,12 @@ from math import acos, atan2, hypot, radians, sin
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.arms import supported
+from radhar_cli.motion.human.arms import arm_directions_near_floor
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import SEATED, STANDING, Phase, Place
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.planted import HAND, timed
+from radhar_cli.motion.human.planted import HAND, scale_steps
 from radhar_cli.motion.human.pose import SIDES, Pose, axes, shoulder_points
 from radhar_cli.motion.human.sitting import Seat
 from radhar_cli.motion.human.two_link import AHEAD, two_link
@@ -26,22 +26,22 @@ CHANNELS = (
 
 @dataclass(frozen=True)
 class FallSideways:
-    """From standing or a seat to lying on one side; angles in rad."""
+    """Falls to one side, from standing or off a seat, until the body lies on it; angles in rad."""
 
     duration: float = 1.1  # from the loss of balance to the impact of the shoulder, s
     side: float = 1.0  # 1 to the left, -1 to the right
-    hip_height: float = 0.097  # of the hip on the floor, over the stature
+    hip_height: float = 0.097  # height of the hip on the floor, over the stature
     bent: float = 0.78  # distance from hip to ankles at the end, over thigh and shank
-    curled: float = 0.62  # likewise of who falls off a seat
-    tilt: float = radians(80)  # of pelvis and trunk to the side at the end
-    # how far the trunk comes back from there over the hands that break the fall
+    curled: float = 0.62  # the same distance after a fall off a seat
+    tilt: float = radians(80)  # tilt of pelvis and trunk to the side at the end
+    # by how much less the trunk tilts over hands that break the fall
     caught: float = 0.0
     curl: float = radians(8)  # pitch of the trunk at the end
     arms: float = radians(55)  # flexion of the shoulders as the hands look for the floor
-    # where they end, ahead of the ankles and beyond the hip, over the stature
+    # place of the hands at the end, ahead of the ankles and beyond the hip, over the stature
     hands: tuple[float, float] = (0.20, 0.20)
-    seat: Seat | None = None  # off which people fall
-    rising: float = 0.0  # how long they rise from it first, s
+    seat: Seat | None = None  # seat off which people fall; None for a fall from standing
+    rising: float = 0.0  # time for which they rise from the seat first, s
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "FallingSideways":
         return FallingSideways(person, self, begin)
@@ -49,7 +49,7 @@ class FallSideways:
 
 @dataclass(frozen=True)
 class FallingSideways:
-    """A fall of a person; see `part.Part`."""
+    """The `part.Part` of a person who falls sideways."""
 
     person: Physique
     fall: FallSideways
@@ -63,34 +63,35 @@ class FallingSideways:
         return STANDING if self.fall.seat is None else SEATED
 
     @property
-    def falls(self) -> float:
+    def fall_start(self) -> float:
         """When the balance is lost, s."""
         return self.begin + 0.75 * self.fall.rising
 
     @property
     def end(self) -> float:
-        return self.falls + 1.1 * self.fall.duration
+        return self.fall_start + 1.1 * self.fall.duration
 
     @property
     def phases(self) -> tuple[Phase, ...]:
         rising = (Phase(self.begin, "standing up"),) if self.fall.rising else ()
-        return (*rising, Phase(self.falls, "falling"), Phase(self.end, "lying"))
+        return (*rising, Phase(self.fall_start, "falling"), Phase(self.end, "lying"))
 
     @cached_property
     def course(self) -> Course:
-        """Tilt and length of the legs, tilt of pelvis and trunk, arms."""
+        """Course of tilt and length of the legs, tilt of pelvis and trunk, and arms."""
         body, fall = self.person, self.fall
         length = body.rest_height - body.ankle
         bent = (fall.bent if fall.seat is None else fall.curled) * 2 * body.leg
         legs = acos((fall.hip_height * body.stature - body.ankle) / bent)
-        risen, initial = dict[str, float](), {"length": length, "elbows": body.elbow}
+        risen = dict[str, float]()
+        initial = {"length": length, "elbows": body.elbow}
         if fall.seat is not None:
-            sits = fall.seat.posture(body)
-            ahead = body.leg * (sin(sits["shank"]) + sin(sits["thigh"]))
+            seated = fall.seat.posture(body)
+            ahead = body.leg * (sin(seated["shank"]) + sin(seated["thigh"]))
             up = fall.seat.height * body.stature - body.ankle
             initial = {"behind": atan2(ahead, up), "length": hypot(ahead, up)}
-            initial |= {"arms": sits["right_shoulder"], "elbows": sits["right_elbow"]}
-            initial |= {"curl": sits["trunk"]}
+            initial |= {"arms": seated["right_shoulder"], "elbows": seated["right_elbow"]}
+            initial |= {"curl": seated["trunk"]}
             if fall.rising:
                 risen = {"length": 0.06, "behind": -initial["behind"] / 3, "curl": radians(36)}
         steps = [
@@ -105,9 +106,9 @@ class FallingSideways:
             Step("hands", 1.0, 0.30, 0.70),
             Step("still", 1.0, 0.0, 0.6),
         ]
-        steps += [Step(one, -angle, 0.2, 0.8) for one, angle in risen.items()]
-        steps = timed(steps, self.falls, fall.duration)
-        steps += [Step(one, angle, self.begin, fall.rising) for one, angle in risen.items()]
+        steps += [Step(channel, -angle, 0.2, 0.8) for channel, angle in risen.items()]
+        steps = scale_steps(steps, self.fall_start, fall.duration)
+        steps += [Step(channel, angle, self.begin, fall.rising) for channel, angle in risen.items()]
         return Course.of(dict.fromkeys(CHANNELS, 0.0) | initial, steps)
 
     @property
@@ -118,39 +119,43 @@ class FallingSideways:
         body, fall = self.person, self.fall
         legs, behind, length, pelvis, trunk, *others, still, near = self.course(t)
         curl, arms, elbows, share = others
-        own, nothing = 1 - still, np.zeros(t.size)
-        stands = own * (self.before != SEATED)  # who sits does not sway
-        lean, roll = behind + stands * idle.lean, fall.side * legs + stands * idle.legs_roll
+        idle_share, zero = 1 - still, np.zeros(t.size)
+        sway_share = idle_share * (self.before != SEATED)  # who sits does not sway
+        lean, roll = behind + sway_share * idle.lean, fall.side * legs + sway_share * idle.legs_roll
         hip = length * np.array(
             [np.sin(lean), np.cos(lean) * np.sin(roll), np.cos(lean) * np.cos(roll)]
         )
         hip[2] += body.ankle
-        tilted = axes(nothing, nothing, fall.side * pelvis)
+        tilted = axes(zero, zero, fall.side * pelvis)
         joints = hip[:, None] + body.hip * SIDES * tilted.left[:, None]
         ankles = np.array([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankles, (3, 2, t.size))
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         upper_body = axes(
-            curl + own * idle.pitch, own * idle.yaw, fall.side * trunk + own * idle.roll
+            curl + idle_share * idle.pitch,
+            idle_share * idle.yaw,
+            fall.side * trunk + idle_share * idle.roll,
         )
-        flexion = (arms + own * idle.shoulders, elbows + own * idle.elbows)
+        flexion = (arms + idle_share * idle.shoulders, elbows + idle_share * idle.elbows)
         bent = fall.bent if fall.seat is None else fall.curled
-        lies = body.leg * 2 * bent + fall.hands[1] * body.stature
-        beside = fall.side * (lies + near * (0.22 * body.stature - lies))
+        lying_beside = body.leg * 2 * bent + fall.hands[1] * body.stature
+        beside = fall.side * (lying_beside + near * (0.22 * body.stature - lying_beside))
         ahead = np.full(t.size, fall.hands[0] * body.stature)
         hand = np.array([ahead, beside, np.full(t.size, HAND)])[:, None]
         floor = np.broadcast_to(hand, (3, 2, t.size))
         shoulders = shoulder_points(body, hip, upper_body)
         off_floor = np.array([[0.0, 0.0], [-0.35 * fall.side] * 2, [-1.0, -1.0]])
-        upper, fore = supported(body, upper_body, shoulders, flexion, floor, share, off_floor)
+        upper, fore = arm_directions_near_floor(
+            body, upper_body, shoulders, flexion, floor, share, off_floor
+        )
         return Pose(hip, upper_body, joints, knees, ankles, upper, fore, idle.breath)
 
 
 @dataclass(frozen=True)
 class RiseFromSide:
-    """From lying after a fall to standing over a crouch above the feet, within `duration` s.
+    """Gets up from lying on the side, over a crouch above the feet, within `duration` s.
 
-    Who tries alone lifts the trunk and sinks back. The way is a guess.
+    Who only tries lifts the trunk and sinks back. The way is a guess.
     """
 
     fall: FallSideways
@@ -163,7 +168,7 @@ class RiseFromSide:
 
 @dataclass(frozen=True)
 class RisingFromSide(FallingSideways):
-    """Getting up from the side; see `part.Part`."""
+    """The `part.Part` of a person who gets up from the side."""
 
     rise: RiseFromSide
 
@@ -171,7 +176,7 @@ class RisingFromSide(FallingSideways):
 
     @property
     def after(self) -> str:  # type: ignore[override]
-        """Standing, or on the side again."""
+        """State at the end: standing, or on the side again."""
         return ON_SIDE if self.rise.tries else STANDING
 
     @property
@@ -185,27 +190,28 @@ class RisingFromSide(FallingSideways):
 
     @cached_property
     def course(self) -> Course:
-        """Trunk and hands first, then the hip over the feet, then up."""
-        body, fell = self.person, FallingSideways(self.person, self.fall, 0.0)
-        down = fell.course.at(fell.end)
+        """Course of getting up: trunk and hands first, then the hip over the feet, then up."""
+        body = self.person
+        fall = FallingSideways(body, self.fall, 0.0)
+        lying = fall.course.at(fall.end)
         if self.rise.tries:
-            lift = {"trunk": -0.4 * down["trunk"], "curl": radians(12), "pelvis": radians(-8)}
-            steps = [Step(one, angle, 0.0, 0.5) for one, angle in lift.items()]
-            steps += [Step(one, -angle, 0.6, 0.4) for one, angle in lift.items()]
+            lift = {"trunk": -0.4 * lying["trunk"], "curl": radians(12), "pelvis": radians(-8)}
+            steps = [Step(channel, angle, 0.0, 0.5) for channel, angle in lift.items()]
+            steps += [Step(channel, -angle, 0.6, 0.4) for channel, angle in lift.items()]
         else:
             low, high = 0.6 * body.leg, body.rest_height - body.ankle
             steps = [
-                Step("trunk", 0.4 * -down["trunk"], 0.0, 0.40),
-                Step("trunk", 0.6 * -down["trunk"], 0.35, 0.40),
+                Step("trunk", 0.4 * -lying["trunk"], 0.0, 0.40),
+                Step("trunk", 0.6 * -lying["trunk"], 0.35, 0.40),
                 Step("near", 1.0, 0.10, 0.45),
                 Step("hands", -1.0, 0.50, 0.30),
-                Step("length", low - down["length"], 0.15, 0.40),
+                Step("length", low - lying["length"], 0.15, 0.40),
                 Step("length", high - low, 0.58, 0.42),
-                Step("curl", radians(52) - down["curl"], 0.15, 0.45),
+                Step("curl", radians(52) - lying["curl"], 0.15, 0.45),
                 Step("curl", radians(-52), 0.60, 0.40),
-                Step("arms", radians(45) - down["arms"], 0.2, 0.3),
+                Step("arms", radians(45) - lying["arms"], 0.2, 0.3),
                 Step("arms", radians(-45), 0.60, 0.40),
-                *(Step(one, -down[one], 0.22, 0.40) for one in ("legs", "pelvis")),
+                *(Step(channel, -lying[channel], 0.22, 0.40) for channel in ("legs", "pelvis")),
                 Step("still", -1.0, 0.6, 0.4),
             ]
-        return Course.of(down, timed(steps, self.begin, self.rise.duration))
+        return Course.of(lying, scale_steps(steps, self.begin, self.rise.duration))

@@ -21,36 +21,36 @@ LAG_SHAPE = np.array([0, 0, 0, 1, -3, 3, -1, 0, 0]) * 64  # t^3 (1 - t)^3, peak 
 
 
 class Footfalls(NamedTuple):
-    """Swings of one foot [N], and the footholds before and after each; s and m."""
+    """The N swings of one foot, and the footholds before and after each."""
 
-    # off, toe, down: heel-off, toe-off and touch-down, s
+    # off, toe, down: heel-off, toe-off and touch-down [N], s
     off: Float
     toe: Float
     down: Float
-    # before, after: x and y of the footholds [2, N]
+    # before, after: x and y of the footholds [2, N], m
     before: Float
     after: Float
-    heading: Float  # to where the foot points before the swing, rad from the x axis
-    size: Float  # length of the step over the walker's usual one, at most 1
+    heading: Float  # direction of the foot before the swing [N], rad from the x axis
+    size: Float  # length of the step over the walker's usual one [N], at most 1
 
 
 @dataclass(frozen=True)
 class FootTrack:
-    """Where an ankle is, at any time."""
+    """The course of an ankle from foothold to foothold."""
 
-    person: Physique  # whose foot
-    falls: Footfalls  # the swings
+    person: Physique
+    falls: Footfalls
     roll: float  # angle at toe-off, rad
     lift: float  # height added to the swing, m
     lag: float  # how far the foot is behind in mid-swing, over the length of the step
 
     @property
     def breakpoints(self) -> Float:
-        """Every heel-off, toe-off and touch-down, s."""
+        """Instants of every heel-off, toe-off and touch-down, s."""
         return np.concatenate([self.falls.off, self.falls.toe, self.falls.down])
 
     def __call__(self, t: Float) -> Float:
-        """Ankle [3, M] at times t [M] (s)."""
+        """Position of the ankle [3, M] (m) at times t [M] (s)."""
         events, polynomials = self._polynomials
         piece = np.searchsorted(events, t, "right")
         since = t - np.concatenate([events[:1], events])[piece]
@@ -67,36 +67,47 @@ class FootTrack:
 
     @cached_property
     def _polynomials(self) -> tuple[Float, Float]:
-        """When events are, s; before and after each [3 N + 1, 5, power of s since then] x, y,
-        z - z_a of an unrolled foot, beta, heading.
+        """Polynomials of the foot between its 3 N events.
+
+        Returns:
+            Instants of the events [3 N] (s), and coefficients [3 N + 1, 5, power] of the time since
+            the event before: of x, y, z - z_a of an unrolled foot, beta and heading.
         """
-        f, n = self.falls, self.falls.off.size
-        c = np.zeros((DEGREE + 1, 3 * n + 1, 5))  # lowest power first
-        planted, rolling, swinging = c[:, 0::3], c[:, 1::3], c[:, 2::3]
-        planted[0, :, :2] = np.concatenate([f.before[:, :1], f.after], axis=1).T
-        rolling[0, :, :2] = f.before.T
-        rolling[0, :, 4] = f.heading
-        rolling[3, :, 3] = self.roll * f.size / (f.toe - f.off) ** 3
-        length = f.down - f.toe
+        falls = self.falls
+        count = falls.off.size
+        coefficients = np.zeros((DEGREE + 1, 3 * count + 1, 5))  # lowest power first
+        planted, rolling, swinging = (
+            coefficients[:, 0::3],
+            coefficients[:, 1::3],
+            coefficients[:, 2::3],
+        )
+        planted[0, :, :2] = np.concatenate([falls.before[:, :1], falls.after], axis=1).T
+        rolling[0, :, :2] = falls.before.T
+        rolling[0, :, 4] = falls.heading
+        rolling[3, :, 3] = self.roll * falls.size / (falls.toe - falls.off) ** 3
+        length = falls.down - falls.toe
         ahead, up = self._toe_off()
-        for axis, share in enumerate((np.cos(f.heading), np.sin(f.heading))):
-            gone, velocity, acceleration = (share * value for value in ahead)
-            gone = gone + f.before[axis]
-            swinging[:6, :, axis] = to_rest(gone, velocity, acceleration, f.after[axis], length)
-            way = f.after[axis] - f.before[axis]
-            swinging[:, :, axis] -= np.outer(LAG_SHAPE, self.lag * way)
-        swinging[:6, :, 2] = to_rest(*up, np.zeros(n), length)
-        swinging[:, :, 2] += np.outer(LIFT_SHAPE, self.lift * f.size)
+        for axis, share in enumerate((np.cos(falls.heading), np.sin(falls.heading))):
+            position, velocity, acceleration = (share * value for value in ahead)
+            position = position + falls.before[axis]
+            swinging[:6, :, axis] = coefficients_to_rest(
+                position, velocity, acceleration, falls.after[axis], length
+            )
+            distance = falls.after[axis] - falls.before[axis]
+            swinging[:, :, axis] -= np.outer(LAG_SHAPE, self.lag * distance)
+        swinging[:6, :, 2] = coefficients_to_rest(*up, np.zeros(count), length)
+        swinging[:, :, 2] += np.outer(LIFT_SHAPE, self.lift * falls.size)
         swinging /= (length ** np.arange(DEGREE + 1)[:, None])[..., None]
-        events = np.stack([f.off, f.toe, f.down], axis=1).ravel()
-        return events, np.ascontiguousarray(c.transpose(1, 2, 0))
+        events = np.stack([falls.off, falls.toe, falls.down], axis=1).ravel()
+        return events, np.ascontiguousarray(coefficients.transpose(1, 2, 0))
 
     def _toe_off(self) -> tuple[tuple[Float, Float, Float], tuple[Float, Float, Float]]:
-        """Way, velocity and acceleration at toe-off, ahead and of z - z_a."""
-        f, ball, high = self.falls, self.person.toes, self.person.ankle
-        beta = self.roll * f.size
-        rate = 3 * beta / (f.toe - f.off)
-        growth = 2 * rate / (f.toe - f.off)
+        """Displacement, velocity and acceleration [N] at toe-off: first ahead, then of z - z_a."""
+        falls = self.falls
+        ball, high = self.person.toes, self.person.ankle
+        beta = self.roll * falls.size
+        rate = 3 * beta / (falls.toe - falls.off)
+        growth = 2 * rate / (falls.toe - falls.off)
         cos, sin = np.cos(beta), np.sin(beta)
         forth, up = ball * sin + high * cos, ball * cos - high * sin  # d/dbeta of x and z
         x = ball * (1 - cos) + high * sin
@@ -107,19 +118,27 @@ class FootTrack:
         )
 
 
-def to_rest(
+def coefficients_to_rest(
     position: Float, velocity: Float, acceleration: Float, end: Float, length: Float
 ) -> Float:
-    """Coefficients [6, N] of a quintic that ends at rest, lowest power of (t - t0)/length first."""
+    """Coefficients [6, N] of quintics that end at rest, lowest power of (t - t0)/length first.
+
+    Args:
+        position: At t0 [N], m; likewise velocity and acceleration.
+        velocity: m/s.
+        acceleration: m/s^2.
+        end: Position at t0 + length, m.
+        length: Duration, s.
+    """
     v, a = velocity * length, acceleration * length**2
-    way = end - position
+    distance = end - position
     return np.array(
         [
             position,
             v,
             a / 2,
-            10 * way - 6 * v - 1.5 * a,
-            -15 * way + 8 * v + 1.5 * a,
-            6 * way - 3 * v - 0.5 * a,
+            10 * distance - 6 * v - 1.5 * a,
+            -15 * distance + 8 * v + 1.5 * a,
+            6 * distance - 3 * v - 0.5 * a,
         ]
     )

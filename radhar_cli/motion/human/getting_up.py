@@ -26,9 +26,16 @@ from radhar_cli.motion.human.falling import (
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.planted import ELBOWS, SHOULDERS, Planted, at_rest, both, timed
+from radhar_cli.motion.human.planted import (
+    ELBOWS,
+    SHOULDERS,
+    Planted,
+    resting_channels,
+    scale_steps,
+    steps_of_both_sides,
+)
 
-DOWN: dict[str, Callable[[Physique], dict[str, float]]] = {
+LYING_POSTURES: dict[str, Callable[[Physique], dict[str, float]]] = {
     PRONE: Prone().posture,
     ON_FOURS: OnFours().posture,
     SUPINE: Supine().posture,
@@ -38,88 +45,93 @@ DOWN: dict[str, Callable[[Physique], dict[str, float]]] = {
 ON_BELLY = (PRONE, ON_FOURS)
 
 
-def _down(person: Physique, before: str) -> dict[str, float]:
-    """How people lie or sit on the floor, seen from where their feet are."""
-    if before not in DOWN:
-        raise ValueError(f"getting up begins {' or '.join(DOWN)}, not {before}")
-    down = DOWN[before](person)
-    down["hands_ahead"] -= down["feet"]
-    return down | {"feet": 0.0}
+def _lying_posture(person: Physique, before: str) -> dict[str, float]:
+    """Channels of people who lie or sit on the floor, seen from where their feet are."""
+    if before not in LYING_POSTURES:
+        raise ValueError(f"getting up begins {' or '.join(LYING_POSTURES)}, not {before}")
+    lying = LYING_POSTURES[before](person)
+    lying["hands_ahead"] -= lying["feet"]
+    return lying | {"feet": 0.0}
 
 
 @dataclass(frozen=True)
 class GetUp:
-    """From the floor to standing within `duration` s; angles in rad."""
+    """Gets up from the floor to standing within `duration` s; angles in rad."""
 
     duration: float = 3.0
-    before: str = PRONE  # how they lie
-    hands: float = 0.57  # where they push, ahead of the ankles, fraction of the stature
+    before: str = PRONE  # state in which the person lies
+    hands: float = 0.57  # where the hands push, ahead of the ankles, fraction of the stature
     on_knees: float = radians(84)  # pitch of the trunk on hands and knees
-    # shank, thigh, trunk: in the crouch that follows
+    # shank, thigh, trunk: angles in the crouch that follows
     shank: float = radians(38)
     thigh: float = radians(-70)
     trunk: float = radians(50)
-    # shank, thigh, trunk: sitting, feet drawn in, and the thigh of the squat that follows
+    # angles of shank, thigh and trunk sitting, feet drawn in; of the thigh in the squat after it
     sitting: tuple[float, float, float] = (radians(4), radians(-155), radians(12))
     squat: float = radians(-112)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        down, rest = _down(person, self.before), at_rest(person)
-        ways = self._over_knees if self.before in ON_BELLY else self._over_squat
+        lying = _lying_posture(person, self.before)
+        rest = resting_channels(person)
+        steps_of = self._over_knees if self.before in ON_BELLY else self._over_squat
         steps = [
-            *ways(person, down, rest),
+            *steps_of(person, lying, rest),
             Step("standing", 1.0, 0.5, 0.5),
             Step("upright", 1.0, 0.2, 0.8),
         ]
-        course = Course.of(down, timed(steps, begin, self.duration))
+        course = Course.of(lying, scale_steps(steps, begin, self.duration))
         end = begin + self.duration
         phases = (Phase(begin, "getting up"), Phase(end, "standing"))
         return Planted(person, course, begin, end, phases, self.before, STANDING)
 
     def _over_knees(
-        self, person: Physique, down: dict[str, float], rest: dict[str, float]
+        self, person: Physique, lying: dict[str, float], rest: dict[str, float]
     ) -> list[Step]:
+        """Steps from lying on the belly, over hands and knees, to standing."""
         push = self.hands * person.stature
         return [
-            Step("shank", self.shank - down["shank"], 0.28, 0.34),
+            Step("shank", self.shank - lying["shank"], 0.28, 0.34),
             Step("shank", rest["shank"] - self.shank, 0.56, 0.44),
-            Step("thigh", self.thigh - down["thigh"], 0.05, 0.55),
+            Step("thigh", self.thigh - lying["thigh"], 0.05, 0.55),
             Step("thigh", rest["thigh"] - self.thigh, 0.55, 0.45),
-            Step("trunk", self.on_knees - down["trunk"], 0.05, 0.30),
+            Step("trunk", self.on_knees - lying["trunk"], 0.05, 0.30),
             Step("trunk", self.trunk - self.on_knees, 0.34, 0.28),
             Step("trunk", rest["trunk"] - self.trunk, 0.56, 0.44),
-            Step("hands_ahead", push - down["hands_ahead"], 0.0, 0.30),
-            Step("hands_beside", person.shoulder - down["hands_beside"], 0.0, 0.25),
+            Step("hands_ahead", push - lying["hands_ahead"], 0.0, 0.30),
+            Step("hands_beside", person.shoulder - lying["hands_beside"], 0.0, 0.25),
             Step("hands", -1.0, 0.48, 0.42),
         ]
 
     def _over_squat(
-        self, person: Physique, down: dict[str, float], rest: dict[str, float]
+        self, person: Physique, lying: dict[str, float], rest: dict[str, float]
     ) -> list[Step]:
+        """Steps from lying on the back or sitting, over a squat, to standing."""
         shank, thigh, trunk = self.sitting
-        ahead = sin(down["shank"]) + sin(down["thigh"]) - sin(shank) - sin(thigh)
+        ahead = sin(lying["shank"]) + sin(lying["thigh"]) - sin(shank) - sin(thigh)
         steps = [
             Step("feet", person.leg * ahead, 0.10, 0.34),
-            Step("shank", shank - down["shank"], 0.10, 0.34),
+            Step("shank", shank - lying["shank"], 0.10, 0.34),
             Step("shank", self.shank - shank, 0.40, 0.28),
             Step("shank", rest["shank"] - self.shank, 0.58, 0.42),
-            Step("thigh", thigh - down["thigh"], 0.10, 0.34),
+            Step("thigh", thigh - lying["thigh"], 0.10, 0.34),
             Step("thigh", self.squat - thigh, 0.42, 0.24),
             Step("thigh", rest["thigh"] - self.squat, 0.58, 0.42),
-            Step("trunk", trunk - down["trunk"], 0.0, 0.42),
+            Step("trunk", trunk - lying["trunk"], 0.0, 0.42),
             Step("trunk", self.trunk - trunk, 0.34, 0.28),
             Step("trunk", rest["trunk"] - self.trunk, 0.60, 0.40),
-            *both(SHOULDERS, radians(90), 0.05, 0.4),
-            *both(SHOULDERS, rest["right_shoulder"] - down["right_shoulder"], 0.5, 0.45),
-            *both(SHOULDERS, -radians(90), 0.58, 0.42),
-            *both(ELBOWS, rest["right_elbow"] - down["right_elbow"], 0.3, 0.5),
+            *steps_of_both_sides(SHOULDERS, radians(90), 0.05, 0.4),
+            *steps_of_both_sides(
+                SHOULDERS, rest["right_shoulder"] - lying["right_shoulder"], 0.5, 0.45
+            ),
+            *steps_of_both_sides(SHOULDERS, -radians(90), 0.58, 0.42),
+            *steps_of_both_sides(ELBOWS, rest["right_elbow"] - lying["right_elbow"], 0.3, 0.5),
         ]
-        if down["hands"]:
+        if lying["hands"]:
             steps.append(Step("hands", -1.0, 0.05, 0.35))
         return steps
 
 
-# How far people get who try to get up: channel, rad.
+# How far people get who try to get up, by state: {channel: rad}.
 TRIES = {
     PRONE: {"trunk": radians(-22), "thigh": radians(-38)},
     ON_FOURS: {"trunk": radians(-16), "thigh": radians(-22)},
@@ -131,24 +143,25 @@ TRIES = {
 
 @dataclass(frozen=True)
 class TryToGetUp:
-    """Part of the way up within `duration` s, and sinking back."""
+    """Gets part of the way up within `duration` s, and sinks back."""
 
     duration: float = 3.0
-    before: str = PRONE  # how they lie
-    dwell: float = 0.12  # at the highest point, share of the duration
+    before: str = PRONE  # state in which the person lies
+    dwell: float = 0.12  # dwell at the highest point, share of the duration
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        down, up = _down(person, self.before), 0.55 - self.dwell / 2
+        lying = _lying_posture(person, self.before)
+        up = 0.55 - self.dwell / 2
         steps = []
         for number, (channel, angle) in enumerate(TRIES[self.before].items()):
-            later = 0.06 * number
-            steps.append(Step(channel, angle, later, up - later))
+            delay = 0.06 * number
+            steps.append(Step(channel, angle, delay, up - delay))
             steps.append(Step(channel, -angle, up + self.dwell, 1 - up - self.dwell))
         if self.before == PRONE:
             push = 0.40 * person.stature
             steps.append(Step("hands_ahead", -push, 0.0, 0.25))
             steps.append(Step("hands_ahead", push, up + self.dwell, 1 - up - self.dwell))
-        course = Course.of(down, timed(steps, begin, self.duration))
+        course = Course.of(lying, scale_steps(steps, begin, self.duration))
         end = begin + self.duration
         phases = (Phase(begin, "getting up"), Phase(end, "lying"))
         return Planted(person, course, begin, end, phases, self.before, self.before)

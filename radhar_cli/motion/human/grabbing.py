@@ -6,12 +6,12 @@ from math import radians
 from radhar_cli.motion.human.minimum_jerk import Course, Lags, Step
 from radhar_cli.motion.human.part import Phase
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.planted import Planted, at_rest
+from radhar_cli.motion.human.planted import Planted, resting_channels
 
 
 @dataclass(frozen=True)
 class Grab:
-    """Down, a dwell, and up, s; angles at the floor in rad.
+    """Bends down within `down` s, dwells, and rises within `up` s; angles at the floor in rad.
 
     A negative dwell lets the rise begin before the descent ends, by at most 0.6 of it.
     """
@@ -22,14 +22,14 @@ class Grab:
     shank: float = radians(20)
     thigh: float = radians(-62)
     trunk: float = radians(72)
-    reach: float = radians(12)  # of the right arm ahead of the vertical
-    other_arm: float = 0.55  # what the left arm does of what the right one does
+    reach: float = radians(12)  # angle of the right arm ahead of the vertical
+    other_arm: float = 0.55  # flexion of the left shoulder over that of the right one
     # lowering, rising: which joints lead and which lag
     lowering: Lags = field(default_factory=Lags)
     rising: Lags = field(default_factory=Lags)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        rest = at_rest(person)
+        rest = resting_channels(person)
         arm = self.trunk + self.reach  # flexion is relative to the trunk
         bent = {
             "shank": self.shank,

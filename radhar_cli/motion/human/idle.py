@@ -1,6 +1,6 @@
-"""What a body does by itself: it sways, breathes, has a pulse, and fidgets.
+"""Movements that a body makes by itself: it sways, breathes, has a pulse, and fidgets.
 
-All of it are functions of the recording's time, whatever activity is under way.
+All are functions of the recording's time, whatever activity is under way.
 """
 
 from collections.abc import Sequence
@@ -44,20 +44,27 @@ class Waves:
         frequencies: Sequence[float] = SWAY_HZ,
         corner: float = 0.25,
     ) -> "Waves":
-        """Waves of a standard deviation whose amplitudes fall as 1/sqrt(1 + (f/corner)^4)."""
+        """Waves whose amplitudes fall as 1/sqrt(1 + (f/corner)^4).
+
+        Args:
+            deviation: Standard deviation of the sum.
+            phases: One of each frequency, rad.
+            frequencies: Hz.
+            corner: Hz.
+        """
         f = np.asarray(frequencies, dtype=float)
         a = 1 / np.sqrt(1 + (f / corner) ** 4)
         a *= deviation / np.sqrt((a * a).sum() / 2)
         return cls(tuple(a.tolist()), tuple(f.tolist()), tuple(phases))
 
     def __call__(self, t: Float) -> Float:
-        """Values [M] at times t [M] (s)."""
+        """Values of the sum [M] at times t [M] (s)."""
         f, phi = np.array(self.frequencies)[:, None], np.array(self.phases)[:, None]
         waves: Float = np.array(self.amplitudes) @ np.cos(2 * np.pi * f * t + phi)
         return waves
 
     def integral(self, t: Float) -> Float:
-        """sum_k a_k/(2 pi f_k) sin(2 pi f_k t + phi_k), whose rate the waves are [M]."""
+        """Integral of the sum over time [M]: sum_k a_k/(2 pi f_k) sin(2 pi f_k t + phi_k)."""
         omega = 2 * np.pi * np.array(self.frequencies)
         phi = np.array(self.phases)[:, None]
         waves: Float = (np.array(self.amplitudes) / omega) @ np.sin(omega[:, None] * t + phi)
@@ -78,7 +85,9 @@ class Sway:
 
 @dataclass(frozen=True)
 class Breath:
-    """Breathing and pulse: how far the chest is ahead of its place, m, Hz, rad."""
+    """Breathing and pulse as a displacement of the chest: amplitudes in m, rates in Hz, phases
+    in rad.
+    """
 
     chest: float = 0.004
     breathing: float = 0.25
@@ -88,7 +97,7 @@ class Breath:
     pulse_phase: float = 0.0
 
     def __call__(self, t: Float) -> Float:
-        """Displacement [M], m, at times t [M] (s)."""
+        """Displacement of the chest ahead [M] (m) at times t [M] (s)."""
         breath = self.chest * np.sin(2 * np.pi * self.breathing * t + self.breathing_phase)
         beat = self.heart * np.sin(2 * np.pi * self.pulse * t + self.pulse_phase)
         d: Float = breath + beat
@@ -96,16 +105,16 @@ class Breath:
 
 
 class Fidget(NamedTuple):
-    """A small movement at rest: a channel goes to a value within `length` s from `at` on.
+    """A small movement at rest: a channel goes to `target` within `length_s` from `start_s` on.
 
-    Channels: "shift" of weight to the left, m; "lean" of the whole body ahead; "pitch", "yaw" of
+    Channels are "shift" of weight to the left, m; "lean" of the whole body ahead; "pitch", "yaw" of
     the trunk; "right_shoulder", "left_shoulder", "right_elbow", "left_elbow", further flexion, rad.
     """
 
     channel: str
-    to: float
-    at: float
-    length: float
+    target: float
+    start_s: float
+    length_s: float
 
 
 FIDGETS = (
@@ -122,26 +131,27 @@ FIDGETS = (
 
 @dataclass(frozen=True)
 class IdleState:
-    """The body's own movements at some times t [M] (s), worked out as they are asked for."""
+    """The body's own movements at times t [M] (s), worked out as they are asked for."""
 
     idle: "Idle"
     t: Float
 
     @cached_property
     def _fidgets(self) -> dict[str, Float]:
+        """Values of the fidgets [M] by channel."""
         course = self.idle.course
         return dict(zip(course.channels, course(self.t), strict=True))
 
     @cached_property
     def lean(self) -> Float:
-        """Of legs and trunk ahead [M], rad."""
+        """Lean of legs and trunk ahead [M], rad."""
         height = CENTRE_OF_MASS * self.idle.person.stature
         lean: Float = np.arcsin(self.idle.sway.ahead(self.t) / height) + self._fidgets["lean"]
         return lean
 
     @cached_property
     def roll(self) -> Float:
-        """Of legs and trunk to the left [M], rad."""
+        """Lean of legs and trunk to the left [M], rad."""
         person = self.idle.person
         height = CENTRE_OF_MASS * person.stature - person.ankle
         roll: Float = np.arcsin(self.idle.sway.aside(self.t) / height)
@@ -149,7 +159,7 @@ class IdleState:
 
     @cached_property
     def legs_roll(self) -> Float:
-        """Of the legs to the left [M], rad: sway and shifted weight."""
+        """Lean of the legs to the left [M], rad: sway and shifted weight."""
         person = self.idle.person
         shift = np.arcsin(self._fidgets["shift"] / (person.rest_height - person.ankle))
         roll: Float = self.roll + shift
@@ -157,27 +167,27 @@ class IdleState:
 
     @property
     def pitch(self) -> Float:
-        """Of the trunk ahead, beyond the lean [M], rad."""
+        """Pitch of the trunk ahead [M], rad: lean and fidgets."""
         return self.lean + self._fidgets["pitch"]
 
     @property
     def yaw(self) -> Float:
-        """Of the trunk to the left [M], rad."""
+        """Turn of the trunk to the left [M], rad."""
         return self._fidgets["yaw"]
 
     @property
     def shoulders(self) -> Float:
-        """Further flexion, right and left [2, M], rad."""
+        """Further flexion of the right and left shoulder [2, M], rad."""
         return np.array([self._fidgets["right_shoulder"], self._fidgets["left_shoulder"]])
 
     @property
     def elbows(self) -> Float:
-        """Further flexion, right and left [2, M], rad."""
+        """Further flexion of the right and left elbow [2, M], rad."""
         return np.array([self._fidgets["right_elbow"], self._fidgets["left_elbow"]])
 
     @property
     def breath(self) -> Float:
-        """Of the torso ahead [M], m."""
+        """Displacement of the torso ahead [M], m."""
         return self.idle.breath(self.t)
 
 
@@ -192,16 +202,22 @@ class Idle:
 
     @cached_property
     def course(self) -> Course:
-        """Fidgets one after the other: each goes on from where the last of its channel ended."""
-        now = dict.fromkeys(FIDGETS, 0.0)
+        """Course of the fidgets: each goes on from where the last of its channel ended.
+
+        Raises:
+            ValueError: A channel is unknown, or an elbow would bend backwards.
+        """
+        level = dict.fromkeys(FIDGETS, 0.0)
         steps = []
-        for channel, to, at, length in sorted(self.fidgets, key=lambda fidget: fidget.at):
-            if channel not in now:
+        for channel, target, start_s, length_s in sorted(
+            self.fidgets, key=lambda fidget: fidget.start_s
+        ):
+            if channel not in level:
                 raise ValueError(f"people do not fidget with {channel!r}, but with {FIDGETS}")
-            if channel.endswith("elbow") and to < -self.person.elbow:
-                raise ValueError(f"no elbow bends backwards, by {-to:g} rad from its rest")
-            steps.append(Step(channel, to - now[channel], at, length))
-            now[channel] = to
+            if channel.endswith("elbow") and target < -self.person.elbow:
+                raise ValueError(f"no elbow bends backwards, by {-target:g} rad from its rest")
+            steps.append(Step(channel, target - level[channel], start_s, length_s))
+            level[channel] = target
         return Course.of(dict.fromkeys(FIDGETS, 0.0), steps)
 
     @property
@@ -209,5 +225,5 @@ class Idle:
         return self.course.breakpoints
 
     def __call__(self, t: Float) -> IdleState:
-        """The state at times t [M] (s)."""
+        """State of the body at times t [M] (s)."""
         return IdleState(self, t)

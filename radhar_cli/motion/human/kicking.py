@@ -7,10 +7,10 @@ from math import acos, inf, radians
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.arms import swung
+from radhar_cli.motion.human.arms import arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.pelvis import swayed
+from radhar_cli.motion.human.pelvis import sway_displacement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Striking, repetitions
@@ -19,7 +19,7 @@ from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 @dataclass(frozen=True)
 class Kick:
-    """Kicks for `duration` s; angles in rad."""
+    """Kicks ahead with the right leg for `duration` s; angles in rad."""
 
     duration: float = inf
     frequency: float = 0.45  # Hz
@@ -28,12 +28,12 @@ class Kick:
     fold: float = radians(92)  # flexion of the knee before the kick
     snap: float = radians(100)  # extension of the knee in the kick
     refold: float = radians(75)  # flexion of the knee after it
-    lean: float = radians(2)  # of the trunk ahead in the stance
-    back: float = radians(14)  # of the trunk backwards in the kick
+    lean: float = radians(2)  # lean of the trunk ahead in the stance
+    back: float = radians(14)  # lean of the trunk backwards in the kick
     bend: float = 0.985  # length of the standing legs in the stance, over thigh and shank
     entry: float = 0.5  # time to take the stance, and to leave it, s
     from_rest: bool = False  # whether the stance is taken at first
-    # paces, sizes: of each kick, over the usual ones
+    # paces, sizes: time and size of each kick, over the usual ones
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
@@ -41,7 +41,7 @@ class Kick:
         return Kicking(person, self, begin, horizon)
 
     def steps(self) -> list[Step]:
-        """One kick from 0 s on."""
+        """Steps of one kick that begins at 0 s."""
         return [
             Step("thigh", self.thigh, 0.0, 0.42),
             Step("thigh", -self.thigh, 0.72, 0.55),
@@ -55,14 +55,15 @@ class Kick:
 
 
 class Kicking(Striking[Kick]):
-    """Kicks of a person; see `part.Part`."""
+    """The `part.Part` of a person who kicks."""
 
     stance = "in stance"
     name = "kicking"
 
     @cached_property
-    def _blows(self) -> list[Step]:
-        kick, steps = self.strikes, []
+    def _strike_steps(self) -> list[Step]:
+        kick = self.strikes
+        steps = []
         for start, pace, size in repetitions(
             self._first, 1 / kick.frequency, self._until, kick.paces, kick.sizes
         ):
@@ -79,21 +80,26 @@ class Kicking(Striking[Kick]):
 
     @cached_property
     def course(self) -> Course:
-        """Angles of the right leg beyond the stance, of the trunk, and of both legs standing."""
+        """Course of the right leg's angles beyond the stance, of the trunk, and of both legs
+        standing.
+        """
         kick, rest = self.strikes, self.person.rest_lean
-        steps, stance = list(self._blows), {"bend": acos(kick.bend) - rest, "trunk": kick.lean}
+        steps, stance = (
+            list(self._strike_steps),
+            {"bend": acos(kick.bend) - rest, "trunk": kick.lean},
+        )
         initial = dict.fromkeys(("thigh", "knee", "trunk", "free", "bend"), 0.0)
         initial["bend"] = rest
         for channel, change in stance.items():
             initial[channel] += 0.0 if kick.from_rest else change
-            steps += self._taken(channel, change)
+            steps += self._stance_steps(channel, change)
         return Course.of(initial, steps)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         body = self.person
         thigh, knee, pitch, free, bend = self.course(t)
         height = 2 * body.leg * np.cos(bend)
-        sway = swayed(height, idle.lean, idle.legs_roll)
+        sway = sway_displacement(height, idle.lean, idle.legs_roll)
         hip = sway + np.array([np.zeros(t.size), np.zeros(t.size), body.ankle + height])
         joints = hip[:, None] + np.array([np.zeros((2, 1)), body.hip * SIDES, np.zeros((2, 1))])
         flexed = np.array([bend + thigh, thigh - bend - knee])
@@ -109,5 +115,5 @@ class Kicking(Striking[Kick]):
         poles = np.stack([thigh_line, np.broadcast_to(AHEAD[:, 0], (3, t.size))], axis=1)
         knees = two_link(joints, ankles, body.leg, body.leg, poles)
         trunk = axes(pitch + idle.pitch, idle.yaw, idle.roll)
-        upper, fore = swung(trunk, idle.shoulders, body.elbow + idle.elbows)
+        upper, fore = arm_directions(trunk, idle.shoulders, body.elbow + idle.elbows)
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)

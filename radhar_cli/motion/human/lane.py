@@ -18,13 +18,13 @@ DEGREE = 40  # of the integrals, which then hold to 1e-15
 
 @dataclass(frozen=True)
 class Lane:
-    """Where half turns are."""
+    """The way of a walker who goes to and fro, and where the half turns are."""
 
-    length: float  # of the straight way between them, m
-    first: float = 0.0  # of that before the first one, m
-    radius: float = 0.5  # of the turns on average, m
-    side: float = 1.0  # 1 to the left, -1 to the right, as all of them
-    slow: float = 0.45  # by how much a walker slows down in them, fraction of the speed
+    length: float  # length of the straight way between half turns, m
+    first: float = 0.0  # length of the way before the first half turn, m
+    radius: float = 0.5  # mean radius of the half turns, m
+    side: float = 1.0  # side to which all half turns go: 1 to the left, -1 to the right
+    slow: float = 0.45  # by how much a walker slows down in half turns, fraction of the speed
 
 
 @lru_cache(maxsize=1)
@@ -41,25 +41,34 @@ def _arc() -> tuple[Chebyshev, Chebyshev]:
     return forth, across
 
 
-def along(s: Float, begins: Float, arc: float, side: float) -> tuple[Float, Float, Float]:
-    """x, y (m) and heading (rad) [M] of a walker who has gone s [M] (m).
+def position_along_lane(
+    s: Float, begins: Float, arc: float, side: float
+) -> tuple[Float, Float, Float]:
+    """Position and heading of a walker who has gone some distance along a lane.
 
-    Half turns of a length `arc` begin at `begins` [K] (m), to the left (side 1) or right (-1).
+    Args:
+        s: Distance gone [M], m.
+        begins: Distances at which half turns begin [K], m.
+        arc: Length of a half turn, m.
+        side: 1 for turns to the left, -1 to the right.
+
+    Returns:
+        x, y (m) and heading (rad), each [M].
     """
     x, y, heading = s.copy(), np.zeros_like(s), np.zeros_like(s)
     if not begins.size:
         return x, y, heading
-    forth, across = (part(np.ones(1))[0] * arc for part in _arc())
+    forth, across = (integral(np.ones(1))[0] * arc for integral in _arc())
     turn = np.searchsorted(begins, s, side="left") - 1  # the last that has begun, -1 for none
-    there = 1.0 - 2.0 * (np.arange(begins.size) % 2)  # 1 on the way there, -1 on the way back
+    direction = 1.0 - 2.0 * (np.arange(begins.size) % 2)  # 1 on the way there, -1 on the way back
     straight = np.diff(begins) - arc  # between a turn and the next
-    x0 = begins[0] + np.concatenate([[0.0], np.cumsum(there[:-1] * (forth - straight))])
-    y0 = np.concatenate([[0.0], np.cumsum(there[:-1] * side * across)])
-    turned = turn >= 0
-    k, gone = turn[turned], s[turned] - begins[turn[turned]]
-    share, beyond = np.minimum(gone / arc, 1.0), np.maximum(gone - arc, 0.0)
-    forth, across = (arc * part(share) for part in _arc())
-    x[turned] = x0[k] + there[k] * (forth - beyond)
-    y[turned] = y0[k] + there[k] * side * across
-    heading[turned] = side * np.pi * (k + minimum_jerk(share))
+    x0 = begins[0] + np.concatenate([[0.0], np.cumsum(direction[:-1] * (forth - straight))])
+    y0 = np.concatenate([[0.0], np.cumsum(direction[:-1] * side * across)])
+    has_turned = turn >= 0
+    k, beyond_turn = turn[has_turned], s[has_turned] - begins[turn[has_turned]]
+    share, after_arc = np.minimum(beyond_turn / arc, 1.0), np.maximum(beyond_turn - arc, 0.0)
+    forth, across = (arc * integral(share) for integral in _arc())
+    x[has_turned] = x0[k] + direction[k] * (forth - after_arc)
+    y[has_turned] = y0[k] + direction[k] * side * across
+    heading[has_turned] = side * np.pi * (k + minimum_jerk(share))
     return x, y, heading

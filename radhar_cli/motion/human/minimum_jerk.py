@@ -17,7 +17,7 @@ FEW_STEPS = 64  # of which all are evaluated at all times, by one matrix product
 
 
 def minimum_jerk(x: Float) -> Float:
-    """S(x) of x [...], 0 before 0 and 1 after 1."""
+    """Minimum-jerk step S(x) of x [...], 0 before 0 and 1 after 1."""
     x = x.clip(0.0, 1.0)
     s: Float = x * x * x * (10 + x * (6 * x - 15))
     return s
@@ -56,20 +56,26 @@ class StepsInOrder(NamedTuple):
 
     @classmethod
     def of(cls, starts: Float, lengths: Float) -> "StepsInOrder":
-        """Sort steps that begin at `starts` and take `lengths` [K] (s)."""
+        """Sort steps that begin at `starts` and take `lengths` [K], s."""
         order = np.argsort(starts, kind="stable")
-        begun = starts[order]
-        ended = np.maximum.accumulate(begun + lengths[order])  # the first k have all ended then
-        over = np.searchsorted(ended, begun, side="right")
-        return cls(order, begun, int((np.arange(1, over.size + 1) - over).max(initial=0)))
+        starts_in_order = starts[order]
+        all_ended = np.maximum.accumulate(
+            starts_in_order + lengths[order]
+        )  # the first k have all ended then
+        ended_count = np.searchsorted(all_ended, starts_in_order, side="right")
+        return cls(
+            order,
+            starts_in_order,
+            int((np.arange(1, ended_count.size + 1) - ended_count).max(initial=0)),
+        )
 
     def earliest(self, t: Float) -> Index:
         """Place in the order of the first step that may be under way at times t [M] (s).
 
         Those before it have ended, and those from `at_once` places later on have not begun.
         """
-        begun = np.searchsorted(self.starts, t, side="right")
-        return np.maximum(begun - self.at_once, 0)
+        begun_count = np.searchsorted(self.starts, t, side="right")
+        return np.maximum(begun_count - self.at_once, 0)
 
 
 @dataclass(frozen=True)
@@ -86,7 +92,15 @@ class Course:
 
     @classmethod
     def of(cls, initial: Mapping[str, float], steps: Iterable[Step]) -> "Course":
-        """Collect steps of channels that begin at `initial`; ValueError of a step of no length."""
+        """Collect steps of channels.
+
+        Args:
+            initial: {channel: value before all steps}.
+            steps: Changes of these channels, in any order.
+
+        Raises:
+            ValueError: A step takes no time.
+        """
         channels = tuple(initial)
         columns: dict[tuple[float, float, bool], Float] = {}
         for step in steps:
@@ -111,11 +125,11 @@ class Course:
         return tuple(float(end) for end in ends[:, 0])
 
     def __call__(self, t: Float) -> Float:
-        """Values [C, M] at times t [M] (s)."""
+        """Values of the channels [C, M] at times t [M] (s)."""
         if not self.starts.size:
             return np.broadcast_to(self.initial, (len(self.channels), t.size))
         if self.starts.size > FEW_STEPS:
-            return self._of_steps_under_way(t)
+            return self._values_from_few_steps(t)
         x: Float = ((t - self.starts) / self.lengths).clip(0.0, 1.0)
         if self.late.any():
             x[self.late] **= 2
@@ -128,8 +142,10 @@ class Course:
         after = np.cumsum(self.weights[:, steps.order], axis=1)
         return steps, self.initial + np.pad(after, ((0, 0), (1, 0)))
 
-    def _of_steps_under_way(self, t: Float) -> Float:
-        """Values [C, M] at times t [M] (s), in a time that does not grow with the steps."""
+    def _values_from_few_steps(self, t: Float) -> Float:
+        """Values [C, M] at times t [M] (s), in a time that does not grow with the number of
+        steps.
+        """
         steps, after = self._in_order
         earliest = steps.earliest(t)
         values = after[:, earliest]
@@ -142,21 +158,23 @@ class Course:
         return values
 
     def at(self, t: float) -> dict[str, float]:
-        """Values by channel at one time."""
+        """Values of all channels at one time t (s), by channel."""
         return dict(zip(self.channels, self(np.array([t]))[:, 0].tolist(), strict=True))
 
 
 @dataclass(frozen=True)
 class Lags:
-    """How far joints lead and lag: each channel moves in a part of its steps' time of its own."""
+    """How far joints lead and lag: each channel moves in a part of its own of the time of a
+    step.
+    """
 
-    # of the lengths of all steps, by which they are shorter; 0 is all at the same time
+    # by which share of its length each step is shorter; 0 moves all joints at the same time
     share: float = 0.0
-    # of each channel's part, from 0 (the beginning) to 1 (the end)
+    # place of each channel's part in the step, from 0 (the beginning) to 1 (the end)
     places: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, steps: Iterable[Step]) -> list[Step]:
-        """The steps of those who move so."""
+        """Shorten and shift steps so that their channels lead and lag."""
         return [
             step._replace(
                 start=step.start + self.share * self.places.get(step.channel, 0.0) * step.length,
@@ -167,5 +185,5 @@ class Lags:
 
 
 def mirrored(steps: Iterable[Step], length: float) -> list[Step]:
-    """The steps backwards in time, from `length` to 0."""
+    """Steps backwards in time, from `length` to 0."""
     return [s._replace(change=-s.change, start=length - s.start - s.length) for s in steps]

@@ -25,19 +25,25 @@ BLOCK = 4096  # instants at once: what a block needs stays in the cache
 
 
 class Movement(Protocol):
-    """What makes a part: the dataclasses of the activities."""
+    """A dataclass of how a person makes one movement, such as `sitting.SitDown`."""
 
     def part(self, person: Physique, begin: float, horizon: float) -> Part:
-        """The part that begins at `begin` (s); what goes on is worked out until `horizon` (s)."""
+        """Place the movement of a person in time.
+
+        Args:
+            person: Body that moves.
+            begin: When the movement begins, s.
+            horizon: Until when a movement that goes on is worked out, s.
+        """
         ...
 
 
 @dataclass(frozen=True)
 class HumanMotion:
-    """A person who does one thing after another."""
+    """A `Motion` of a person who makes one movement after another."""
 
-    person: Physique  # whose body
-    # what is done; each begins when the one before has come to rest
+    person: Physique
+    # movements in their order; each begins when the one before has come to rest
     movements: tuple[Movement, ...]
     # x and y of the floor point between the ankles of the first stance, m
     start: tuple[float, float]
@@ -46,8 +52,8 @@ class HumanMotion:
     begin: float  # when the first movement begins, s
     horizon: float  # end of the recording, s; at least 2 strides of a walk are worked out beyond
     idle: Idle  # sway, breath and fidgets
-    # at rest before each movement, s; those that are not named are 0. Below 0 the movement overlaps
-    # the one before: a walk and a movement on planted feet
+    # time at rest before each movement, s; those that are not given are 0. Below 0 the movement
+    # overlaps the one before: a walk and a movement on planted feet
     pauses: tuple[float, ...] = ()
 
     names = JOINTS
@@ -56,19 +62,27 @@ class HumanMotion:
 
     @property
     def highest_frequency(self) -> float:
-        """What the fastest movement counts as, Hz: kicks and exercises more than all others."""
-        return 4.0 if any(isinstance(one, Kick | Exercise) for one in self.movements) else 3.0
+        """Frequency that the fastest movement counts as, Hz: highest for kicks and exercises."""
+        return (
+            4.0
+            if any(isinstance(movement, Kick | Exercise) for movement in self.movements)
+            else 3.0
+        )
 
     @cached_property
     def parts(self) -> tuple[tuple[Part, Place], ...]:
-        """Each part and where it begins in the room; ValueError where one does not fit the last."""
+        """Each part, and where it begins in the room.
+
+        Raises:
+            ValueError: A movement begins in another state than the one before it ends in.
+        """
         begin, place = self.begin, Place(*self.start, self.heading)
         parts: list[tuple[Part, Place]] = []
         pauses = (*self.pauses, *[0.0] * len(self.movements))
         for movement, pause in zip(self.movements, pauses, strict=False):
             part = movement.part(self.person, begin + pause, self.horizon)
             if pause < 0:
-                parts[-1], part = _overlapped(parts[-1], part)
+                parts[-1], part = _join_overlapping(parts[-1], part)
             if parts and parts[-1][0].after != part.before:
                 raise ValueError(
                     f"{type(movement).__name__} begins {part.before}, but the movement before "
@@ -77,7 +91,7 @@ class HumanMotion:
             parts.append((part, place))
             if part.end == inf:
                 break
-            begin, place = part.end, _beyond(place, part.place)
+            begin, place = part.end, _place_after(place, part.place)
         return tuple(parts)
 
     @property
@@ -90,7 +104,7 @@ class HumanMotion:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """What is under way, and from when on; first the state before any movement."""
+        """Names of what is under way, and from when on; first the state before any movement."""
         parts = [part for part, _ in self.parts]
         ends = [part.begin for part in parts[1:]] + [inf]
         state = parts[0].before.partition(" ")[0]  # "lying prone" is lying
@@ -109,7 +123,9 @@ class HumanMotion:
         return self._gather(t, len(JOINTS), lambda pose, p: pose.joints(self.person, p))
 
     def landmark_positions(self, t: Float) -> Float:
-        """Positions [3, 15, M] (m) of the joints and of the hip joints."""
+        """Positions [3, 15, M] (m) of the joints, then of the right and left hip joint, at times t
+        [M].
+        """
 
         def fill(pose: Pose, p: Float) -> None:
             pose.joints(self.person, p)
@@ -118,39 +134,41 @@ class HumanMotion:
         return self._gather(t, len(self.landmarks), fill)
 
     def torso(self, t: Float) -> Float:
-        """Positions [3, 1, M] (m) of the torso alone."""
+        """Positions [3, 1, M] (m) of the torso alone at times t [M] (s)."""
         return self._gather(t, 1, lambda pose, p: pose.torso(self.person, p[:, 0]))
 
     def cross_sections(self, t: Float) -> Float:
-        """RCS [13, 1], m^2: the same from everywhere, at all times."""
+        """RCS of the joints [13, 1] (m^2): the same from everywhere, at all times."""
         height, weight = self.person.stature, self.person.weight
         weight = skeleton.default_weight(height) if weight is None else weight
         return skeleton.cross_sections(height, weight)[:, None]
 
     def hip_joints(self, t: Float) -> Float:
-        """Right and left hip joint [3, 2, M] (m), between which and the knees the thighs are."""
+        """Positions [3, 2, M] (m) of the right and left hip joint, from which the thighs go to the
+        knees.
+        """
         return self._gather(t, 2, lambda pose, p: np.copyto(p, pose.hip_joints))
 
     def _gather(self, t: Float, count: int, fill: Callable[[Pose, Float], None]) -> Float:
-        """Points [3, count, M] of each part's poses, in the room."""
+        """Points [3, count, M] in the room, filled in by `fill(pose, points)` part by part."""
         p = np.empty((3, count, t.size))
         part_of = np.searchsorted(self._begins, t, side="right")
         for first in range(0, t.size, BLOCK):
             block = slice(first, first + BLOCK)
-            numbers = part_of[block]
-            for number in range(numbers.min(), numbers.max() + 1):
-                now = numbers == number
-                if now.all():
+            part_numbers = part_of[block]
+            for number in range(part_numbers.min(), part_numbers.max() + 1):
+                is_under_way = part_numbers == number
+                if is_under_way.all():
                     self._fill(self.parts[number], t[block], p[..., block], fill)
-                elif now.any():
-                    some = np.empty((3, count, np.count_nonzero(now)))
-                    self._fill(self.parts[number], t[block][now], some, fill)
-                    p[..., block][..., now] = some
+                elif is_under_way.any():
+                    points = np.empty((3, count, np.count_nonzero(is_under_way)))
+                    self._fill(self.parts[number], t[block][is_under_way], points, fill)
+                    p[..., block][..., is_under_way] = points
         return p
 
     @cached_property
     def _begins(self) -> list[float]:
-        """When each part but the first takes over: a walk does so from what it overlaps."""
+        """When each part but the first takes over, s: a walk does so from what it overlaps."""
         pairs = pairwise(part for part, _ in self.parts)
         return [
             last.end if isinstance(last, Walking) and last.planted[-1:] == (part,) else part.begin
@@ -160,7 +178,7 @@ class HumanMotion:
     def _fill(
         self, placed: tuple[Part, Place], t: Float, p: Float, fill: Callable[[Pose, Float], None]
     ) -> None:
-        """Fill in one part's points, turned to where it faces and moved to where it begins."""
+        """Fill in the points p [3, ..., M] of one part, turned and moved to where it begins."""
         part, place = placed
         fill(part.pose(t, self.idle(t)), p)
         x, y = p[0], p[1]
@@ -175,8 +193,10 @@ class HumanMotion:
         y += place.left
 
 
-def _overlapped(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Place], Part]:
-    """A part and the one that begins before it ends, each aware of the other."""
+def _join_overlapping(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Place], Part]:
+    """Make a part and the one that begins before it ends aware of each other; at least one is a
+    walk.
+    """
     last, place = before
     if part.begin >= last.begin:
         if isinstance(part, Walking) and isinstance(last, Planted):
@@ -188,10 +208,11 @@ def _overlapped(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Pla
     )
 
 
-def _beyond(place: Place, way: Place) -> Place:
+def _place_after(place: Place, end: Place) -> Place:
+    """Place in the room where a part ends that begins at `place`; `end` is seen from there."""
     c, s = cos(place.turn), sin(place.turn)
     return Place(
-        place.ahead + c * way.ahead - s * way.left,
-        place.left + s * way.ahead + c * way.left,
-        place.turn + way.turn,
+        place.ahead + c * end.ahead - s * end.left,
+        place.left + s * end.ahead + c * end.left,
+        place.turn + end.turn,
     )

@@ -10,7 +10,7 @@ STANDING, SEATED, LYING = "standing", "seated", "lying"
 
 
 class Phase(NamedTuple):
-    """What is under way from `start` (s) on."""
+    """Name of what is under way from `start` (s) on."""
 
     start: float
     name: str
@@ -27,16 +27,17 @@ class Place(NamedTuple):
 class Part(Protocol):
     """A movement that begins and ends at rest; before and after it the body holds its pose.
 
-    Times are the recording's. Poses are local: x ahead and y to the left of the floor point
-    between the ankles of the stance in which it begins.
+    Times are those of the recording. Poses are local: x ahead and y to the left of the floor point
+    between the ankles of the stance in which the part begins.
 
     Attributes:
-        before, after: states of rest: standing, seated, lying.
-        begin: when it leaves its first state, s.
-        end: when it has come to rest, s; infinity for what goes on.
-        place: where it ends.
-        phases: what is under way when.
-        breakpoints: instants (s) at which a position is not smooth.
+        before: State of rest in which it begins, such as standing, seated or lying.
+        after: State of rest in which it ends.
+        begin: When the body leaves its first state, s.
+        end: When the body has come to rest, s; infinity for what goes on.
+        place: Where it ends.
+        phases: Names of what is under way, and from when on.
+        breakpoints: Instants (s) at which a position is not smooth.
     """
 
     @property
@@ -55,5 +56,5 @@ class Part(Protocol):
     def breakpoints(self) -> tuple[float, ...]: ...
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """The body at times t [M] (s), its own movements `idle` [M] included."""
+        """Pose of the body at times t [M] (s), its own movements `idle` [M] included."""
         ...

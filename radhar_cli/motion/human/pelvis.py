@@ -8,9 +8,12 @@ from radhar_cli.motion.human.pose import SIDES
 
 
 def hip_joints(person: Physique, yaw: Float, roll: Float) -> Float:
-    """Hip joints, right and left, relative to the hip point [3, 2, M].
+    """Right and left hip joint [3, 2, M] relative to the hip point, m.
 
-    Of a pelvis turned by `yaw` (right hip ahead) and `roll` (left hip down) [M], rad.
+    Args:
+        person: Whose hips.
+        yaw: Turn of the pelvis, right hip ahead [M], rad.
+        roll: Turn of the pelvis, left hip down [M], rad.
     """
     angles = np.array([yaw, roll])
     (cy, cr), (sy, sr) = np.cos(angles), np.sin(angles)
@@ -22,51 +25,72 @@ def hip_height(
     person: Physique,
     standing: Float | float,
     hip: Float,
-    aside: Float,
+    joint_offsets: Float,
     ankles: Float,
     softness: Float | float,
 ) -> Float:
-    """Height of the hip point [M], m: softmin(z_stand, z_right, z_left).
+    """Height of the hip point [M] (m) that no leg is too short for: softmin(z_stand, z_right,
+    z_left).
 
     z_i = z_ankle + sqrt(D^2 - rho^2) - z of the hip joint, rho the horizontal distance from hip
     joint to ankle; softmin = -ln(sum exp(-k z))/k is below the least, so the reach D holds exactly.
-    Given are z_stand (m), x and y of the hip point [2, M], hip joints relative to it and ankles
-    [3, 2, M] (m), and k (1/m).
+
+    Args:
+        person: Has the reach D.
+        standing: z_stand, the height on standing legs, m.
+        hip: x and y of the hip point [2, M], m.
+        joint_offsets: Hip joints relative to the hip point [3, 2, M], m.
+        ankles: Right and left ankle [3, 2, M], m.
+        softness: k, 1/m.
     """
-    dx = hip[0] + aside[0] - ankles[0]
-    dy = hip[1] + aside[1] - ankles[1]
+    dx = hip[0] + joint_offsets[0] - ankles[0]
+    dy = hip[1] + joint_offsets[1] - ankles[1]
     square = np.maximum(person.reach**2 - dx * dx - dy * dy, 0.0)
-    limits = ankles[2] + np.sqrt(square) - aside[2]
-    k = softness
-    total = np.exp(k * (person.tallest - limits)).sum(axis=0)
-    total += np.exp(k * (person.tallest - standing))
-    height: Float = person.tallest - np.log(total) / k
+    limits = ankles[2] + np.sqrt(square) - joint_offsets[2]
+    total = np.exp(softness * (person.tallest - limits)).sum(axis=0)
+    total += np.exp(softness * (person.tallest - standing))
+    height: Float = person.tallest - np.log(total) / softness
     return height
 
 
-def swayed(height: Float | float, lean: Float, roll: Float) -> Float:
-    """By how much a hip at a height above the ankles [M] goes with the sway [3, M]."""
+def sway_displacement(height: Float | float, lean: Float, roll: Float) -> Float:
+    """Displacement [3, M] (m) of a hip that a swaying body carries along.
+
+    Args:
+        height: Height of the hip above the ankles, a number or [M], m.
+        lean: Angle of the legs ahead [M], rad.
+        roll: Angle of the legs to the left [M], rad.
+    """
     ahead, rise = np.sin(lean), np.cos(lean)
     return height * np.array([ahead, rise * np.sin(roll), rise * np.cos(roll) - 1])
 
 
-def swayed_hip(
+def hip_point_with_sway(
     person: Physique,
     standing: Float | float,
     hip: Float,
-    aside: Float,
+    joint_offsets: Float,
     ankles: Float,
     softness: Float | float,
     sway: Float,
 ) -> Float:
-    """The hip point [3, M] of a body that sways over its ankles, at a height its legs can reach.
+    """Hip point [3, M] (m) of a body that sways over its ankles, at a height that its legs can
+    reach.
 
-    At rest the body turns about its ankles as a whole; the soft minimum is not quite the circle
-    on which the hip is then, so the difference between the two is added. `sway` is of a hip at
-    its height at rest [3, M], from `swayed`; all else as for `hip_height`.
+    At rest the body turns about its ankles as a whole; the soft minimum is not quite the circle on
+    which the hip is then, so the difference between the two is added.
+
+    Args:
+        person: Whose hip; all arguments but the last are those of `hip_height`.
+        standing: m.
+        hip: x and y without sway [2, M], m.
+        joint_offsets: [3, 2, M], m.
+        ankles: [3, 2, M], m.
+        softness: 1/m.
+        sway: `sway_displacement` of a hip at its height at rest [3, M], m.
     """
     x, y = hip[0] + sway[0], hip[1] + sway[1]
-    z = hip_height(person, standing, np.array([x, y]), aside, ankles, softness)
+    z = hip_height(person, standing, np.array([x, y]), joint_offsets, ankles, softness)
     limit = person.ankle + np.sqrt(np.maximum(person.reach**2 - sway[0] ** 2 - sway[1] ** 2, 0.0))
     k = person.softness
     soft = person.tallest - np.log1p(2 * np.exp(k * (person.tallest - limit))) / k

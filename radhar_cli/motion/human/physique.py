@@ -9,17 +9,17 @@ from radhar_cli.motion.skeleton import JOINTS, links
 
 @dataclass(frozen=True)
 class Physique:
-    """A body with the paper's links; heights and widths as fractions of the stature.
+    """A body with the paper's links; heights and widths are fractions of the stature.
 
-    Ankle height: Winter, Biomechanics and Motor Control, after Drillis and Contini. Hip width:
-    CMU motion capture, subject 02.
+    Ankle height: Winter, Biomechanics and Motor Control, after Drillis and Contini. Hip width: CMU
+    motion capture, subject 02.
     """
 
     stature: float  # m
-    ankle_height: float = 0.039  # of the ankle above the floor
-    # of a hip joint beside the hip point; at rest the feet are below the hip joints
+    ankle_height: float = 0.039  # height of the ankle above the floor
+    # distance of a hip joint beside the hip point; at rest the feet are below the hip joints
     hip_width: float = 0.052
-    ball: float = 0.10  # of the foot, ahead of the ankle
+    ball: float = 0.10  # distance of the ball of the foot ahead of the ankle
     standing: float = 0.997  # length of a standing leg over thigh and shank together
     straightest: float = 0.995  # the longest that a leg gets, likewise (a knee of 11.5 degrees)
     softness: float = 160.0  # k of the soft minimum that sets the pelvis's height, 1/m
@@ -46,17 +46,17 @@ class Physique:
 
     @property
     def trunk(self) -> float:
-        """From hip to torso, m."""
+        """Distance from hip to torso, m."""
         return -self._links["hip"][2]
 
     @property
     def neck(self) -> float:
-        """From torso to head, m."""
+        """Distance from torso to head, m."""
         return self._links["head"][2]
 
     @property
     def shoulder(self) -> float:
-        """Of a shoulder beside the torso and above it, m."""
+        """Distance of a shoulder beside the torso, and above it, m."""
         return self._links["left_shoulder"][1]
 
     @property
@@ -66,17 +66,17 @@ class Physique:
 
     @property
     def hip(self) -> float:
-        """Of a hip joint beside the hip point, m."""
+        """Distance of a hip joint beside the hip point, m."""
         return self.hip_width * self.stature
 
     @property
     def toes(self) -> float:
-        """Of the ball of the foot ahead of the ankle, m."""
+        """Distance of the ball of the foot ahead of the ankle, m."""
         return self.ball * self.stature
 
     @property
     def reach(self) -> float:
-        """The longest that a leg gets, m."""
+        """Longest distance from hip joint to ankle that a leg gets, m."""
         return self.straightest * 2 * self.leg
 
     @property
@@ -86,9 +86,11 @@ class Physique:
 
     @cached_property
     def rest_height(self) -> float:
-        """Height of the hip at rest, m: softmin of `tallest` and, twice, of a leg at full reach."""
-        k, reaching = self.softness, self.ankle + self.reach
-        return reaching - log(2 + exp(k * (reaching - self.tallest))) / k
+        """Height of the hip at rest, m: soft minimum of `tallest` and, twice, of a leg at full
+        reach.
+        """
+        k, stretched = self.softness, self.ankle + self.reach
+        return stretched - log(2 + exp(k * (stretched - self.tallest))) / k
 
     @cached_property
     def rest_lean(self) -> float:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.arms import supported, swung
+from radhar_cli.motion.human.arms import arm_directions, arm_directions_near_floor
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
@@ -20,7 +20,7 @@ from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, shoulder_point
 LEGS_AND_TRUNK = ("shank", "thigh", "trunk")
 SHOULDERS = ("right_shoulder", "left_shoulder")
 ELBOWS = ("right_elbow", "left_elbow")
-HAND = 0.03  # height of a hand on the floor, m
+HAND = 0.03  # height of the hand point on the floor, m
 
 Posture = Mapping[str, float]
 
@@ -34,10 +34,21 @@ def posture(
     standing: float = 0.0,
     upright: float = 1.0,
 ) -> dict[str, float]:
-    """Angles (rad), and how much of the sway legs and trunk take part in, by channel.
+    """Channels of a posture on planted feet; both sides alike, hands off the floor.
 
-    "hands" is how far the hands are on the floor, at "hands_ahead" (m), "hands_beside"; "heels"
-    how far (rad) the shanks of who lies on the knees are lifted; "feet" how far they slid, m.
+    Args:
+        shank: Angle of the shanks from the vertical, positive ahead, rad; likewise thigh and trunk.
+        thigh: rad.
+        trunk: rad.
+        shoulder: Flexion of the shoulders, rad.
+        elbow: Flexion of the elbows, rad.
+        standing: How far the legs take part in the sway, 0 to 1.
+        upright: How far the trunk takes part in it, 0 to 1.
+
+    Returns:
+        {channel: value}; with "hands", how far the hands are on the floor, at "hands_ahead" and
+        "hands_beside" (m); "heels", how far the shanks of who lies on the knees are lifted (rad);
+        "feet", how far the feet have slid ahead (m).
     """
     return {
         "shank": shank,
@@ -57,18 +68,20 @@ def posture(
     }
 
 
-def at_rest(person: Physique) -> dict[str, float]:
-    """The posture from which and to which standing people move."""
+def resting_channels(person: Physique) -> dict[str, float]:
+    """Posture from which and to which standing people move, by channel."""
     return posture(person.rest_lean, -person.rest_lean, 0.0, 0.0, person.elbow, standing=1.0)
 
 
-def both(channels: tuple[str, str], change: float, start: float, length: float) -> list[Step]:
-    """The same step of the right and of the left side."""
+def steps_of_both_sides(
+    channels: tuple[str, str], change: float, start: float, length: float
+) -> list[Step]:
+    """One step in each of two channels, those of the right and of the left side."""
     return [Step(channel, change, start, length) for channel in channels]
 
 
-def timed(steps: Iterable[Step], begin: float, unit: float) -> list[Step]:
-    """Steps given in units of a duration that begins at `begin` (s)."""
+def scale_steps(steps: Iterable[Step], begin: float, unit: float) -> list[Step]:
+    """Steps in s of those in units of a duration (`unit`, s) that begins at `begin` (s)."""
     return [
         step._replace(start=begin + unit * step.start, length=unit * step.length) for step in steps
     ]
@@ -76,7 +89,7 @@ def timed(steps: Iterable[Step], begin: float, unit: float) -> list[Step]:
 
 @dataclass(frozen=True)
 class Planted:
-    """A part on planted feet; see `part.Part`."""
+    """The `part.Part` of a movement on planted feet: a course of the channels of `posture`."""
 
     person: Physique
     course: Course
@@ -88,7 +101,7 @@ class Planted:
 
     @property
     def place(self) -> Place:
-        """The feet stay where they are, unless they slide."""
+        """Place where the feet are at the end: they stay where they are, unless they slide."""
         return Place(self.course.at(self.end)["feet"])
 
     @property
@@ -113,7 +126,7 @@ class Planted:
         tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
         shoulder = np.array(arms[:2]) + upright * idle.shoulders
         elbow = np.array(arms[2:]) + upright * idle.elbows
-        upper, fore = arms_down(body, hip, tilted, (shoulder, elbow), share, far, beside)
+        upper, fore = arms_of_posture(body, hip, tilted, (shoulder, elbow), share, far, beside)
         return Pose(
             hip=hip,
             trunk=tilted,
@@ -129,7 +142,15 @@ class Planted:
 def legs(
     person: Physique, shank: Float, thigh: Float, lean: Float, roll: Float
 ) -> tuple[Float, Float]:
-    """Knee and hip [3, M] above the ankle, m, of legs leaned ahead and rolled to the left, rad."""
+    """Knee and hip [3, M] above the ankle, m.
+
+    Args:
+        person: Whose legs, both alike.
+        shank: Angle from the vertical, positive ahead [M], rad.
+        thigh: Angle from the vertical [M], rad.
+        lean: Lean of both ahead [M], rad.
+        roll: Lean of both to the left [M], rad.
+    """
     s, h = shank + lean, thigh + lean
     up, left = np.cos(roll), np.sin(roll)
     x, z = person.leg * np.sin(s), person.leg * np.cos(s)
@@ -138,7 +159,7 @@ def legs(
     return knee, np.array([x, z * left, z * up])
 
 
-def arms_down(
+def arms_of_posture(
     person: Physique,
     hip: Float,
     trunk: Axes,
@@ -147,11 +168,20 @@ def arms_down(
     far: Float,
     beside: Float,
 ) -> tuple[Float, Float]:
-    """Unit vectors of upper arms and forearms [3, 2, M], hands on the floor by `share` [M].
+    """Unit vectors of upper arms and forearms [3, 2, M] of which the hands may be on the floor.
 
-    `far` ahead and `beside` the middle, m [M]; flexion of shoulders and elbows [2, M], rad.
+    Args:
+        person: Whose arms.
+        hip: Hip point [3, M], m.
+        trunk: Axes of the trunk.
+        flexion: Flexion of shoulders and of elbows, each [2, M], rad.
+        share: How far the hands are on the floor [M].
+        far: Distance of the hands ahead on the floor [M], m.
+        beside: Distance of each hand beside the middle [M], m.
     """
     if not share.any():
-        return swung(trunk, *flexion)
+        return arm_directions(trunk, *flexion)
     floor = np.array([far + 0 * SIDES, beside * SIDES, HAND + 0 * flexion[0]])
-    return supported(person, trunk, shoulder_points(person, hip, trunk), flexion, floor, share)
+    return arm_directions_near_floor(
+        person, trunk, shoulder_points(person, hip, trunk), flexion, floor, share
+    )

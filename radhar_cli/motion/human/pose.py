@@ -37,10 +37,10 @@ def axes(pitch: Float, yaw: Float, roll: Float) -> Axes:
 
 @dataclass
 class Pose:
-    """A body at M instants, in m and rad, x ahead, y left, z up."""
+    """Positions and directions of a body at M instants, in m and rad, x ahead, y left, z up."""
 
     hip: Float  # [3, M]
-    trunk: Axes  # its axes
+    trunk: Axes
     # hip_joints, knees, ankles: right, left [3, 2, M]
     hip_joints: Float
     knees: Float
@@ -48,10 +48,10 @@ class Pose:
     # upper_arms, forearms: unit vectors, right, left [3, 2, M]
     upper_arms: Float
     forearms: Float
-    breath: Float | float = 0.0  # how far the torso is ahead of its place [M] or a number
+    breath: Float | float = 0.0  # distance of the torso ahead of its place, [M] or a number
 
     def at(self, x: Float, y: Float, heading: Float | None) -> "Pose":
-        """The pose turned to a heading [M] (rad), if there is one, and moved by x, y [M] (m)."""
+        """Turn the pose to a heading [M] (rad), if there is one, and move it by x and y [M] (m)."""
         vectors = vars(self) | vars(self.trunk)
         if heading is not None:
             vectors = {
@@ -65,13 +65,13 @@ class Pose:
         return Pose(**(vectors | {"trunk": trunk}))
 
     def torso(self, person: Physique, p: Float) -> None:
-        """Fill in the position p [3, M] of the torso."""
+        """Fill in positions p [3, M] (m) of the torso."""
         np.multiply(self.trunk.up, person.trunk, out=p)
         p += self.hip
         p += self.breath * self.trunk.ahead
 
     def joints(self, person: Physique, p: Float) -> None:
-        """Fill in positions p [3, 13, M], in the order of `radhar_cli.motion.skeleton`."""
+        """Fill in positions p [3, 13, M] (m), in the order of `radhar_cli.motion.skeleton`."""
         up = self.trunk.up
         self.torso(person, p[:, 0])
         p[:, 1] = self.hip + (person.trunk + person.neck) * up
@@ -84,7 +84,7 @@ class Pose:
 
 
 def shoulder_points(person: Physique, hip: Float, trunk: Axes) -> Float:
-    """Right and left shoulder [3, 2, M] above a hip [3, M], m."""
+    """Right and left shoulder [3, 2, M] (m) of a trunk above a hip [3, M]."""
     neck = hip + (person.trunk + person.shoulder) * trunk.up
     points: Float = neck[:, None] + person.shoulder * (SIDES * trunk.left[:, None])
     return points

@@ -11,10 +11,10 @@ from math import inf, radians
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.arms import OUTWARDS, directed, hanging
+from radhar_cli.motion.human.arms import OUTWARDS, arm_directions_to_hands, hanging_hands
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
+from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Striking, repetitions
@@ -26,7 +26,9 @@ ENTRY = {"right_foot": (0.0, 0.6), "left_foot": (0.4, 0.6), "guard": (0.0, 1.0)}
 
 @dataclass(frozen=True)
 class Punch:
-    """Punches for `duration` s; lengths in m at a stature of 1.75 m, angles in rad."""
+    """Punches in turn, right and left, for `duration` s; lengths in m at a stature of 1.75 m,
+    angles in rad.
+    """
 
     duration: float = inf
     frequency: float = 0.7  # of a right and a left punch together, Hz
@@ -36,21 +38,21 @@ class Punch:
     out: float = 0.28
     hold: float = 0.31
     back: float = 0.40
-    reach: float = 0.96  # of a punch, over the arm's length
-    # of a hand ahead of the shoulder, inwards and up
+    reach: float = 0.96  # reach of a punch, over the arm's length
+    # place of a hand in guard: ahead of the shoulder, inwards and up
     guard: tuple[float, float, float] = (0.24, 0.04, 0.05)
     # how far the left foot is ahead and the right one behind, and both beside
     stance: tuple[float, float] = (0.18, 0.11)
-    turn: float = radians(28)  # of the trunk into a punch
-    pelvis: float = 0.35  # what the pelvis does of it
-    thrust: float = 0.05  # of the hip ahead
-    # pitch, bow: of the trunk in guard, and further in a punch
+    turn: float = radians(28)  # turn of the trunk into a punch
+    pelvis: float = 0.35  # turn of the pelvis over that of the trunk
+    thrust: float = 0.05  # displacement of the hip ahead in a punch
+    # pitch, bow: lean of the trunk ahead in guard, and further in a punch
     pitch: float = radians(6)
     bow: float = radians(4)
     entry: float = 0.9  # time to take the guard, and to leave it, s
-    lift: float = 0.03  # of the feet as they do so
+    lift: float = 0.03  # height of the feet as they step into the stance
     from_rest: bool = False  # whether the guard is taken at first
-    # paces, sizes: of each punch, over the usual ones
+    # paces, sizes: time and size of each punch, over the usual ones
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
@@ -59,60 +61,68 @@ class Punch:
 
 
 class Punching(Striking[Punch]):
-    """Punches of a person; see `part.Part`."""
+    """The `part.Part` of a person who punches."""
 
     stance = "in guard"
     name = "punching"
 
     @cached_property
-    def _blows(self) -> list[Step]:
-        punch, steps = self.strikes, []
-        each = repetitions(
+    def _strike_steps(self) -> list[Step]:
+        punch = self.strikes
+        steps = []
+        punches = repetitions(
             self._first, 0.5 / punch.frequency, self._until, punch.paces, punch.sizes
         )
-        for n, (start, pace, size) in enumerate(each):
-            hand = ("right", "left")[n % 2]
+        for number, (start, pace, size) in enumerate(punches):
+            hand = ("right", "left")[number % 2]
             steps.append(Step(hand, size, start, pace * punch.out))
             steps.append(Step(hand, -size, start + pace * punch.hold, pace * punch.back))
         return steps
 
     @cached_property
     def course(self) -> Course:
-        """How far the hands are out, the feet in their stance, and the guard taken."""
-        steps, taken = list(self._blows), 0.0 if self.strikes.from_rest else 1.0
+        """Course of how far the hands are out, the feet in their stance, and the guard taken."""
+        steps = list(self._strike_steps)
+        initial = 0.0 if self.strikes.from_rest else 1.0
         for channel, (start, length) in ENTRY.items():
-            steps += self._taken(channel, 1.0, start, length)
-        return Course.of({"right": 0.0, "left": 0.0, **dict.fromkeys(ENTRY, taken)}, steps)
+            steps += self._stance_steps(channel, 1.0, start, length)
+        return Course.of({"right": 0.0, "left": 0.0, **dict.fromkeys(ENTRY, initial)}, steps)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         body, punch = self.person, self.strikes
         scale = body.stature / REFERENCE_STATURE
         right, left, *feet, guard = self.course(t)
         ankles = self._ankles(np.array(feet))
-        still, into = 1 - guard, punch.turn * (right - left)
-        aside = hip_joints(body, punch.pelvis * into, np.zeros(t.size))
+        out_of_guard, yaw = 1 - guard, punch.turn * (right - left)
+        joint_offsets = hip_joints(body, punch.pelvis * yaw, np.zeros(t.size))
         hip = ankles.mean(axis=1)
         hip[0] += scale * punch.thrust * (right + left)
-        legs_roll = idle.roll + still * (idle.legs_roll - idle.roll)
-        sway = swayed(body.rest_height - body.ankle, idle.lean, legs_roll)
-        hip = swayed_hip(body, body.tallest, hip, aside, ankles, body.softness, sway)
+        legs_roll = idle.roll + out_of_guard * (idle.legs_roll - idle.roll)
+        sway = sway_displacement(body.rest_height - body.ankle, idle.lean, legs_roll)
+        hip = hip_point_with_sway(
+            body, body.tallest, hip, joint_offsets, ankles, body.softness, sway
+        )
         pitch = punch.pitch * guard + punch.bow * (right + left)
-        pitch += idle.lean + still * (idle.pitch - idle.lean)
-        trunk = axes(pitch, into + still * idle.yaw, idle.roll)
-        hands, poles = hanging(body, still * idle.shoulders, body.elbow + still * idle.elbows)
+        pitch += idle.lean + out_of_guard * (idle.pitch - idle.lean)
+        trunk = axes(pitch, yaw + out_of_guard * idle.yaw, idle.roll)
+        hands, poles = hanging_hands(
+            body, out_of_guard * idle.shoulders, body.elbow + out_of_guard * idle.elbows
+        )
         x, y, z = punch.guard
-        guarding = scale * np.array([np.full((2, 1), x), -y * SIDES, np.full((2, 1), z)])
+        guard_hands = scale * np.array([np.full((2, 1), x), -y * SIDES, np.full((2, 1), z)])
         ahead = np.array([trunk.ahead[0], trunk.left[0], trunk.up[0]])[:, None]  # the room's x axis
         target = punch.reach * 2 * body.arm * ahead
-        hands += guard * (guarding - hands) + np.array([right, left]) * (target - guarding)
+        hands += guard * (guard_hands - hands) + np.array([right, left]) * (target - guard_hands)
         poles += guard * (OUTWARDS[:, :, None] - poles)
-        joints = hip[:, None] + aside
+        joints = hip[:, None] + joint_offsets
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
-        arms = directed(trunk, hands, poles, body.arm)
+        arms = arm_directions_to_hands(trunk, hands, poles, body.arm)
         return Pose(hip, trunk, joints, knees, ankles, *arms, idle.breath)
 
     def _ankles(self, feet: Float) -> Float:
-        """Ankles [3, 2, M], each foot's share [2, M] of the way from rest to its stance."""
+        """Ankles [3, 2, M] (m) of feet that are shares [2, M] of the way from rest to their
+        stance.
+        """
         scale = self.person.stature / REFERENCE_STATURE
         ahead, beside = scale * self.strikes.stance[0], scale * self.strikes.stance[1]
         y = SIDES * (self.person.hip + (beside - self.person.hip) * feet)

@@ -20,15 +20,16 @@ from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 
-ON_HANDS, ON_RISING = FallForward(prone=OnFours()), FallFromSeat(rising=0.9)
+ON_HANDS = FallForward(prone=OnFours())
+ON_RISING = FallFromSeat(rising=0.9)
 AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
 
 
 @dataclass(frozen=True)
 class Repertoire:
-    """How somebody does what they do."""
+    """How a person makes each movement."""
 
-    gait: Gait  # of every walk
+    gait: Gait  # gait of every walk
     walk: float = 2.0  # how long the walk of S10 and S12 lasts before its last steps, s
     standing_first: bool = False  # whether who walks (S8) has stood before
     punch: Punch = field(default_factory=Punch)
@@ -47,13 +48,13 @@ class Repertoire:
     get_up: GetUp = field(default_factory=GetUp)
     try_to_get_up: TryToGetUp = field(default_factory=TryToGetUp)
     turn_around: StepTo = AROUND
-    # of every exercise: its period over the usual one; of each repetition, over the usual ones
+    # period of every exercise over the usual one; time and size of each repetition over the usual
     exercise_period: float = 1.0
     exercise_paces: tuple[float, ...] = ()
     exercise_sizes: tuple[float, ...] = ()
 
     def activity(self, number: int) -> tuple[Movement, ...]:
-        """The movements of S`number`: what repeats does so from the first instant on."""
+        """Movements of the activity S`number`; what repeats does so from the first instant on."""
         stopping = Walk(self.gait, self.walk, from_rest=False)
         movements: dict[int, tuple[Movement, ...]] = {
             1: (Stand(),),
@@ -74,10 +75,17 @@ class Repertoire:
     def sequence(self, names: Sequence[str], durations: Sequence[float]) -> tuple[Movement, ...]:
         """Movements of `activity.MOVEMENTS` by name, one after the other, each from rest.
 
-        Durations (s) are of walking, tripping, punching, kicking, rotating, standing and exercises;
-        of the others unused. Infinity for the last of them goes on.
+        Args:
+            names: Movements.
+            durations: Duration of each, s, used by walking, tripping, punching, kicking, rotating,
+                standing and exercises; infinity goes on.
+
+        Raises:
+            ValueError: A name is not a movement of a sequence.
         """
-        return tuple(self._movement(*act) for act in zip(names, durations, strict=True))
+        return tuple(
+            self._movement(name, duration) for name, duration in zip(names, durations, strict=True)
+        )
 
     def _movement(self, name: str, duration: float) -> Movement:
         movements: dict[str, Movement] = {
@@ -100,11 +108,11 @@ class Repertoire:
             "turning_around": self.turn_around,
         }
         if name in EXERCISES:
-            one = EXERCISES[name]
+            exercise = EXERCISES[name]
             return replace(
-                one,
+                exercise,
                 duration=duration,
-                period=self.exercise_period * one.period,
+                period=self.exercise_period * exercise.period,
                 paces=self.exercise_paces,
                 sizes=self.exercise_sizes,
             )

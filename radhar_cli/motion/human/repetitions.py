@@ -12,7 +12,7 @@ from radhar_cli.motion.human.physique import Physique
 
 
 class Repetition(NamedTuple):
-    """One of them: its beginning (s), the time it takes and its size over the usual ones."""
+    """One repetition: its beginning (s), and the time it takes and its size over the usual ones."""
 
     start: float
     pace: float = 1.0
@@ -28,25 +28,36 @@ def repetitions(
 ) -> list[Repetition]:
     """Repetitions from `first` (s) on that begin before `until` (s).
 
-    Each takes `period` (s) times its pace until the next one begins; where the paces or the sizes
-    are used up, they are 1.
+    Args:
+        first: When the first repetition begins, s.
+        period: Time that a usual one takes until the next begins, s.
+        until: When the last has begun at the latest, s.
+        paces: Time of each repetition over the period; 1 where they are used up.
+        sizes: Size of each repetition over the usual one; 1 where they are used up.
+
+    Raises:
+        ValueError: The period is not above 0.
     """
     if not period > 0:
         raise ValueError(f"movements repeat after more than 0 s, not {period:g} s")
-    found: list[Repetition] = []
+    listed: list[Repetition] = []
     start = first
     while start < until:
-        n = len(found)
+        n = len(listed)
         pace = paces[n] if n < len(paces) else 1.0
-        found.append(Repetition(start, pace, sizes[n] if n < len(sizes) else 1.0))
+        listed.append(Repetition(start, pace, sizes[n] if n < len(sizes) else 1.0))
         start += period * pace
-    return found
+    return listed
 
 
 class Strikes(Protocol):
-    """Blows one after the other for `duration` s, from a stance that takes `entry` s to take.
+    """How a person strikes blow after blow, from a stance that is taken first.
 
-    The first comes `first` s after the stance is taken.
+    Attributes:
+        duration: How long there are blows, s; infinity for what goes on.
+        first: When the first blow comes after the stance is taken, s.
+        entry: Time that it takes to take the stance, and to leave it, s.
+        from_rest: Whether the person takes the stance at first; else they stand in it already.
     """
 
     @property
@@ -64,12 +75,14 @@ S = TypeVar("S", bound=Strikes)
 
 @dataclass(frozen=True)
 class Striking(Generic[S]):
-    """Blows of a person; see `part.Part`. Subclasses have the steps of the blows and the pose."""
+    """The `part.Part` of a person who strikes; subclasses have the steps of the blows and the
+    pose.
+    """
 
-    person: Physique  # whose blows
-    strikes: S  # how
-    begin: float  # from when on, s
-    horizon: float  # until when there are blows, s
+    person: Physique
+    strikes: S
+    begin: float  # when the stance begins to be taken, s
+    horizon: float  # end of the recording, s; blows that go on are worked out until 1 s after it
 
     after = STANDING
     place = Place()
@@ -82,37 +95,44 @@ class Striking(Generic[S]):
 
     @property
     def _first(self) -> float:
+        """When the first blow begins, s."""
         entry = self.strikes.entry if self.strikes.from_rest else 0.0
         return self.begin + self.strikes.first + entry
 
     @property
     def _until(self) -> float:
+        """When the last blow has begun at the latest, s."""
         return min(self.horizon + 1.0, self._first + self.strikes.duration)
 
     @cached_property
-    def _blows(self) -> list[Step]:
+    def _strike_steps(self) -> list[Step]:
+        """Steps of all blows."""
         raise NotImplementedError
 
     @cached_property
-    def _leaves(self) -> float:
+    def _stance_end_s(self) -> float:
+        """When the last blow has ended and the stance begins to be left, s."""
         if isinf(self.strikes.duration):
             return inf
-        return max((step.start + step.length for step in self._blows), default=self.begin)
+        return max((step.start + step.length for step in self._strike_steps), default=self.begin)
 
-    def _taken(
-        self, channel: str, change: float, at: float = 0.0, share: float = 1.0
+    def _stance_steps(
+        self, channel: str, change: float, delay: float = 0.0, share: float = 1.0
     ) -> list[Step]:
-        """Steps by which the stance is taken and left, `at` and for a `share` of the entry."""
-        entry, steps = self.strikes.entry, []
+        """Steps by which the stance is taken and left, each `delay` late and for a `share` of the
+        entry.
+        """
+        entry = self.strikes.entry
+        steps = []
         if self.strikes.from_rest:
-            steps.append(Step(channel, change, self.begin + at * entry, share * entry))
-        if not isinf(self._leaves):
-            steps.append(Step(channel, -change, self._leaves + at * entry, share * entry))
+            steps.append(Step(channel, change, self.begin + delay * entry, share * entry))
+        if not isinf(self._stance_end_s):
+            steps.append(Step(channel, -change, self._stance_end_s + delay * entry, share * entry))
         return steps
 
     @property
     def end(self) -> float:
-        return self._leaves + self.strikes.entry
+        return self._stance_end_s + self.strikes.entry
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -121,7 +141,7 @@ class Striking(Generic[S]):
 
     @cached_property
     def course(self) -> Course:
-        """The channels that `pose` needs."""
+        """Course of the channels that `pose` needs."""
         raise NotImplementedError
 
     @property

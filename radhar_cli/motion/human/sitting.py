@@ -14,27 +14,27 @@ from radhar_cli.motion.human.planted import (
     ELBOWS,
     SHOULDERS,
     Planted,
-    at_rest,
-    both,
     posture,
-    timed,
+    resting_channels,
+    scale_steps,
+    steps_of_both_sides,
 )
 
 
 @dataclass(frozen=True)
 class Seat:
-    """How people sit: height of the hip over stature, angles in rad, `recline` backwards."""
+    """How people sit: height of the hip over the stature, angles in rad, `recline` backwards."""
 
     height: float = 0.285
     shank: float = radians(8)
     shoulder: float = radians(35)
     elbow: float = radians(53)
     recline: float = 0.0
-    # how far the hands are on the lap, where shoulders and elbows are flexed as given; 0 is hanging
-    # beside the seat
+    # how far the hands are on the lap, with the flexion above; 0 hangs them beside the seat
     lap: float = 1.0
 
     def posture(self, person: Physique) -> dict[str, float]:
+        """Channels of `planted.posture` on the seat."""
         rise = self.height * person.stature - person.ankle - person.leg * cos(self.shank)
         thigh = -acos(rise / person.leg)
         shoulder, hanging = self.lap * self.shoulder, (1 - self.lap) * person.elbow
@@ -43,15 +43,15 @@ class Seat:
 
 @dataclass(frozen=True)
 class Rise:
-    """How people stand up: angles in rad, seat to standing in 1 unit of time."""
+    """How people stand up; angles in rad."""
 
-    lean: float = radians(42)  # of the trunk ahead while the body leaves the seat
-    swing: float = radians(20)  # of the arms ahead
-    shin: float = radians(14)  # of the shanks ahead, beyond the seated angle
+    lean: float = radians(42)  # lean of the trunk ahead while the body leaves the seat
+    swing: float = radians(20)  # swing of the arms ahead
+    shin: float = radians(14)  # lean of the shanks ahead, beyond the seated angle
 
     def steps(self, person: Physique, seat: Seat) -> list[Step]:
-        """From seat to standing, in units of the duration."""
-        seated, rest = seat.posture(person), at_rest(person)
+        """Steps from the seat to standing, in units of the duration."""
+        seated, rest = seat.posture(person), resting_channels(person)
 
         def to_rest(channel: str, start: float, length: float) -> Step:
             return Step(channel, rest[channel] - seated[channel], start, length)
@@ -64,8 +64,8 @@ class Rise:
             to_rest("trunk", 0.0, 0.45),
             Step("trunk", self.lean, 0.0, 0.50),
             Step("trunk", -self.lean, 0.38, 0.62),
-            *both(SHOULDERS, self.swing, 0.05, 0.45),
-            *both(SHOULDERS, -self.swing, 0.45, 0.50),
+            *steps_of_both_sides(SHOULDERS, self.swing, 0.05, 0.45),
+            *steps_of_both_sides(SHOULDERS, -self.swing, 0.45, 0.50),
             *(to_rest(channel, 0.4, 0.5) for channel in (*SHOULDERS, *ELBOWS)),
             to_rest("standing", 0.3, 0.7),
         ]
@@ -73,7 +73,7 @@ class Rise:
 
 @dataclass(frozen=True)
 class StandUp:
-    """From a seat to standing within `duration` s; `lags` has which joints lead."""
+    """Stands up from a seat within `duration` s; `lags` has which joints lead."""
 
     duration: float = 1.8
     seat: Seat = field(default_factory=Seat)
@@ -81,7 +81,7 @@ class StandUp:
     lags: Lags = field(default_factory=Lags)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        steps = timed(self.lags(self.rise.steps(person, self.seat)), begin, self.duration)
+        steps = scale_steps(self.lags(self.rise.steps(person, self.seat)), begin, self.duration)
         course = Course.of(self.seat.posture(person), steps)
         end = begin + self.duration
         phases = (Phase(begin, "standing up"), Phase(end, "standing"))
@@ -90,25 +90,27 @@ class StandUp:
 
 @dataclass(frozen=True)
 class SitDown:
-    """From standing to a seat within `duration` s, then back against the chair if it reclines."""
+    """Sits down from standing within `duration` s, then leans back against the chair if it
+    reclines.
+    """
 
     duration: float = 2.0
     seat: Seat = field(default_factory=Seat)
     rise: Rise = field(default_factory=Rise)
-    # the trunk leans back from that share of the duration on, for so long in s
+    # share of the duration after which the trunk leans back, and how long it takes, s
     recline: tuple[float, float] = (0.45, 1.0)
     lags: Lags = field(default_factory=Lags)  # which joints lead and which lag
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         upright = replace(self.seat, recline=0.0)
         steps = self.lags(mirrored(self.rise.steps(person, upright), 1.0))
-        backwards = timed(steps, begin, self.duration)
+        steps = scale_steps(steps, begin, self.duration)
         end = begin + self.duration
         if self.seat.recline:
             share, length = self.recline
             leans = begin + share * self.duration
-            backwards.append(Step("trunk", -self.seat.recline, leans, length))
+            steps.append(Step("trunk", -self.seat.recline, leans, length))
             end = max(end, leans + length)
-        course = Course.of(at_rest(person), backwards)
+        course = Course.of(resting_channels(person), steps)
         phases = (Phase(begin, "sitting down"), Phase(end, "seated"))
         return Planted(person, course, begin, end, phases, STANDING, SEATED)

@@ -11,30 +11,31 @@ from math import radians
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.arms import swung
+from radhar_cli.motion.human.arms import arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
+from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.planted import timed
+from radhar_cli.motion.human.planted import scale_steps
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, turned
 from radhar_cli.motion.human.two_link import two_link
 
 RIGHT, LEFT = 0, 1
 HERE = Place()
-UPSET = (0.05, 0.35), (0.45, 0.55)  # when the trunk goes ahead and comes back, shares of the whole
+# Start and length, in shares of the duration, of the trunk's going ahead and coming back.
+UPSET = (0.05, 0.35), (0.45, 0.55)
 
 
 @dataclass(frozen=True)
 class StepTo:
-    """To another stance within `duration` s."""
+    """Steps to another stance within `duration` s."""
 
     duration: float = 0.9
-    place: Place = HERE  # of the new stance, seen from the old one
-    steps: int = 2  # how many, at least 2
-    lift: float = 0.03  # of a stepping foot, m
-    name: str = "stepping"  # what this is called among the phases
+    place: Place = HERE  # place of the new stance, seen from the old one
+    steps: int = 2  # number of steps, at least 2
+    lift: float = 0.03  # height of a stepping foot, m
+    name: str = "stepping"  # name of its phase
     # how far trunk and arms go ahead and the trunk to the left on the way, rad; the hip down, m
     pitch: float = 0.0
     arms: float = 0.0
@@ -52,7 +53,7 @@ class StepTo:
 
 @dataclass(frozen=True)
 class Stepping:
-    """Steps of a person; see `part.Part`."""
+    """The `part.Part` of a person who steps to another stance."""
 
     person: Physique
     step: StepTo
@@ -75,7 +76,9 @@ class Stepping:
 
     @cached_property
     def course(self) -> Course:
-        """Share of the way that the body has gone, how far it is upset, and share of each step."""
+        """Course of the body's share of the way, of how far it is upset, and of each step's
+        share.
+        """
         slot = self.step.duration / self.step.steps
         channels = [f"step {n}" for n in range(self.step.steps)]
         steps = [
@@ -83,7 +86,7 @@ class Stepping:
             Step("upset", 1.0, *UPSET[0]),
             Step("upset", -1.0, *UPSET[1]),
         ]
-        steps = timed(steps, self.begin, self.step.duration)
+        steps = scale_steps(steps, self.begin, self.step.duration)
         steps += [
             Step(channel, 1.0, self.begin + n * slot, slot) for n, channel in enumerate(channels)
         ]
@@ -94,22 +97,22 @@ class Stepping:
         return self.course.breakpoints
 
     def _ankles(self, shares: Float) -> Float:
-        """Ankles [3, 2, M], each step's share of its way [N, M]."""
+        """Ankles [3, 2, M] (m) where each step has gone a share of its way [N, M]."""
         place, count = self.step.place, self.step.steps
         first = LEFT if place.turn > 0 or (place.turn == 0 and place.left > 0) else RIGHT
         ankles = np.zeros((3, 2, shares.shape[1]))
         ankles[1], ankles[2] = self.person.hip * SIDES, self.person.ankle
-        at = [self._stance(foot, 0.0) for foot in (RIGHT, LEFT)]
+        stances = [self._stance(foot, 0.0) for foot in (RIGHT, LEFT)]
         for n, share in enumerate(shares):
             foot = (first + n) % 2
-            to = self._stance(foot, min(1.0, (n + 1) / (count - 1)))
-            ankles[:2, foot] += (to - at[foot])[:, None] * share
+            target = self._stance(foot, min(1.0, (n + 1) / (count - 1)))
+            ankles[:2, foot] += (target - stances[foot])[:, None] * share
             ankles[2, foot] += 4 * self.step.lift * share * (1 - share)
-            at[foot] = to
+            stances[foot] = target
         return ankles
 
     def _stance(self, foot: int, share: float) -> Float:
-        """x and y of a foot in the stance at a share of the way."""
+        """Position x, y (m) of a foot in the stance at a share of the way."""
         place, beside = self.step.place, self.person.hip * SIDES[foot, 0]
         turn = share * place.turn
         return np.array(
@@ -124,18 +127,20 @@ class Stepping:
         share, upset, *steps = self.course(t)
         turn = share * place.turn
         ankles = self._ankles(np.array(steps))
-        aside = hip_joints(body, turn, np.zeros(t.size))
-        sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
-        way = share * np.array([[place.ahead], [place.left]])
+        joint_offsets = hip_joints(body, turn, np.zeros(t.size))
+        sway = sway_displacement(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
+        hip_xy = share * np.array([[place.ahead], [place.left]])
         standing = body.tallest - self.step.drop * upset
-        hip = swayed_hip(body, standing, way, aside, ankles, body.softness, turned(sway, turn))
-        joints = hip[:, None] + aside
+        hip = hip_point_with_sway(
+            body, standing, hip_xy, joint_offsets, ankles, body.softness, turned(sway, turn)
+        )
+        joints = hip[:, None] + joint_offsets
         ahead = np.array([np.cos(turn), np.sin(turn), np.zeros(t.size)])
         knees = two_link(joints, ankles, body.leg, body.leg, ahead[:, None])
         pitch, lean = self.step.pitch * upset, self.step.lean * upset
         upright = axes(idle.pitch + pitch, idle.yaw, idle.roll + lean)
         trunk = Axes(*(turned(axis, turn) for axis in vars(upright).values()))
-        upper, fore = swung(
+        upper, fore = arm_directions(
             trunk,
             idle.shoulders + self.step.arms * upset,
             body.elbow + idle.elbows + 0.5 * self.step.arms * upset,

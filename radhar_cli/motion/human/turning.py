@@ -7,11 +7,11 @@ from math import ceil, inf, isinf, pi, radians
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.arms import swung
+from radhar_cli.motion.human.arms import arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk_integral
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
+from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.two_link import AHEAD, two_link
@@ -19,14 +19,14 @@ from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 @dataclass(frozen=True)
 class Turn:
-    """Turns for `duration` s; angles in rad."""
+    """Turns the upper body from side to side for `duration` s; angles in rad."""
 
     duration: float = inf
     frequency: float = 0.45  # Hz
-    angle: float = radians(45)  # of the trunk to each side
-    pelvis: float = 0.45  # what the pelvis does of it
-    arms: float = radians(14)  # how far the arms swing
-    lag: float = radians(20)  # phase by which they follow the shoulders
+    angle: float = radians(45)  # turn of the trunk to each side
+    pelvis: float = 0.45  # turn of the pelvis over that of the trunk
+    arms: float = radians(14)  # swing of the arms
+    lag: float = radians(20)  # phase by which the arms follow the shoulders
     entry: float = 0.8  # time in which the turning begins, and ends, s
     from_rest: bool = False  # whether it begins from rest
     # paces, sizes: time and angle of each turn to both sides, over the usual ones
@@ -39,7 +39,7 @@ class Turn:
 
 @dataclass(frozen=True)
 class Turning:
-    """A person who turns; see `part.Part`."""
+    """The `part.Part` of a person who turns from side to side."""
 
     person: Physique
     turn: Turn
@@ -64,20 +64,23 @@ class Turning:
 
     @cached_property
     def course(self) -> Course:
-        """How much of its amplitude the turning has, and each turn over the usual one."""
-        entry, sizes, steps = self.turn.entry, self.turn.sizes, []
+        """Course of the turning's share of its amplitude, and of each turn's size over the usual
+        one.
+        """
+        entry, sizes = self.turn.entry, self.turn.sizes
+        steps = []
         if self.turn.from_rest:
             steps.append(Step("drive", 1.0, self.begin, entry))
         if not isinf(self.end):
             steps.append(Step("drive", -1.0, self.end - entry, entry))
-        for start, one, after in zip(self._starts, sizes, sizes[1:], strict=False):
-            steps.append(Step("size", after - one, start, 1 / self.turn.frequency))
+        for start, size, next_size in zip(self._starts, sizes, sizes[1:], strict=False):
+            steps.append(Step("size", next_size - size, start, 1 / self.turn.frequency))
         drive = 0.0 if self.turn.from_rest else 1.0
         return Course.of({"drive": drive, "size": sizes[0] if sizes else 1.0}, steps)
 
     @cached_property
     def _starts(self) -> Float:
-        """When turns to both sides begin, as long as one differs from the next, s."""
+        """When turns to both sides begin [K] (s), as long as one differs from the next."""
         f = self.turn.frequency
         count = max(len(self.turn.paces), len(self.turn.sizes)) - 1
         within = ceil(f * (min(self.horizon, self.end) - self.begin))
@@ -85,17 +88,22 @@ class Turning:
         return starts
 
     def _cycles(self, t: Float) -> Float:
-        """Turns since the beginning [M]: from each to the next the frequency changes smoothly."""
+        """Turns since the beginning at times t [M]; the frequency changes smoothly from each to the
+        next.
+        """
         f, paces, starts = self.turn.frequency, self.turn.paces, self._starts
         rates = f / np.array((*paces[: starts.size + 1],) or (1.0,))
         if not f or rates.size == 1:
             return np.asarray(rates[0] * (t - self.begin))
         # Within each 1/f from `starts` on the frequency goes from one rate to the next.
-        starts, turned = starts[: rates.size - 1], np.cumsum((rates[:-1] + rates[1:]) / (2 * f))
+        starts, cycles_before = (
+            starts[: rates.size - 1],
+            np.cumsum((rates[:-1] + rates[1:]) / (2 * f)),
+        )
         k = np.maximum(np.searchsorted(starts, t, side="right") - 1, 0)
         since, gain = t - starts[k], (rates[k + 1] - rates[k]) / f
-        turned = np.concatenate([[0.0], turned])[k]
-        cycles: Float = turned + rates[k] * since + gain * minimum_jerk_integral(f * since)
+        cycles_before = np.concatenate([[0.0], cycles_before])[k]
+        cycles: Float = cycles_before + rates[k] * since + gain * minimum_jerk_integral(f * since)
         return cycles
 
     @property
@@ -111,13 +119,13 @@ class Turning:
         aside = hip_joints(body, turn.pelvis * yaw, np.zeros(t.size))
         ankles = np.array([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankles, (3, 2, t.size))
-        sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
-        hip = swayed_hip(
+        sway = sway_displacement(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
+        hip = hip_point_with_sway(
             body, body.tallest, np.zeros((2, t.size)), aside, ankles, body.softness, sway
         )
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         trunk = axes(idle.pitch, yaw + idle.yaw, idle.roll)
         swing = -SIDES * drive * turn.arms * np.sin(phase - turn.lag)
-        upper, fore = swung(trunk, swing + idle.shoulders, body.elbow + idle.elbows)
+        upper, fore = arm_directions(trunk, swing + idle.shoulders, body.elbow + idle.elbows)
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)

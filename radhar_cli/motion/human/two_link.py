@@ -4,26 +4,28 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 
-AHEAD = np.array([1.0, 0.0, 0.0])[:, None, None]  # to where knees bend
+AHEAD = np.array([1.0, 0.0, 0.0])[:, None, None]  # direction in which knees bend
 
 
 class OutOfReachError(ValueError):
-    """A movement that no such body can make."""
+    """A movement asks a limb to reach farther than it is long."""
 
 
 def two_link(start: Float, end: Float, first: float, second: float, pole: Float) -> Float:
-    """Joint [3, ...] between links of lengths `first` and `second` (m), from `start` to `end`.
+    """Joint [3, ...] (m) between two links whose ends are known.
 
     With d = |end - start|, e = (end - start)/d and a = (d^2 + first^2 - second^2)/(2 d) the joint
     is start + a e + sqrt(first^2 - a^2) n, n the unit vector along pole - (pole . e) e.
 
     Args:
-        start, end: [3, ...], m.
-        first, second: m.
-        pole: direction to which the joint bends [3, ...]; never along e.
+        start: Beginning of the first link [3, ...], m.
+        end: End of the second link [3, ...], m.
+        first: Length of the first link, m.
+        second: Length of the second link, m.
+        pole: Direction to which the joint bends [3, ...]; never along e.
 
     Raises:
-        OutOfReachError: the ends are farther apart than both links.
+        OutOfReachError: The ends are farther apart than both links are long.
     """
     apart = end - start
     square = np.einsum("i...,i...->...", apart, apart)

@@ -98,7 +98,7 @@ def test_steps_a_minute() -> None:
 
 def test_starting_takes_two_steps() -> None:
     walking = Walk(Gait(1.2)).part(Physique(1.75), 0.0, 5.0)
-    first = [track.falls.after[0, 0] - track.falls.before[0, 0] for track in walking._feet]
+    first = [track.falls.after[0, 0] - track.falls.before[0, 0] for track in walking._foot_tracks]
     assert first[0] == pytest.approx(0.64, abs=0.02)
     assert first[1] == pytest.approx(0.64 + 0.72, abs=0.03)
 

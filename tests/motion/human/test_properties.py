@@ -25,7 +25,7 @@ from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
-from radhar_cli.motion.human.lane import Lane, along
+from radhar_cli.motion.human.lane import Lane, position_along_lane
 from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
@@ -306,7 +306,7 @@ def test_feet_of_walkers_stand_still_between_touch_down_and_heel_off(
     )
     walking = motion.parts[0][0]
     assert_sound(motion, np.linspace(0, 6, 400))
-    for ankle, track in zip(ANKLES, walking._feet, strict=True):
+    for ankle, track in zip(ANKLES, walking._foot_tracks, strict=True):
         falls = track.falls
         assert np.all(falls.off < falls.toe)
         assert np.all(falls.toe < falls.down)
@@ -324,7 +324,7 @@ def test_feet_of_walkers_stand_still_between_touch_down_and_heel_off(
 def test_a_lane_is_walked_at_its_own_pace(begins: np.ndarray, arc: float, side: float) -> None:
     """As far as the way says, in the direction of the heading; back where it began in 2 turns."""
     s = np.linspace(0, 25, 20001)
-    x, y, heading = along(s, begins, arc, side)
+    x, y, heading = position_along_lane(s, begins, arc, side)
     middle = 0.5 * (heading[1:] + heading[:-1])
     step = s[1]
     np.testing.assert_allclose(np.diff(x), step * np.cos(middle), atol=1e-7)

@@ -18,7 +18,7 @@ _LOADING = Lock()
 
 @cache
 def installed(library: str) -> str | None:
-    """The version of a library that is installed, if it is."""
+    """Version of a library, or None where it is not installed."""
     try:
         return version(library)
     except PackageNotFoundError:
@@ -26,7 +26,11 @@ def installed(library: str) -> str | None:
 
 
 def load(library: str) -> Any:
-    """Import one that is installed; a MachineError says that it does not work here."""
+    """Import a library that is installed.
+
+    Raises:
+        MachineError: it does not work here.
+    """
     with _LOADING:
         # pyfftw imports both where it finds them: 0.2 s for what is not used here. Meanwhile no
         # other thread can.
@@ -48,16 +52,19 @@ def load(library: str) -> Any:
 def machine_code(function: Routine, *called: tuple[Routine, Routine]) -> Routine:
     """Compile a function, or take it from the cache beside its file or in the user's folder.
 
-    Of pairs of functions that it calls, the first is compiled into it as the second is written.
-    All are in its file: the age of that tells whether the cache is up to date.
+    Args:
+        function: what numba compiles.
+        called: (function that it calls, function whose code is compiled in its place). All are
+            in one file, whose age tells whether the cache is up to date.
     """
     njit = load("numba").njit
     # Sums in any order, but not as if there were no NaN.
     options: dict[str, Any] = {"fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy"}
     inlined: Any = options | {"forceinline": True}  # else loops with calls are not vectorised
-    for one, instead in called:
-        within = load("numba.extending").overload(one, strict=False, jit_options=inlined)
-        within(lambda *_, instead=instead: instead)
+    for original, replacement in called:
+        overload = load("numba.extending").overload
+        register = overload(original, strict=False, jit_options=inlined)
+        register(lambda *_, replacement=replacement: replacement)
     try:
         compiled: Routine = njit(function, cache=True, **options)
     except RuntimeError:  # no folder for the cache can be written

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class MovementInfo(NamedTuple):
-    """A movement of people: states it begins and ends in, its usual duration (s).
+    """A movement of people: the states it begins and ends in, and its usual duration (s).
 
-    `like` names another, whose numbers of the config it depends on too.
+    `like` names another movement, whose numbers of the config it depends on, too.
     """
 
     before: str
@@ -79,12 +79,12 @@ class Activity:
 
     @property
     def label(self) -> str:
-        """The paper's name, ``S1`` to ``S12``, and so on."""
+        """Label of the activity: the paper's name, ``S1`` to ``S12``, and so on."""
         return f"S{self.number}"
 
     @property
     def index(self) -> int:
-        """Number that names its random streams: 0 to 11 for the twelve.
+        """Number that names the activity's random streams: 0 to 11 for the twelve.
 
         It is no label of a data set: that is a place in the config's `activities`.
         """
@@ -115,6 +115,7 @@ DEFAULT = "default"  # in `per_activity`: what holds for activities that it does
 
 
 def _by_name(activities: Iterable[Activity]) -> dict[str, Activity]:
+    """Activities by slug, and by label in lower case."""
     return {name: a for a in activities for name in (a.slug, a.label.lower())}
 
 
@@ -146,7 +147,7 @@ def add_activity(
 
 
 def own_activities() -> tuple[Activity, ...]:
-    """The classes that `add_activity` made known, here or in a module of RADHAR_EXTENSIONS."""
+    """Classes that `add_activity` made known, here or in a module of RADHAR_EXTENSIONS."""
     load_extensions()
     return tuple(_OWN.values())
 
@@ -165,7 +166,12 @@ def is_new_slug(slug: str) -> bool:
 
 
 def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> Activity:
-    """Find an activity by slug or label, whatever the case, among the known and {slug: activity}.
+    """Find an activity by slug or label, whatever the case.
+
+    Args:
+        name: as somebody wrote it.
+        classes: {slug: activity} of a config's own classes, known beside the twelve and those of
+            `add_activity`.
 
     Raises:
         ValueError: no such activity; the message suggests the nearest name, or lists them all.

@@ -7,7 +7,14 @@ INTERRUPTED, TERMINATED = 130, 143  # exit status after Ctrl-C and SIGTERM, as s
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str, similar: float = 0.6) -> str:
-    """Suggest the nearest known name, or say `otherwise` where none is so similar."""
+    """Suggest the nearest known name.
+
+    Args:
+        name: as somebody wrote it.
+        known: names that could be meant.
+        otherwise: what is returned where no name is similar.
+        similar: least ratio of `difflib` from which a name is suggested, 0 to 1.
+    """
     near = difflib.get_close_matches(name, list(known), n=1, cutoff=similar)
     return f"did you mean {near[0]!r}?" if near else otherwise
 

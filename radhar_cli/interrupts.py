@@ -20,7 +20,7 @@ _complete: list[str] = []
 
 @contextmanager
 def handled() -> Iterator[None]:
-    """Handle both signals meanwhile; afterwards they are ignored, as the work is done."""
+    """Handle Ctrl-C and SIGTERM within the block; afterwards they are ignored."""
     hook = sys.unraisablehook
     _received.clear()
     _told.clear()
@@ -40,7 +40,7 @@ def handled() -> Iterator[None]:
 
 
 def tell_once() -> bool:
-    """Whether what a signal left behind is still to be said; it is taken as said then."""
+    """Whether nobody has told the user yet what a signal left behind: true for the first call."""
     first = not _told
     _told.append(True)
     return first
@@ -56,7 +56,7 @@ def complete(result: str) -> None:
 
 
 def outlived() -> str | None:
-    """What was complete when a signal asked to stop, or None."""
+    """Result that was complete when a signal asked to stop, or None."""
     return _complete[0] if _received and _complete else None
 
 
@@ -71,7 +71,7 @@ def status() -> int | None:
 
 
 def check() -> None:
-    """Raise for a signal that came, also if that was done before and swallowed.
+    """Raise the exception of a signal that came, also if it was raised before and swallowed.
 
     Raises:
         KeyboardInterrupt: Ctrl-C.

@@ -39,16 +39,20 @@ class _Disk(io.FileIO):
 
 @contextmanager
 def new_hdf5(path: Path, final: Path) -> Iterator[tuple[h5py.File, Callable[[], None]]]:
-    """Yield a new HDF5 file and a check, to be called now and then, that it could be written.
+    """Create an HDF5 file within the block; an existing one is replaced.
 
     SIGINT and SIGTERM wait for the check: what their handlers raise within a `write` crashes HDF5.
 
     Args:
-        path: of the file; one that is there is replaced.
-        final: the name that errors give.
+        path: where the file is written.
+        final: name that errors give.
+
+    Yields:
+        The file, open for writing, and a check, to be called now and then, that raises what went
+        wrong meanwhile.
 
     Raises:
-        OSError: it cannot be written; by the check, or at the end.
+        OSError: the file cannot be written; by the check, or at the end of the block.
     """
     received: list[int] = []
     before: dict[int, Any] = {}

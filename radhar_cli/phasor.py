@@ -8,7 +8,10 @@ from radhar_cli.arrays import Complex, Float
 
 
 def unit_phasor(cycles: Float, dtype: Any = np.complex128) -> Complex:
-    """exp(-j 2 pi cycles), the whole turns removed first, in the precision of dtype."""
+    """exp(-j 2 pi cycles) for phases of any shape, in the precision of dtype.
+
+    Whole turns are removed first, in the precision of `cycles`.
+    """
     out: Complex = np.empty(cycles.shape, dtype)
     angle = (cycles - np.rint(cycles)).astype(out.real.dtype, copy=False)
     angle *= -2 * np.pi

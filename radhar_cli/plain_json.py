@@ -5,7 +5,10 @@ from pathlib import Path
 
 
 def plain(value: object) -> object:
-    """Of JSON's types; numbers that are not finite are null."""
+    """Convert a value to types that JSON has: tuples to lists, paths to text, NaN and inf to null.
+
+    Mappings and sequences are converted to any depth, their keys to text; other types are kept.
+    """
     if isinstance(value, dict):
         return {str(key): plain(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):

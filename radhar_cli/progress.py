@@ -7,21 +7,24 @@ class Messages(Protocol):
     """Receives messages."""
 
     def say(self, message: str) -> None:
-        """Something the user should read."""
+        """Tell the user something."""
 
 
 class Progress(Messages, Protocol):
     """Receives messages and how far the work is."""
 
     def stage(self, name: str, total: int, done: int, unit: str | None = None) -> None:
-        """A part of the work begins: `total` units, of which `done` are finished.
+        """Note that a part of the work begins.
 
         Args:
-            unit: name of one of them, if it is not what this progress counts as a rule.
+            name: what the part does, in a word.
+            total: number of its units.
+            done: number of units that are finished already.
+            unit: name of a unit, if it is not what this progress counts as a rule.
         """
 
     def advance(self, count: int) -> None:
-        """Some units of it are finished."""
+        """Note that so many further units of the stage are finished."""
 
 
 class NoProgress:

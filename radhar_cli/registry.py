@@ -35,7 +35,7 @@ def add_product(product: Any) -> None:
 
 
 def own_products() -> tuple[Any, ...]:
-    """The products that were added."""
+    """Products that were added, here or in a module of RADHAR_EXTENSIONS."""
     load_extensions()
     return tuple(_PRODUCTS.values())
 
@@ -49,7 +49,7 @@ def know_products(own: Iterable[Any]) -> None:
 
 @contextmanager
 def any_name() -> Iterator[None]:
-    """Accept maps of any name: a stored data set may hold products that are not registered here."""
+    """Accept maps of any name within the block, as of a data set made with other extensions."""
     token = _ANY.set(True)
     try:
         yield
@@ -63,7 +63,7 @@ def is_known(name: str) -> bool:
 
 
 def extensions() -> tuple[str, ...]:
-    """Names of the modules that RADHAR_EXTENSIONS names."""
+    """Names of the modules in the environment variable RADHAR_EXTENSIONS."""
     names = (name.strip() for name in os.environ.get(VARIABLE, "").split(","))
     return tuple(filter(None, names))
 

@@ -14,45 +14,51 @@ UNFINISHED = ".radhar-unfinished-"
 def replacing(
     path: Path, unfinished: Path | None = None, exclusive: bool = False
 ) -> Iterator[Path]:
-    """Yield where to write what takes the place of `path` at the end, unless something fails.
+    """Write a file under another name within the block, and rename it at the end if nothing failed.
 
-    That is `unfinished`, a name that no other process uses, on the same file system; if none is
-    given, a new one beside it, where what killed processes left goes. Errors name `path`, also of a
-    full disk, which says no name. With `exclusive` a file that another process made stays.
+    Args:
+        path: file that is replaced at the end. Errors name it, also those of a full disk, which
+            say no name.
+        unfinished: name to write under, which no other process uses, on the same file system. If
+            None, a new one beside `path`; what killed processes left there is removed then.
+        exclusive: whether a file that another process made meanwhile stays.
+
+    Yields:
+        The name to write under.
 
     Raises:
-        FileExistsError: there is one, with `exclusive`.
+        FileExistsError: there is a file of that name, with `exclusive`.
         OSError: `path` is a folder or a device, or it cannot be written.
     """
     if path.exists() and not path.is_file():
         raise OSError(EINVAL, "is not a regular file", str(path))
-    other = unfinished or path.with_name(UNFINISHED + uuid4().hex)
+    temporary = unfinished or path.with_name(UNFINISHED + uuid4().hex)
     try:
-        with nullcontext() if unfinished else other.open("xb") as held:
-            if held:
+        with nullcontext() if unfinished else temporary.open("xb") as lock_file:
+            if lock_file:
                 with suppress(OSError):  # a file system without locks
-                    fcntl.flock(held, fcntl.LOCK_EX)
+                    fcntl.flock(lock_file, fcntl.LOCK_EX)
                 _remove_leftovers(path.parent)
-            yield other
+            yield temporary
             if exclusive:
-                path.hardlink_to(other)
+                path.hardlink_to(temporary)
             else:
-                other.replace(path)
+                temporary.replace(path)
     except OSError as error:
-        if error.filename in (None, str(other)):
+        if error.filename in (None, str(temporary)):
             error.filename = str(path)
         raise
     finally:
         with suppress(OSError):
-            other.unlink(missing_ok=True)
+            temporary.unlink(missing_ok=True)
 
 
 def _remove_leftovers(folder: Path) -> None:
     """Remove unfinished files that nobody holds."""
-    for left in folder.glob(f"{UNFINISHED}*"):
-        with suppress(OSError), left.open("rb") as file:
+    for leftover in folder.glob(f"{UNFINISHED}*"):
+        with suppress(OSError), leftover.open("rb") as file:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            left.unlink()
+            leftover.unlink()
 
 
 def write_text(path: Path, text: str) -> None:

@@ -39,9 +39,9 @@ SCENE_KEYS = (
     "receiver",
     "image.cfar",
 )
-# What stays with a person whatever they do, and what is not repeated exactly.
+# Keys of what stays with a person whatever they do, and of what is not repeated exactly.
 PERSONAL, UNSTEADY = (
-    tuple(key for key, one in of_kind(Config, Mark) if one is mark) for mark in Mark
+    tuple(key for key, key_mark in of_kind(Config, Mark) if key_mark is mark) for mark in Mark
 )
 # Redrawing a scene outside the model changes what the person does, not the radar or the person.
 REDRAWN = ("motion.", "timing.", "classes.")
@@ -61,7 +61,11 @@ OfOther: TypeAlias = Callable[[int, str], float]
 
 
 class Numbers:
-    """A section of a scene's config, with its numbers as floats; a TypeError of one to be drawn."""
+    """A section of a scene's config, with its numbers as floats.
+
+    Raises:
+        TypeError: of a number that is still to be drawn, when it is read.
+    """
 
     def __init__(self, section: Section) -> None:
         self._section = section
@@ -71,6 +75,7 @@ class Numbers:
 
 
 def _plain(value: Any) -> Any:
+    """A value of a section with its numbers as floats; sections in it are `Numbers`."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return float(value)
     if isinstance(value, (Distribution, PerActivity)):
@@ -81,45 +86,53 @@ def _plain(value: Any) -> Any:
 
 
 def _section(name: str) -> cached_property[Any]:
-    """What a config has of that name, with its numbers as floats."""
+    """Property of an object with a `config`: that section of it, with its numbers as floats."""
     return cached_property(lambda self: _plain(getattr(self.config, name)))
 
 
 @dataclass(frozen=True)
 class Person:
-    """One person of a scene."""
+    """One person of a scene.
 
-    scene: "Scene"  # in which they are
-    activity: Activity  # what they do
-    config: Config  # whose `subject`, `motion`, `timing` and `classes` are theirs
-    number: int = 0  # 0 for the sample's main person, else their place in `people`, from 1 on
-    # what was made of them and is needed again
+    Attributes:
+        scene: the scene they are in.
+        activity: what they do.
+        config: config whose `subject`, `motion`, `timing` and `classes` are theirs.
+        number: 0 for the sample's main person, else their place in `people`, from 1 on.
+        held: what was made of them and is needed again, by name.
+        subject, motion, timing: sections of the config, with their numbers as floats.
+    """
+
+    scene: "Scene"
+    activity: Activity
+    config: Config
+    number: int = 0
     held: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     subject, motion, timing = map(_section, ("subject", "motion", "timing"))
 
     @property
     def prefix(self) -> str:
-        """Of the names of their random streams."""
+        """Prefix of the names of the person's random streams and keys."""
         return f"people.{self.number}." if self.number else ""
 
     @property
     def seconds(self) -> float:
-        """Of the recording."""
+        """Duration of the recording, s."""
         return float(self.scene.seconds)
 
     @cached_property
     def own_class(self) -> Any:
-        """What `classes` has of their activity, with its numbers as floats."""
+        """Section of `classes` for the person's activity, with its numbers as floats."""
         return _plain(self.config.classes[self.activity.slug])
 
     def stream(self, name: str) -> np.random.Generator:
-        """The random stream of a name for what this person does in this scene."""
+        """Random stream of a name, for what this person does in this scene."""
         seed, index, name = self.scene.config.seed, self.scene.index, self.prefix + name
         return stream(seed, SCENE, self.scene.activity.index, index, 0, name=name)
 
     def own_stream(self, name: str) -> np.random.Generator:
-        """That of a name for the body, the same in all scenes of a named person."""
+        """Random stream of a name, for the body: the same in all scenes of a named person."""
         scene, name = self.scene, self.prefix + name
         if scene.subject is not None and not self.number:
             return stream(scene.config.seed, PERSON, scene.subject, name=name)
@@ -128,24 +141,30 @@ class Person:
 
 @dataclass(frozen=True)
 class Scene:
-    """One recording to be simulated."""
+    """One recording to be simulated.
 
-    # with every number of SCENE_KEYS fixed; written to YAML and simulated again with the same
-    # activity and index, it gives the same recording
+    Attributes:
+        config: config with every number of SCENE_KEYS fixed. Written to YAML and simulated again
+            with the same activity and index, it gives the same recording.
+        activity: what the sample's main person does.
+        index: number of the sample within its class; names its noise, with the seed and the class.
+        subject: number of the person, or None where every sample is a person of its own.
+        attempt: how often the scene was redrawn (`on_invalid: redraw`).
+        radar, wall, room, receiver, seconds, snr_db: sections and numbers of the config, as floats.
+    """
+
     config: Config
-    activity: Activity  # what is performed
-    # number of the sample within its class; names its noise, with the seed and the class
+    activity: Activity
     index: int
-    # number of the person, or None where every sample is a person of its own
     subject: int | None = None
-    attempt: int = 0  # how often the scene was redrawn (`on_invalid: redraw`)
+    attempt: int = 0
 
     radar, wall, room, receiver = map(_section, ("radar", "wall", "room", "receiver"))
     seconds, snr_db = map(_section, ("duration_s", "snr_db"))
 
     @property
     def name(self) -> str:
-        """How messages call this sample."""
+        """Name of the sample in messages, such as walking/3."""
         return f"{self.activity.slug}/{self.index}"
 
     @cached_property
@@ -163,13 +182,24 @@ class Scene:
 
 
 def draw_scene(
-    config: Config, activity: Activity, index: int, attempt: int = 0, again: tuple[int, ...] = ()
+    config: Config,
+    activity: Activity,
+    index: int,
+    attempt: int = 0,
+    people_attempts: tuple[int, ...] = (),
 ) -> Scene:
     """Draw every number of one sample, each from its own stream.
 
     Persons come from (seed, subject, field), the rest from (seed, class, index, field): no draw
-    depends on another, on the maps, on the engine, or on the order of work. `attempt` counts draws
-    outside the model before, `again` those of each of `people` who did not fit.
+    depends on another, on the maps, on the engine, or on the order of work.
+
+    Args:
+        config: config of the data set.
+        activity: class of the sample.
+        index: number of the sample within its class.
+        attempt: number of draws before that were outside the model.
+        people_attempts: number of draws before, of each of `people`, in which they did not fit;
+            empty for none.
     """
     subject = subject_of(config, index)
 
@@ -180,37 +210,42 @@ def draw_scene(
         return stream(config.seed, SCENE, activity.index, index, redrawn, name=key).random()
 
     def of_other(number: int, key: str) -> float:
-        times = again[number - 1] if again else 0
-        redrawn = times if key.startswith(REDRAWN) else 0
+        attempts = people_attempts[number - 1] if people_attempts else 0
+        redrawn = attempts if key.startswith(REDRAWN) else 0
         name = f"people.{number}.{key}"
         return stream(config.seed, SCENE, activity.index, index, redrawn, name=name).random()
 
-    fixed = _drawn(config, activity, at_share, subject)
+    fixed = _draw_config(config, activity, at_share, subject)
     if config.people:
-        fixed = changed(fixed, {"people": _drawn_people(config, of_other)})
+        fixed = changed(fixed, {"people": _draw_people(config, of_other)})
     return Scene(fixed, activity, index, subject, attempt)
 
 
 def nominal_scene(config: Config, activity: Activity) -> Scene:
-    """The scene with every number at its middle, and nothing that people do not repeat."""
-    fixed = _drawn(config, activity, None, None)
+    """Make the scene with every number at its middle, and nothing that people do not repeat."""
+    fixed = _draw_config(config, activity, None, None)
     if config.people:
-        fixed = changed(fixed, {"people": _drawn_people(config, None)})
+        fixed = changed(fixed, {"people": _draw_people(config, None)})
     return Scene(fixed, activity, 0)
 
 
-def _drawn(
+def _draw_config(
     config: Config, activity: Activity, at_share: Draw | None, subject: int | None
 ) -> Config:
-    """The config of one person's scene, numbers at shares (key) of their distributions.
+    """Draw the config of one person's scene.
 
-    None is the middle of all, and nothing unsteady.
+    Args:
+        config: config in which the person's numbers are at the top level.
+        activity: what the person does.
+        at_share: share, 0 to 1, of the distribution of a key at which its number lies; None for the
+            middle of all, and nothing unsteady.
+        subject: number of the person, or None without named persons.
     """
 
     def draw(key: str, number: Number) -> float:
         return nominal(number) if at_share is None else quantile(number, at_share(key))
 
-    fixed = _fixed(config, activity, draw)
+    fixed = _fix_numbers(config, activity, draw)
     if at_share is None:
         fixed = changed(fixed, dict.fromkeys(UNSTEADY, 0.0))
     if isinstance(fixed.motion.fall, Falls):
@@ -221,34 +256,34 @@ def _drawn(
     return _with_possible_overlap(fixed, activity)
 
 
-def _drawn_people(config: Config, at_share: OfOther | None) -> tuple[PersonConfig, ...]:
-    """`people` with nothing left to draw; who is not there has a share of 0."""
-    found = []
-    for number, one in enumerate(config.people, 1):
+def _draw_people(config: Config, at_share: OfOther | None) -> tuple[PersonConfig, ...]:
+    """Draw `people`, with nothing left to draw; who is not there has a share of 0."""
+    drawn = []
+    for number, person in enumerate(config.people, 1):
         share = partial(at_share, number) if at_share else None
         activities = config.activities_of(number)
         place = min(
             int((share("activity") if share else 0.5) * len(activities)), len(activities) - 1
         )
         activity = activities[place]
-        there = one.share > (share("share") if share else 0.5 - 1e-9)
-        fixed = _drawn(_of_person(ByIdentity(config), number), activity, share, None)
-        own = {slug: c for slug, c in fixed.classes.items() if slug == activity.slug}
-        found.append(
+        present = person.share > (share("share") if share else 0.5 - 1e-9)
+        fixed = _draw_config(_of_person(ByIdentity(config), number), activity, share, None)
+        own_classes = {slug: c for slug, c in fixed.classes.items() if slug == activity.slug}
+        drawn.append(
             PersonConfig.model_construct(
                 activity=activity.slug,
-                share=float(there),
+                share=float(present),
                 subject=fixed.subject,
                 motion=fixed.motion,
                 timing=fixed.timing,
-                classes=own or None,
+                classes=own_classes or None,
             )
         )
-    return tuple(found)
+    return tuple(drawn)
 
 
 def _with_possible_overlap(config: Config, activity: Activity) -> Config:
-    """The config with no more overlap of S9 to S12's movements than legs are long enough for."""
+    """Cut the overlap of S9 to S12's movements to what legs are long enough for."""
     timing: Any = config.timing
     key = OVERLAPPED.get(activity.slug)
     if key is None or config.motion.model != "human":
@@ -263,7 +298,7 @@ def _with_possible_overlap(config: Config, activity: Activity) -> Config:
 
 
 def _with_file(config: Config, activity: Activity, u: float, subject: int | None) -> Config:
-    """The config with the file of its activity that stands at a fraction u of the draws.
+    """Choose the motion file of an activity, the one at a fraction u of the draws.
 
     Named persons have files of their own, as long as there are enough: then training and validation
     share none.
@@ -284,9 +319,10 @@ def subject_of(config: Config, index: int) -> int | None:
 
 
 def numbers(config: Config) -> list[tuple[str, Any]]:
-    """[(dotted key, number or PerActivity)] of all that may be drawn, in the order of the schema.
+    """List all numbers of a config that may be drawn, as (dotted key, number or PerActivity).
 
-    Vectors come as `radar.tx_m.0` and so on; keys that are null are left out.
+    They are in the order of the schema. Vectors come as `radar.tx_m.0` and so on; keys that are
+    null are left out.
     """
     found: list[tuple[str, Any]] = []
 
@@ -300,14 +336,14 @@ def numbers(config: Config) -> list[tuple[str, Any]]:
 
 
 def number_at(scene: Scene, key: str) -> float:
-    """The number of a dotted key, such as `radar.tx_m.0`; NaN where the scene has no such number.
+    """Number of a scene under a dotted key, such as `radar.tx_m.0` or `people.0.motion.range_m`.
 
-    `motion.fall` is its place in FALLS; `people.0.motion.range_m` is of the first of `people`.
+    It is NaN where the scene does not depend on such a number. `motion.fall` is its place in FALLS.
     """
     config, activity = scene.config, scene.activity
     if key.startswith("people."):
         _, place, key = key.split(".", 2)
-        other = next((one for one in scene.people if one.number == int(place) + 1), None)
+        other = next((p for p in scene.people if p.number == int(place) + 1), None)
         if other is None:
             return nan
         config, activity = other.config, other.activity
@@ -318,7 +354,7 @@ def number_at(scene: Scene, key: str) -> float:
 
 
 def keys_of_people(config: Config) -> list[str]:
-    """Keys of the numbers of all of `people`, such as `people.0.motion.range_m`."""
+    """Dotted keys of the numbers of all of `people`, such as `people.0.motion.range_m`."""
     found = []
     for number in range(1, len(config.people) + 1):
         theirs, activities = config.of_person(number), config.activities_of(number)
@@ -333,14 +369,14 @@ def keys_of_people(config: Config) -> list[str]:
 
 
 def file_keys(config: Config) -> tuple[str, ...]:
-    """Keys of the number of the file that a scene uses, of each class of files."""
+    """Dotted keys, one for each class of files, of the number of the file that a scene uses."""
     return tuple(
         f"classes.{slug}.file" for slug, one in config.classes.items() if hasattr(one, "files")
     )
 
 
 def scene_numbers(scene: Scene) -> dict[str, float]:
-    """{dotted key: number} of all that a scene depends on, in the units of the keys.
+    """Numbers that a scene depends on, {dotted key: number}, in the units of the keys.
 
     `motion.fall` is its place in FALLS.
     """
@@ -351,7 +387,7 @@ def scene_numbers(scene: Scene) -> dict[str, float]:
 
 
 class ByIdentity:
-    """A config as a key: equal to itself alone, whatever it holds."""
+    """A config as a key of a cache: equal to itself alone, whatever it holds."""
 
     def __init__(self, config: Any) -> None:
         self.config = config
@@ -365,28 +401,28 @@ class ByIdentity:
 
 @lru_cache(maxsize=64)
 def _of_person(same: ByIdentity, number: int) -> Config:
-    """One config of a person for all scenes: drawing keeps what it finds by its identity."""
+    """Config of a person, the same object for all scenes: draws are cached by its identity."""
     config: Config = same.config
     return config.of_person(number)
 
 
 @lru_cache(maxsize=64)
 def _fixed_and_drawn(same: ByIdentity, activity: Activity) -> tuple[Config, dict[str, Any]]:
-    """The config of an activity with all at its middle, and {dotted key: number} to be drawn."""
+    """Config of an activity with all numbers at their middle, and {dotted key: number to draw}."""
     config, drawn = same.config, dict[str, Any]()
 
     def fix(key: str, number: Any) -> float:
-        one = for_activity(number, activity)
-        if config.depends_on(activity, key) and not is_fixed(one):
-            drawn[key] = one
-        return nominal(one)
+        of_activity = for_activity(number, activity)
+        if config.depends_on(activity, key) and not is_fixed(of_activity):
+            drawn[key] = of_activity
+        return nominal(of_activity)
 
     sections = {key: each_number(at(config, key), key, fix) for key in SCENE_KEYS}
     return changed(config, sections | {"activities": (activity.slug,)}), drawn
 
 
 class Redrawn(Enum):
-    """What is drawn again of a scene outside the model."""
+    """Kinds of numbers that are drawn again for a scene outside the model."""
 
     NOTHING = "nothing"
     NUMBERS = "numbers between bounds"
@@ -394,7 +430,7 @@ class Redrawn(Enum):
 
 
 def redrawn(config: Config, activity: Activity) -> Redrawn:
-    """What another attempt at a scene of an activity may change."""
+    """Kind of numbers that another attempt at a scene of an activity may change."""
     drawn = _fixed_and_drawn(ByIdentity(config), activity)[1]
     again = [one for key, one in drawn.items() if key.startswith(REDRAWN) and key not in PERSONAL]
     personal = [one for key, one in drawn.items() if key.startswith(REDRAWN) and key in PERSONAL]
@@ -409,8 +445,10 @@ def redrawn(config: Config, activity: Activity) -> Redrawn:
     return Redrawn.CHOICES if chosen else Redrawn.NUMBERS
 
 
-def _fixed(config: Config, activity: Activity, draw: Callable[[str, Number], float]) -> Config:
-    """The config of one scene; numbers that its activity does not depend on are at their middle."""
+def _fix_numbers(
+    config: Config, activity: Activity, draw: Callable[[str, Number], float]
+) -> Config:
+    """Fix the numbers of a config; those that its activity does not depend on at their middle."""
     fixed, drawn = _fixed_and_drawn(ByIdentity(config), activity)
     values = {key: draw(key, number) for key, number in drawn.items()}
     if fixed.subject.weight_kg is None:

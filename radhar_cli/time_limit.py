@@ -18,11 +18,11 @@ class _OutOfTime(BaseException):
 def time_limit(seconds: float) -> Iterator[None]:
     """Leave the block quietly after so many seconds; what it has put aside by then counts.
 
-    A call of a library is finished first. HDF5 should not be called within: what is raised while it
-    writes crashes it. There is no limit in a thread, which no signal reaches.
+    A call of a library is finished first. HDF5 should not be called in the block: what is raised
+    while it writes crashes it. There is no limit in a thread, which no signal reaches.
 
     Args:
-        seconds: inf for no limit.
+        seconds: duration, s; inf for no limit.
     """
     main = threading.current_thread() is threading.main_thread()
     if seconds == inf or not main or not hasattr(signal, "setitimer"):

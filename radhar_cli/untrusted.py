@@ -32,7 +32,7 @@ def regular_size(path: str | os.PathLike[str]) -> int:
     """Size in bytes of a regular file; links are followed.
 
     Raises:
-        OSError: there is none, it may not be read, or it is a folder, a FIFO, a socket or a device,
+        OSError: the file is missing, may not be read, or is a folder, a FIFO, a socket or a device,
             which can block.
     """
     try:
@@ -48,10 +48,10 @@ def regular_size(path: str | os.PathLike[str]) -> int:
 
 
 def refuse_outside(path: Path, folder: Path) -> None:
-    """Refuse what a file in `folder` names, or what was found there, where links lead out of it.
+    """Refuse a path, named by a file in a folder or found there, that links lead out of the folder.
 
     Raises:
-        FolderError: links lead out of the folder; names the link and where it leads.
+        FolderError: names the link and where it leads.
     """
     target = os.path.realpath(path)
     if not Path(target).is_relative_to(os.path.realpath(folder)):
@@ -59,11 +59,11 @@ def refuse_outside(path: Path, folder: Path) -> None:
 
 
 def read_text(path: Path, most: int) -> str:
-    """A regular file of at most `most` bytes as UTF-8.
+    """Read the text of a regular file of at most `most` bytes in UTF-8.
 
     Raises:
-        OSError: it cannot be read, is larger, or is not a regular file.
-        UnicodeDecodeError: it is not UTF-8.
+        OSError: the file cannot be read, is larger, or is not a regular file.
+        UnicodeDecodeError: the file is not UTF-8.
     """
     regular_size(path)
     with path.open("rb") as file:
@@ -74,18 +74,28 @@ def read_text(path: Path, most: int) -> str:
 
 
 def text_of(path: Path, most: int, refused: type[RadharError]) -> str:
-    """`read_text` of a file that a user named; an error of this kind says what is wrong."""
+    """Read the text of a file that a user named (`read_text`).
+
+    Args:
+        path: regular file in UTF-8.
+        most: largest size, bytes.
+        refused: class of the error that says why the file cannot be read.
+    """
     try:
         return read_text(path, most)
     except FileNotFoundError:
         raise refused(f"{path}: no such file") from None
     except (OSError, ValueError) as error:  # no UTF-8; no name of a file
-        told = getattr(error, "strerror", None) or error
-        raise refused(f"{path}: cannot be read as text ({told})") from None
+        reason = getattr(error, "strerror", None) or error
+        raise refused(f"{path}: cannot be read as text ({reason})") from None
 
 
 def read_json(path: Path) -> Any:
-    """The content of a JSON file."""
+    """Read a JSON file of bounded length and depth.
+
+    Raises:
+        FolderError: the file cannot be read, or is not JSON.
+    """
     try:
         return parse_json(read_text(path, MAX_JSON))
     except OSError as error:
@@ -95,10 +105,10 @@ def read_json(path: Path) -> Any:
 
 
 def parse_json(text: str) -> Any:
-    """JSON of bounded length and depth.
+    """Parse JSON of at most MAX_JSON characters and DEEPEST levels.
 
     Raises:
-        ValueError: it is not JSON, too long, or nested too deeply.
+        ValueError: the text is not JSON, too long, or nested too deeply.
     """
     if len(text) > MAX_JSON:
         raise ValueError(f"it has {len(text)} characters; should have at most {MAX_JSON}")
@@ -120,7 +130,7 @@ def _depth(value: Any) -> int:
 
 
 def shown(text: object) -> str:
-    """Text for a terminal: whatever could steer it is escaped, line breaks aside.
+    """Escape whatever in a text could steer a terminal, line breaks aside.
 
     ``\\x1b[2J`` becomes ``\\\\x1b[2J``; so do bidirectional marks and bytes that are not UTF-8.
     """

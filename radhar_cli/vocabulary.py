@@ -71,12 +71,12 @@ FROM_FILES = "no model moves like this; motion files can (docs/guide/motion_file
 
 
 def advice_on(name: str, known: Iterable[str], otherwise: str) -> str:
-    """What may be meant by a name of a movement that is not known.
+    """Advise on a name of a movement that is not known: what may be meant.
 
     Args:
         name: as somebody wrote it.
         known: our names that would do.
-        otherwise: what to say where nothing is meant.
+        otherwise: what is returned where nothing is meant.
     """
     names = list(known)
     meant = meaning_of(name, names)
@@ -88,9 +88,11 @@ def advice_on(name: str, known: Iterable[str], otherwise: str) -> str:
 
 
 def meaning_of(name: str, known: Iterable[str]) -> str | None:
-    """The known name that means the same, or is the same but for case, spaces and hyphens."""
+    """Find the known name that means the same, or differs in case, spaces and hyphens alone."""
     word, names = _plain(name), set(known)
-    return next((one for one in (word, *MEANINGS.get(word, ())) if one in names), None)
+    return next(
+        (candidate for candidate in (word, *MEANINGS.get(word, ())) if candidate in names), None
+    )
 
 
 def _plain(name: str) -> str:

@@ -58,7 +58,7 @@ def _watch(parent_pid: int) -> None:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Hold linear algebra to one thread meanwhile, in a process that does other things too."""
+    """Hold linear algebra to one thread within the block, in a process that does other things."""
     if prepare_process.cache_info().currsize:
         yield
         return

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
-from radhar_cli.config.number import must
+from radhar_cli.config.number import require
 from radhar_cli.config.schema import Section
 
 Count: TypeAlias = Annotated[int, Field(ge=1, le=2**24, strict=True)]
@@ -52,7 +52,7 @@ class CaptureSettings(Section):
     # of an array, outermost first, in the order of the program that wrote it
     axes: Annotated[
         tuple[AxisName, ...] | None,
-        must(
+        require(
             lambda value: len(set(value)) == len(value) and "pulse" in value,
             "should name each axis once, including pulse",
         ),

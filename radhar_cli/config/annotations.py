@@ -81,7 +81,11 @@ class ActsIf:
         object.__setattr__(self, "values", values)
 
     def holds(self, value_at: ValueAt) -> bool:
-        """Whether the other key says so."""
+        """Whether the other key has one of the values.
+
+        Args:
+            value_at: returns the value under a dotted key of a config.
+        """
         value = value_at(self.key)
         if GIVEN in self.values:
             return value not in (None, (), {})
@@ -90,12 +94,12 @@ class ActsIf:
         return value in self.values
 
     def entry(self, value_at: ValueAt) -> str:
-        """What the other key says now."""
+        """The other key and its present value, as YAML."""
         return entry(self.key, value_at(self.key))
 
     @property
     def right(self) -> str:
-        """What it should say."""
+        """The other key and the values under which this one would act, in words."""
         if GIVEN in self.values:
             return f"{self.key}"
         if ABOVE_ZERO in self.values:
@@ -113,28 +117,28 @@ class ActsIfAny:
         object.__setattr__(self, "choices", choices)
 
     def holds(self, value_at: ValueAt) -> bool:
-        """Whether one of them does."""
+        """Whether one of the conditions holds."""
         return any(one.holds(value_at) for one in self.choices)
 
     def entry(self, value_at: ValueAt) -> str:
-        """What their keys say now."""
+        """Keys of the conditions with their present values, as YAML."""
         return ", ".join(dict.fromkeys(one.entry(value_at) for one in self.choices))
 
     @property
     def right(self) -> str:
-        """What they should say."""
+        """Keys and values under which this one would act, in words."""
         return " or ".join(one.right for one in self.choices)
 
 
 def entry(key: str, value: object) -> str:
-    """A key and its value as a config has them; of long texts and of sections the key alone."""
+    """A key and its value as YAML, `maps: [rtm]`; the key alone for sections and long texts."""
     if isinstance(value, BaseModel) or (isinstance(value, str) and "\n" in value):
         return key
     return f"{key}: {value_text(value)}"
 
 
 def value_text(value: object) -> str:
-    """A value as YAML has it."""
+    """A value as YAML in one line."""
     if isinstance(value, tuple):
         return f"[{', '.join(map(value_text, value))}]"
     if value is None or isinstance(value, bool):
@@ -157,7 +161,11 @@ class OnlyMaps:
 
 
 class ByModel:
-    """What a null key stands for, by model of motion."""
+    """Default of a key that is null, by model of motion.
+
+    Args:
+        values: {model: default}, as `human=..., paper=...`.
+    """
 
     def __init__(self, **values: Any) -> None:
         self.values = values
@@ -165,7 +173,15 @@ class ByModel:
 
 @cache
 def annotations(kind: type[BaseModel], prefix: str = "") -> Mapping[str, tuple[Any, ...]]:
-    """{dotted key: annotations}, sections before what is in them, in the order of the schema."""
+    """Annotations of every key below a section, {dotted key: annotations}.
+
+    Sections come before what is in them, in the order of the schema; those that repeat (`people`)
+    are not entered.
+
+    Args:
+        kind: the section, or root of a config.
+        prefix: dotted key of the section, with its last dot; "" for a root.
+    """
     found = dict[str, tuple[Any, ...]]()
     for name, field in kind.model_fields.items():
         found[prefix + name] = tuple(_flat(field))
@@ -177,7 +193,7 @@ def annotations(kind: type[BaseModel], prefix: str = "") -> Mapping[str, tuple[A
 
 @cache
 def of_kind(kind: type[BaseModel], wanted: type[A]) -> tuple[tuple[str, A], ...]:
-    """(dotted key, annotation) of all annotations of a class."""
+    """Annotations of one class below a section, as (dotted key, annotation)."""
     return tuple(
         (key, one)
         for key, found in annotations(kind).items()
@@ -188,7 +204,7 @@ def of_kind(kind: type[BaseModel], wanted: type[A]) -> tuple[tuple[str, A], ...]
 
 @cache
 def conditions(kind: type[BaseModel], key: str) -> tuple[ActsIf | ActsIfAny, ...]:
-    """What has to hold for a dotted key to act, of the sections that it lies in first.
+    """Conditions under which a dotted key acts, those of the sections around it first.
 
     `radar.tx_m.0` is one of the numbers of `radar.tx_m`.
     """
@@ -200,7 +216,11 @@ def conditions(kind: type[BaseModel], key: str) -> tuple[ActsIf | ActsIfAny, ...
 
 
 def at(config: BaseModel, key: str) -> Any:
-    """What stands under a dotted key, such as `radar.tx_m.0`; None under what is null."""
+    """Value under a dotted key, such as `radar.tx_m.0`; None below what is null.
+
+    Raises:
+        AttributeError, KeyError, IndexError: the config has no such key.
+    """
     place: Any = config
     for name in key.split("."):
         if isinstance(place, tuple):
@@ -213,7 +233,12 @@ def at(config: BaseModel, key: str) -> Any:
 
 
 def range_of(kind: type[BaseModel], key: str) -> str:
-    """From where to where a key's numbers may go, in words; "" where nothing says so."""
+    """Bounds of the numbers of a key, in words: "from 0 to 5 m"; "" where a bound is missing.
+
+    Args:
+        kind: root of the config.
+        key: dotted key, without places in lists.
+    """
     low, high, unit = -MAX_NUMBER, MAX_NUMBER, ""
     for one in annotations(kind).get(key, ()):
         if isinstance(one, Bounds):

@@ -40,7 +40,7 @@ MIN_CUTOFF = 1e-4  # of PRF/2; below, rounding spoils a filter of order 10 in fl
 
 
 class Problem(NamedTuple):
-    """One cross-field mistake: dotted key, the value found, what would be right."""
+    """A mistake that spans several keys: dotted key, its value, and what would be right."""
 
     key: str
     value: object
@@ -48,6 +48,12 @@ class Problem(NamedTuple):
 
 
 def problems(c: Config) -> Iterator[Problem]:
+    """Find what does not go together in a config with its defaults filled in.
+
+    Args:
+        c: the config; of a `ConfigOfRecordings` the keys of recordings alone are checked, of a
+            `ProcessedConfig` those of the processing.
+    """
     if isinstance(c, ConfigOfRecordings):
         found = _board_problems(c) if c.radar.cfg else _impulse_problems(c)
         kept = MeasuredConfig.model_fields
@@ -93,7 +99,7 @@ def problems(c: Config) -> Iterator[Problem]:
 
 
 def measured_problems(c: MeasuredConfig) -> Iterator[Problem]:
-    """What does not go together in a data set of recordings."""
+    """Find what does not go together in a data set of recordings."""
     if not c.recordings.counts:
         right = "should be at most as long as the longest part of a recording"
         yield Problem("recordings.window_s", c.recordings.window_s, right)
@@ -112,7 +118,7 @@ def measured_problems(c: MeasuredConfig) -> Iterator[Problem]:
 
 
 def map_problem(c: AnyConfig, names: Iterable[str]) -> Problem | None:
-    """The maps that the radar of a config cannot make, why, and those that it makes."""
+    """Find the maps that the radar of a config cannot make, and say why; None if it makes all."""
     reasons = {name: why for name in names if (why := why_no_map(c, name)) is not None}
     if not reasons:
         return None
@@ -122,7 +128,7 @@ def map_problem(c: AnyConfig, names: Iterable[str]) -> Problem | None:
 
 
 def problems_of_maps(c: Config, names: tuple[str, ...]) -> list[Problem]:
-    """What keeps a config's radar and processing from making other maps than its own."""
+    """Find what keeps a config's radar and processing from making maps of other names."""
     return list(_processing_problems(c.model_copy(update={"maps": names})))
 
 
@@ -166,7 +172,7 @@ def _step_problems(c: Config) -> Iterator[Problem]:
 
 
 def _impulse_problems(c: Config) -> Iterator[Problem]:
-    """What goes with an impulse radar alone, and what does not go with it."""
+    """Keys that an impulse radar alone may have, and keys that it may not have."""
     yield from _profile_problems(c)
     if c.radar.waveform != "impulse":
         return
@@ -212,7 +218,7 @@ def _profile_problems(c: AnyConfig) -> Iterator[Problem]:
 
 
 def _people_problems(c: Config) -> Iterator[Problem]:
-    """What others in a scene cannot do."""
+    """Keys of `people` that other people in a scene cannot have."""
     if c.people and c.motion.model == "paper":
         right = "should be empty with motion.model: paper, where one person is the sample"
         yield Problem("people", len(c.people), right)
@@ -239,7 +245,7 @@ def _people_problems(c: Config) -> Iterator[Problem]:
 
 
 def _board_problems(c: Config) -> Iterator[Problem]:
-    """What a board cannot do, or is not simulated for one."""
+    """Keys that a board cannot have, or that are not simulated for boards."""
     board, radar, clutter = c.radar.header, c.radar, c.processing.clutter
     if radar.elements is None:
         right = (
@@ -344,7 +350,7 @@ ENDS = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz", "prf_hz", "durat
 
 
 def _waveform(c: AnyConfig, *largest: str) -> Waveform:
-    """The waveform of the smallest numbers that a config draws, but for those named."""
+    """Waveform of the smallest numbers that a config draws, and of the largest of those named."""
     numbers = {key: c.duration_s if key == "duration_s" else getattr(c.radar, key) for key in ENDS}
     fc, bandwidth, chirp, rate, prf, duration = (
         support(number)[key in largest] for key, number in numbers.items()
@@ -469,7 +475,14 @@ def _gate_problems(c: AnyConfig) -> Iterator[Problem]:
 
 
 def _too_many(c: AnyConfig, key: str, value: object, what: str) -> Iterator[Problem]:
-    """A request for which range bins of all pulses have to be held."""
+    """A request for which more range bins of all pulses than memory allows have to be held.
+
+    Args:
+        c: the config, whose largest recording counts.
+        key: dotted key that asks for them.
+        value: its value.
+        what: what they are held for, in words.
+    """
     w = _waveform(c, *ENDS)
     bins, pulses = w.n_bins, w.n_pulses
     if bins * pulses > MAX_BIN_SAMPLES:
@@ -496,7 +509,7 @@ def _wall_problems(c: Config) -> Iterator[Problem]:
 
 
 def _layer_problems(c: Config, wall: WallConfig) -> Iterator[Problem]:
-    """Layers and exact echoes that do not go with the rest."""
+    """Layers and exact echoes of a wall that do not go with other keys."""
     if (wall.layers is None) != (wall.size_m[0] is not None):
         right = "should be null with wall.layers" if wall.layers else "should be a number"
         yield Problem("wall.size_m.0", wall.size_m[0], right)
@@ -540,7 +553,11 @@ def _back_wall_problems(c: Config) -> Iterator[Problem]:
 
 
 def _places(c: Config, name: str) -> Iterator[tuple[str, Any, list[tuple[float, float]]]]:
-    """Key and value of a coordinate of everybody, and its least and most of each activity."""
+    """Find the coordinates of everybody under one name, `range_m` or `cross_range_m`.
+
+    Yields:
+        (dotted key, value, [(least, most) of each activity]) of each person.
+    """
     everybody = [("", c.motion, c.chosen_activities)]
     with suppress(ValueError):  # of an unknown activity, which is told by itself
         everybody += [
@@ -664,7 +681,7 @@ def _human_problems(c: Config) -> Iterator[Problem]:
 
 
 def tone_warnings(c: Config) -> list[str]:
-    """Say which interference tones alias."""
+    """Say which interference tones of a config alias, a sentence for each."""
     highest = support(c.radar.prf_hz)[0] / 2
     return [
         f"receiver.tones.{number}.doppler_hz reaches beyond PRF/2 = {highest:g} Hz: the tone "
@@ -675,7 +692,12 @@ def tone_warnings(c: Config) -> list[str]:
 
 
 def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> list[str]:
-    """Say which movements begin after the end of the recording."""
+    """Say which movements begin after the end of the recording, a sentence for each.
+
+    Args:
+        c: the config; numbers that are drawn are taken at their middle.
+        activities: activities that are looked at; None for all of the config.
+    """
     length = nominal(c.duration_s)
     warnings = []
     for activity in c.chosen_activities if activities is None else activities:

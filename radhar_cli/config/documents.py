@@ -23,7 +23,14 @@ _ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are repla
 
 
 def read_document(path: Path) -> tuple[Document, Places]:
-    """A file of keys and values, and where each key stands."""
+    """Read a file of keys and values, without its base.
+
+    Returns:
+        The document, in which `radar.cfg` is the text of the .cfg, and {dotted key: file:line}.
+
+    Raises:
+        ConfigError: the file cannot be read, is not YAML, or holds no mapping.
+    """
     document, lines = parse_yaml(text_of(path, MAX_TEXT, ConfigError), str(path))
     document = {} if document is None else document
     if not isinstance(document, dict):
@@ -36,51 +43,71 @@ def read_document(path: Path) -> tuple[Document, Places]:
 
 
 def cfg_text(given: Any, folder: Path, where: str) -> Any:
-    """The text of a .cfg: of a known radar, or of a path; a text is left as it is."""
+    """Read the text of a .cfg.
+
+    Args:
+        given: name of a radar in RADARS, path of a .cfg, or its text, which is returned as it is.
+        folder: folder from which a path is seen.
+        where: file and line, or option, that a message names.
+
+    Raises:
+        ConfigError: there is no such file, or it cannot be read as text.
+    """
     if not isinstance(given, str) or "\n" in given.strip():
         return given
     try:
         return read_text(RADARS.get(given.lower(), folder / given), MAX_TEXT)
     except (OSError, ValueError) as error:
-        told = getattr(error, "strerror", None) or error
+        reason = getattr(error, "strerror", None) or error
         raise ConfigError(
-            f"{where}: radar.cfg = {json.dumps(given)}: should be the path of a TI .cfg ({told}), "
-            f"or one of {', '.join(RADARS)}"
+            f"{where}: radar.cfg = {json.dumps(given)}: should be the path of a TI .cfg "
+            f"({reason}), or one of {', '.join(RADARS)}"
         ) from None
 
 
 def read_on_bases(path: Path | None, given: Mapping[str, Any]) -> tuple[Document, Places]:
-    """A file's document over its base's, and that one's, until one has no base.
+    """Read a file and lay it over its base, and that one over its own, until one has no base.
 
     Args:
-        path: of the file; None for an empty one.
-        given: may have a `base` instead of the file's own, as seen from the current folder.
+        path: YAML file; None for an empty one.
+        given: document that may have a `base` instead of the file's own, as seen from the current
+            folder.
+
+    Returns:
+        The document, without `base`, and {dotted key: file:line}.
+
+    Raises:
+        ConfigError: a file cannot be read, or bases lead back to one of them; names the chain.
     """
     document, places = read_document(path) if path else ({}, {})
     files = [path] if path else []
-    folder, who = path.parent if path else Path(), places.get(BASE, "")
+    folder, referred_from = path.parent if path else Path(), places.get(BASE, "")
     base = document.pop(BASE, None)
     if BASE in given:
-        base, folder, who = given[BASE], Path(), f"--set {BASE}"
+        base, folder, referred_from = given[BASE], Path(), f"--set {BASE}"
     while base is not None:
-        who = f"{who}: {BASE} = {json.dumps(base)[:120]}"
+        referred_from = f"{referred_from}: {BASE} = {json.dumps(base)[:120]}"
         if not isinstance(base, str) or not base.endswith(SUFFIXES):
-            raise ConfigError(f"{who}: should be the path of a {', '.join(SUFFIXES)} file")
-        below = _plain(folder / base)
+            raise ConfigError(
+                f"{referred_from}: should be the path of a {', '.join(SUFFIXES)} file"
+            )
+        base_path = _plain(folder / base)
         try:
-            lower, lower_places = read_document(below)
+            base_document, lower_places = read_document(base_path)
         except ConfigError as error:
-            raise ConfigError(f"{who}: {error}") from None
-        chain = " -> ".join(map(str, (*files, below)))
-        if any(below.samefile(file) for file in files):
-            raise ConfigError(f"{who}: should not lead back to a file on the way: {chain}")
-        files.append(below)
+            raise ConfigError(f"{referred_from}: {error}") from None
+        chain = " -> ".join(map(str, (*files, base_path)))
+        if any(base_path.samefile(file) for file in files):
+            raise ConfigError(
+                f"{referred_from}: should not lead back to a file on the way: {chain}"
+            )
+        files.append(base_path)
         if len(files) > MAX_CHAIN:
-            raise ConfigError(f"{who}: should end after {MAX_CHAIN} files: {chain}")
-        folder, who = below.parent, lower_places.get(BASE, "")
-        base = lower.pop(BASE, None)
+            raise ConfigError(f"{referred_from}: should end after {MAX_CHAIN} files: {chain}")
+        folder, referred_from = base_path.parent, lower_places.get(BASE, "")
+        base = base_document.pop(BASE, None)
         replaced: set[str] = set()
-        document = _over(_with_folder(lower, folder), document, "", replaced)
+        document = _over(_with_folder(base_document, folder), document, "", replaced)
         places = {k: v for k, v in lower_places.items() if replaced.isdisjoint(_ways(k))} | places
     return document, places
 
@@ -95,7 +122,14 @@ def _plain(path: Path) -> Path:
 
 
 def _over(lower: Any, own: Any, key: str, replaced: set[str]) -> Any:
-    """Mappings key by key; else what is own. Notes the keys whose lower value is gone."""
+    """Lay a value over that of a base: mappings key by key, anything else as a whole.
+
+    Args:
+        lower: value in the base.
+        own: value in the file over it.
+        key: dotted key of both.
+        replaced: keys whose lower value is gone are added to it.
+    """
     both = isinstance(lower, dict) and isinstance(own, dict)
     if not both or own.keys() & _ONE_VALUE or ("per_activity" in own) != ("per_activity" in lower):
         replaced.add(key)
@@ -108,12 +142,12 @@ def _over(lower: Any, own: Any, key: str, replaced: set[str]) -> Any:
 
 
 def _ways(key: str) -> Iterator[str]:
-    """A dotted key and all that it lies in."""
+    """Dotted keys of the sections around a key, the outermost first, and the key itself."""
     return accumulate(key.split("."), lambda parent, name: f"{parent}.{name}")
 
 
 def _with_folder(document: Document, folder: Path) -> Document:
-    """A base whose motion files, if it names some, are relative to its own folder."""
+    """Make the motion files of a base, if it names some, relative to the base's own folder."""
     motion, classes = document.get("motion") or {}, document.get("classes")
     if not isinstance(motion, dict) or not isinstance(motion.get("folder", ""), str):
         return document  # a mistake, reported later
@@ -123,5 +157,5 @@ def _with_folder(document: Document, folder: Path) -> Document:
     )
     if not has_files and "folder" not in motion:
         return document
-    whole = str((folder / motion.get("folder", "")).absolute())
-    return {**document, "motion": {**motion, "folder": whole}}
+    absolute = str((folder / motion.get("folder", "")).absolute())
+    return {**document, "motion": {**motion, "folder": absolute}}

@@ -15,12 +15,12 @@ def resolved(config: Section) -> dict[str, Any]:
 
 
 def as_yaml(config: Section) -> str:
-    """The resolved config as YAML, which reads back as the same config."""
+    """Return the resolved config as YAML, which reads back as the same config."""
     return yaml_text(resolved(config))
 
 
 def yaml_text(document: dict[str, Any]) -> str:
-    """Plain values as YAML, the innermost in a line."""
+    """Return plain values as YAML, the innermost lists and mappings in a line."""
     import yaml
 
     return yaml.safe_dump(
@@ -29,7 +29,7 @@ def yaml_text(document: dict[str, Any]) -> str:
 
 
 def flat_document(document: dict[str, Any]) -> dict[str, Any]:
-    """{dotted key: value} of a resolved config, of every key that decides bytes.
+    """Flatten a resolved config to {dotted key: value}, of the keys that decide bytes.
 
     Whether PNGs are written at all is not among them, so that they can be added later; nor is the
     licence.
@@ -44,7 +44,11 @@ def flat_document(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def config_hash(config: AnyConfig | dict[str, Any]) -> str:
-    """SHA-256 of the keys that decide bytes, in hex; of a config, or of one as it is stored."""
+    """SHA-256, in hex, of the keys that decide bytes.
+
+    Args:
+        config: a config, or one as it is stored (`resolved`).
+    """
     document = config if isinstance(config, dict) else resolved(config)
     text = json.dumps(flat_document(document), sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()

@@ -8,7 +8,7 @@ from radhar_cli.config.schema import Section
 
 
 def json_schema(kind: type[Section]) -> dict[str, Any]:
-    """JSON schema (draft 2020-12) of a config file, each key with the text that stands under it.
+    """Make the JSON schema (draft 2020-12) of a config file, each key with its description.
 
     It knows keys, types and choices; bounds and what sections ask of each other are checked by
     radhar alone.
@@ -25,7 +25,7 @@ def json_schema(kind: type[Section]) -> dict[str, Any]:
 
 
 def _describe(part: dict[str, Any], section: type[Section]) -> None:
-    """Put the description of each key into the schema of a section."""
+    """Add the description of each key to the schema of a section, in place."""
     for key, text in section.descriptions().items():
         if key in part.get("properties", {}):
             part["properties"][key]["description"] = " ".join(text.split())

@@ -14,31 +14,43 @@ Refuse = Callable[[str, object, str], ConfigError]
 
 
 def with_files(config: Config, folder: Path, refuse: Refuse) -> Config:
-    """The config with every file found and its SHA-256 beside it.
+    """Expand the patterns of a config's classes to files, with the SHA-256 of each.
 
     A checksum that stands in the config already must be the file's.
 
     Args:
-        config: whose `classes` may name files.
+        config: config whose `classes` may name files.
+        folder: folder of the config, from which `motion.folder` is seen.
         refuse: makes an error of (key, value, what would be right).
+
+    Returns:
+        The config with every file, and with `motion.folder` as an absolute path.
+
+    Raises:
+        ConfigError: as made by `refuse`: a file is missing, is no motion, is another one than the
+            checksum says, or there are more than MAX_FILES.
     """
     classes = {slug: one for slug, one in config.classes.items() if isinstance(one, FilesConfig)}
     if not classes:
         return config
     root = (folder / (config.motion.folder or "")).resolve()
-    found = {slug: _found(slug, one, root, refuse) for slug, one in classes.items()}
-    count = sum(len(one.files) for one in found.values())
+    classes_with_files = {
+        slug: _find_files(slug, one, root, refuse) for slug, one in classes.items()
+    }
+    count = sum(len(one.files) for one in classes_with_files.values())
     if count > MAX_FILES:
         raise refuse("classes", f"{count} files", f"should have at most {MAX_FILES} files in all")
     motion = config.motion.model_copy(update={"folder": str(root)})
-    return config.model_copy(update={"motion": motion, "classes": {**config.classes, **found}})
+    return config.model_copy(
+        update={"motion": motion, "classes": {**config.classes, **classes_with_files}}
+    )
 
 
-def _found(slug: str, one: FilesConfig, root: Path, refuse: Refuse) -> FilesConfig:
+def _find_files(slug: str, one: FilesConfig, root: Path, refuse: Refuse) -> FilesConfig:
     key = f"classes.{slug}.files"
     skeleton = None if one.skeleton is None else root / one.skeleton
     files: dict[str, str] = {}
-    for path, known in sorted(_expanded(one, root, key, refuse)):
+    for path, known in sorted(_expand_patterns(one, root, key, refuse)):
         try:
             checksum = read_motion(root / path, skeleton).checksum
         except MotionFileError as error:
@@ -51,27 +63,33 @@ def _found(slug: str, one: FilesConfig, root: Path, refuse: Refuse) -> FilesConf
     return one.model_copy(update={"files": files})
 
 
-def _expanded(one: FilesConfig, root: Path, key: str, refuse: Refuse) -> Iterator[tuple[str, str]]:
-    """(path, known checksum or "") of every file."""
-    for written, known in one.files.items():
-        if known or not has_magic(written) or (root / written).is_file():
-            yield written, known
+def _expand_patterns(
+    one: FilesConfig, root: Path, key: str, refuse: Refuse
+) -> Iterator[tuple[str, str]]:
+    """Expand the patterns of a class to (path, known checksum or "") of every file."""
+    for pattern, known in one.files.items():
+        if known or not has_magic(pattern) or (root / pattern).is_file():
+            yield pattern, known
             continue
-        named = Path(*takewhile(lambda part: not has_magic(part), Path(written).parts))
-        paths = sorted(islice(iglob(written, root_dir=root), MAX_FILES + 1))  # noqa: PTH207 - also absolute ones
+        fixed_part = Path(*takewhile(lambda part: not has_magic(part), Path(pattern).parts))
+        paths = sorted(islice(iglob(pattern, root_dir=root), MAX_FILES + 1))  # noqa: PTH207 - also absolute ones
         if not paths:
-            raise refuse(key, written, f"should name files; there are none like it in {root}")
+            raise refuse(key, pattern, f"should name files; there are none like it in {root}")
         if len(paths) > MAX_FILES:
-            raise refuse(key, written, f"should name at most {MAX_FILES} files")
+            raise refuse(key, pattern, f"should name at most {MAX_FILES} files")
         for path in paths:
             if len(path) > MAX_PATH_LENGTH:
                 raise refuse(key, path, f"should have at most {MAX_PATH_LENGTH} characters")
-            refuse_outside(root / path, root / named)
+            refuse_outside(root / path, root / fixed_part)
             yield path, ""
 
 
 def with_folder(config: Config, folder: Path) -> Config:
-    """A stored config whose files lie in a folder, and nowhere else."""
+    """Point a stored config to the folder in which its motion files lie.
+
+    Raises:
+        FolderError: a file of the config would lie outside of the folder.
+    """
     root = folder.resolve()
     for slug, one in config.classes.items():
         if not isinstance(one, FilesConfig):
@@ -87,7 +105,12 @@ def with_folder(config: Config, folder: Path) -> Config:
 
 
 def alone(config: Config, slug: str) -> Config:
-    """A scene's config with the one file that it uses, by its whole path; others keep one each."""
+    """Cut a scene's config down to the motion file that it uses, named by its absolute path.
+
+    Args:
+        config: config of a scene, in which files are numbered.
+        slug: class of the scene; other classes keep their first file.
+    """
     classes = {}
     for name, one in config.classes.items():
         if isinstance(one, FilesConfig):

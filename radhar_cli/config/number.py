@@ -1,7 +1,7 @@
 """A number of a scene: fixed, or drawn from a distribution.
 
-Every form is read through its quantile function, so one uniform variate per field decides the
-draw and two distributions of the same field stay comparable sample by sample.
+Every form is read through its quantile function, so that one uniform variate per key decides the
+draw: two distributions of a key give numbers of the same rank, sample by sample.
 """
 
 from collections.abc import Callable
@@ -26,36 +26,54 @@ MAX_NUMBER = 1e30
 NORMAL_CUT = 6.0
 
 
-def wrong(what: str) -> PydanticCustomError:
-    """The error of a value, which says what would be right."""
+def value_error(what: str) -> PydanticCustomError:
+    """Make the error of a value that a validator refuses.
+
+    Args:
+        what: says what would be right, "should be ..."; braces in it are kept.
+    """
     return PydanticCustomError("wrong", "{what}", {"what": what})
 
 
-def must(hold: Callable[[Any], bool], what: str) -> AfterValidator:
-    """Annotation of a value, or null, that is refused with these words unless this holds of it."""
+def require(hold: Callable[[Any], bool], what: str) -> AfterValidator:
+    """Annotation of a value that is refused unless a condition holds; null is accepted.
+
+    Args:
+        hold: the condition.
+        what: the message, which says what would be right.
+    """
 
     def check(value: Any) -> Any:
         if value is not None and not hold(value):
-            raise wrong(what)
+            raise value_error(what)
         return value
 
     return AfterValidator(check)
 
 
-_FINITE = must(
+_FINITE = require(
     lambda value: abs(value) <= MAX_NUMBER, "should be a finite number of at most 1e30 in size"
 )
 Real = Annotated[float, Field(strict=True, allow_inf_nan=False), _FINITE]
 
 
 class Distribution(BaseModel):
+    """Distribution of a number; the classes below are the forms that a config may have."""
+
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     @property
     def support(self) -> tuple[float, float]:
+        """Smallest and largest value that can be drawn."""
+        raise NotImplementedError
+
+    @property
+    def nominal(self) -> float:
+        """Middle of the distribution, which nominal scenes have."""
         raise NotImplementedError
 
     def quantile(self, u: float) -> float:
+        """Value below which a fraction u, 0 to 1, of the draws lie; uniform unless overridden."""
         low, high = self.support
         return min(low + (high - low) * u, high)
 
@@ -68,7 +86,7 @@ class Uniform(Distribution):
     @model_validator(mode="after")
     def _ordered(self) -> "Uniform":
         if self.uniform[0] > self.uniform[1]:
-            raise wrong("should be {uniform: [low, high]} with low <= high")
+            raise value_error("should be {uniform: [low, high]} with low <= high")
         return self
 
     @property
@@ -93,11 +111,13 @@ class Normal(Distribution):
     @model_validator(mode="after")
     def _sane(self) -> "Normal":
         if self.normal[1] < 0:
-            raise wrong("should be {normal: [mean, sd]} with sd >= 0")
+            raise value_error("should be {normal: [mean, sd]} with sd >= 0")
         low, high = self.support
         mean, sd = self.normal
         if not low <= high or low > mean + NORMAL_CUT * sd or high < mean - NORMAL_CUT * sd:
-            raise wrong("should have min <= max, both within 6 standard deviations of the mean")
+            raise value_error(
+                "should have min <= max, both within 6 standard deviations of the mean"
+            )
         return self
 
     @property
@@ -133,7 +153,7 @@ class Choice(Distribution):
     @model_validator(mode="after")
     def _some(self) -> "Choice":
         if not self.choice:  # Field(min_length=1) also complains where all values are wrong
-            raise wrong("should be {choice: [a, b, ...]} with 1 value or more")
+            raise value_error("should be {choice: [a, b, ...]} with 1 value or more")
         return self
 
     @property
@@ -156,7 +176,7 @@ class Vary(Distribution):
     @model_validator(mode="after")
     def _sane(self) -> "Vary":
         if not 0 <= self.vary[1] <= 1:
-            raise wrong("should be {vary: [nominal, fraction]} with a fraction from 0 to 1")
+            raise value_error("should be {vary: [nominal, fraction]} with a fraction from 0 to 1")
         return self
 
     @property
@@ -170,14 +190,17 @@ class Vary(Distribution):
 
 
 def uniform(low: float, high: float) -> Uniform:
+    """Make ``{uniform: [low, high]}``."""
     return Uniform(uniform=(low, high))
 
 
 def normal(mean: float, sd: float, low: float, high: float) -> Normal:
+    """Make ``{normal: [mean, sd], min: low, max: high}``."""
     return Normal(normal=(mean, sd), min=low, max=high)
 
 
 def vary(middle: float, fraction: float) -> Vary:
+    """Make ``{vary: [middle, fraction]}``."""
     return Vary(vary=(middle, fraction))
 
 
@@ -186,14 +209,14 @@ _FIXED = TypeAdapter(Real).validator
 
 
 def _number(value: Any) -> Any:
-    """A fixed number, or a distribution of the form that a mapping names."""
+    """Validate a fixed number, or a mapping that names the form of a distribution."""
     if isinstance(value, Distribution):
         return value
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return _FIXED.validate_python(value)
     forms = [form for form in FORMS if form in value] if isinstance(value, dict) else []
     if len(forms) != 1:
-        raise wrong(
+        raise value_error(
             "should be a number or one of {uniform: [low, high]}, {normal: [mean, sd]}, "
             "{choice: [a, b, ...]}, {vary: [nominal, fraction]}"
         )
@@ -201,8 +224,8 @@ def _number(value: Any) -> Any:
     return kind.model_validate(value)
 
 
-class _Plainly:
-    """Annotation of a number; for a union Pydantic would make all of it again for every key."""
+class _NumberSchema:
+    """Pydantic schema of a number: one function, where a union would be built anew for each key."""
 
     def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(_number)
@@ -214,17 +237,20 @@ class _Plainly:
         return {"anyOf": [{"type": "number"}, *forms]}
 
 
-Number: TypeAlias = Annotated[float | Uniform | Normal | Choice | Vary, _Plainly()]
+Number: TypeAlias = Annotated[float | Uniform | Normal | Choice | Vary, _NumberSchema()]
 
 
 def support(number: Number | None) -> tuple[float, float]:
-    """Return the smallest and the largest value that a number can take, which is not null."""
+    """Return the smallest and the largest value that a number can take; null is not accepted."""
     assert number is not None
     return (number, number) if isinstance(number, (int, float)) else number.support
 
 
 def nominal(number: Number | None) -> float:
-    """Return the middle of a number, not null: itself, a mid-point, a mean, the middle choice."""
+    """Return the middle of a number: itself, a mid-point, a mean, the middle choice.
+
+    Null is not accepted.
+    """
     assert number is not None
     return float(number) if isinstance(number, (int, float)) else number.nominal
 
@@ -242,11 +268,17 @@ def quantile(number: Number, u: float) -> float:
 
 @dataclass(frozen=True)
 class Bounds:
-    """Annotation of a Number, or null, whose every draw shall lie from low to high."""
+    """Annotation of a Number, or null, every draw of which must lie from low to high.
+
+    Attributes:
+        unit: unit that messages and docs/reference/limits.md give.
+        wording: what messages say instead of "from low to high unit".
+        open_low: whether `low` itself is refused, too.
+    """
 
     low: float
     high: float
-    unit: str = ""  # that messages and docs/reference/limits.md give
+    unit: str = ""
     wording: str = ""
     open_low: bool = False
 
@@ -262,7 +294,7 @@ class Bounds:
         if least < self.low or most > self.high or (self.open_low and least <= self.low):
             wording = self.wording or f"from {self.low:g} to {self.high:g} {self.unit}".rstrip()
             reach = "" if least == most else f" (this one reaches from {least:g} to {most:g})"
-            raise wrong(f"should be {wording}{reach}")
+            raise value_error(f"should be {wording}{reach}")
         return number
 
 

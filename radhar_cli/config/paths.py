@@ -10,7 +10,12 @@ T = TypeVar("T")
 
 
 def changed(value: T, parts: Mapping[str, Any]) -> T:
-    """A config, or part of one, with other values under some of the dotted keys inside it."""
+    """Copy a config, or part of one, with other values under some dotted keys.
+
+    Args:
+        value: a section, or a mapping or tuple inside of one; it stays as it is.
+        parts: {dotted key as seen from there: new value}; new values are not validated.
+    """
     inside = dict[str, dict[str, Any]]()
     for key, part in parts.items():
         name, _, rest = key.partition(".")
@@ -20,19 +25,25 @@ def changed(value: T, parts: Mapping[str, Any]) -> T:
         new = inside.get(name)
         return old if new is None else new[""] if "" in new else changed(old, new)
 
-    found: Any
+    copy: Any
     if isinstance(value, Section):
-        found = value.model_copy(update={n: other(n, getattr(value, n)) for n in inside})
+        copy = value.model_copy(update={n: other(n, getattr(value, n)) for n in inside})
     elif isinstance(value, dict):
-        found = {name: other(name, old) for name, old in value.items()}
+        copy = {name: other(name, old) for name, old in value.items()}
     else:
         assert isinstance(value, tuple)
-        found = tuple(other(str(place), old) for place, old in enumerate(value))
-    return cast(T, found)
+        copy = tuple(other(str(place), old) for place, old in enumerate(value))
+    return cast(T, copy)
 
 
 def each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any:
-    """A value of a config with change(dotted key, number) in place of every number."""
+    """Copy a value of a config with another number in place of every one that may be drawn.
+
+    Args:
+        value: a section, mapping, tuple or number; whole numbers, texts and null stay.
+        key: its dotted key.
+        change: makes the new number, of (dotted key, number).
+    """
     if value is None or isinstance(value, (int, str)):  # whole numbers are no quantities
         return value
     if isinstance(value, tuple):

@@ -52,7 +52,16 @@ ABSENT = {
 def load_config(
     path: str | Path, overrides: Iterable[str] = (), kind: type[Config] = Config
 ) -> Config:
-    """Read a data set's config file and apply overrides such as ``radar.prf_hz=128``.
+    """Read a data set's config file, and its bases, and apply overrides.
+
+    Args:
+        path: YAML file.
+        overrides: texts such as ``radar.prf_hz=128``, or with the option that they stand for,
+            ``--tolerance engine.tolerance_db=-60``.
+        kind: class of the config.
+
+    Returns:
+        The config, in which the files of classes are found and have their checksums.
 
     Raises:
         ConfigError: unreadable file, bad YAML, or a value out of place; the message names the
@@ -73,7 +82,11 @@ def load_config(
 
 
 def as_config(config: Config | str | Path) -> Config:
-    """A config, or the one in a file."""
+    """Return a config as it is, or read the one in a file.
+
+    Raises:
+        ConfigError: it is neither a config nor a path, or as `load_config`.
+    """
     if isinstance(config, (str, Path)):
         return load_config(config)
     if not isinstance(config, Config):
@@ -85,13 +98,19 @@ def as_config(config: Config | str | Path) -> Config:
 def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()) -> S:
     """Read a file that holds one `kind` of config, or its defaults, and apply overrides.
 
-    An override may name the option that it stands for: `--tolerance engine.tolerance_db=-60`.
+    Args:
+        kind: class of the config.
+        path: YAML file; None for the defaults.
+        overrides: as of `load_config`.
+
+    Raises:
+        ConfigError: as `load_config`.
     """
     return _load(kind, path, overrides)[0]
 
 
 def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S, Places, Options]:
-    """The config, the places of its keys, and the options that gave some of them."""
+    """Read a config, the places of its keys, and the options that gave some of them."""
     given = [one.partition(" ")[::2] if one.startswith("--") else ("", one) for one in overrides]
     bases = [text for _, text in given if text.partition("=")[0].strip() == BASE]
     document, places = read_on_bases(path, with_overrides({}, bases))
@@ -109,11 +128,17 @@ def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S
 def validated(
     kind: type[S], document: Any, where: str, places: Places, options: Mapping[str, str] = {}
 ) -> S:
-    """Turn a parsed document into a config, or raise a ConfigError with one line per mistake.
+    """Turn a parsed document into a config.
 
     Args:
+        kind: class of the config.
+        document: plain values, as a YAML file has them.
+        where: file that messages name for keys without a place.
         places: {dotted key: file:line} of what stands in it, or in a file under it.
         options: {dotted key: option} of what an option of the command line says instead.
+
+    Raises:
+        ConfigError: the document is no such config; a line for each of MAX_MISTAKES mistakes.
     """
     try:
         return kind.model_validate(document)
@@ -128,14 +153,18 @@ def validated(
 
 
 def with_overrides(document: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
-    """The document, changed by ``key.sub=value`` texts."""
+    """Change a document, in place, by texts ``key.sub=value``, and return it.
+
+    Raises:
+        ConfigError: a text is no key=value, or its value is no YAML.
+    """
     for override in overrides:
         _override(document, override)
     return document
 
 
 def _override(document: dict[str, Any], override: str) -> str:
-    """Apply `key=value`; return the key."""
+    """Change a document by `key=value`, in place, and return the key."""
     key, equals, text = override.partition("=")
     names = key.strip().split(".")
     if not equals or not all(names):
@@ -191,7 +220,7 @@ def _found(kind: type[BaseModel], error: ValidationError, document: Any) -> Iter
 def _advice_on_number(
     kind: type[BaseModel], names: list[int | str], item: Any, message: str
 ) -> str:
-    """What a text in the place of a number should be: in our unit, or within its range."""
+    """Advice on a text in the place of a number: the number in our unit, or its range."""
     key, value = ".".join(str(name) for name in names), item["input"]
     if not isinstance(value, str) or "number" not in message:
         return message
@@ -245,7 +274,7 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object) -> st
 
 
 def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> str:
-    """Where a value stands: the option that says it, or file and line; and its key."""
+    """Location of a value, "file:line: key", or the option of the command line that gave it."""
     within = [option for name, option in options.items() if _within(name, key)]
     of_options = [option for name, option in options.items() if _within(key, name)]
     of_options = of_options or (within if key not in places else [])

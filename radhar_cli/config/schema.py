@@ -65,14 +65,14 @@ from radhar_cli.config.number import (
     Positive,
     Real,
     Vector,
-    must,
     nominal,
     normal,
+    require,
     support,
     uniform,
+    value_error,
     vary,
     within,
-    wrong,
 )
 from radhar_cli.errors import did_you_mean
 from radhar_cli.light import SPEED_OF_LIGHT
@@ -129,10 +129,10 @@ def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
     for name, number in value.items():
         slug = TWELVE.get(name.strip().lower(), name)
         if slug in numbers:
-            raise wrong(f"should name {slug} once")
+            raise value_error(f"should name {slug} once")
         numbers[slug] = number
     if not numbers:
-        raise wrong("should name one activity or more, or `default`")
+        raise value_error("should name one activity or more, or `default`")
     return numbers
 
 
@@ -293,7 +293,11 @@ class RadarConfig(Section):
 
     @property
     def header(self) -> "BoardHeader":
-        """What `cfg` says."""
+        """Header of the board that `cfg` describes.
+
+        Raises:
+            CaptureError: `cfg` cannot be read.
+        """
         from radhar_cli.config.ti_header import board_header  # which knows this schema
 
         assert self.cfg is not None
@@ -594,22 +598,22 @@ class SequenceConfig(Section):
         if not self.pauses_s:
             object.__setattr__(self, "pauses_s", (0.0,) * count)
         if not len(self.durations_s) == len(self.pauses_s) == count:
-            raise wrong("should have as many durations_s, and pauses_s, as movements")
+            raise value_error("should have as many durations_s, and pauses_s, as movements")
         state = None
         for n, (name, duration) in enumerate(zip(self.sequence, self.durations_s, strict=True)):
             movement = MOVEMENTS.get(name)
             if movement is None:
                 hint = advice_on(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
-                raise wrong(f"{name!r} is not a movement; {hint}")
+                raise value_error(f"{name!r} is not a movement; {hint}")
             if state not in (None, movement.before):
-                raise wrong(
+                raise value_error(
                     f"should be joined at rest: {name} begins {movement.before}, "
                     f"{self.sequence[n - 1]} ends {state}"
                 )
             if duration is not None and not support(duration)[0] >= MIN_MOVEMENT_S:
-                raise wrong(f"should have durations_s from {MIN_MOVEMENT_S} s on")
+                raise value_error(f"should have durations_s from {MIN_MOVEMENT_S} s on")
             if movement.seconds is None and duration is None and n < last:
-                raise wrong(f"should have a duration of {name}, which something follows")
+                raise value_error(f"should have a duration of {name}, which something follows")
             state = movement.after
         return self
 
@@ -669,9 +673,9 @@ class FilesConfig(Section):
     def _known(cls, value: dict[str, str]) -> dict[str, str]:
         for path in value:
             if not path.lower().endswith(SUFFIXES) or len(path) > MAX_PATH_LENGTH or "\0" in path:
-                raise wrong(f"should be paths of {', '.join(SUFFIXES)} files, not {path!r}")
+                raise value_error(f"should be paths of {', '.join(SUFFIXES)} files, not {path!r}")
         if not 0 < len(value) <= MAX_FILES:
-            raise wrong(f"should have 1 to {MAX_FILES} files")
+            raise value_error(f"should have 1 to {MAX_FILES} files")
         return value
 
     @field_validator("joints")
@@ -679,20 +683,20 @@ class FilesConfig(Section):
     def _ours(cls, value: dict[str, str]) -> dict[str, str]:
         for name in value:
             if name not in WANTED:
-                raise wrong(did_you_mean(name, WANTED, f"joints are {', '.join(WANTED)}"))
+                raise value_error(did_you_mean(name, WANTED, f"joints are {', '.join(WANTED)}"))
         return value
 
     @model_validator(mode="after")
     def _one_of_them(self) -> "FilesConfig":
         if self.file is not None and self.file >= len(self.files):
-            raise wrong(f"should have a file below {len(self.files)}, the number of files")
+            raise value_error(f"should have a file below {len(self.files)}, the number of files")
         if self.skeleton is not None:
             if not self.skeleton.lower().endswith(".asf"):
-                raise wrong("should have an .asf file as skeleton")
+                raise value_error("should have an .asf file as skeleton")
             if not any(path.lower().endswith((".amc", "*")) for path in self.files):
-                raise wrong("should have .amc files with a skeleton")
+                raise value_error("should have .amc files with a skeleton")
         if self.section_s is not None and not self.section_s[0] < self.section_s[1]:
-            raise wrong("should have a section_s that begins before it ends")
+            raise value_error("should have a section_s that begins before it ends")
         return self
 
 
@@ -932,7 +936,7 @@ class SavgolConfig(Section):
     @model_validator(mode="after")
     def _fits(self) -> "SavgolConfig":
         if self.frame % 2 == 0 or self.frame <= self.order:
-            raise wrong("should have a frame that is odd and above the order")
+            raise value_error("should have a frame that is odd and above the order")
         return self
 
 
@@ -950,7 +954,7 @@ class HighpassConfig(Section):
     echoes ring."""
 
     def cutoff(self, prf: float) -> float:
-        """The cut-off as a fraction of PRF/2."""
+        """Cut-off of the filter as a fraction of PRF/2, for `prf` pulses a second."""
         return DEFAULT_CUTOFF if self.cutoff_hz is None else 2 * self.cutoff_hz / prf
 
 
@@ -1008,7 +1012,7 @@ class ProcessingConfig(Section):
         numbers = value if isinstance(value, (list, tuple)) and len(value) == 2 else [value]
         good = all(type(one) in (int, float) and 0 <= one <= 1e7 for one in numbers)
         if not good or sorted(numbers) != list(numbers) or numbers == [0]:
-            raise wrong(
+            raise value_error(
                 "should be how far (m) the gate reaches to both sides of the torso, above 0, "
                 "or [from, to], ranges with from <= to; 1e7 at most"
             )
@@ -1102,7 +1106,7 @@ class ImageConfig(Section):
     """Colour map of PNGs and figures, any Matplotlib name; dataset.h5 holds grey levels."""
     doppler_limits_mps: Annotated[
         tuple[Real, Real] | None,
-        must(lambda value: value[0] < value[1], "should be [low, high] with low < high"),
+        require(lambda value: value[0] < value[1], "should be [low, high] with low < high"),
         _SPECTRA,
     ] = None
     """Speeds [low, high] that Doppler maps show, approaching positive; null is all."""
@@ -1115,7 +1119,7 @@ class ImageConfig(Section):
 
             if value not in colormaps:
                 hint = did_you_mean(value, colormaps, "viridis, gray, turbo, jet are some")
-                raise wrong(f"should be a Matplotlib colour map; {hint}")
+                raise value_error(f"should be a Matplotlib colour map; {hint}")
         return value
 
 
@@ -1140,9 +1144,11 @@ class SplitConfig(Section):
     def _whole(self) -> "SplitConfig":
         total = self.train + self.validation + self.test
         if abs(total - 1) > 1e-9:
-            raise wrong(f"should have train + validation + test = 1 (they add up to {total:g})")
+            raise value_error(
+                f"should have train + validation + test = 1 (they add up to {total:g})"
+            )
         if (self.by == "subject") != (self.subjects is not None):
-            raise wrong("should have 'subjects: n' with 'by: subject', and only with it")
+            raise value_error("should have 'subjects: n' with 'by: subject', and only with it")
         return self
 
 
@@ -1223,7 +1229,7 @@ def _known_map(name: str) -> str:
     if name not in (*MAP_NAMES, *FRAME_MAPS) and not is_known(name):
         names = (*MAP_NAMES, *FRAME_MAPS, *(product.name for product in own_products()))
         right = " or ".join(filter(None, (", ".join(map(repr, names[:-1])), repr(names[-1]))))
-        raise wrong(f"should be {right}")
+        raise value_error(f"should be {right}")
     return name
 
 
@@ -1256,7 +1262,7 @@ class RecordedPart(Section):
     def _below(cls, value: str) -> str:
         place = PurePosixPath(value)
         if place.is_absolute() or ".." in place.parts or "\\" in value or not place.name:
-            raise wrong("should be a path below the manifest's folder")
+            raise value_error("should be a path below the manifest's folder")
         return value
 
 
@@ -1281,7 +1287,7 @@ class RecordingsConfig(Section):
     @model_validator(mode="after")
     def _bounded(self) -> "RecordingsConfig":
         if (total := sum(map(self.count, self.parts))) > MAX_WINDOWS:
-            raise wrong(f"should have at most {MAX_WINDOWS} windows; hop_s makes {total}")
+            raise value_error(f"should have at most {MAX_WINDOWS} windows; hop_s makes {total}")
         return self
 
     def count(self, part: RecordedPart) -> int:
@@ -1318,7 +1324,7 @@ def _name_or_choice(value: object) -> object:
     listed = isinstance(names, (list, tuple)) and all(isinstance(one, str) for one in names)
     if isinstance(value, (str, OneOf)) or (listed and names):
         return value
-    raise wrong("should be a slug or label, or {choice: [walking, punching]}")
+    raise value_error("should be a slug or label, or {choice: [walking, punching]}")
 
 
 class PersonConfig(Section):
@@ -1339,7 +1345,7 @@ class PersonConfig(Section):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of all activities that the person may do."""
+        """Names, slugs or labels, of all activities that the person may do."""
         return (self.activity,) if isinstance(self.activity, str) else self.activity.choice
 
 
@@ -1347,17 +1353,17 @@ def _own_classes(value: dict[str, ClassConfig]) -> dict[str, ClassConfig]:
     twelve = {activity.slug for activity in ACTIVITIES}
     for slug, one in value.items():
         if not (is_new_slug(slug) or (isinstance(one, FilesConfig) and slug in twelve)):
-            raise wrong(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
+            raise value_error(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
     if sum(len(one.files) for one in value.values() if isinstance(one, FilesConfig)) > MAX_FILES:
-        raise wrong(f"should have at most {MAX_FILES} files in all")
+        raise value_error(f"should have at most {MAX_FILES} files in all")
     return value
 
 
 def _maps_in_order(value: tuple[str, ...]) -> tuple[str, ...]:
     if not value:
-        raise wrong("should name at least 1 map")
+        raise value_error("should name at least 1 map")
     if len(set(value)) != len(value):
-        raise wrong("should name each map once")
+        raise value_error("should name each map once")
     known = (*MAP_NAMES, *FRAME_MAPS)
     own = [name for name in value if name not in known]
     return (*sorted(set(value) - set(own), key=known.index), *own)
@@ -1444,9 +1450,9 @@ class Config(Section):
         try:
             chosen = [activity_named(str(name), own) for name in value]
         except ValueError as error:
-            raise wrong(str(error)) from None
+            raise value_error(str(error)) from None
         if not chosen or len({a.slug for a in chosen}) != len(chosen):
-            raise wrong("should name at least one activity, each once")
+            raise value_error("should name at least one activity, each once")
         return tuple(a.slug for a in chosen)
 
     @property
@@ -1498,7 +1504,7 @@ class Config(Section):
         return self
 
     def of_person(self, number: int) -> "Config":
-        """This config as it is of one of `people`, 1 the first: their numbers at the top level."""
+        """Config of one of `people`, 1 the first: with their numbers at the top level."""
         one = self.people[number - 1]
         theirs = {"subject": one.subject, "motion": one.motion, "timing": one.timing, "people": ()}
         classes = self.classes if one.classes is None else one.classes
@@ -1612,7 +1618,7 @@ class MeasuredConfig(Section):
 
     @property
     def duration_s(self) -> float:
-        """Of a window."""
+        """Duration of a window, s."""
         return self.recordings.window_s
 
     def samples_of(self, activity: Activity) -> int:
@@ -1629,7 +1635,7 @@ class MeasuredConfig(Section):
 
     @property
     def chosen_activities(self) -> tuple[Activity, ...]:
-        """Those that have windows: of the twelve, of `classes`, then new ones by the alphabet."""
+        """Classes that have windows: of the twelve, of `classes`, then new ones by the alphabet."""
         return tuple(filter(self.samples_of, self.every_class))
 
 
@@ -1681,7 +1687,7 @@ def _fill_from_cfg(c: Config, changed: dict[str, dict[str, Any]]) -> None:
     try:
         board = c.radar.header
     except CaptureError as error:
-        raise wrong(str(error)) from None
+        raise value_error(str(error)) from None
     radar = {
         key: value for key, value in board.numbers.items() if key not in c.radar.model_fields_set
     }

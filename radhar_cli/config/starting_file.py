@@ -50,7 +50,10 @@ split: {train: 0.8, validation: 0.2}
 
 
 def as_commented_yaml(kind: type[Section]) -> str:
-    """The text of a file that reads back as `kind()`."""
+    """Write the text of a config file with every key, its default and its description.
+
+    It reads back as `kind()`.
+    """
     head = HEAD + (NUMBERS if kind is Config else "")
     return re.sub("\n{3,}", "\n\n", "\n".join((head, *_lines(kind), "")))
 
@@ -100,7 +103,7 @@ def _key(name: str, value: object, comment: str) -> Iterator[str]:
 
 
 def as_text(value: object) -> str:
-    """A value in YAML, on a line; numbers as engineers write them, 77e9."""
+    """Return a value as YAML, on a line; numbers as engineers write them, 77e9."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{as_text(k)}: {as_text(v)}" for k, v in value.items()) + "}"
     if isinstance(value, list):
@@ -114,11 +117,15 @@ def as_text(value: object) -> str:
 
 
 def of_board(cfg: str, folder: Path) -> str:
-    """The text of a short config of the TI board that a .cfg is of.
+    """Write the text of a short config for the TI board that a .cfg describes.
 
     Args:
-        cfg: its path, or the name of a radar that radhar knows.
-        folder: of the config, which names it from there.
+        cfg: path of the .cfg, or the name of a radar that radhar knows.
+        folder: folder of the new config, from which the path in it is seen.
+
+    Raises:
+        ConfigError: the .cfg cannot be read.
+        CaptureError: the .cfg is not one that boards of radhar can run.
     """
     text = cfg_text(cfg, Path(), "--radar")
     board = board_header(text, cfg)
@@ -144,7 +151,10 @@ maps: [{maps}]
 
 
 def _maps_of_board(cfg: str, device: str, period_s: float) -> tuple[str, ...]:
-    """Some maps that a board makes; a device that does not fit is told when the config is read."""
+    """Choose maps of MAPS_OF_BOARDS that a board makes; all of them if the device does not fit.
+
+    That it does not fit is said when the config is read.
+    """
     radar = {"device": device, "cfg": cfg}
     given = {"radar": radar, "maps": ["rtm"], "duration_s": max(3.0, 2 * period_s)}
     with suppress(ValidationError):

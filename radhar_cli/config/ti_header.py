@@ -40,7 +40,7 @@ Same: TypeAlias = Annotated[float, Field(ge=0, le=0)]  # chirps that differ are 
 
 
 def _at(*path: str, default: Any = ...) -> Any:
-    """A field whose value lies at that path of the JSON document."""
+    """Field whose value lies at a path of mmWave Studio's JSON document."""
     return Field(default, validation_alias=AliasPath(*path))
 
 
@@ -94,7 +94,15 @@ class _Studio(_Ti):
 
 
 def read_header(path: Path) -> dict[str, Any]:
-    """Settings (`CaptureSettings`) from a TI header."""
+    """Read the settings of a capture (fields of `CaptureSettings`) from a TI header.
+
+    Args:
+        path: mmWave Studio's JSON, or a .cfg of the SDK's demos.
+
+    Raises:
+        CaptureError: the file cannot be read, or describes what is not supported; names file,
+            field, value and what would be right.
+    """
     try:
         if path.suffix.lower() == ".json":
             device = validated(_Studio, _studio(path), str(path), {}).devices[0]
@@ -135,20 +143,22 @@ class _Chirps(NamedTuple):
 
     @property
     def rate_hz(self) -> float:
+        """Rate of the ADC's samples."""
         return self.profile.rate_ksps * 1e3
 
     @property
     def slope_hz(self) -> float:
-        """Per second."""
+        """Slope of the chirp, Hz per second."""
         return self.profile.slope * 1e12
 
     @property
     def interval_s(self) -> float:
+        """Time from the start of a chirp to that of the next: idle time + ramp end time."""
         return (self.profile.idle_us + self.profile.ramp_us) * 1e-6
 
     @property
     def carrier_hz(self) -> float:
-        """At the first sample that is kept."""
+        """Frequency at the first sample that is kept."""
         return self.profile.start_ghz * 1e9 + self.slope_hz * self.profile.adc_us * 1e-6
 
 
@@ -204,7 +214,7 @@ def _timing(device: _Device, path: Path) -> dict[str, Any]:
 
 
 def _period(masks: Sequence[int]) -> int:
-    """After how many chirps the sequence of transmitters repeats."""
+    """Number of chirps after which the sequence of transmitters repeats."""
     count = len(masks)
     return next(
         n
@@ -242,7 +252,8 @@ _COMMANDS = {
 def _demo(text: str, path: str) -> tuple[dict[str, Any], str, dict[str, str]]:
     """A .cfg as (document of mmWave Studio, file, {key of the document: file:line})."""
     rf: dict[str, Any] = {"rlProfiles": [], "rlChirps": []}
-    swap, order, places = "0", "1", dict[str, str]()
+    sample_swap, channel_interleave = "0", "1"
+    places = dict[str, str]()
     for number, line in enumerate(text.splitlines(), 1):
         command, *words = line.partition("%")[0].split() or [""]
         where = f"{path}:{number}"
@@ -253,7 +264,7 @@ def _demo(text: str, path: str) -> tuple[dict[str, Any], str, dict[str, str]]:
         if command == "adcbufCfg":
             if len(words) < 4:
                 raise CaptureError(f"{where}: {command}: should have 4 or 5 numbers")
-            swap, order = words[-3:-1]  # SDK 2 put the sub-frame in front
+            sample_swap, channel_interleave = words[-3:-1]  # SDK 2 put the sub-frame in front
         if command in _COMMANDS:
             (section, *inner), names = _COMMANDS[command]
             values: Any = dict(zip(names, words, strict=False))
@@ -269,8 +280,8 @@ def _demo(text: str, path: str) -> tuple[dict[str, Any], str, dict[str, str]]:
         if not rf.get(section):
             raise CaptureError(f"{path}: {command} is missing")
     raw = {
-        "rlDevLaneEnable_t": {"laneEn": "0xF" if order == "0" else "0x3"},
-        "rlDevDataFmtCfg_t": {"chInterleave": order, "iqSwapSel": swap},
+        "rlDevLaneEnable_t": {"laneEn": "0xF" if channel_interleave == "0" else "0x3"},
+        "rlDevDataFmtCfg_t": {"chInterleave": channel_interleave, "iqSwapSel": sample_swap},
         "rlDevDataPathCfg_t": {"transferFmtPkt0": 1},
     }
     return {"rfConfig": rf, "rawDataCaptureConfig": raw}, path, places
@@ -311,7 +322,15 @@ class BoardHeader:
 
 @lru_cache(maxsize=16)
 def board_header(text: str, where: str = "radar.cfg") -> BoardHeader:
-    """A board from the text of its .cfg."""
+    """Read a board from the text of its .cfg.
+
+    Args:
+        text: lines of the .cfg.
+        where: file or key that messages name.
+
+    Raises:
+        CaptureError: a line cannot be read, or asks for what boards of radhar cannot do.
+    """
     try:
         device = validated(_Device, *_demo(text, where))
     except ConfigError as error:
@@ -427,7 +446,8 @@ def _detection(text: str, where: str, channels: int) -> tuple[Detection, tuple[s
     return Detection(**found), tuple(dict.fromkeys(unknown))
 
 
-def _cfar(found: dict[str, Any], values: list[float], channels: int) -> None:
+def _read_cfar(found: dict[str, Any], values: list[float], channels: int) -> None:
+    """Read cfarCfg, of either axis; of SDK 1 it has the peak grouping, too."""
     along, mode, window, guard, _, cyclic, threshold, *grouping = values
     if mode not in (CA, CAGO, CASO) or not 1 <= window <= 1024 or not 0 <= guard <= 1024:
         raise ValueError
@@ -439,13 +459,15 @@ def _cfar(found: dict[str, Any], values: list[float], channels: int) -> None:
         found["grouping"] = (old[0], bool(grouping[0])) if along else (bool(grouping[0]), old[1])
 
 
-def _grouping(found: dict[str, Any], values: list[float], channels: int) -> None:
+def _read_grouping(found: dict[str, Any], values: list[float], channels: int) -> None:
+    """Read peakGrouping: along which axes peaks are grouped, and the range bins that count."""
     _, ranges, doppler, first, last = values
     found["grouping"] = bool(ranges), bool(doppler)
     found["first_bin"], found["last_bin"] = int(first), int(last)
 
 
-def _bias(found: dict[str, Any], values: list[float], channels: int) -> None:
+def _read_bias(found: dict[str, Any], values: list[float], channels: int) -> None:
+    """Read compRangeBiasAndRxChanPhase: range bias, m, and a complex factor of each channel."""
     found["bias"] = values[0]
     pairs = zip(values[1::2], values[2::2], strict=True)
     coefficients = tuple(complex(*pair) for pair in pairs)[:channels]
@@ -454,17 +476,36 @@ def _bias(found: dict[str, Any], values: list[float], channels: int) -> None:
     found["coefficients"] = () if set(coefficients) == {1 + 0j} else coefficients
 
 
+def _read_beam_forming(found: dict[str, Any], values: list[float], channels: int) -> None:
+    """Read multiObjBeamForming: share of the highest peak from which a second one counts."""
+    enabled, threshold = values
+    found["second_peak"] = threshold if enabled else None
+
+
+def _read_clutter_removal(found: dict[str, Any], values: list[float], channels: int) -> None:
+    """Read clutterRemoval: whether the mean of a frame is taken out."""
+    found["remove_mean"] = bool(values[0])
+
+
+def _read_angle_limits(found: dict[str, Any], values: list[float], channels: int) -> None:
+    """Read aoaFovCfg: least and most azimuth and elevation of points, degrees."""
+    found["azimuth_deg"], found["elevation_deg"] = tuple(values[:2]), tuple(values[2:])
+
+
+def _read_cfar_limits(found: dict[str, Any], values: list[float], channels: int) -> None:
+    """Read cfarFovCfg: least and most range, m, or speed, m/s, of points."""
+    along_doppler, *limits = values
+    found["doppler_mps" if along_doppler else "range_m"] = tuple(limits)
+
+
 _Read: TypeAlias = Callable[[dict[str, Any], list[float], int], None]
 # {command: (how many numbers it has, what reads them)}; SDK 3 has the sub-frame in front as well.
 _LINES: dict[str, tuple[tuple[int, ...], _Read]] = {
-    "cfarCfg": ((7, 8), _cfar),
-    "peakGrouping": ((5,), _grouping),
-    "multiObjBeamForming": ((2,), lambda to, v, _: to.update(second_peak=v[1] if v[0] else None)),
-    "clutterRemoval": ((1,), lambda to, v, _: to.update(remove_mean=bool(v[0]))),
-    "compRangeBiasAndRxChanPhase": ((*range(3, 26, 2),), _bias),
-    "aoaFovCfg": ((4,), lambda to, v, _: to.update(azimuth_deg=(*v[:2],), elevation_deg=(*v[2:],))),
-    "cfarFovCfg": (
-        (3,),
-        lambda to, v, _: to.update({"doppler_mps" if v[0] else "range_m": (*v[1:],)}),
-    ),
+    "cfarCfg": ((7, 8), _read_cfar),
+    "peakGrouping": ((5,), _read_grouping),
+    "multiObjBeamForming": ((2,), _read_beam_forming),
+    "clutterRemoval": ((1,), _read_clutter_removal),
+    "compRangeBiasAndRxChanPhase": ((*range(3, 26, 2),), _read_bias),
+    "aoaFovCfg": ((4,), _read_angle_limits),
+    "cfarFovCfg": ((3,), _read_cfar_limits),
 }

@@ -28,14 +28,19 @@ _VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\D{1,12}
 
 
 def unit_of(key: str) -> str | None:
-    """The last word of a key's last name, where it is a unit: "hz" of `radar.prf_hz`."""
+    """Unit that a dotted key ends with, "hz" for `radar.prf_hz`; None where it has none."""
     named = next((name for name in reversed(key.split(".")) if not name.isdecimal()), "")
     stem, _, last = named.rpartition("_")
     return last if stem and last in UNITS else None
 
 
 def factor_of(written: str, unit: str) -> float | None:
-    """How many of our unit one of the written unit is; None where it is of another kind."""
+    """Factor from a written unit to ours, 1e3 for "kHz" and "hz"; None for another quantity.
+
+    Args:
+        written: unit as a user wrote it.
+        unit: key of UNITS.
+    """
     name, others = UNITS[unit]
     spellings = {name.lower(): 1.0, **{other.lower(): value for other, value in others.items()}}
     if written.lower() in spellings:
@@ -49,7 +54,7 @@ def factor_of(written: str, unit: str) -> float | None:
 
 
 def value_with_unit(key: str, value: object) -> str | None:
-    """What a number with a unit should be, as in `3.5 kHz` of `radar.prf_hz`; None of others."""
+    """Advice on a text such as `3.5 kHz` under `radar.prf_hz`; None for other values and keys."""
     unit = unit_of(key)
     match = _VALUE.fullmatch(value) if isinstance(value, str) else None
     if unit is None or match is None:
@@ -57,11 +62,20 @@ def value_with_unit(key: str, value: object) -> str | None:
     factor = factor_of(match[2], unit)
     if factor is None:
         return None
-    return f"should be {_written(float(match[1]) * factor)}, a number in {UNITS[unit][0]}"
+    return f"should be {_number_text(float(match[1]) * factor)}, a number in {UNITS[unit][0]}"
 
 
 def key_in_our_unit(name: str, value: object, known: Iterable[str]) -> str | None:
-    """Advice on an unknown key that is one of the known in another unit, such as `carrier_ghz`."""
+    """Advice on an unknown key that is a known one in another unit, such as `carrier_ghz`.
+
+    Args:
+        name: last name of the unknown key.
+        value: value under it, which is converted if it is a number.
+        known: names that could be meant.
+
+    Returns:
+        The advice, or None where no known name is meant.
+    """
     stem, _, last = name.rpartition("_")
     for key in known:
         unit = unit_of(f".{key}")
@@ -72,13 +86,13 @@ def key_in_our_unit(name: str, value: object, known: Iterable[str]) -> str | Non
             continue
         ours = UNITS[unit][0]
         if isinstance(value, (int, float)) and not isinstance(value, bool):
-            return f"should be {key}: {_written(value * factor)}, a number in {ours}"
-        return f"should be {key}, {_written(factor)} times the value, in {ours}"
+            return f"should be {key}: {_number_text(value * factor)}, a number in {ours}"
+        return f"should be {key}, {_number_text(factor)} times the value, in {ours}"
     return None
 
 
-def _written(number: float) -> str:
-    """A number with a power of 1000 where it is large or small, as in 24e9."""
+def _number_text(number: float) -> str:
+    """Write a number, with a power of 1000 where it is large or small, as in 24e9."""
     if number == 0 or 1e-3 <= abs(number) < 1e6:
         return f"{number:.10g}"
     power = 3 * floor(log10(abs(number)) / 3)

@@ -29,7 +29,18 @@ _WORDS = {
 
 
 def parse_yaml(text: str, where: str) -> tuple[Any, Lines]:
-    """The value of one YAML document, and {dotted key: line}."""
+    """Parse one YAML document.
+
+    Args:
+        text: the document.
+        where: file or option that messages name.
+
+    Returns:
+        The value, None for an empty document, and {dotted key: line}.
+
+    Raises:
+        ConfigError: the text is not YAML, has tags, repeats keys, or is too deep or too long.
+    """
     lines: Lines = {}
     try:
         node = _Loader(text).get_single_node()

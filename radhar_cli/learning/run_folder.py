@@ -18,7 +18,7 @@ from safetensors.torch import save as safetensors_bytes
 from torch import Tensor, nn
 from typing_extensions import TypedDict
 
-from radhar_cli.config.number import must, wrong
+from radhar_cli.config.number import require, value_error
 from radhar_cli.config.schema import Section
 from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
@@ -68,7 +68,7 @@ class RunMetadata(Section):
     classes: Annotated[
         tuple[Name, ...],
         Field(min_length=1, max_length=MAX_CLASSES),
-        must(lambda value: len(set(value)) == len(value), "should name each class once"),
+        require(lambda value: len(set(value)) == len(value), "should name each class once"),
     ]
     size: tuple[Side, Side]  # (height, width)
     map: Annotated[Name, Field(pattern=r"^[^/\\]*[^/\\.][^/\\]*$")] | None
@@ -94,9 +94,9 @@ class RunMetadata(Section):
     @model_validator(mode="after")
     def _fits(self) -> "RunMetadata":
         if not len(self.mean) == len(self.sd) in (1, self.channels):
-            raise wrong("should have a mean and an sd for each channel")
+            raise value_error("should have a mean and an sd for each channel")
         if self.model != self.settings.model or (self.finds_joints and not self.joints):
-            raise wrong("should be that of its config")
+            raise value_error("should be that of its config")
         return self
 
     @property

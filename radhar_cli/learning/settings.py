@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from radhar_cli.config.number import wrong
+from radhar_cli.config.number import value_error
 from radhar_cli.config.schema import Section
 
 
@@ -15,7 +15,7 @@ def _auto_or(least: int) -> BeforeValidator:
     def check(value: object) -> object:
         is_whole_number = isinstance(value, int) and not isinstance(value, bool) and value >= least
         if value != "auto" and not is_whole_number:
-            raise wrong(f"should be auto or a whole number of at least {least}")
+            raise value_error(f"should be auto or a whole number of at least {least}")
         return value
 
     return BeforeValidator(check)
@@ -159,11 +159,11 @@ class TrainConfig(Section):
     @model_validator(mode="after")
     def _fits(self) -> "TrainConfig":
         if self.warmup_epochs > self.epochs:
-            raise wrong("should have warmup_epochs of at most epochs")
+            raise value_error("should have warmup_epochs of at most epochs")
         if self.target == "skeleton" and self.model not in KIND_OF_SEQUENCES:
-            raise wrong("should have model: cloudnet or framenet for target: skeleton")
+            raise value_error("should have model: cloudnet or framenet for target: skeleton")
         if self.augment != AugmentConfig() and self.model in KIND_OF_SEQUENCES:
-            raise wrong("should have no augment, which is of images")
+            raise value_error("should have no augment, which is of images")
         if self.augment != AugmentConfig() and self.input != "gray":
-            raise wrong("should have input: gray for augment, which changes grey levels")
+            raise value_error("should have input: gray for augment, which changes grey levels")
         return self

@@ -23,10 +23,11 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
     """Write /cube, /range_doppler and so on, /points, /points_start, /points_person, /skeleton.
 
     Args:
-        file: open for writing.
-        frames: {name: FrameMaps}, `cube`, `cloud`, `skeletons`, `points_person`, as there are.
-        board: whose frames.
-        config: of the scene, or of the processing of a recording.
+        file: HDF5 file, open for writing.
+        frames: {name: product} of FrameMaps, `cube`, `cloud`, `skeletons`, `points_person`,
+            `points_kind`, as far as they were made.
+        board: board that the frames are of.
+        config: config of the scene, or of the processing of a recording.
     """
     for name, one in frames.items():
         if isinstance(one, FrameMaps):

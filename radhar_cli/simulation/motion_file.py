@@ -22,9 +22,17 @@ _HIP = JOINTS.index("hip")
 
 
 def sampled(motion: Motion, t: Float) -> Float:
-    """Positions [frames, 15, 3] (m) at times t: thirteen joints, then right and left hip joint.
+    """Sample positions of the thirteen joints and of the right and left hip joint.
 
-    Where a motion knows no hip joints they are at the hip. ConfigError of other joints.
+    Args:
+        motion: motion of the thirteen joints; where it knows no hip joints they are at the hip.
+        t: times [frames], s.
+
+    Returns:
+        Positions [frames, 15, 3], m.
+
+    Raises:
+        ConfigError: the motion has other joints.
     """
     if motion.names != JOINTS:
         raise ConfigError("only motions of the thirteen joints can be written as BVH")
@@ -43,7 +51,17 @@ def scene_bvh(
     nominal: bool = False,
     rate: float = 120.0,
 ) -> tuple[str, int]:
-    """The BVH file of one scene's motion, and its number of frames.
+    """Write the motion of one scene's main person as BVH.
+
+    Args:
+        config: the config, or its path.
+        activity: slug, label or Activity; None where the config has but one.
+        index: number of the sample within its class.
+        nominal: whether every number is at its middle instead of drawn.
+        rate: frames per second.
+
+    Returns:
+        Text of the BVH file, and its number of frames.
 
     Raises:
         ConfigError: unknown activity, too many frames, or a motion of other joints.

@@ -33,7 +33,7 @@ FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, *DRAWN)
 
 
 def write_scene(simulation: Simulation, path: Path) -> None:
-    """Write scene.h5."""
+    """Write a simulated scene to scene.h5 at a path."""
     with replacing(path) as unfinished, new_hdf5(unfinished, path) as (file, _):
         for name, power_map in simulation.maps.items():
             write_map(file, name, power_map)
@@ -49,7 +49,7 @@ def write_scene(simulation: Simulation, path: Path) -> None:
 
 
 def write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
-    """Write /maps/<name> with its axes."""
+    """Write a map to /maps/<name>, and its axes to /axes/<name>."""
     stored = in_single(power_map.shown)
     dataset = file.create_dataset(f"maps/{name}", data=stored, compression="gzip")
     for dimension, axis in enumerate((power_map.rows, power_map.columns)):
@@ -79,7 +79,7 @@ def _write_truth(file: h5py.File, simulation: Simulation) -> None:
 
 
 def _write_person(group: h5py.Group, truth: Truth, motion: Motion) -> None:
-    """Write the truth of one person."""
+    """Write the truth of one person to a group."""
     meant: dict[str, dict[str, Any]] = {
         "time": {"unit": "s"},
         "positions": {"unit": "m", "axes": ["pulse", "joint", "x y z"]},
@@ -96,7 +96,7 @@ def _write_person(group: h5py.Group, truth: Truth, motion: Motion) -> None:
 
 
 def describe(simulation: Simulation) -> dict[str, Any]:
-    """Every parameter with its unit, warnings and entropies, as plain values."""
+    """Describe a scene for scene.json: every parameter with its unit, warnings and entropies."""
     waveform, scene, kind = simulation.waveform, simulation.scene, simulation.config.engine.kind
     fallback = kind == "direct" and simulation.accuracy is None
     return {
@@ -123,7 +123,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
 
 
 def _motion_file(motion: Motion) -> dict[str, Any] | None:
-    """Which part of which file was the motion; null where a model made it."""
+    """Describe which part of which file was the motion; None where a model made it."""
     if not isinstance(motion, FileMotion):
         return None
     return {
@@ -138,7 +138,7 @@ def _motion_file(motion: Motion) -> dict[str, Any] | None:
 
 
 def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
-    """How the direct engine made the signal, and its measured error; null where nothing errs."""
+    """Describe how the direct engine made the signal, and its measured error; None for the cube."""
     accuracy = simulation.accuracy
     if accuracy is None:
         return None

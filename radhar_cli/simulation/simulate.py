@@ -115,10 +115,12 @@ class Simulation:
 
     @property
     def config(self) -> Config:
+        """Config of the scene, in which every number is fixed."""
         return self.scene.config
 
     @property
     def activity(self) -> Activity:
+        """Activity of the sample's main person."""
         return self.scene.activity
 
 
@@ -218,7 +220,7 @@ def _is_empty(product: object) -> bool:
 
 
 def _paths(scene: Scene, motions: tuple[Motion, ...], recorded: Results) -> PathTruth:
-    """All paths at the pulses that a range-time map shows."""
+    """Evaluate all paths at the pulses that a range-time map shows."""
     w: Waveform = recorded["waveform"]
     shown = shown_pulses(w.n_pulses, scene.config.image.size_px[1])
     seen = (recorded["antennas"], recorded["wall"], w, reflectors_of(scene))
@@ -226,7 +228,9 @@ def _paths(scene: Scene, motions: tuple[Motion, ...], recorded: Results) -> Path
 
 
 def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> Scene:
-    """Sample `index` as a data set has it, drawn again where `on_invalid` says so; or the middle.
+    """Draw sample `index` as a data set has it, again where `on_invalid` says so.
+
+    With `nominal` every number is at its middle instead.
 
     Raises:
         SceneError: no scene inside the model is drawn.
@@ -239,12 +243,16 @@ def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> S
 
 
 def _fitting_maps(config: Config) -> tuple[str, ...]:
-    """The maps that the radar of a config makes with its processing."""
+    """Find the maps that the radar of a config makes with its processing."""
     return tuple(one for one in possible_maps(config) if not problems_of_maps(config, (one,)))
 
 
 def map_names(chosen: list[str], config: Config) -> tuple[str, ...]:
-    """The maps of these names, in our order; `all` are those that the radar makes.
+    """Check names of maps, and put them in the order of the schema.
+
+    Args:
+        chosen: names; `all` alone is every map that the radar makes.
+        config: config of the radar.
 
     Raises:
         ConfigError: there is no map of that name.
@@ -268,9 +276,19 @@ def raw_echo(
     wall: Wall | None,
     receiver: tuple[Impairment, ...],
 ) -> Complex | Float:
-    """s_noisy[n, m] [N_ADC, M] as an ADC would record it: body, noise, leakage and wall echo.
+    """Compute the beat matrix as an ADC would record it: body, noise, leakage and wall echo.
 
-    Of a receiver of real samples (`radar.output`) it is the in-phase channel.
+    Args:
+        scene: the scene; its wall must keep 5 cm from the antennas' midpoint.
+        paths: paths of the body.
+        waveform: chirps and pulses.
+        antennas: antennas, which leak.
+        wall: wall, which echoes by itself, or None.
+        receiver: impairments, noise among them.
+
+    Returns:
+        s_noisy[n, m] [N_ADC, M]; its in-phase channel for a receiver of real samples
+        (`radar.output`).
 
     Raises:
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
@@ -295,7 +313,18 @@ def raw_profiles(
     wall: Wall | None,
     receiver: tuple[Impairment, ...],
 ) -> Float:
-    """Profiles [samples, M] of an impulse radar as recorded: body, noise, leakage and wall echo.
+    """Compute range profiles as an impulse radar would record them.
+
+    Args:
+        scene: the scene; its wall must keep 5 cm from the antennas' midpoint.
+        profiles: profiles of the body alone [samples, M].
+        waveform: pulses.
+        antennas: antennas, which leak.
+        wall: wall, which echoes by itself, or None.
+        receiver: impairments, noise among them.
+
+    Returns:
+        Profiles [samples, M] of body, noise, leakage and wall echo.
 
     Raises:
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
@@ -347,11 +376,15 @@ RAW_PROFILES = Product(
 
 
 def activity_of(asked: str | Activity | None, config: Config) -> Activity:
-    """The activity, with its number in this config where it is a user-defined class.
+    """Find an activity, with its number in a config where it is a user-defined class.
+
+    Args:
+        asked: slug, label or Activity; None where the config has but one.
+        config: config whose classes are known, too.
 
     Raises:
-        ConfigError: there is none of that name, none is named and the config has several, or it is
-            neither name nor Activity.
+        ConfigError: there is no such activity, none is named and the config has several, or
+            `asked` is neither name nor Activity.
     """
     chosen = config.chosen_activities
     if asked is None and len(chosen) > 1:

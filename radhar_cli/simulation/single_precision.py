@@ -10,7 +10,7 @@ LEAST, MOST = float(np.finfo(np.float32).tiny) * 1e15, float(np.finfo(np.float32
 
 
 def in_single(values: NDArray[Any]) -> NDArray[Any]:
-    """The values as float32 or complex64, or as they are where the largest is beyond these."""
+    """Convert values to float32 or complex64, unless the largest lies beyond LEAST or MOST."""
     largest = float(np.abs(values).max(initial=0.0))
     if largest > 0 and not LEAST <= largest <= MOST:
         return values

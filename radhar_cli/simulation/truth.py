@@ -25,33 +25,51 @@ BLOCK = 2**14  # pulses at once
 
 @dataclass(frozen=True)
 class Truth:
-    """Kinematics at every pulse, or at other times."""
+    """Kinematics of one person at every pulse, or at other times.
 
-    time: Float = field(repr=False)  # t_m [M], s
-    positions: Float = field(repr=False)  # [M, I, 3], m
-    # half the rate of the two-way path [M, I], m/s, positive receding
+    Attributes:
+        time: times t_m [M], s.
+        positions: positions of the scatterers [M, I, 3], m.
+        radial_velocity: half the rate of the two-way path [M, I], m/s, positive receding.
+        doppler: -f0 dtau/dt [M, I], Hz, with the wall, before aliasing.
+        phase_label: number in `phases` of the movement that is under way [M].
+        phases: names of the movements within the activity.
+        hip_joints: where thighs begin, right and left [M, 2, 3], m; None where it is the hip.
+    """
+
+    time: Float = field(repr=False)
+    positions: Float = field(repr=False)
     radial_velocity: Float = field(repr=False)
-    doppler: Float = field(repr=False)  # -f0 dtau/dt [M, I], Hz, with the wall, before aliasing
-    phase_label: Levels = field(repr=False)  # number in `phases` of what is under way [M]
-    phases: tuple[str, ...]  # names of the movements within the activity
-    # where thighs begin, right and left [M, 2, 3], m; None where it is the hip
+    doppler: Float = field(repr=False)
+    phase_label: Levels = field(repr=False)
+    phases: tuple[str, ...]
     hip_joints: Float | None = field(default=None, repr=False)
 
 
 class PathTruth(NamedTuple):
-    """Every path of a scene: of everybody, straight and by way of the room."""
+    """Every path of a scene: of everybody, straight and by way of the room.
 
-    time: Float  # of the pulses that a range-time map shows [M], s
-    delay: Float  # [I, M], s
-    amplitude: Float  # [I, M], for unit transmit power
-    kind: list[str]  # faces of the leg of the transmitter/of the receiver [I]
-    person: Index  # number [I]; -1 is what stands in the room
-    scatterer: Index  # number [I]
-    bounces: Index  # of both legs [I]
+    Attributes:
+        time: times of the pulses that a range-time map shows [M], s.
+        delay: two-way delays [I, M], s.
+        amplitude: amplitudes [I, M], for unit transmit power.
+        kind: faces that the transmitter's leg and the receiver's leg meet, as "floor/-" [I].
+        person: number of the person [I]; -1 is what stands in the room.
+        scatterer: number of the scatterer among those of the person [I].
+        bounces: number of faces that both legs meet [I].
+    """
+
+    time: Float
+    delay: Float
+    amplitude: Float
+    kind: list[str]
+    person: Index
+    scatterer: Index
+    bounces: Index
 
 
 def path_truth(sources: list[Whose], t: Float) -> PathTruth:
-    """Evaluate all paths at times t [M] (s)."""
+    """Evaluate the paths of all sources, I in all, at times t [M] (s)."""
     paths = [one.source(t) for one in sources]
     counts = [len(one.delay) for one in paths]
     first = Counter[tuple[int, tuple[Way, Way]]]()  # scatterer of a person by these legs
@@ -79,7 +97,15 @@ def truth(
     waveform: Waveform,
     t: Float | None = None,
 ) -> Truth:
-    """Evaluate the kinematics of all scatterers at times t [M] (s), at every pulse if None."""
+    """Evaluate the kinematics of all scatterers of a motion.
+
+    Args:
+        motion: motion of the scatterers.
+        antennas: antennas that velocities and Dopplers are seen by.
+        wall: wall that the Doppler includes, or None.
+        waveform: waveform whose f0 scales the Doppler.
+        t: times [M], s; None for every pulse of the waveform.
+    """
     if t is None:
         t = waveform.times(np.arange(waveform.n_pulses, dtype=float))
     count, joints = t.size, len(motion.names)

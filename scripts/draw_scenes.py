@@ -145,7 +145,7 @@ def ringing(path: Path) -> None:
     away = np.linspace(-0.5, 2.5, 600)
     turn = np.exp(4j * np.pi / SPEED_OF_LIGHT * f * away[:, None])
     for name, wall in WALLS.items():
-        left = np.abs(turn @ (np.hanning(f.size) * wall.passed(f, np.ones(1)) ** 2))
+        left = np.abs(turn @ (np.hanning(f.size) * wall.transfer_function(f, np.ones(1)) ** 2))
         panels[2].plot(away, 20 * np.log10(left / left.max()), label=name)
     panels[2].set(title="a point behind the wall, Hann (dB)", xlabel="range behind it (m)")
     panels[2].set(ylim=(-60, 2))

@@ -116,7 +116,9 @@ def test_a_raw_echo_has_its_reflection() -> None:
     still = leakage(made.antennas)
     leaked = beat_matrix(np.array([[still.delay]]), np.array([[still.amplitude]]), made.waveform)
     change = (made.beat - leaked).mean(axis=1) / (plain.beat - leaked).mean(axis=1)
-    reflected = made.wall.layers.scattered(made.waveform.frequencies(), np.ones(())).reflected
+    reflected = made.wall.layers.scattering_coefficients(
+        made.waveform.frequencies(), np.ones(())
+    ).reflected
     right = reflected / abs(made.wall.reflection)
     assert np.abs(change - right).max() < 0.1  # the person's echo is there, too
 

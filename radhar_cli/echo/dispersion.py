@@ -74,7 +74,9 @@ class Passed:
         crossed = np.isfinite(x)
         if self.coefficients is None:
             f = self.f.reshape(-1, *(1,) * x.ndim)
-            return np.where(crossed, self.layers.passed(f, np.where(crossed, cosine, 1)), 1)
+            return np.where(
+                crossed, self.layers.transfer_function(f, np.where(crossed, cosine, 1)), 1
+            )
         terms = chebyshev.chebvander(np.where(crossed, x, 0).ravel(), len(self.coefficients) - 1)
         h = (terms @ self.coefficients.view(float)).view(complex).T.reshape(-1, *x.shape)
         return np.where(crossed, h, 1)
@@ -86,7 +88,7 @@ def _polynomial(layers: Layers, f: Float, low: float, high: float) -> Complex | 
     for degree in DEGREES:
         x = chebyshev.chebpts1(degree)
         cosine = low + (x + 1) * (high - low) / 2
-        h = layers.passed(f, cosine[:, None])
+        h = layers.transfer_function(f, cosine[:, None])
         found = 2 / degree * chebyshev.chebvander(x, degree - 1).T @ h
         found[0] /= 2
         small = np.abs(found).max(axis=1) < ROUNDING * np.abs(found).max()

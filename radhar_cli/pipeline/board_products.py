@@ -38,7 +38,7 @@ from radhar_cli.processing.points import Cloud, board_points
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.board import Board
-from radhar_cli.radar.room import Way
+from radhar_cli.radar.room import Leg
 from radhar_cli.radar.wall import Wall
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.noise import WhiteNoise
@@ -148,7 +148,10 @@ def channels(
     """The paths of every virtual channel; all are of the same motions, evaluated once."""
     once = tuple(cache_motion(motion) for motion in motions)
     make = partial(sources_of, scene, once, first=board.antennas(*board.pairs[0]))
-    return [together(make(board.antennas(k, r), wall, board.seen_as, room)) for k, r in board.pairs]
+    return [
+        together(make(board.antennas(k, r), wall, board.path_waveform, room))
+        for k, r in board.pairs
+    ]
 
 
 def _snr_channels(
@@ -157,7 +160,7 @@ def _snr_channels(
     """The paths of every virtual channel whose power is P_s."""
     make = partial(snr_paths, c, scene, (cache_motion(motions[0]),))
     first = board.antennas(*board.pairs[0])
-    return [make(board.antennas(k, r), wall, board.seen_as, first) for k, r in board.pairs]
+    return [make(board.antennas(k, r), wall, board.path_waveform, first) for k, r in board.pairs]
 
 
 def _echo(c: Config, sources: list[PathSource], board: Board, scene: Scene) -> Echo:
@@ -238,7 +241,7 @@ def owners_of(cloud: Cloud, skeletons: Skeletons, board: Board, scene: Scene) ->
     return owners
 
 
-def _apparent(skeletons: Skeletons, board: Board, legs: tuple[Way, Way]) -> Float:
+def _apparent(skeletons: Skeletons, board: Board, legs: tuple[Leg, Leg]) -> Float:
     """Joints as skeletons have them, about where echoes by way of faces seem to come from.
 
     The range is half of both legs. TI's arrays have their receivers in a row and a raised

@@ -21,7 +21,7 @@ from radhar_cli.pipeline.segment_paths import Points, SegmentPaths, draw_points,
 from radhar_cli.pipeline.surface_paths import SurfacePaths, draw_surface
 from radhar_cli.radar.person_shadow import HALF_WIDTH_M
 from radhar_cli.radar.propagation import Antennas
-from radhar_cli.radar.room import Way
+from radhar_cli.radar.room import Leg
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Person, Scene
@@ -34,7 +34,7 @@ class Whose(NamedTuple):
 
     source: PathSource
     person: int  # 0 is the sample's own, -1 what stands in the room
-    legs: tuple[Way, Way]  # of transmitter and receiver
+    legs: tuple[Leg, Leg]  # of transmitter and receiver
 
 
 def together(sources: list[Whose]) -> PathSource:
@@ -92,14 +92,14 @@ def sources_of(
         others = tuple(shade for at, shade in enumerate(shades) if at != number)
         person = people[number].number if own else number
         straight = [ShadowedPaths(one, others, waveform.fc) if others else one for one in theirs]
-        sources += [Whose(one, person, antennas.ways) for one in straight]
+        sources += [Whose(one, person, antennas.legs) for one in straight]
         sources += [
-            Whose(replace(one, antennas=seen), person, seen.ways)
+            Whose(replace(one, antennas=seen), person, seen.legs)
             for seen in images
             for one in theirs
         ]
     if room is not None:
-        sources.append(Whose(MotionPaths(room, antennas, waveform.fc, wall), -1, antennas.ways))
+        sources.append(Whose(MotionPaths(room, antennas, waveform.fc, wall), -1, antennas.legs))
     return sources
 
 

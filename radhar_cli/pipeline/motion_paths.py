@@ -10,7 +10,7 @@ from radhar_cli.arrays import Float, Index
 from radhar_cli.echo.paths import Paths, PathSource, Through
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.reflectors import Reflectors
-from radhar_cli.radar.person_shadow import left_of, light_past
+from radhar_cli.radar.person_shadow import field_behind_person, limit_shadow
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
 from radhar_cli.radar.transmission import pass_wall, wall_delay
 from radhar_cli.radar.wall import Wall
@@ -130,8 +130,10 @@ class ShadowedPaths:
         for shade in self.shades:
             place, legs = shade.place(t), np.ones(p.shape[1:])
             for antenna in (self.source.antennas.tx, self.source.antennas.rx):
-                legs *= light_past(p, antenna, place, shade.half_width, shade.top, wavelength)
-            left *= left_of(legs)
+                legs *= field_behind_person(
+                    p, antenna, place, shade.half_width, shade.top, wavelength
+                )
+            left *= limit_shadow(legs)
         return paths._replace(amplitude=paths.amplitude * left[which])
 
 

@@ -28,7 +28,7 @@ from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.layers import Layer, Layers
 from radhar_cli.radar.materials import permittivity
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
-from radhar_cli.radar.room import FACES, Box, Face, Way, names_of, ways
+from radhar_cli.radar.room import FACES, Box, Face, Leg, names_of, reflected_legs
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.randomness import NOISE, stream
@@ -188,17 +188,17 @@ def box_of(scene: Scene) -> Box | None:
     return None if scene.room.faces is None or box is None else Box(box.x, box.y, box.height)
 
 
-def ways_of(scene: Scene) -> list[tuple[Way, Way]]:
+def ways_of(scene: Scene) -> list[tuple[Leg, Leg]]:
     """Ways of transmitter and receiver by faces of the room, or by the wall behind people."""
     radar, room = scene.radar, scene.room
     if room.back_wall_m is not None:
         left = 10 ** (room.back_wall_reflection_db / 20)
-        way = Way((Face("back", FACES["back"], room.back_wall_m, fixed=left),))
+        way = Leg((Face("back", FACES["back"], room.back_wall_m, constant_reflection=left),))
         return [(way, way)]
     if room.faces is None:
         return []
     box, faces = box_of(scene), []
-    at = {"floor": 0.0} if box is None else box.at
+    at = {"floor": 0.0} if box is None else box.face_offsets
     normal = FACES["floor" if radar.polarisation == "vertical" else "left"]
     for name, material in room.faces.given.items():
         parallel, fixed = FACES[name] != normal, None
@@ -207,7 +207,7 @@ def ways_of(scene: Scene) -> list[tuple[Way, Way]]:
         eps = _permittivity(material, radar.carrier_hz + radar.bandwidth_hz / 2)
         faces.append(Face(name, FACES[name], at[name], eps, parallel, fixed))
     outside = min(p[0] for p in antennas_of(scene).places) < at.get("front", -inf)
-    return list(ways(faces, scene.config.room.order, outside))
+    return list(reflected_legs(faces, scene.config.room.order, outside))
 
 
 def kinds_of(config: Config) -> list[str]:

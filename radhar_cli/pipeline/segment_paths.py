@@ -162,9 +162,9 @@ class SegmentPaths(OfMotion):
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s), segment by segment."""
-        placed, ways = self.body.at(t), self.antennas.ways
+        placed, legs = self.body.at(t), self.antennas.legs
         delay, strength = np.empty((2, self._first[-1], t.size))
-        if self.compiled and self.wall is None and ways[0] == ways[1]:
+        if self.compiled and self.wall is None and legs[0] == legs[1]:
             sizes, hide = self._sizes[:, :, 0].T.copy(), np.array(self._occluders, np.intp)
             scene, made = self._seen_at(self._middle), (delay, strength)
             fill = machine_code(ellipsoid.fill_paths, *ellipsoid.CALLED)
@@ -222,7 +222,7 @@ class SegmentPaths(OfMotion):
         cosine: Float | None,
     ) -> None:
         """Fill in delays and amplitudes [I, block] of all points, and angles at a layered wall."""
-        if self.antennas.ways[0] == self.antennas.ways[1]:
+        if self.antennas.legs[0] == self.antennas.legs[1]:
             frames, seen = self._seen(placed, self._middle)
         else:
             frames, seen = self._seen(placed, self.antennas.tx)

@@ -95,7 +95,7 @@ class SurfacePaths(OfMotion):
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s)."""
-        places = tuple(way.antenna(self._centre()) for way in self.antennas.ways)
+        places = tuple(way.antenna(self._centre()) for way in self.antennas.legs)
         p, field_ = cached_result(
             self.motion, ("surface", places), t, lambda: self._seen(t, *places)
         )

@@ -25,13 +25,18 @@ Places: TypeAlias = tuple[tuple[float, float], ...]  # (left, up) in half wavele
 
 @dataclass(frozen=True)
 class Array:
-    """Antenna elements of a device."""
+    """Antenna elements of a device.
 
-    # tx, rx: places of the elements
+    Attributes:
+        tx: Places of the transmitters.
+        rx: Places of the receivers.
+        rx_sign: +1, or -1 for a receiver that is fed the other way round.
+        half_power_deg: Half-power half-widths (azimuth, elevation) of an element, one way.
+    """
+
     tx: Places
     rx: Places
-    rx_sign: tuple[float, ...]  # +1, or -1 of a receiver that is fed the other way round
-    # half-power half-widths (azimuth, elevation) of an element, one way
+    rx_sign: tuple[float, ...]
     half_power_deg: tuple[float, float]
 
 
@@ -56,27 +61,35 @@ DEVICES: Mapping[str, Array] = MappingProxyType(
         ),
     }
 )
-MAX_SIDELOBE = 0.3  # of a row that tells targets apart, over its main lobe
+MAX_SIDELOBE = 0.3  # highest sidelobe, over the main lobe, of a row that tells targets apart
 EVEN = (1000.0, 1000.0)  # half-power half-widths (degree) of an array by hand: no pattern
 
 
 def longest_rows(places: Sequence[Sequence[float]] | Float, axis: int) -> list[list[int]]:
-    """Elements along an axis, ordered: of each of the rows that have the most of them.
+    """Longest rows of elements along an axis.
 
-    Of elements at the same place the first counts.
+    Args:
+        places: (left, up) of the elements [V, 2].
+        axis: 0 for rows to the left, 1 for columns upwards.
+
+    Returns:
+        Numbers of the elements of each row that has the most of them, in the order of the axis; of
+        elements at the same place the first counts.
     """
     rows: dict[float, dict[float, int]] = {}
     for v, place in enumerate(np.round(places, 6).tolist()):
         rows.setdefault(place[1 - axis], {}).setdefault(place[axis], v)
-    most = max(map(len, rows.values()))
-    return [[row[at] for at in sorted(row)] for row in rows.values() if len(row) == most]
+    row_length = max(map(len, rows.values()))
+    return [
+        [row[place] for place in sorted(row)] for row in rows.values() if len(row) == row_length
+    ]
 
 
 def sidelobe(row: Sequence[float] | Float) -> float:
     """Power of the highest sidelobe over the main lobe of a row of elements that looks ahead.
 
     Args:
-        row: places of the elements [n], half wavelengths.
+        row: Places of the elements [n], half wavelengths.
 
     Returns:
         1 where a grating lobe is as high as the main lobe, 0 without sidelobes.
@@ -89,99 +102,118 @@ def sidelobe(row: Sequence[float] | Float) -> float:
 
 @dataclass(frozen=True)
 class Board:
-    """A board as its chirp profile, its frames and its place in the scene have it."""
+    """A board with its chirp profile, its frames and its pose in the scene.
 
-    array: Array  # its elements
-    start: float  # frequency at which a ramp starts, Hz
-    fc: float  # frequency at the first sample that is kept, Hz
-    slope: float  # K, Hz/s
-    adc_rate: float  # fs, Hz
-    samples: int  # of a chirp
-    slot: float  # from chirp to chirp, s
-    order: tuple[int, ...]  # numbers of the transmitters, in their order within a loop
-    receivers: tuple[int, ...]  # numbers of those that are on
-    # loops, frames: of a frame; of the recording
+    Attributes:
+        array: Elements of the device.
+        start: Frequency at which a ramp starts, Hz.
+        fc: Frequency at the first sample that is kept, Hz.
+        slope: Slope K of a ramp, Hz/s.
+        adc_rate: Sampling rate fs, Hz.
+        samples: Number N of samples of a chirp.
+        slot: Time from chirp to chirp, s.
+        order: Numbers of the transmitters, in their order within a loop.
+        receivers: Numbers of the receivers that are on.
+        loops: Number of loops of a frame.
+        frames: Number of frames of the recording.
+        period: Time from frame to frame, s.
+        position: Position of the array's origin, m.
+        yaw: Angle of boresight from the x axis to the left, rad.
+        tilt: Angle of boresight below the horizontal, rad.
+        half_power_deg: Half-power half-widths in place of the array's; None for the array's.
+        half_wavelength: Unit of the elements' places, m; None is c/(2 f_c).
+        gain: Linear gain of each antenna.
+    """
+
+    array: Array
+    start: float
+    fc: float
+    slope: float
+    adc_rate: float
+    samples: int
+    slot: float
+    order: tuple[int, ...]
+    receivers: tuple[int, ...]
     loops: int
     frames: int
-    period: float  # from frame to frame, s
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of the array's origin, m
-    # yaw, tilt: of boresight from the x axis, rad; to the left, and down
+    period: float
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     yaw: float = 0.0
     tilt: float = 0.0
-    half_power_deg: tuple[float, float] | None = None  # as `Array`
-    half_wavelength: float | None = None  # unit of the elements' places, m; None is c/(2 f_c)
-    gain: float = 1.0  # linear, of each antenna
+    half_power_deg: tuple[float, float] | None = None
+    half_wavelength: float | None = None
+    gain: float = 1.0
 
     @property
     def centre(self) -> float:
-        """f_c = f_adc + K (N - 1)/(2 fs), the frequency of Doppler and angles, Hz."""
+        """Frequency of Doppler and angles: f_c = f_adc + K (N - 1)/(2 fs), Hz."""
         return self.fc + self.slope * (self.samples - 1) / (2 * self.adc_rate)
 
     @property
     def loop(self) -> float:
-        """From a chirp to the next of the same transmitter, s."""
+        """Time from a chirp to the next of the same transmitter, s."""
         return self.slot * len(self.order)
 
     @property
     def channels(self) -> int:
-        """Virtual elements."""
+        """Number V of virtual elements."""
         return len(self.order) * len(self.receivers)
 
     @property
     def n_fft(self) -> int:
-        """Range bins: the next power of two; complex samples have all of them."""
+        """Number of range bins: the next power of two; complex samples have all of them."""
         return 1 << (self.samples - 1).bit_length()
 
     @property
     def n_doppler(self) -> int:
-        """Doppler bins: the next power of two."""
+        """Number of Doppler bins: the next power of two."""
         return 1 << (self.loops - 1).bit_length()
 
     @property
     def range_step(self) -> float:
-        """c fs/(2 K N_FFT), m."""
+        """Spacing of the range bins, c fs/(2 K N_FFT), m."""
         return SPEED_OF_LIGHT * self.adc_rate / (2 * self.slope * self.n_fft)
 
     def doppler_step(self, carrier: float | None = None) -> float:
-        """c/(2 f loop N_D), m/s, at the centre frequency or another one (Hz)."""
+        """Spacing of the Doppler bins, c/(2 f loop N_D), m/s; f is a carrier (Hz) or f_c."""
         return SPEED_OF_LIGHT / (2 * (carrier or self.centre) * self.loop * self.n_doppler)
 
     @cached_property
     def aim(self) -> Aim:
-        """Rows of its axes: ahead, left, up."""
+        """Position, axes and beam of the antennas."""
         axes = boresight_axes(self.yaw, self.tilt)
         return Aim(self.position, axes, self.half_power_deg or self.array.half_power_deg)
 
     @property
     def unit(self) -> float:
-        """Half a wavelength, m."""
+        """Length of the unit of the elements' places, half a wavelength, m."""
         return self.half_wavelength or SPEED_OF_LIGHT / (2 * self.centre)
 
     def element(self, place: tuple[float, float]) -> tuple[float, float, float]:
-        """Position of an element in the scene, m."""
+        """Position (m) in the scene of an element at a place (left, up) in half wavelengths."""
         x, y, z = self.position + self.unit * (np.array(place) @ np.array(self.aim.axes[1:]))
         return float(x), float(y), float(z)
 
     def antennas(self, k: int, r: int) -> Antennas:
-        """Transmitter at place k of the loop, and receiver r."""
+        """Antennas of a channel: the transmitter at place k of the loop, and receiver r."""
         tx, rx = self.array.tx[self.order[k]], self.array.rx[r]
         return Antennas(self.element(tx), self.element(rx), self.gain, 0.0, self.aim)
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
-        """(place in the loop, receiver) of the virtual elements [V]."""
+        """Pairs (place in the loop, receiver) of the virtual elements [V]."""
         return [(k, r) for k in range(len(self.order)) for r in self.receivers]
 
     @cached_property
     def places(self) -> Float:
-        """(left, up) of the virtual elements [V, 2], half wavelengths at f_c."""
+        """Places (left, up) of the virtual elements [V, 2], half wavelengths at f_c."""
         tx, rx = np.array(self.array.tx, float), np.array(self.array.rx, float)
-        at = np.array([tx[self.order[k]] + rx[r] for k, r in self.pairs])
-        return at * (self.unit * 2 * self.centre / SPEED_OF_LIGHT)
+        sums = np.array([tx[self.order[k]] + rx[r] for k, r in self.pairs])
+        return sums * (self.unit * 2 * self.centre / SPEED_OF_LIGHT)
 
     @cached_property
     def turns(self) -> Float:
-        """Place in the loop over their number [V]: how late a virtual element is, in loops."""
+        """Delay of the virtual elements [V] within a loop, in loops."""
         return np.array([k for k, _ in self.pairs]) / len(self.order)
 
     @cached_property
@@ -190,34 +222,45 @@ class Board:
         return np.array([self.array.rx_sign[r] for _, r in self.pairs])
 
     def chirp_times(self, frames: slice = slice(None)) -> Float:
-        """When chirps begin [frame, loop, place in the loop], s; positions are frozen there."""
-        f = np.arange(self.frames)[frames, None, None]
+        """Times (s) at which chirps begin [frame, loop, place in the loop].
+
+        Positions of the scene are frozen at these times.
+        """
+        frame = np.arange(self.frames)[frames, None, None]
         loop, k = np.arange(self.loops)[:, None], np.arange(len(self.order))
-        return f * self.period + (loop * len(self.order) + k) * self.slot
+        return frame * self.period + (loop * len(self.order) + k) * self.slot
 
     @property
     def middles(self) -> Float:
-        """Middles of the frames' chirps [frame], s."""
+        """Times (s) of the middles of the frames' chirps [frame]."""
         return np.arange(self.frames) * self.period + self.loops * self.loop / 2
 
     @property
     def pulses(self) -> PulseTimes:
-        """Times of the chirps of one transmitter, a stretch a frame."""
-        f = np.arange(self.frames)
+        """Times of the chirps of one transmitter, with a stretch for each frame."""
+        frame = np.arange(self.frames)
         if abs(self.period - self.loops * self.loop) < 1e-9 * self.period:
             return PulseTimes.even(self.frames * self.loops, 1 / self.loop)
-        return PulseTimes(f * self.period, f * self.loops, self.frames * self.loops, 1 / self.loop)
+        return PulseTimes(
+            frame * self.period, frame * self.loops, self.frames * self.loops, 1 / self.loop
+        )
 
     @property
-    def seen_as(self) -> Waveform:
-        """A waveform of the centre frequency, as paths are computed for, without gaps."""
-        chirp, band = self.samples / self.adc_rate, self.slope * self.samples / self.adc_rate
-        timing = self.adc_rate, 1 / self.loop, self.frames * self.period
-        return Waveform(self.centre, band, chirp, *timing)
+    def path_waveform(self) -> Waveform:
+        """Waveform at the centre frequency, without gaps, for which paths are computed."""
+        chirp = self.samples / self.adc_rate
+        return Waveform(
+            fc=self.centre,
+            bandwidth=self.slope * self.samples / self.adc_rate,
+            chirp=chirp,
+            adc_rate=self.adc_rate,
+            prf=1 / self.loop,
+            duration=self.frames * self.period,
+        )
 
     @cached_property
     def waveform(self) -> Waveform:
-        """The chirps of one transmitter; `times` counts those of all, frame by frame."""
+        """Waveform of one transmitter, whose `times` counts the chirps of all, frame by frame."""
         return BoardWaveform(
             fc=self.fc,
             bandwidth=self.slope * self.samples / self.adc_rate,
@@ -238,28 +281,31 @@ class BoardWaveform(Waveform):
 
     @cached_property
     def n_pulses(self) -> int:
-        """Chirps of the recording."""
+        """Number of chirps of the recording, of all transmitters."""
         assert self.board is not None
         return self.board.frames * self.board.loops * len(self.board.order)
 
     @cached_property
     def n_adc(self) -> int:
-        """N."""
+        """Number N of samples of a chirp."""
         assert self.board is not None
         return self.board.samples
 
     @property
     def n_bins(self) -> int:
-        """All: complex samples have no half band."""
+        """Number of range bins: all are kept, as complex samples have no half band."""
         return self.n_fft
 
     @property
     def half_band_range(self) -> float:
-        """Range c fs/(2 K) at which ranges begin again, m."""
+        """Range c fs/(2 K), m, at which ranges begin again."""
         return self.range_step * self.n_fft
 
     def times(self, pulses: Float) -> Float:
-        """When chirps of these numbers begin, counted through frames, loops and transmitters."""
+        """Times (s) at which chirps begin, by their numbers [...].
+
+        Chirps are counted through frames, loops and transmitters.
+        """
         assert self.board is not None
         frame, chirp = np.divmod(pulses, self.board.loops * len(self.board.order))
         return frame * self.board.period + chirp * self.board.slot

@@ -1,4 +1,4 @@
-"""What the .cfg of a TI board says of detection (mmWave SDK user guide, "CLI")."""
+"""Detection settings of the .cfg of a TI board (mmWave SDK user guide, "CLI")."""
 
 from dataclasses import dataclass
 from math import ceil, log2, log10
@@ -8,34 +8,52 @@ CA, CAGO, CASO = range(3)
 
 
 class Cfar(NamedTuple):
-    """One `cfarCfg`: averaging of decibels along an axis."""
+    """Settings of one `cfarCfg`: averaging of decibels along an axis.
 
-    mode: int  # CA, CAGO or CASO
-    # window, guard: cells on each side
+    Attributes:
+        mode: CA (mean of both sides), CAGO (the greater) or CASO (the smaller).
+        window: Number of averaged cells on each side.
+        guard: Number of cells on each side that are left out.
+        cyclic: Whether the axis closes on itself.
+        threshold_db: Threshold over the average.
+    """
+
+    mode: int
     window: int
     guard: int
-    cyclic: bool  # whether the axis closes
-    threshold_db: float  # over the average
+    cyclic: bool
+    threshold_db: float
 
 
 @dataclass(frozen=True)
 class Detection:
-    """What a .cfg says of detection."""
+    """Detection settings of a .cfg.
 
-    # along_range, along_doppler: the CFAR; both must fire where there are two
+    Attributes:
+        along_range: CFAR along range.
+        along_doppler: CFAR along Doppler, which must fire too; None for none.
+        grouping: Whether peaks alone are kept, along range and along Doppler.
+        first_bin: First range bin that points may have.
+        last_bin: Last range bin that points may have; None for the last of all.
+        second_peak: Least height of a second peak over angle, over the first; None for no second.
+        remove_mean: Whether the mean over the loops of a frame is taken out.
+        bias: Range bias, m.
+        coefficients: Phase and gain corrections of the virtual channels [V]; () for none.
+        azimuth_deg: Limits of azimuth, positive to the left; None for none, as below.
+        elevation_deg: Limits of elevation.
+        range_m: Limits of range.
+        doppler_mps: Limits of radial speed, positive receding.
+    """
+
     along_range: Cfar
     along_doppler: Cfar | None = None
-    # whether peaks alone are kept, along range, along Doppler
     grouping: tuple[bool, bool] = (False, False)
-    # first_bin, last_bin: ranges that points may have
     first_bin: int = 0
     last_bin: int | None = None
-    # least height of a second peak over angle, over the first; None is no second
     second_peak: float | None = None
-    remove_mean: bool = False  # take out what stands still
-    bias: float = 0.0  # range bias, m
-    coefficients: tuple[complex, ...] = ()  # of the virtual channels [V], complex
-    # azimuth_deg, elevation_deg, range_m, doppler_mps: fields of view, or None
+    remove_mean: bool = False
+    bias: float = 0.0
+    coefficients: tuple[complex, ...] = ()
     azimuth_deg: tuple[float, float] | None = None
     elevation_deg: tuple[float, float] | None = None
     range_m: tuple[float, float] | None = None
@@ -43,6 +61,11 @@ class Detection:
 
 
 def ti_threshold_db(value: float, channels: int) -> float:
-    """Threshold of cfarCfg of SDK 1 and 2: 512 an octave, of sums over 2^ceil(log2 n) channels."""
+    """Threshold in dB of a cfarCfg of SDK 1 and 2.
+
+    Args:
+        value: Number in the .cfg: 512 an octave, for sums over 2^ceil(log2 n) channels.
+        channels: Number n of virtual channels.
+    """
     octaves: float = value / (512 * channels / 2 ** ceil(log2(channels)))
     return octaves * 20 * log10(2)

@@ -35,17 +35,16 @@ class Frame(NamedTuple):
     """An ellipsoid as a frame of reference: left and up are at right angles to the axis and to each
     other, as long as each other."""
 
-    # centre, way: middle, and way from start to end, m
-    centre: Vector
-    way: Vector
-    length: Number  # m
-    axis: Vector  # unit vector along
+    centre: Vector  # m
+    way: Vector  # from start to end, m
+    length: Number  # of the way, m
+    axis: Vector  # unit vector along the way
     left: Vector
     up: Vector
 
 
 class Seen(NamedTuple):
-    """An ellipsoid seen from an antenna: the way to its centre, and products with it, m and m^2."""
+    """The way from an antenna to the centre of an ellipsoid, and products with it, m and m^2."""
 
     way: Vector
     distance: Number
@@ -56,16 +55,15 @@ class Seen(NamedTuple):
 
 
 class View(NamedTuple):
-    """A vector towards the observer, of any length."""
+    """Components of a vector towards the observer, of any length."""
 
-    # along, aside: its components along the axis, and across where flat bodies are wide
-    along: Number
-    aside: Number
-    square: Number  # of its length
+    along: Number  # component along the axis
+    aside: Number  # component across, where flat bodies are wide
+    square: Number  # of the length
 
 
 def dot(a: Vector, b: Vector) -> Number:
-    """a b."""
+    """Scalar product a b."""
     product = a[0] * b[0]
     product += a[1] * b[1]
     product += a[2] * b[2]
@@ -89,7 +87,7 @@ def frame_of(start: Vector, end: Vector, beside: Vector, softness: float) -> Fra
 
 
 def seen_from(frame: Frame, antenna: Vector) -> Seen:
-    """An ellipsoid as an antenna at a place (m) sees it."""
+    """The way from an antenna at a position (m) to an ellipsoid, and products with it."""
     at = frame.centre
     way = at[0] - antenna[0], at[1] - antenna[1], at[2] - antenna[2]
     square, along = dot(way, way), dot(way, frame.way)
@@ -100,8 +98,20 @@ def seen_from(frame: Frame, antenna: Vector) -> Seen:
 def echo_of(
     frame: Frame, tx: Seen, rx: Seen, radius: Number, flatness: Number, parts: Number
 ) -> tuple[Number, Number]:
-    """sqrt(sigma)/(R_tx R_rx) for |Gamma| = 1; and by how much (m) both legs together are shorter
-    to the surface of the n-th part of an ellipsoid than to its middle."""
+    """Echo of an ellipsoid from two antennas, by the bisector of the legs.
+
+    Args:
+        frame: Frame of the ellipsoid.
+        tx: The way from the transmitter.
+        rx: The way from the receiver.
+        radius: Mean radius r across, m.
+        flatness: Ratio f; the semi-axes across are r f and r/f.
+        parts: Number n of parts along the axis, each with a point of its own.
+
+    Returns:
+        sqrt(sigma)/(R_tx R_rx) in 1/m for |Gamma| = 1; and by how much (m) both legs together are
+        shorter to the surface of an n-th part than to its middle.
+    """
     legs = tx.distance * rx.distance
     view = View(
         (tx.along / tx.distance + rx.along / rx.distance) / frame.length,
@@ -115,7 +125,14 @@ def echo_of(
 
 
 def square_height(view: View, radius: Number, half: Number, flatness: Number = 1.0) -> Number:
-    """h^2 (m^2), times the square of the viewing vector's length; semi-axes in m, f 1 or more."""
+    """Square h^2 (m^2) of the height of the tangent plane, times |view|^2.
+
+    Args:
+        view: Viewing vector.
+        radius: Mean radius r across, m.
+        half: Semi-axis c along, m.
+        flatness: Ratio f, 1 or more.
+    """
     along, aside = view.along * view.along, view.aside * view.aside
     depth, width = radius / flatness, radius * flatness
     height = depth * depth * (view.square - along - aside) + half * half * along
@@ -126,7 +143,14 @@ def square_height(view: View, radius: Number, half: Number, flatness: Number = 1
 def cross_section(
     square_height: Number, radius: Number, half: Number, reflectance: float
 ) -> Number:
-    """sigma = |Gamma|^2 pi r^4 c^2/h^4, m^2, r across (mean), c along, h for a unit vector."""
+    """Cross section sigma = |Gamma|^2 pi r^4 c^2/h^4 (m^2).
+
+    Args:
+        square_height: h^2 for a unit vector towards the observer, m^2.
+        radius: Mean semi-axis r across, m.
+        half: Semi-axis c along, m.
+        reflectance: |Gamma|^2.
+    """
     size = pi * reflectance * radius**4 * half**2
     return size / (square_height * square_height)
 
@@ -134,9 +158,16 @@ def cross_section(
 def clearance(
     end: Vector, way: Vector, distance: Number, occluder: tuple[Vector, Vector, Number, Number]
 ) -> Number:
-    """(Distance of a ray from the centre of an occluder over the way to its surface there)^2.
+    """Clearance of a ray: (distance from an occluder's centre over that of its surface there)^2.
 
-    Of the ray are the end, the way and its length; of the occluder centre, axis, length and radius.
+    Args:
+        end: End of the ray, m.
+        way: Way from the antenna to the end, m.
+        distance: Length of the way, m.
+        occluder: Centre (m), axis, length and radius (m).
+
+    Returns:
+        1 where the ray touches the occluder, less where it passes through.
     """
     at, axis, length, radius = occluder
     apart = at[0] - end[0], at[1] - end[1], at[2] - end[2]
@@ -150,7 +181,7 @@ def clearance(
 
 
 def shadow(clearance: Number, behind: Number, radius: Number, wavelength: float) -> Number:
-    """Field left (1) of a path whose ray passes an occluder and ends `behind` (m) it.
+    """Field of a path whose ray passes an occluder and ends `behind` (m) it, 1 without a shadow.
 
     A logistic edge of width w, half the field at the edge, a tenth at 2.2 w behind it: as a knife
     edge 0.4 m in front has it, w = 2.5 cm at 77 GHz and 15 cm at 2 GHz. At a `clearance` of 1.
@@ -158,10 +189,10 @@ def shadow(clearance: Number, behind: Number, radius: Number, wavelength: float)
     edge = 2 * PENUMBRA * np.sqrt(wavelength)
     # 1/(1 + exp(-x)) = (1 + tanh(x/2))/2, in a third of the time of scipy.special.expit
     covered = rise((1 - clearance) * (radius / (2 * edge)))
-    left = covered * rise((behind - BEHIND) / (2 * BEHIND_WIDTH))
-    left *= (LEFT_IN_SHADOW - 1) / 4
-    left += 1
-    return left
+    field = covered * rise((behind - BEHIND) / (2 * BEHIND_WIDTH))
+    field *= (LEFT_IN_SHADOW - 1) / 4
+    field += 1
+    return field
 
 
 def rise(x: Float) -> Float:
@@ -170,9 +201,9 @@ def rise(x: Float) -> Float:
 
 
 def rise_of_number(x: float) -> float:
-    """1 + tanh(x) = 2/(1 + exp(-2 x)) to 1e-10, of products alone, for as many x at once.
+    """1 + tanh(x) = 2/(1 + exp(-2 x)) to 1e-10, by products alone, which SIMD lanes share.
 
-    Of NaN it is 0.
+    For NaN it is 0.
     """
     r = max(-36.0, min(36.0, -2 * x)) / 128
     e = 1 + r / 6 * (1 + r / 7 * (1 + r / 8 * (1 + r / 9 * (1 + r / 10))))
@@ -189,19 +220,20 @@ def fill_paths(
     occluders: Index,
     first: Index,
     points: Float,
-    made: tuple[Float, Float],
+    paths: tuple[Float, Float],
 ) -> None:
     """Fill in delays and amplitudes [I, M] of the points of S ellipsoids, seen through air.
 
     Args:
-        ends: starts, ends, and directions beside them [3, S, M], m.
-        scene: places of transmitter, receiver, and between [3, 3], wavelength, softness, m, m, 1.
-        sizes: radius (m), flatness and number of parts [S, 3].
-        occluders: which of them throw shadows.
-        first: number of the first point of each, and I [S + 1].
-        points: what makes squared delays (s^2) of the products that `Seen` has, and what makes
-            amplitudes of sqrt(sigma)/(R_tx R_rx) [I, 7].
-        made: delays (s) and amplitudes.
+        ends: Starts, ends, and directions beside them [3, S, M], m.
+        scene: Positions (m) of transmitter, receiver and their midpoint [3, 3]; wavelength, m;
+            softness.
+        sizes: Radius (m), flatness and number of parts [S, 3].
+        occluders: Numbers of the ellipsoids that throw shadows.
+        first: Number of the first point of each ellipsoid, and I [S + 1].
+        points: Factors [I, 7]: six that make squared delays (s^2) of the products that `Seen` has,
+            and one that makes amplitudes of sqrt(sigma)/(R_tx R_rx).
+        paths: Delays (s) and amplitudes [I, M], which are filled in.
     """
     # Loops are over whole blocks, so that every instant is computed in the same way.
     frames, seen = np.empty((first.size - 1, 11, BLOCK)), np.empty((first.size - 1, 12, BLOCK))
@@ -222,8 +254,8 @@ def fill_paths(
                         shade(frames[s], seen[s], frames[o], sizes[o, 0], scene[1], m)
             for i in range(first[s], first[s + 1]):
                 _spread(seen[s], points[i], block)
-                made[0][i, start : start + count] = block[0, :count]
-                made[1][i, start : start + count] = block[1, :count]
+                paths[0][i, start : start + count] = block[0, :count]
+                paths[1][i, start : start + count] = block[1, :count]
 
 
 def see(
@@ -234,7 +266,19 @@ def see(
     seen: Float,
     m: int | slice,
 ) -> None:
-    """Fill in frames [11, ...] of ellipsoids, and how they are seen [12, ...], at instants m."""
+    """Fill in frames and products of ellipsoids at instants m.
+
+    Args:
+        block: Starts, ends, and directions beside them [9, ...], m.
+        scene: As in `fill_paths`.
+        size: Radius (m), flatness and number of parts.
+        frames: Rows [11, ...] to fill in: centre (m), axis, way from between the antennas (m), its
+            length (m), length of the ellipsoid (m).
+        seen: Rows [12, ...] to fill in: squared distance, and products of the way with the frame's
+            along, left and up, of the transmitter and then of the receiver; squares of the frame's
+            length and of its left; sqrt(sigma)/(R_tx R_rx), 1/m; how much earlier the echo is, s.
+        m: Instants.
+    """
     frame = frame_of(_at(block, m), _at(block[3:], m), _at(block[6:], m), scene[2])
     tx, rx = seen_from(frame, _at(scene[0], 0)), seen_from(frame, _at(scene[0], 1))
     both = seen_from(frame, _at(scene[0], 2))
@@ -250,24 +294,33 @@ def see(
 
 
 def shade(
-    one: Float, seen: Float, other: Float, radius: float, wavelength: float, m: int | slice
+    frames: Float, seen: Float, occluder: Float, radius: float, wavelength: float, m: int | slice
 ) -> None:
-    """Weaken echoes of ellipsoids where another is in their way, at instants m."""
-    occluder = _at(other, m), _at(other[3:], m), other[10, m], radius
-    clear = clearance(_at(one, m), _at(one[6:], m), one[9, m], occluder)
-    seen[10, m] *= shadow(clear, one[9, m] - other[9, m], radius, wavelength)
+    """Weaken echoes of ellipsoids where another is in their way, at instants m.
+
+    Args:
+        frames: Rows of `see` of the ellipsoids that are seen.
+        seen: Their products, whose row 10 is weakened.
+        occluder: Rows of `see` of the one in their way.
+        radius: Its radius, m.
+        wavelength: Wavelength of the carrier, m.
+        m: Instants.
+    """
+    body = _at(occluder, m), _at(occluder[3:], m), occluder[10, m], radius
+    clear = clearance(_at(frames, m), _at(frames[6:], m), frames[9, m], body)
+    seen[10, m] *= shadow(clear, frames[9, m] - occluder[9, m], radius, wavelength)
 
 
-def _spread(seen: Float, point: Float, made: Float) -> None:
-    """Fill in delays and amplitudes of a point [2, BLOCK]."""
+def _spread(seen: Float, point: Float, paths: Float) -> None:
+    """Fill in delays (s) and amplitudes of a point [2, BLOCK]."""
     c0, c1, c2, c3 = point[0], point[1], point[2], point[3]
     c4, c5, share = point[4], point[5], point[6]
     for m in range(BLOCK):
         same = c4 * seen[8, m] + c5 * seen[9, m]
         a = c0 * seen[0, m] + c1 * seen[1, m] + c2 * seen[2, m] + c3 * seen[3, m] + same
         b = c0 * seen[4, m] + c1 * seen[5, m] + c2 * seen[6, m] + c3 * seen[7, m] + same
-        made[0, m] = np.sqrt(max(a, 0.0)) + np.sqrt(max(b, 0.0)) - seen[11, m]
-        made[1, m] = share * seen[10, m]
+        paths[0, m] = np.sqrt(max(a, 0.0)) + np.sqrt(max(b, 0.0)) - seen[11, m]
+        paths[1, m] = share * seen[10, m]
 
 
 def _at(rows: Float, m: int | slice) -> Vector:

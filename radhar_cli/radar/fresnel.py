@@ -14,17 +14,22 @@ Polarisation = Literal["perpendicular", "parallel"]
 
 
 def reflection(cosine: Float, eps: complex, polarisation: Polarisation) -> Complex:
-    """Gamma(theta) [...] of a face between air and a medium of complex eps, by the cosine in air.
+    """Reflection coefficient Gamma(theta) [...] of a face between air and a medium.
 
     With w = sqrt(eps - sin^2 theta): (cos - w)/(cos + w) for a field perpendicular to the plane of
     incidence (TE, s), (w - eps cos)/(w + eps cos) for a parallel one (TM, p).
+
+    Args:
+        cosine: Cosines [...] of the angle theta in air.
+        eps: Complex relative permittivity of the medium.
+        polarisation: Direction of the field against the plane of incidence.
     """
     w, x = _medium(cosine, eps), _air(cosine, eps, polarisation)
     return (x - w) / (x + w) if polarisation == "perpendicular" else (w - x) / (w + x)
 
 
 def face_factor(cosine: Float, eps: complex, polarisation: Polarisation) -> Float:
-    """sqrt(1 - |Gamma(theta)|^2) [...], the field that passes one face; arguments as above."""
+    """Field sqrt(1 - |Gamma(theta)|^2) [...] that passes one face; arguments of `reflection`."""
     w, x = _medium(cosine, eps), _air(cosine, eps, polarisation)
     # |x + w|^2 - |x - w|^2 = 4 Re(x conj(w)): no cancellation at grazing incidence.
     return 2 * np.sqrt(np.real(x * np.conj(w))) / np.abs(x + w)
@@ -37,10 +42,15 @@ def faces_factor(
     crossed: Crossing,
     tangent: Float | None,
 ) -> Float:
-    """Field [I, M] that passes the faces of the wall on the way from an antenna to p [3, I, M].
+    """Field [I, M] that passes the faces of the wall on the way from an antenna to p.
 
-    `tangent` is of the angle outside where a ray is refracted [I, M], NaN where it is straight;
-    None where all are straight.
+    Args:
+        p: Positions [3, I, M], m.
+        antenna: Position of the antenna, m.
+        wall: The wall, whose `fresnel` is a polarisation.
+        crossed: Chords and numbers of faces of the rays.
+        tangent: Tangents [I, M] of the angle outside where a ray is refracted, NaN where it is
+            straight; None where all are straight.
     """
     assert wall.fresnel != "normal"
     step = np.abs([p[axis] - antenna[axis] for axis in range(3)])
@@ -64,5 +74,5 @@ def _medium(cosine: Float, eps: complex) -> Complex:
 
 
 def _air(cosine: Float, eps: complex, polarisation: Polarisation) -> Complex:
-    """What w is compared with: the wave number along the normal outside, times eps for parallel."""
+    """Wave number along the normal outside, in units of k0, times eps for a parallel field."""
     return np.asarray(cosine * (eps if polarisation == "parallel" else 1), dtype=np.complex128)

@@ -22,12 +22,12 @@ class Impulse(Waveform):
 
     @property
     def width(self) -> float:
-        """s, in s."""
+        """Standard deviation s of the pulse's envelope, s."""
         return sqrt(log(10)) / (pi * self.bandwidth)
 
     @property
     def n_bins(self) -> int:
-        """All samples of a profile."""
+        """Number of samples of a profile, all of which are kept."""
         return self.samples
 
     @property
@@ -43,32 +43,33 @@ class Impulse(Waveform):
 
     @property
     def half_band_range(self) -> float:
-        """Where the range axis ends, m."""
+        """Range at which the axis ends, m."""
         return self.profile[1]
 
     def range_axis(self) -> Float:
-        """R_k = from + k (to - from)/samples [samples], m."""
+        """Ranges R_k = from + k (to - from)/samples [samples], m."""
         return self.profile[0] + np.arange(self.samples) * self.range_step
 
     def pulse(self, t: Float) -> Float:
-        """p(t) at times t [...] (s)."""
+        """Pulse p(t) at times t [...] (s)."""
         p: Float = np.exp(-((t / self.width) ** 2) / 2) * np.cos(2 * pi * self.f0 * t)
         return p
 
     def spectrum(self, f: Float) -> Float:
-        """P(f) = s sqrt(2 pi) exp(-2 (pi s (f - fm))^2) at frequencies f [...] above 0 (Hz)."""
+        """Spectrum P(f) = s sqrt(2 pi) exp(-2 (pi s (f - fm))^2) at f [...] above 0 (Hz)."""
         turn = pi * self.width * (f - self.f0)
         return self.width * sqrt(2 * pi) * np.exp(-2 * turn * turn)
 
     @property
     def orthogonal(self) -> bool:
-        """False: neighbouring samples are of one pulse."""
+        """Whether range bins are orthogonal: never, as a pulse spreads over several samples."""
         return False
 
     def stepped(self, reach: float) -> Waveform:
-        """Frequencies that hold its spectrum, so close that echoes up to a range (m) do not fold.
+        """Waveform of the frequencies that hold the pulse's spectrum.
 
-        P falls to 2e-10 within 2.2 B on both sides of fm.
+        They are so close that echoes up to a range `reach` (m) do not fold. P falls to 2e-10 within
+        2.2 B on both sides of fm.
         """
         low, high = max(self.f0 - 2.2 * self.bandwidth, 0.0), self.f0 + 2.2 * self.bandwidth
         step = SPEED_OF_LIGHT / (4 * reach)
@@ -88,11 +89,11 @@ def impulse(
     """An impulse radar, without the chirp that other waveforms have.
 
     Args:
-        fc: lower end of the band, Hz.
-        bandwidth: at -10 dB, Hz.
-        prf: pulses per second, Hz.
-        duration: of a recording, s.
-        profile: where the range axis begins and ends, m.
-        samples: of a profile.
+        fc: Lower end of the band, Hz.
+        bandwidth: Bandwidth at -10 dB, Hz.
+        prf: Pulses per second, Hz.
+        duration: Duration of a recording, s.
+        profile: Ranges at which the range axis begins and ends, m.
+        samples: Number of samples of a profile.
     """
     return Impulse(fc, bandwidth, 2e-9, 1e9, prf, duration, profile=profile, samples=samples)

@@ -33,18 +33,18 @@ class Layer(NamedTuple):
         return np.full(f.shape, self.material)
 
 
-class Scattered(NamedTuple):
-    """Coefficients of the field, 1 in front of the wall: behind it, and back from it."""
+class ScatteringCoefficients(NamedTuple):
+    """Coefficients of the field behind a wall and of that back from it, for 1 in front of it."""
 
-    transmitted: Complex
-    reflected: Complex
+    transmitted: Complex  # T
+    reflected: Complex  # R
 
 
 @dataclass(frozen=True)
 class Layers:
     """A wall of layers, nearest first."""
 
-    layers: tuple[Layer, ...]  # of the wall
+    layers: tuple[Layer, ...]
     parallel: bool  # whether the field lies in the plane of incidence (TM), or across it (TE)
 
     @property
@@ -52,23 +52,35 @@ class Layers:
         """Thickness of all layers, m."""
         return sum(layer.thickness for layer in self.layers)
 
-    def scattered(self, f: Float, cosine: Float) -> Scattered:
-        """T and R of a plane wave of frequencies f (Hz), which broadcast with the cosines."""
+    def scattering_coefficients(self, f: Float, cosine: Float) -> ScatteringCoefficients:
+        """Coefficients T and R of plane waves (Born and Wolf, section 1.6).
+
+        Args:
+            f: Frequencies, Hz, which broadcast with the cosines.
+            cosine: Cosines of the angle of incidence.
+        """
         outside = 1 / cosine if self.parallel else cosine
         e, h = np.ones_like(outside, complex), outside.astype(complex)
-        left: Complex = np.ones_like(outside, complex)
+        phases: Complex = np.ones_like(outside, complex)
         for layer in reversed(self.layers):
             eps = layer.eps(f)
             q = np.sqrt(eps - 1 + cosine * cosine)  # Im <= 0: the wave decays
             y = eps / q if self.parallel else q
-            once = np.exp(-2j * np.pi / SPEED_OF_LIGHT * layer.thickness * f * q)
-            even, odd = (1 + once * once) / 2, (1 - once * once) / 2
+            layer_phase = np.exp(-2j * np.pi / SPEED_OF_LIGHT * layer.thickness * f * q)
+            even, odd = (1 + layer_phase * layer_phase) / 2, (1 - layer_phase * layer_phase) / 2
             e, h = even * e + odd * h / y, odd * y * e + even * h
-            left = left * once
-        return Scattered(2 * outside * left / (outside * e + h), 1 - 2 * h / (outside * e + h))
+            phases = phases * layer_phase
+        return ScatteringCoefficients(
+            2 * outside * phases / (outside * e + h), 1 - 2 * h / (outside * e + h)
+        )
 
-    def passed(self, f: Float, cosine: Float) -> Complex:
-        """H = T exp(j k0 D cos): what a leg keeps of its field, a wall there instead of air."""
+    def transfer_function(self, f: Float, cosine: Float) -> Complex:
+        """Field H = T exp(j k0 D cos) that a leg keeps with the wall there instead of air.
+
+        Args:
+            f: Frequencies, Hz, which broadcast with the cosines.
+            cosine: Cosines of the angle of incidence.
+        """
         air = np.exp(2j * np.pi / SPEED_OF_LIGHT * self.depth * f * cosine)
-        h: Complex = self.scattered(f, cosine).transmitted * air
+        h: Complex = self.scattering_coefficients(f, cosine).transmitted * air
         return h

@@ -35,7 +35,7 @@ NUMBERS = {
 
 
 def permittivity(material: str, f: Float) -> Complex:
-    """Complex relative permittivity at frequencies f [...] (Hz)."""
+    """Complex relative permittivity of a `Material` at frequencies f [...] (Hz)."""
     a, c, d = NUMBERS[material]
     conductivity = c * (f * 1e-9) ** d  # S/m
     eps: Complex = a - np.multiply(1j, conductivity) / (2 * pi * f * EPSILON_0)

@@ -26,23 +26,36 @@ MISSES_BY = 8 * np.finfo(float).eps
 MAX_STEPS = 64
 
 
-class Bent(NamedTuple):
-    """Refracted rays."""
+class RefractedRays(NamedTuple):
+    """Refracted rays through a wall.
 
-    # chord inside the wall (m) and faces [I, M]; the straight ray's where not bent
+    Attributes:
+        crossed: Chord inside the wall (m) and faces [I, M]; the straight ray's where not bent.
+        delay: Delay beyond free space [I, M], s.
+        tangent: Tangent t of the angle outside [I, M]; NaN where not bent.
+    """
+
     crossed: Crossing
-    delay: Float  # beyond free space [I, M], s
-    tangent: Float  # t of the angle outside [I, M]; NaN where not bent
+    delay: Float
+    tangent: Float
 
 
-def refract(p: Float, antenna: tuple[float, float, float], wall: Wall, straight: Crossing) -> Bent:
-    """Bend the rays from an antenna to positions p [3, I, M] (m) that meet parallel faces.
+def refract(
+    p: Float, antenna: tuple[float, float, float], wall: Wall, straight: Crossing
+) -> RefractedRays:
+    """Bend the rays from an antenna to positions p that meet parallel faces.
 
     A ray that enters and leaves through faces of different axes (around a corner) keeps its
-    straight chord; one that misses is untouched. `straight` is the `crossing` of the same rays.
+    straight chord; one that misses is untouched.
+
+    Args:
+        p: Positions [3, I, M], m.
+        antenna: Position of the antenna, m.
+        wall: The wall.
+        straight: `crossing` of the same rays.
     """
-    entered, left = faces_met(p, antenna, wall)
-    bends = (straight.faces == 1) | ((straight.faces == 2) & (entered == left))
+    entered, exited = faces_met(p, antenna, wall)
+    bends = (straight.faces == 1) | ((straight.faces == 2) & (entered == exited))
     chord, tangent = straight.chord.copy(), np.full_like(straight.chord, np.nan)
     delay = extra_delay(chord, wall)
     n = wall.refractive_index.real
@@ -55,55 +68,60 @@ def refract(p: Float, antenna: tuple[float, float, float], wall: Wall, straight:
         tangent[chosen] = t
         chord[chosen] = depth * np.sqrt(1 + inside_tangent(t, n) ** 2)
         delay[chosen] = optical_excess(outside, depth, offset, t, n) / SPEED_OF_LIGHT
-    return Bent(Crossing(chord, straight.faces), delay, tangent)
+    return RefractedRays(Crossing(chord, straight.faces), delay, tangent)
 
 
-def _along_normal(x: Float, at: float, faces: tuple[float, float]) -> tuple[Float, Float]:
-    """(a + b, d) of rays from `at`, outside two faces, to x beyond the nearer of them."""
+def _along_normal(x: Float, start: float, faces: tuple[float, float]) -> tuple[Float, Float]:
+    """Lengths (a + b, d) of rays from `start`, outside two faces, to x beyond the nearer one."""
     low, high = faces
-    near, far = (low, high) if at <= low else (high, low)
+    near, far = (low, high) if start <= low else (high, low)
     depth = np.minimum(np.abs(x - near), high - low)
     beyond = np.where(np.abs(x - near) > high - low, np.abs(x - far), 0.0)
-    return abs(near - at) + beyond, depth
+    return abs(near - start) + beyond, depth
 
 
 def inside_tangent(t: Float, n: float) -> Float:
-    """t' = t/q, the tangent of the refracted angle, of t [...] outside."""
+    """Tangent t' = t/q of the refracted angle, for t [...] outside and an index n."""
     return t / _q(t, n)
 
 
 def _q(t: Float, n: float) -> Float:
+    """q = sqrt(n^2 (1 + t^2) - t^2)."""
     return np.sqrt(1 + (n - 1) * (n + 1) * (1 + t * t))
 
 
 def outside_tangent(outside: Float, depth: Float, offset: Float, n: float) -> Float:
-    """t [R] with f(t) = 0, so that the ray misses its end by rounding of rho alone.
+    """Tangent t [R] with f(t) = 0, so that the ray misses its end by rounding of rho alone.
 
-    Of a + b above 0, d and rho [R], m, and a real refractive index of 1 or more.
+    Args:
+        outside: a + b [R], above 0, m.
+        depth: d [R], m.
+        offset: rho [R], m.
+        n: Real refractive index, 1 or more.
     """
     t: Float = offset / (outside + depth / n)
-    open_ = np.arange(t.size)
+    unsolved = np.arange(t.size)
     for _ in range(MAX_STEPS):
-        a, d, rho, x = outside[open_], depth[open_], offset[open_], t[open_]
+        a, d, rho, x = outside[unsolved], depth[unsolved], offset[unsolved], t[unsolved]
         q = _q(x, n)
         short = rho - (a * x + d * x / q)
-        far = short > MISSES_BY * rho
-        if not far.any():
+        too_short = short > MISSES_BY * rho
+        if not too_short.any():
             break
         # Each ray stops by itself: its number does not depend on those beside it.
-        open_ = open_[far]
+        unsolved = unsolved[too_short]
         slope = a + d * (n / q) ** 2 / q
-        t[open_] += (short / slope)[far]
+        t[unsolved] += (short / slope)[too_short]
     return t
 
 
 def optical_excess(outside: Float, depth: Float, offset: Float, t: Float, n: float) -> Float:
-    """L - R [R] in m: optical length (a + b) sqrt(1 + t^2) + n d sqrt(1 + t'^2) less the distance.
+    """Excess L - R [R] (m) of the optical length L = (a + b) sqrt(1 + t^2) + n d sqrt(1 + t'^2).
 
     A segment of length l at an angle to the straight ray advances l cos(angle) along it, so that
     L - R = (n - 1) l' + sum of l (1 - cos(angle)) over outside and inside. With
     l (1 - cos) = (l sin)^2/(l + l cos) and l sin = (a + b) d (t - t')/R for both, every term is
-    positive and nothing cancels.
+    positive and nothing cancels. Arguments are those of `outside_tangent`, and its t.
     """
     height = outside + depth
     distance = np.hypot(height, offset)

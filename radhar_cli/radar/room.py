@@ -21,24 +21,27 @@ FACES = {"front": X, "back": X, "right": Y, "left": Y, "floor": Z, "ceiling": Z}
 
 
 class Box(NamedTuple):
-    """Where the faces of a room are, m; the floor is at 0."""
+    """Positions of the faces of a room, m; the floor is at 0."""
 
     x: tuple[float, float]
     y: tuple[float, float]
     height: float
 
     @property
-    def at(self) -> dict[str, float]:
-        """Where each face cuts the axis across which it lies, m."""
+    def face_offsets(self) -> dict[str, float]:
+        """Coordinate (m) at which each face cuts the axis across which it lies."""
         (front, back), (right, left) = self.x, self.y
         ends = {"front": front, "back": back, "right": right, "left": left}
         return {**ends, "floor": 0.0, "ceiling": self.height}
 
     def farthest_outside(self, p: Float) -> tuple[float, str]:
-        """How far positions p [3, ...] (m) go beyond the walls or the ceiling, m, and where.
+        """Distance by which positions leave the room through the walls or the ceiling.
+
+        Args:
+            p: Positions [3, ...], m.
 
         Returns:
-            Distance of the farthest, 0 where all are inside; the place in words.
+            Distance (m) of the farthest, 0 where all are inside; its coordinate in words.
         """
         x, y, z = p
         ends = [
@@ -49,8 +52,8 @@ class Box(NamedTuple):
             ("z", float(z.max()), self.height, 1),
         ]
         outside = [
-            (sign * (at - end), f"{axis} = {at:.3g} m, beyond {end:g} m")
-            for axis, at, end, sign in ends
+            (sign * (reached - end), f"{axis} = {reached:.3g} m, beyond {end:g} m")
+            for axis, reached, end, sign in ends
         ]
         farthest = max(outside)
         return farthest if farthest[0] > 0 else (0.0, "")
@@ -64,58 +67,62 @@ class Face(NamedTuple):
     at: float  # where it cuts the axis, m
     eps: complex = 1.0  # relative permittivity
     parallel: bool = True  # whether the antennas' field is parallel to it
-    fixed: float | None = None  # field left after a bounce, whatever the angle
+    constant_reflection: float | None = None  # coefficient of a bounce, whatever the angle
 
-    def reflected(self, cosine: Float) -> Float:
-        """Field [...] left of 1 after one bounce, the real part of Fresnel's coefficient."""
-        if self.fixed is not None:
-            return np.full(cosine.shape, self.fixed)
+    def reflection_coefficient(self, cosine: Float) -> Float:
+        """Field [...] after one bounce of 1, the real part of Fresnel's coefficient.
+
+        Args:
+            cosine: Cosines [...] of the angle of incidence.
+        """
+        if self.constant_reflection is not None:
+            return np.full(cosine.shape, self.constant_reflection)
         if self.parallel:
             return reflection(cosine, self.eps, "perpendicular").real
         return -reflection(cosine, self.eps, "parallel").real
 
 
-class Way(NamedTuple):
+class Leg(NamedTuple):
     """A leg by way of some faces, in the order in which it meets them from the antenna on."""
 
     faces: tuple[Face, ...] = ()
 
     @property
     def name(self) -> str:
-        """The faces' names with + between; - of none."""
+        """Names of the faces with + between; - without any."""
         return "+".join(face.name for face in self.faces) or "-"
 
     def image(self, p: Float) -> Float:
-        """Where positions p [3, ...] appear to be (m), seen from the antenna."""
+        """Images [3, ...] (m) of positions p [3, ...], where the antenna sees them."""
         if not self.faces:
             return p
         sign, shift = self._mirror
         return (p.T * sign + shift).T
 
-    def antenna(self, at: Point) -> Point:
-        """Where an antenna (m) appears to be, seen from what the leg leads to."""
+    def antenna(self, position: Point) -> Point:
+        """Image (m) of an antenna at a position (m), seen from the end of the leg."""
         if not self.faces:
-            return at
-        x, y, z = (s * (a - o) for a, s, o in zip(at, *self._mirror, strict=True))
+            return position
+        x, y, z = (s * (a - o) for a, s, o in zip(position, *self._mirror, strict=True))
         return (x, y, z)
 
     def origin(self, antenna: Point) -> Point:
-        """Where the antenna is (m) that appears to be there."""
+        """Position (m) of the antenna whose image this is."""
         x, y, z = self.image(np.array(antenna)).tolist()
         return (x, y, z)
 
     def field(self, image: Float, antenna: Point) -> Float:
-        """What is left of the field [...] of legs from an antenna to images [3, ...] (m)."""
+        """Field [...] after the bounces of legs from an antenna to images [3, ...] (m)."""
         way = image - np.reshape(antenna, (3,) + (1,) * (image.ndim - 1))
         distance = np.maximum(np.sqrt((way * way).sum(axis=0)), np.finfo(float).tiny)
-        left: Float = np.ones(distance.shape)
+        field: Float = np.ones(distance.shape)
         for face in self.faces:
-            left *= face.reflected(np.abs(way[face.axis]) / distance)
-        return left
+            field *= face.reflection_coefficient(np.abs(way[face.axis]) / distance)
+        return field
 
     @property
     def _mirror(self) -> tuple[Float, Float]:
-        """Sign and shift [3] of the image."""
+        """Sign and shift [3] (m) of the image."""
         sign, shift = np.ones(3), np.zeros(3)
         for face in reversed(self.faces):  # M_f1 is the last that acts on p
             sign[face.axis] *= -1
@@ -123,31 +130,41 @@ class Way(NamedTuple):
         return sign, shift
 
 
-STRAIGHT = Way()
+DIRECT_LEG = Leg()
 
 
-def ways(faces: Sequence[Face], order: int, before_front: bool) -> Iterator[tuple[Way, Way]]:
-    """Ways of the legs of transmitter and receiver with 1 to `order` bounces on both together.
+def reflected_legs(
+    faces: Sequence[Face], max_bounces: int, in_front_of_room: bool
+) -> Iterator[tuple[Leg, Leg]]:
+    """Pairs of legs of transmitter and receiver that bounce at least once.
 
-    Two faces across different axes make one image, whichever comes first: the x axis, then y. An
-    antenna before the front sees no face but by way of what is behind it.
+    Two faces across different axes make one image, whichever comes first: the x axis, then y.
+
+    Args:
+        faces: Faces of the room that reflect.
+        max_bounces: Largest number of bounces of both legs together.
+        in_front_of_room: Whether the antennas stand before the front, which they see by way of
+            another face alone.
     """
-    legs: list[list[Way]] = [[STRAIGHT]]
+    legs: list[list[Leg]] = [[DIRECT_LEG]]
     ordered = sorted(faces, key=lambda face: list(FACES).index(face.name))
-    for bounces in range(1, order + 1):
+    for bounces in range(1, max_bounces + 1):
         chosen = product(ordered, repeat=bounces)
-        legs.append([Way(some) for some in chosen if _is_path(some, before_front)])
-    for n_tx, n_rx in product(range(order + 1), repeat=2):
-        if 1 <= n_tx + n_rx <= order:
+        legs.append([Leg(path) for path in chosen if _is_path(path, in_front_of_room)])
+    for n_tx, n_rx in product(range(max_bounces + 1), repeat=2):
+        if 1 <= n_tx + n_rx <= max_bounces:
             yield from product(legs[n_tx], legs[n_rx])
 
 
-def names_of(legs: tuple[Way, Way]) -> str:
-    """How a path is called in files: faces of the transmitter's leg/of the receiver's."""
-    return "/".join(way.name for way in legs)
+def names_of(legs: tuple[Leg, Leg]) -> str:
+    """Name of a path in files: faces of the transmitter's leg/of the receiver's."""
+    return "/".join(leg.name for leg in legs)
 
 
-def _is_path(faces: tuple[Face, ...], before_front: bool) -> bool:
-    if before_front and faces[0].name == "front":
+def _is_path(faces: tuple[Face, ...], in_front_of_room: bool) -> bool:
+    """Whether a leg may meet these faces in this order, each image counted once."""
+    if in_front_of_room and faces[0].name == "front":
         return False
-    return all(one.name != next_.name and one.axis <= next_.axis for one, next_ in pairwise(faces))
+    return all(
+        face.name != next_.name and face.axis <= next_.axis for face, next_ in pairwise(faces)
+    )

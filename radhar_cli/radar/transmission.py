@@ -22,23 +22,34 @@ from radhar_cli.radar.wall import (
 
 
 class Transmission(NamedTuple):
-    """A leg through the wall: delay beyond free space (s), field left (1), [I, M] each."""
+    """Delay and loss of legs through the wall."""
 
-    delay: Float
-    factor: Float
+    delay: Float  # delay beyond free space [I, M], s
+    factor: Float  # field behind the wall over that without it [I, M]
 
 
 def pass_wall(
     p: Float, antennas: Antennas, wall: Wall, fc: float, delay: Float, amplitude: Float
 ) -> Float | None:
-    """Take paths [I, M] by positions p [3, I, M] (m) through a wall, at a frequency fc (Hz).
+    """Take paths through a wall, whose delay and loss change them in place.
 
-    The wall's delay and loss change them in place; not of a wall of layers, for which the cosine
-    of the angle at which both legs meet it is returned, nan beside it [2, I, M]; else None.
+    A wall of layers, which acts on each frequency in its own way, changes nothing here.
+
+    Args:
+        p: Positions [3, I, M] of the scatterers, m.
+        antennas: Transmitter and receiver.
+        wall: The wall.
+        fc: Frequency of the loss, Hz.
+        delay: Delays [I, M], s, which are changed.
+        amplitude: Amplitudes [I, M], which are changed.
+
+    Returns:
+        For a wall of layers cosines [2, I, M] of the angles at which both legs meet it, NaN for
+        legs beside it; else None.
     """
     if wall.layers is not None:
-        return np.stack([_cosine(image, antenna, wall) for image, antenna in antennas.seen(p)])
-    for image, antenna in antennas.seen(p):
+        return np.stack([_cosine(image, antenna, wall) for image, antenna in antennas.images(p)])
+    for image, antenna in antennas.images(p):
         through = transmission(image, antenna, wall, fc)
         delay += through.delay
         amplitude *= through.factor
@@ -46,6 +57,7 @@ def pass_wall(
 
 
 def _cosine(p: Float, antenna: Point, wall: Wall) -> Float:
+    """Cosines [I, M] of the angle at which legs meet the wall; NaN beside it."""
     way = p - np.reshape(antenna, (3,) + (1,) * (p.ndim - 1))
     with np.errstate(invalid="ignore"):
         cosine = np.abs(way[0]) / np.sqrt((way * way).sum(axis=0))
@@ -54,18 +66,20 @@ def _cosine(p: Float, antenna: Point, wall: Wall) -> Float:
 
 
 class _Ray(NamedTuple):
+    """Rays through the wall, in the order of `RefractedRays`; no tangent of straight ones."""
+
     crossed: Crossing
     delay: Float
     tangent: Float | None
 
 
 def wall_delay(p: Float, antenna: Point, wall: Wall) -> Float:
-    """Delay (s) [I, M] beyond free space of the legs from an antenna to positions p [3, I, M]."""
+    """Delay [I, M] (s) beyond free space of legs from an antenna to positions p [3, I, M] (m)."""
     return _ray(p, antenna, wall).delay
 
 
 def transmission(p: Float, antenna: Point, wall: Wall, fc: float) -> Transmission:
-    """Delay and loss of the legs from an antenna to positions p [3, I, M] at a frequency fc (Hz).
+    """Delay and loss of legs from an antenna to positions p [3, I, M] (m) at a frequency fc (Hz).
 
     The loss is that of the chord and of the faces; spreading is left to the straight distance.
     """

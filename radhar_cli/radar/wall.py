@@ -14,11 +14,10 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 @dataclass(frozen=True)
 class Wall:
-    """The slab."""
+    """Place, size, material and model of the slab."""
 
-    # center, size: (x, y, z), m
-    center: tuple[float, float, float]
-    size: tuple[float, float, float]
+    center: tuple[float, float, float]  # m
+    size: tuple[float, float, float]  # m
     eps_r: float  # relative permittivity, real part
     loss_tangent: float  # tan delta; eps = eps_r (1 - j tan delta)
     # chord of the straight ray, plane wave at its angle, or refracted (`refraction.py`)
@@ -26,40 +25,40 @@ class Wall:
     # transmission of a face at normal incidence, or at the ray's angle for a field perpendicular or
     # parallel to the plane of incidence (`fresnel.py`)
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
-    # of a wall whose echoes are exact, instead of delay and loss at the carrier; eps_r and
-    # loss_tangent are then those of a wall of the same depth and n
+    # layers of a wall whose echoes are exact, instead of delay and loss at the carrier; eps_r and
+    # loss_tangent are then those of a homogeneous wall of the same depth and n
     layers: Layers | None = None
 
     @property
     def permittivity(self) -> complex:
-        """eps = eps_r (1 - j tan delta)."""
+        """Complex relative permittivity eps = eps_r (1 - j tan delta)."""
         return self.eps_r * (1 - 1j * self.loss_tangent)
 
     @property
     def refractive_index(self) -> complex:
-        """sqrt(eps)."""
+        """Complex refractive index n = sqrt(eps)."""
         return complex(np.sqrt(self.permittivity))
 
     @property
     def bounds(self) -> tuple[tuple[float, float], ...]:
-        """(low, high) along x, y, z, m."""
+        """Faces (low, high) along x, y and z, m."""
         return tuple((c - s / 2, c + s / 2) for c, s in zip(self.center, self.size, strict=True))
 
     @property
     def reflection(self) -> complex:
-        """Gamma = (1 - sqrt(eps))/(1 + sqrt(eps)), normal incidence."""
+        """Reflection coefficient at normal incidence, Gamma = (1 - sqrt(eps))/(1 + sqrt(eps))."""
         n = self.refractive_index
         return (1 - n) / (1 + n)
 
     def contains(self, p: Float) -> Bool:
-        """Whether positions p [3, ...] lie in the slab, bounds included."""
+        """Whether positions p [3, ...] (m) lie in the slab, bounds included."""
         inside = np.ones(p.shape[1:], dtype=bool)
         for axis, (low, high) in enumerate(self.bounds):
             inside &= (p[axis] >= low) & (p[axis] <= high)
         return inside
 
     def depth(self, p: Float) -> Float:
-        """How deep positions p [3, ...] lie in the slab, m; below 0 outside."""
+        """Depth [...] (m) of positions p [3, ...] (m) in the slab; below 0 outside."""
         sides = [
             np.minimum(p[axis] - low, high - p[axis])
             for axis, (low, high) in enumerate(self.bounds)
@@ -69,14 +68,14 @@ class Wall:
 
 
 class Crossing(NamedTuple):
-    """One leg through the slab: chord (m) and number of faces crossed, [I, M] each."""
+    """Straight rays through the slab."""
 
-    chord: Float
-    faces: Index
+    chord: Float  # length inside [I, M], m
+    faces: Index  # number of faces crossed [I, M], 0 to 2
 
 
 def crossing(p: Float, antenna: tuple[float, float, float], wall: Wall) -> Crossing:
-    """Intersect the straight rays from an antenna, which is outside, to positions p [3, I, M].
+    """Intersect the straight rays from an antenna, which is outside, to positions p [3, I, M] (m).
 
     A ray is a + s (p - a), 0 <= s <= 1. Bounds count as inside, so a ray that ends on a face has
     entered but not left; a ray along a face, or one that touches an edge, is untouched.
@@ -103,51 +102,51 @@ def faces_met(p: Float, antenna: tuple[float, float, float], wall: Wall) -> tupl
     """
     planes = list(_between_planes(p, antenna, wall))
     entered = np.argmax([near for _, _, near, _ in planes], axis=0)
-    left = np.argmin([far for _, _, _, far in planes], axis=0)
-    return entered, left
+    exited = np.argmin([far for _, _, _, far in planes], axis=0)
+    return entered, exited
 
 
 class _Between(NamedTuple):
-    """The rays and one pair of parallel faces: way along their axis, m, whether a ray runs outside
-    the pair and parallel to it, s at the nearer and at the farther of the two."""
+    """Rays and one pair of parallel faces."""
 
-    step: Float
-    outside: Bool
-    near: Float
-    far: Float
+    step: Float  # way along the axis of the faces, m
+    outside: Bool  # whether a ray runs outside the pair and parallel to it
+    near: Float  # s at the nearer face
+    far: Float  # s at the farther face
 
 
 def _between_planes(
     p: Float, antenna: tuple[float, float, float], wall: Wall
 ) -> Iterator[_Between]:
+    """Rays between the faces across x, y and z."""
     for axis, (low, high) in enumerate(wall.bounds):
-        at = antenna[axis]
-        step = p[axis] - at
+        start = antenna[axis]
+        step = p[axis] - start
         parallel = step == 0
         # A nearly parallel ray overflows to infinity, which the comparisons handle.
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            first, second = (low - at) / step, (high - at) / step
+            first, second = (low - start) / step, (high - start) / step
         near, far = np.minimum(first, second), np.maximum(first, second)
         if parallel.any():
             near[parallel], far[parallel] = -np.inf, np.inf
-        yield _Between(step, parallel & (not low < at < high), near, far)
+        yield _Between(step, parallel & (not low < start < high), near, far)
 
 
 def extra_delay(chord: Float, wall: Wall) -> Float:
-    """Delay (s) beyond free space of a chord (m): d (Re sqrt(eps) - 1)/c."""
+    """Delay beyond free space, d (Re sqrt(eps) - 1)/c (s), of chords d [...] (m)."""
     return chord * ((wall.refractive_index.real - 1) / SPEED_OF_LIGHT)
 
 
 def both_faces(straight: Crossing, cosine: Float, wall: Wall) -> Bool:
-    """Whether straight rays [I, M] at an angle pass both x faces."""
-    both: Bool = (straight.faces == 2) & (straight.chord * cosine > wall.size[0] * (1 - 1e-6))
-    return both
+    """Whether straight rays [I, M] pass both x faces, by the cosine of their angle to x."""
+    passes: Bool = (straight.faces == 2) & (straight.chord * cosine > wall.size[0] * (1 - 1e-6))
+    return passes
 
 
 def plane_wave(
     p: Float, antenna: tuple[float, float, float], wall: Wall, straight: Crossing
 ) -> tuple[Float, Float]:
-    """Chord (m) and delay beyond free space (s) of a plane wave along each straight ray, [I, M].
+    """Chord [I, M] (m) and delay [I, M] (s) beyond free space of plane waves along the rays.
 
     At the angle of the ray, cos = |dx|/R, a slab of depth D has the delay
     D (sqrt(n^2 - 1 + cos^2) - cos)/c and the chord D/sqrt(1 - (1 - cos^2)/n^2), n = Re sqrt(eps).
@@ -163,12 +162,12 @@ def plane_wave(
         inside = np.sqrt(steps + cos * cos)  # n times the cosine inside
         delay = depth * steps / (inside + cos) / SPEED_OF_LIGHT
         chord = depth * n / inside
-    own = straight.chord, extra_delay(straight.chord, wall)
-    return np.where(both, chord, own[0]), np.where(both, delay, own[1])
+    straight_delay = extra_delay(straight.chord, wall)
+    return np.where(both, chord, straight.chord), np.where(both, delay, straight_delay)
 
 
 def field_factor(crossed: Crossing, wall: Wall, fc: float) -> Float:
-    """Field left after one leg: exp(-k0 |Im sqrt(eps)| d) (1 - |Gamma|^2)^(n/2)."""
+    """Field [I, M] behind one leg, exp(-k0 |Im sqrt(eps)| d) (1 - |Gamma|^2)^(n/2), n faces."""
     n = wall.refractive_index
     face = sqrt(4 * n.real) / abs(1 + n)  # sqrt(1 - |Gamma|^2), without its cancellation
     through = np.array([1.0, face, face * face])[crossed.faces]
@@ -177,7 +176,7 @@ def field_factor(crossed: Crossing, wall: Wall, fc: float) -> Float:
 
 
 def absorption(chord: Float, wall: Wall, fc: float) -> Float:
-    """Field left after a chord (m): exp(-k0 |Im sqrt(eps)| d)."""
+    """Field after chords d [...] (m) at a frequency fc (Hz): exp(-k0 |Im sqrt(eps)| d)."""
     k0 = 2 * pi * fc / SPEED_OF_LIGHT
-    left: Float = np.exp(-k0 * abs(wall.refractive_index.imag) * chord)
-    return left
+    field: Float = np.exp(-k0 * abs(wall.refractive_index.imag) * chord)
+    return field

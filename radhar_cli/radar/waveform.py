@@ -27,42 +27,42 @@ class Waveform:
 
     @property
     def slope(self) -> float:
-        """K = B/Tp, Hz/s."""
+        """Slope of the chirp, K = B/Tp, Hz/s."""
         return self.bandwidth / self.chirp
 
     @property
     def wavelength(self) -> float:
-        """lambda = c/fc, m."""
+        """Wavelength lambda = c/fc, m."""
         return SPEED_OF_LIGHT / self.fc
 
     @cached_property
     def n_adc(self) -> int:
-        """N_ADC = round(fs Tp), samples per chirp."""
+        """Number of samples of a chirp, N_ADC = round(fs Tp)."""
         return half_up(self.adc_rate, self.chirp)
 
     @cached_property
     def n_pulses(self) -> int:
-        """M = round(T PRF)."""
+        """Number of pulses, M = round(T PRF)."""
         return half_up(self.duration, self.prf)
 
     @property
     def n_fft(self) -> int:
-        """N_FFT, even and at least N_ADC."""
+        """Length N_FFT of the range transform, even and at least N_ADC."""
         return self.fft_length if self.fft_length is not None else self.n_adc + self.n_adc % 2
 
     @property
     def n_bins(self) -> int:
-        """Range bins kept: the first half."""
+        """Number of range bins that are kept: the first half."""
         return self.n_fft // 2
 
     @property
     def orthogonal(self) -> bool:
-        """Whether range bins are those of a transform that is not padded."""
+        """Whether range bins are orthogonal: those of a transform that is not padded."""
         return self.n_fft == self.n_adc
 
     @property
     def n0(self) -> float:
-        """Phase reference in the chirp, in fast-time samples."""
+        """Phase reference n0 within the chirp, in fast-time samples."""
         return self.n_adc / 2 if self.centred else 0.0
 
     @property
@@ -94,7 +94,7 @@ class Waveform:
         return SPEED_OF_LIGHT * self.prf / (4 * self.f0)
 
     def frequencies(self) -> Float:
-        """fc + K n/fs [N_ADC] at the fast-time samples of a chirp, Hz."""
+        """Frequencies fc + K n/fs [N_ADC] (Hz) at the fast-time samples of a chirp."""
         return self.fc + self.slope * np.arange(self.n_adc) / self.adc_rate
 
     def times(self, pulses: Float) -> Float:

@@ -342,7 +342,7 @@ def raw_profiles(
 
 def _reflection(layers: Layers, f: Float) -> Complex:
     """R of a wall at frequencies f (Hz), at right angles."""
-    reflected: Complex = layers.scattered(f, np.ones(())).reflected
+    reflected: Complex = layers.scattering_coefficients(f, np.ones(())).reflected
     return reflected
 
 

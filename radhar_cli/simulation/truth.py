@@ -14,7 +14,7 @@ from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.bodies import Whose
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.radar.propagation import Antennas
-from radhar_cli.radar.room import Way, names_of
+from radhar_cli.radar.room import Leg, names_of
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
@@ -72,7 +72,7 @@ def path_truth(sources: list[Whose], t: Float) -> PathTruth:
     """Evaluate the paths of all sources, I in all, at times t [M] (s)."""
     paths = [one.source(t) for one in sources]
     counts = [len(one.delay) for one in paths]
-    first = Counter[tuple[int, tuple[Way, Way]]]()  # scatterer of a person by these legs
+    first = Counter[tuple[int, tuple[Leg, Leg]]]()  # scatterer of a person by these legs
     scatterers = []
     for one, count in zip(sources, counts, strict=True):
         begin = first[one[1:]]

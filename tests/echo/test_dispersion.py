@@ -24,7 +24,9 @@ def by_definition(given: Paths) -> np.ndarray:
     f = RADAR.frequencies()[:, None, None]
     assert given.through is not None
     h = [
-        np.where(np.isnan(one), 1, given.through.layers.passed(f, np.nan_to_num(one, nan=1.0)))
+        np.where(
+            np.isnan(one), 1, given.through.layers.transfer_function(f, np.nan_to_num(one, nan=1.0))
+        )
         for one in given.through.cosine
     ]
     cycles = f * given.delay

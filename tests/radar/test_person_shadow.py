@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.special import fresnel
 
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.radar.person_shadow import HALF_WIDTH_M, LEAST, left_of, light_past
+from radhar_cli.radar.person_shadow import HALF_WIDTH_M, LEAST, field_behind_person, limit_shadow
 
 C = 299_792_458.0
 ANTENNA, TOP = (0.0, 0.0, 1.2), 1.75
@@ -38,11 +38,11 @@ def behind(distances: tuple[float, float], aside: Float, carrier_hz: float) -> t
     reach = sum(distances)
     p = np.array([np.full(aside.size, reach), aside * reach / distances[0], np.ones(aside.size)])
     place, wavelength = np.array([distances[0], 0.0, 1.2]), C / carrier_hz
-    one_way = light_past(p[:, None], ANTENNA, place[:, None, None], HALF_WIDTH_M, TOP, wavelength)[
-        0
-    ]
-    screen = left_of(np.abs(past_screen(p, place, wavelength)) ** 2)
-    return screen, left_of(one_way**2)
+    one_way = field_behind_person(
+        p[:, None], ANTENNA, place[:, None, None], HALF_WIDTH_M, TOP, wavelength
+    )[0]
+    screen = limit_shadow(np.abs(past_screen(p, place, wavelength)) ** 2)
+    return screen, limit_shadow(one_way**2)
 
 
 @pytest.mark.parametrize(
@@ -87,12 +87,12 @@ def at(x: float, y: float = 0.0, z: float = 1.0) -> Float:
     ],
 )
 def test_who_is_not_between_hides_nothing(p: Float, place: Float, why: str) -> None:
-    left = light_past(p, ANTENNA, place, HALF_WIDTH_M, TOP, 0.0125)
+    left = field_behind_person(p, ANTENNA, place, HALF_WIDTH_M, TOP, 0.0125)
     assert left[0, 0] == pytest.approx(1, abs=1e-3), why
 
 
 def test_some_of_the_field_always_gets_around() -> None:
-    left = left_of(light_past(at(4), ANTENNA, at(2), HALF_WIDTH_M, TOP, 0.004) ** 2)
+    left = limit_shadow(field_behind_person(at(4), ANTENNA, at(2), HALF_WIDTH_M, TOP, 0.004) ** 2)
     assert left[0, 0] == pytest.approx(LEAST, rel=1e-2)
 
 
@@ -103,5 +103,5 @@ places = st.tuples(st.floats(-20, 20), st.floats(-20, 20), st.floats(0, 3))
 def test_it_is_a_share_wherever_people_are(
     p: tuple[float, ...], place: tuple[float, ...], carrier_hz: float
 ) -> None:
-    left = light_past(at(*p), ANTENNA, at(*place), HALF_WIDTH_M, TOP, C / carrier_hz)
+    left = field_behind_person(at(*p), ANTENNA, at(*place), HALF_WIDTH_M, TOP, C / carrier_hz)
     assert 0 <= left[0, 0] <= 1

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from radhar_cli.radar.materials import permittivity
 from radhar_cli.radar.propagation import Aim, Antennas, amplitude, boresight_axes, leg
-from radhar_cli.radar.room import FACES, STRAIGHT, Face, Way, names_of, ways
+from radhar_cli.radar.room import DIRECT_LEG, FACES, Face, Leg, names_of, reflected_legs
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 WAVELENGTH, GAIN = SPEED_OF_LIGHT / 2.5e9, 10**0.6
@@ -50,7 +50,7 @@ def box(polarisation: str = "vertical", material: str = "concrete") -> list[Face
 def seen(radar: Antennas, faces: list[Face], order: int) -> dict[str, tuple[float, float]]:
     """{kind: (delay, amplitude)} of one scatterer of 1 m^2."""
     found = {}
-    for legs in [(STRAIGHT, STRAIGHT), *ways(faces, order, radar.tx[0] < 0)]:
+    for legs in [(DIRECT_LEG, DIRECT_LEG), *reflected_legs(faces, order, radar.tx[0] < 0)]:
         by = radar.by_way(*legs)
         r_tx, r_rx = leg(P, by.tx), leg(P, by.rx)
         a = amplitude(r_tx, r_rx, np.ones((1, 1)), GAIN, WAVELENGTH)
@@ -80,12 +80,12 @@ def test_paths_by_two_faces_are_the_contracts(where: str, polarisation: str) -> 
     ("x", "order", "count"), [(0.4, 0, 0), (0.4, 1, 12), (-0.6, 1, 10), (-0.6, 2, 61)]
 )
 def test_how_many_ways_there_are(x: float, order: int, count: int) -> None:
-    assert len(list(ways(box(), order, x < 0))) == count
+    assert len(list(reflected_legs(box(), order, x < 0))) == count
 
 
 def test_a_floor_alone_has_three_images() -> None:
     floor = [face for face in box() if face.name == "floor"]
-    kinds = [names_of(legs) for legs in ways(floor, 2, False)]
+    kinds = [names_of(legs) for legs in reflected_legs(floor, 2, False)]
     assert sorted(kinds) == ["-/floor", "floor/-", "floor/floor"]
 
 
@@ -95,7 +95,10 @@ def test_transmitter_and_receiver_may_change_places(
 ) -> None:
     radar = antennas()
     other = Antennas(radar.rx, radar.tx, GAIN, 0.0)
-    one = {names_of(legs): legs for legs in [(STRAIGHT, STRAIGHT), *ways(box(), 2, False)]}
+    one = {
+        names_of(legs): legs
+        for legs in [(DIRECT_LEG, DIRECT_LEG), *reflected_legs(box(), 2, False)]
+    }
     kind = sorted(one)[number]
     p = np.array([x, y, z])[:, None, None]
     (by, back) = radar.by_way(*one[kind]), other.by_way(*reversed(one[kind]))
@@ -109,10 +112,10 @@ def test_a_metal_wall_behind_on_axis() -> None:
     """Delays 2x, 2X, 2X, 2 (2X - x) over c; amplitudes 1, twice -x/(2X - x), the square of that."""
     far, at = 6.0, 4.0
     radar = Antennas((0, 0, 1), (0, 0, 1), 1.0, 0.0)
-    p, wall = np.array([at, 0, 1])[:, None, None], Face("back", 0, far, fixed=-1.0)
+    p, wall = np.array([at, 0, 1])[:, None, None], Face("back", 0, far, constant_reflection=-1.0)
     ratio = at / (2 * far - at)
     expected = {"-/-": (at, 1), "back/-": (far, -ratio), "back/back": (2 * far - at, ratio**2)}
-    for legs in [(STRAIGHT, STRAIGHT), *ways([wall], 2, False)]:
+    for legs in [(DIRECT_LEG, DIRECT_LEG), *reflected_legs([wall], 2, False)]:
         by = radar.by_way(*legs)
         r_tx, r_rx = leg(p, by.tx), leg(p, by.rx)
         field = 1.0 if by.field(p) is None else by.field(p).item()
@@ -125,7 +128,8 @@ def test_reflections_at_45_degrees() -> None:
     """What is left of a field along the normal is the square of that of a parallel one."""
     cos45 = np.array([2**-0.5])
     along, parallel = (
-        Face("floor", 2, 0.0, 5.24 + 0j, parallel).reflected(cos45)[0] for parallel in (False, True)
+        Face("floor", 2, 0.0, 5.24 + 0j, parallel).reflection_coefficient(cos45)[0]
+        for parallel in (False, True)
     )
     assert along == pytest.approx(parallel**2)
     assert parallel == pytest.approx(-0.5097, abs=1e-4)
@@ -136,12 +140,12 @@ def test_no_bounce_gains(frequency: float, cosine: float) -> None:
     for parallel in (True, False):
         eps = permittivity("glass", frequency)
         face = Face("floor", 2, 0.0, eps, parallel)
-        assert abs(face.reflected(np.array([cosine]))[0]) <= 1
+        assert abs(face.reflection_coefficient(np.array([cosine]))[0]) <= 1
 
 
 def test_an_image_and_the_antennas_image_are_as_far() -> None:
     faces = box()
-    way = Way((faces[1], faces[0], faces[2], faces[4]))
+    way = Leg((faces[1], faces[0], faces[2], faces[4]))
     a, p = (0.4, -0.1, 1.1), P[:, 0, 0]
     from_p = np.linalg.norm(p - np.array(way.antenna(a)))
     assert np.linalg.norm(way.image(P)[:, 0, 0] - np.array(a)) == pytest.approx(from_p)
@@ -157,7 +161,7 @@ def test_beam_at_half_its_width() -> None:
     behind = np.array([-1.0, 0.2, 1])[:, None]
     assert 20 * np.log10(aim.two_way(behind))[0] == pytest.approx(-60, abs=1e-9)
     there = Antennas((0, 0, 1), (0, 0, 1), 1.0, 0.0, aim)
-    left = Face("left", 1, 3.0, fixed=1.0)
-    mixed = there.by_way(STRAIGHT, Way((left,))).field(np.array([4.0, 0, 1])[:, None])
+    left = Face("left", 1, 3.0, constant_reflection=1.0)
+    mixed = there.by_way(DIRECT_LEG, Leg((left,))).field(np.array([4.0, 0, 1])[:, None])
     angle = np.arctan2(6, 4) * 180 / pi
     assert 20 * np.log10(mixed[0]) == pytest.approx(-min(12 * (angle / 70) ** 2, 30), abs=1e-9)

@@ -22,7 +22,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config, MeasuredConfig, RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.dataset.sample import Row, Synthesised
+from radhar_cli.dataset.sample import SampleRow, Synthesised
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.pipeline.products import image_of
 from radhar_cli.processing.entropy import entropy_bits
@@ -248,12 +248,12 @@ class WindowFactory:
 
     folder: Path  # of the manifest, absolute
 
-    def __call__(self, config: MeasuredConfig, row: int) -> Row:
+    def __call__(self, config: MeasuredConfig, row: int) -> SampleRow:
         """Sample and values of a row."""
         recorded = config.recordings
         number, part, start = windows(config)[row]
         if is_image(part.file):
-            return Row(self._image(config, part.file), np.array([number, start, nan]))
+            return SampleRow(self._image(config, part.file), np.array([number, start, nan]))
         with Recording(self.folder / part.file) as recording:
             made = maps_of(
                 recording, config, config.maps, start, start + recorded.window_s, recorded.receiver
@@ -264,7 +264,7 @@ class WindowFactory:
             columns = replace(one.columns, values=one.columns.values - start)
             images[name] = image_of(config, replace(one, columns=columns))
         sure = nan if made.track is None else float(made.track.confidence.mean())
-        return Row(Synthesised(images, nan, False, {}), np.array([number, start, sure]))
+        return SampleRow(Synthesised(images, nan, False, {}), np.array([number, start, sure]))
 
     def _image(self, config: MeasuredConfig, file: str) -> Synthesised:
         recorded = config.recordings

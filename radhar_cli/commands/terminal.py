@@ -118,7 +118,7 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
         return
     samples = counted(outcome.samples, "sample")
     tell(f"{folder / DATASET}: {samples}, {outcome.made} new, {_mib(size)}")
-    tell(f"  {rows.counted}; " + ", ".join(f"{count} {part}" for part, count in split.items()))
+    tell(f"  {rows.counts_text}; " + ", ".join(f"{count} {part}" for part, count in split.items()))
     tell(f"  check it: radhar verify {folder}")
 
 
@@ -150,7 +150,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     from radhar_cli.pipeline.products import plan_images
 
     rows = Rows.of(config)
-    samples = f"samples     {len(rows)} = {rows.counted}"
+    samples = f"samples     {len(rows)} = {rows.counts_text}"
     if isinstance(config, MeasuredConfig):
         report(samples=len(rows), classes=_class_counts(rows), maps=config.maps)
         tell(f"{samples}\nnothing was written")

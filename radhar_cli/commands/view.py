@@ -35,13 +35,13 @@ def view(
 
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.reading import open_dataset
-    from radhar_cli.dataset.sample_page import chosen_rows, of_samples
+    from radhar_cli.dataset.sample_page import choose_rows, sample_entries
     from radhar_cli.figures.scene_page import write_page
 
     with open_dataset(dataset) as data:
-        rows = chosen_rows(data, sample or [])
+        rows = choose_rows(data, sample or [])
         path = out or data.path.parent / "view.html"
         refuse_links(path.parent, path)
-        write_page(of_samples(data, rows), path)
+        write_page(sample_entries(data, rows), path)
     report(file=path, samples=len(rows))
     tell(str(path))

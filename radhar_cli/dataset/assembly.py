@@ -71,7 +71,7 @@ SLOW_TIME_TEXT = (
 
 
 @contextmanager
-def assembled(
+def assemble(
     config: AnyConfig,
     folder: Path,
     shards: Sequence[Shard],
@@ -83,8 +83,14 @@ def assembled(
     On exit the file is renamed to dataset.h5.
 
     Args:
-        shards: that hold every row once.
-        remedy: advice on rows that are missing, if not to run the same command again.
+        config: that of the data set.
+        folder: output folder.
+        shards: shards that hold every row once.
+        progress: is told of every row.
+        remedy: advice on runs of missing rows, if not to run the same command again.
+
+    Raises:
+        UnfinishedError: rows are missing, or a shard is damaged.
     """
     count, own_hash, shards = len(Rows.of(config)), identity_hash(identity(config)), sorted(shards)
     require_tiling(folder, shards, count, remedy)
@@ -125,7 +131,7 @@ def _copy_shards(
     progress: Progress,
     table: io.TextIOBase,
 ) -> dict[Flags, int]:
-    """Copy maps and columns, each shard read and checked once.
+    """Copy maps and columns of shards into the file, each shard read and checked once.
 
     Chunks are stored in runs of RUN rows, or of RUN_BYTES, dataset after dataset: the file's layout
     does not depend on how shards cut the rows, and who reads one map reads long stretches.
@@ -133,7 +139,7 @@ def _copy_shards(
     Returns:
         How many rows have each flag.
     """
-    count, stored = shards[-1].stop, 0
+    count, written_rows = shards[-1].stop, 0
     run, large = max(1, min(RUN, RUN_BYTES // layout.row_bytes(config))), layout.chunked(config)
     targets = {name: chunked_dataset(file, name, count, config).id for name in large}
     small = {
@@ -151,34 +157,37 @@ def _copy_shards(
         start, stop, rows = shard.start, shard.stop, shard.stop - shard.start
         with UntrustedFile(shard.path, shard.read(own_hash)) as part:
             values = part.column("scene", np.float64, (rows, len(fields)))[:]
-            here = part.column("flags", FLAG_TYPE, (rows,))[:]
+            row_flags = part.column("flags", FLAG_TYPE, (rows,))[:]
             for name, (dtype, shape) in large.items():
-                source = part.chunks(name, dtype, (rows, *shape))
-                chunks[name] += [source.stored(row) for row in range(rows)]
+                chunk_column = part.chunks(name, dtype, (rows, *shape))
+                chunks[name] += [chunk_column.stored(row) for row in range(rows)]
             for name in config.stored:
                 products[name].append(part.samples(f"products/{name}", may_be_empty=True))
             for column, (target, kind, shape) in small.items():
-                found = part.column(column, kind, (rows, *shape))[:]
-                target.append(found)
+                rows_of_column = part.column(column, kind, (rows, *shape))[:]
+                target.append(rows_of_column)
                 if column in extents and len(extents[column]) < 2:
-                    extents[column].update(map(tuple, found.tolist()))
+                    extents[column].update(map(tuple, rows_of_column.tolist()))
         for number, (field, target) in enumerate(zip(fields, scene, strict=True)):
             target.append(values[:, number] * field.factor)
         rows_csv.write(start, values)
         progress.advance(rows)
         for flag in flags:
-            flags[flag] += int(np.count_nonzero(here & flag))
-        while stop - stored >= run or stored < stop == count:
+            flags[flag] += int(np.count_nonzero(row_flags & flag))
+        while stop - written_rows >= run or written_rows < stop == count:
             for name, target in targets.items():
                 corner = (0,) * len(large[name][1])
-                for row, (mask, chunk) in enumerate(chunks[name][:run], stored):
+                for row, (mask, chunk) in enumerate(chunks[name][:run], written_rows):
                     target.write_direct_chunk((row, *corner), chunk, mask)
                 del chunks[name][:run]
-            stored += run
+            written_rows += run
             check()
-    named = zip((f"scene/{field.name}" for field in fields), scene, strict=True)
-    columns_there = {**dict(named), **{name: target for name, (target, _, _) in small.items()}}
-    digests = {name: target.finished() for name, target in columns_there.items()}
+    scene_columns = zip((f"scene/{field.name}" for field in fields), scene, strict=True)
+    small_columns = {
+        **dict(scene_columns),
+        **{name: target for name, (target, _, _) in small.items()},
+    }
+    digests = {name: target.finish() for name, target in small_columns.items()}
     file.attrs["columns_sha256"] = json.dumps(digests)
     for name in config.maps:
         _describe_map(file, config, name, extents[f"extent/{name}"])
@@ -188,15 +197,18 @@ def _copy_shards(
 
 
 def _describe_products(file: h5py.File, config: Config) -> None:
+    """Write the attributes of products, labels of people and slow time."""
     if "products/points" in file:
         file["products/points"].attrs["columns"] = [*COLUMNS]
-    recorded = any(config.files_of(one) is not None for one in config.chosen_activities)
+    recorded = any(config.files_of(activity) is not None for activity in config.chosen_activities)
     if "products/points_kind" in file:
         file["products/points_kind"].attrs["kinds"] = kinds_of(config)
     if "products/skeleton" in file and not recorded:
         file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
     if config.people:
-        file[layout.LABELS].attrs["class_slugs"] = [one.slug for one in config.every_class]
+        file[layout.LABELS].attrs["class_slugs"] = [
+            activity.slug for activity in config.every_class
+        ]
         meaning = "place in class_slugs of /labels, the sample's main person first; -1 absent"
         file[layout.PERSON_LABEL].attrs["meaning"] = meaning
     if config.output.slow_time:
@@ -204,7 +216,7 @@ def _describe_products(file: h5py.File, config: Config) -> None:
 
 
 class _Ragged:
-    """An array of all samples one after the other along its first axis."""
+    """Product of the file that holds the arrays of all samples one after the other, axis 0."""
 
     def __init__(self, file: h5py.File, config: AnyConfig, name: str) -> None:
         self._file, self._name = file, f"products/{name}"
@@ -231,7 +243,7 @@ class _Ragged:
 
 
 class _Column:
-    """A small dataset, written COLUMN_RUN rows at a time: a write takes h5py 0.1 ms."""
+    """Small dataset of the file, written COLUMN_RUN rows at a time: a write takes h5py 0.1 ms."""
 
     def __init__(self, target: h5py.Dataset) -> None:
         self._target, self._start, self._stop, self._digest = target, 0, 0, hashlib.sha256()
@@ -243,10 +255,10 @@ class _Column:
         self._digest.update(values.astype(self._target.dtype).tobytes())
         self._stop += len(values)
         if self._stop - self._start >= COLUMN_RUN:
-            self.finished()
+            self.finish()
 
-    def finished(self) -> str:
-        """Write what is held; return the checksum of all rows."""
+    def finish(self) -> str:
+        """Write the rows that are held; return the checksum of all rows."""
         if self._held:
             self._target[self._start : self._stop] = np.concatenate(self._held)
             self._start = self._stop
@@ -255,6 +267,7 @@ class _Column:
 
 
 def _describe_samples(file: h5py.File, config: AnyConfig) -> None:
+    """Write the datasets of labels, splits and keys, and the empty ones of /scene."""
     rows = Rows.of(config)
     count = len(rows)
     file["label"] = rows.label.astype(np.uint8)
@@ -264,8 +277,8 @@ def _describe_samples(file: h5py.File, config: AnyConfig) -> None:
     file["split"].attrs["meaning"] = ", ".join(f"{i} {name}" for i, name in enumerate(SPLITS))
     keys = file.create_dataset("sample_key", (count, 2), np.int64)
     keys.attrs["columns"] = ["label", "index"]
-    if (everyone := persons(config)) is not None:
-        subject = file.create_dataset("scene/subject", (count,), np.int64, data=everyone)
+    if (person := persons(config)) is not None:
+        subject = file.create_dataset("scene/subject", (count,), np.int64, data=person)
         subject.attrs["unit"] = "1"
     keys[:, 0] = rows.label
     keys[:, 1] = np.concatenate([np.arange(number) for number in rows.counts])
@@ -278,7 +291,7 @@ def _describe_samples(file: h5py.File, config: AnyConfig) -> None:
 def _describe_map(
     file: h5py.File, config: AnyConfig, name: str, extents: set[tuple[float, ...]]
 ) -> None:
-    """Attributes of a map of these extents; of more than one, two are enough."""
+    """Write the attributes of a map; of its extents, where there are more, two are enough."""
     same = len(extents) == 1
     start, stop, low, high = next(iter(extents)) if same else [np.nan] * 4
     (rows, unit), (across, column_unit) = layout.row_axis(name), layout.column_axis(name)
@@ -317,6 +330,7 @@ def _describe_map(
 
 
 def _root_attributes(file: h5py.File, config: AnyConfig, messages: list[dict[str, Any]]) -> None:
+    """Write the attributes of the file itself; `messages` are its warnings."""
     named = identity(config)
     named = {part: named[part] for part in ("keys", "versions", "hash")}
     described = {
@@ -334,7 +348,7 @@ def _root_attributes(file: h5py.File, config: AnyConfig, messages: list[dict[str
 
 
 class _SceneTable:
-    """scenes.csv, written some rows at a time."""
+    """The table scenes.csv, written some rows at a time."""
 
     def __init__(self, config: AnyConfig, table: io.TextIOBase) -> None:
         self._config, self._rows, self._split = config, Rows.of(config), split_rows(config)
@@ -344,7 +358,7 @@ class _SceneTable:
         self._writer.writerow(["label", "class", "slug", "index", "split", "subject", *columns])
 
     def write(self, start: int, values: Float) -> None:
-        """Write the rows from `start` on, of values [rows, fields]."""
+        """Write the rows from `start` on, of values [row, field]."""
         for row, numbers in enumerate(values.tolist(), start):
             activity, index = self._rows[row]
             label = self._rows.activities.index(activity)

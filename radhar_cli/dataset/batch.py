@@ -17,7 +17,7 @@ from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
 from radhar_cli.dataset.layout import IDENTITY, WORK, Rows
 from radhar_cli.dataset.png import encode_png
-from radhar_cli.dataset.sample import Row, RowFactory, synthesise
+from radhar_cli.dataset.sample import RowFactory, SampleRow, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.dataset.workers import NO_PARENT
@@ -34,7 +34,7 @@ CHECKED_SCENES = 24  # before a build; each is checked as it is made
 
 @dataclass(frozen=True)
 class Batch:
-    """Rows start .. stop - 1 and all that a worker needs to make them."""
+    """Rows start .. stop - 1 of a data set, and all that a worker needs to make them."""
 
     config: AnyConfig
     identity_hash: str
@@ -50,26 +50,30 @@ class Batch:
 def check_scenes(
     config: Config, seconds: float = inf, progress: Progress = NO_PROGRESS
 ) -> tuple[list[Scene], list[dict[str, Any]]]:
-    """Draw some scenes, spread over the classes; return them and what to warn of in them.
+    """Draw CHECKED_SCENES scenes, spread over the classes, and check them.
 
     Args:
-        seconds: no more are drawn when that time is over; the first ones are of all classes.
+        config: that of the data set.
+        seconds: no more scenes are drawn when that time is over; the first ones are of all classes.
         progress: is told of every scene.
+
+    Returns:
+        The scenes, and warnings of what was found in them.
     """
     rows, drawn = Rows.of(config), list[tuple[Scene, Flags]]()
-    places = rows.scattered(CHECKED_SCENES)
+    places = rows.spread_progressively(CHECKED_SCENES)
     progress.stage("checking scenes", len(places), 0, "scene")
     with time_limit(seconds):
         for row in places:
             drawn.append(draw_valid_scene(config, *rows[row]))
             progress.advance(1)
-    counts = {flag: sum(flag in found for _, found in drawn) for flag in Flags}
+    counts = {flag: sum(flag in flags for _, flags in drawn) for flag in Flags}
     # Without the motions that they hold.
     return [replace(scene) for scene, _ in drawn], warnings(config, counts, len(drawn))
 
 
 def leave_if_orphaned(parent_pid: int) -> None:
-    """End a worker whose parent was killed: nobody waits for it, and a new run may be at work."""
+    """End this worker if its parent was killed: a new run may be at work."""
     if parent_pid == NO_PARENT:
         return
     if os.getpid() != parent_pid and os.getppid() != parent_pid:
@@ -77,33 +81,38 @@ def leave_if_orphaned(parent_pid: int) -> None:
 
 
 def run_batch(batch: Batch) -> int:
-    """Make a batch; return its number of samples. The shard is renamed into place last."""
+    """Make a batch: its PNG files, then its shard; return the number of samples.
+
+    Raises:
+        MachineError: this worker of a cluster has other versions, or does not see the folder.
+    """
     prepare_process()
     if batch.parent_pid == NO_PARENT:
         _check_machine(batch)
     try:
-        return _write(batch)
+        return _write_batch(batch)
     except OSError:
         leave_if_orphaned(batch.parent_pid)
         raise
 
 
-def _write(batch: Batch) -> int:
+def _write_batch(batch: Batch) -> int:
+    """Write the PNG files of a batch, then its shard; return the number of samples."""
     config, count, rows = batch.config, batch.stop - batch.start, Rows.of(batch.config)
     samples = []
     values = np.empty((count, len(scene_fields.fields(config))))
     flags = np.empty(count, dtype=FLAG_TYPE)
-    for number, (made, found) in enumerate(_made(batch)):
-        sample = made.sample
+    for number, (row, row_flags) in enumerate(_make_rows(batch)):
+        sample = row.sample
         if batch.table is not None:
             for name, image in sample.images.items():
                 data = encode_png(image.levels, batch.table, config.output.png_level)
                 path = rows.png_path(name, int(batch.split[number]), batch.start + number)
                 write_whole(batch.folder, batch.folder / path, data)
         samples.append(sample)
-        values[number] = made.values
+        values[number] = row.values
         black = not all(image.levels.any() for image in sample.images.values())
-        flags[number] = found | Flags.FALLBACK * sample.fell_back | Flags.BLACK * black
+        flags[number] = row_flags | Flags.FALLBACK * sample.fell_back | Flags.BLACK * black
     data = encode_shard(config, batch.identity_hash, batch.start, samples, values, flags)
     write_shard(batch.folder, batch.start, batch.stop, data)
     return count
@@ -112,17 +121,17 @@ def _write(batch: Batch) -> int:
 def _check_machine(batch: Batch) -> None:
     """Refuse a machine that would make other bytes, or make them elsewhere."""
     if identity_hash(identity(batch.config)) != batch.identity_hash:
-        here = ", ".join(f"{library} {version}" for library, version in versions().items())
+        own_versions = ", ".join(f"{library} {version}" for library, version in versions().items())
         raise MachineError(
-            f"the worker on {platform.node()} has other versions, {here}; should have those of "
-            "`radhar --version` here"
+            f"the worker on {platform.node()} has other versions, {own_versions}; should "
+            "have those of `radhar --version` here"
         )
     if not (batch.folder / WORK / IDENTITY).exists():
         raise MachineError(f"the worker on {platform.node()} does not see {batch.folder}")
 
 
-def _made(batch: Batch) -> Iterator[tuple[Row, int]]:
-    """Each row, and its Flags."""
+def _make_rows(batch: Batch) -> Iterator[tuple[SampleRow, int]]:
+    """Make each row of a batch; yield it and its Flags."""
     config, rows = batch.config, Rows.of(batch.config)
     if isinstance(config, Config):
         plan, columns = plan_images(config), scene_fields.fields(config)
@@ -134,10 +143,10 @@ def _made(batch: Batch) -> Iterator[tuple[Row, int]]:
             continue
         scene, flags = draw_valid_scene(config, *rows[row])
         sample = synthesise(scene, plan, config)
-        yield Row(sample, scene_fields.values(scene, columns, sample.error_db)), flags
+        yield SampleRow(sample, scene_fields.values(scene, columns, sample.error_db)), flags
 
 
-def png_rows(
+def write_png_rows(
     config: AnyConfig,
     folder: Path,
     source: Path,
@@ -145,7 +154,19 @@ def png_rows(
     table: Levels,
     parent_pid: int,
 ) -> int:
-    """Write the PNGs of (row, split) pairs from a data set's HDF5 file."""
+    """Write the PNG files of some rows, from the levels in a data set's HDF5 file.
+
+    Args:
+        config: that of the data set.
+        folder: output folder.
+        source: the HDF5 file.
+        rows: (row, number of its split) of each sample.
+        table: colour table [256, 3].
+        parent_pid: process without which this one should stop.
+
+    Returns:
+        Number of rows.
+    """
     order = Rows.of(config)
     shape = (len(order), *config.image.size_px)
     with UntrustedFile(source) as file:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from radhar_cli.config.schema import AnyConfig, Config
-from radhar_cli.dataset.assembly import assembled
+from radhar_cli.dataset.assembly import assemble
 from radhar_cli.dataset.batch import Batch, check_scenes, run_batch
 from radhar_cli.dataset.card import write_card
 from radhar_cli.dataset.folder import clean_up, folder_lock, reserve
@@ -27,7 +27,7 @@ from radhar_cli.dataset.shards import (
     Runs,
     Shard,
     check_shards,
-    listed_shards,
+    list_shards,
     missing_rows,
 )
 from radhar_cli.dataset.split import split_rows, split_warnings
@@ -43,7 +43,7 @@ BATCH, MAX_BATCH, SHARE, BATCH_BYTES = 32, 1024, 64, 2**28
 
 @dataclass(frozen=True)
 class BuildOutcome:
-    """What a build did."""
+    """Result of a build."""
 
     folder: Path  # the output folder
     samples: int  # in the data set
@@ -67,25 +67,35 @@ def build(
     factory: RowFactory | None = None,
     part: DataSetPart | None = None,
 ) -> BuildOutcome:
-    """Build `config` into `folder`, or resume it; nothing to do where it is complete.
+    """Build the data set of `config` in `folder`, or resume it; do nothing where it is complete.
 
     Args:
-        batch_size: samples a shard; it changes no byte of the result.
+        config: that of the data set.
+        folder: output folder.
+        jobs: number of worker processes.
+        progress: is told of every sample and warning.
+        overwrite: start over where the folder holds another data set of radhar.
+        batch_size: number of samples of a shard; it changes no byte of the result.
         factory: makes the rows of a data set that is not simulated.
-        part: make these rows alone, in their folder below `folder`.
+        part: make only the rows of this part, in its folder below `folder`.
+
+    Raises:
+        FolderError: the folder holds other files or another data set, or another run writes there.
+        UnfinishedError: the disk is full or cannot be written; the same command resumes.
     """
     folder, count = folder.absolute(), len(Rows.of(config))
     if part is not None:
         if part.of > count:
-            most = f"there are {count} samples; should be at most K/{count}"
-            raise FolderError(f"--shard {part}: {most}")
+            raise FolderError(
+                f"--shard {part}: there are {count} samples; should be at most K/{count}"
+            )
         refuse_other_cuts(folder, part)
         folder = part.folder(folder)
     try:
         with folder_lock(folder):
             reserve(folder, config, overwrite, None if part is None else str(part))
             work = Build(config, folder, jobs, progress, factory)
-            return work.whole(batch_size) if part is None else work.part(part, batch_size)
+            return work.build_all(batch_size) if part is None else work.build_part(part, batch_size)
     except OSError as error:
         raise disk_error(folder, error) from error
 
@@ -105,18 +115,18 @@ class Build:
         self.split = split_rows(self.config)
         self.png = self.config.output.png
 
-    def whole(self, batch_size: int | None) -> BuildOutcome:
-        """Make what is missing of a data set."""
+    def build_all(self, batch_size: int | None) -> BuildOutcome:
+        """Make the missing samples and files of the data set."""
         if (self.folder / DATASET).exists():
-            pngs = self._write_beside(self.folder / DATASET)
+            pngs = self._write_missing_files(self.folder / DATASET)
             clean_up(self.folder)
             return BuildOutcome(self.folder, len(self.split), 0, pngs)
         self.warn_of_split()
-        shards, made, shown = self._shards(range(len(self.split)), batch_size)
-        return self.assemble(shards, made, shown)
+        shards, made, warnings = self._complete_shards(range(len(self.split)), batch_size)
+        return self.assemble(shards, made, warnings)
 
     def warn_of_split(self) -> None:
-        """Say what is missing in parts of the split."""
+        """Warn of parts of the split that lack samples."""
         for message in split_warnings(self.config, self.split):
             self.progress.say(f"warning: {message}")
 
@@ -124,35 +134,40 @@ class Build:
         self,
         shards: list[Shard],
         made: int,
-        shown: Sequence[dict[str, Any]] = (),
+        given_warnings: Sequence[dict[str, Any]] = (),
         remedy: Callable[[Runs], str] | None = None,
     ) -> BuildOutcome:
-        """Make a data set of its shards, `made` rows of which are new.
+        """Make the data set of its shards.
 
         Args:
-            shown: warnings that were given before.
-            remedy: as of `assembled`.
+            shards: shards that hold every row once.
+            made: number of rows that this run has made.
+            given_warnings: warnings that were given before.
+            remedy: advice on runs of missing rows, if not to run the same command again.
+
+        Raises:
+            UnfinishedError: rows are missing.
         """
         self.progress.stage("assembling", len(self.split), 0)
-        with assembled(self.config, self.folder, shards, self.progress, remedy) as (source, stored):
-            self._say_warnings([warning for warning in stored if warning not in shown])
-            pngs = self._write_beside(source)
+        with assemble(self.config, self.folder, shards, self.progress, remedy) as (source, stored):
+            self._say_warnings([warning for warning in stored if warning not in given_warnings])
+            pngs = self._write_missing_files(source)
         clean_up(self.folder)
         return BuildOutcome(self.folder, len(self.split), made, pngs, stored)
 
-    def part(self, part: DataSetPart, batch_size: int | None) -> BuildOutcome:
-        """Make the shards of a part; they stay, for others to put together and write the PNGs."""
+    def build_part(self, part: DataSetPart, batch_size: int | None) -> BuildOutcome:
+        """Make the shards of a part; `radhar merge` puts them together and writes the PNGs."""
         rows, self.png = part.rows(len(self.split)), False
         (self.folder / WORK / BUILT).unlink(missing_ok=True)
-        _, made, shown = self._shards(rows, batch_size)
+        _, made, warnings = self._complete_shards(rows, batch_size)
         (self.folder / WORK / BUILT).touch()
-        return BuildOutcome(self.folder, len(rows), made, 0, shown)
+        return BuildOutcome(self.folder, len(rows), made, 0, warnings)
 
     def _say_warnings(self, messages: Sequence[dict[str, Any]]) -> None:
         for warning in messages:
             self.progress.say(f"warning: {warning['message']}")
 
-    def _write_beside(self, source: Path) -> int:
+    def _write_missing_files(self, source: Path) -> int:
         """Write the missing files next to dataset.h5; return the number of PNGs among them."""
         pngs = write_missing_pngs(
             self.config, self.folder, self.split, source, self.jobs, self.progress
@@ -160,25 +175,31 @@ class Build:
         write_card(source, self.folder)
         return pngs
 
-    def _shards(
+    def _complete_shards(
         self, rows: range, batch_size: int | None
     ) -> tuple[list[Shard], int, list[dict[str, Any]]]:
-        """Shards of the rows, number of rows that this run made, and warnings."""
+        """Make the missing shards of rows.
+
+        Returns:
+            All their shards, the number of rows that this run made, and warnings.
+        """
         shards = self._sound_shards(rows)
         gaps = missing_rows(shards, rows.stop, rows.start)
-        shown: list[dict[str, Any]] = []
+        warnings: list[dict[str, Any]] = []
         if not shards and isinstance(self.config, Config):
-            _, shown = check_scenes(self.config)
-        self._say_warnings(shown)
-        made, left = self._batches(rows, gaps, batch_size)
-        return shards + made, left, shown
+            _, warnings = check_scenes(self.config)
+        self._say_warnings(warnings)
+        new_shards, missing = self._run_batches(rows, gaps, batch_size)
+        return shards + new_shards, missing, warnings
 
-    def _batches(self, rows: range, gaps: Runs, batch_size: int | None) -> tuple[list[Shard], int]:
-        """Make the rows in the gaps; return their shards, and how many they are."""
+    def _run_batches(
+        self, rows: range, gaps: Runs, batch_size: int | None
+    ) -> tuple[list[Shard], int]:
+        """Make the rows in the gaps; return their shards, and the number of these rows."""
         config = self.config
-        left = sum(stop - start for start, stop in gaps)
-        self.progress.stage("samples", len(rows), len(rows) - left)
-        size = batch_size or _batch_size(left, self.jobs, row_bytes(config))
+        missing = sum(stop - start for start, stop in gaps)
+        self.progress.stage("samples", len(rows), len(rows) - missing)
+        size = batch_size or _batch_size(missing, self.jobs, row_bytes(config))
         table = colour_table(config.image.colour_map) if self.png else None
         cuts = [(a, min(a + size, stop)) for start, stop in gaps for a in range(start, stop, size)]
 
@@ -190,14 +211,15 @@ class Build:
 
         for samples in run_tasks(run_batch, batches(), max(1, min(self.jobs, len(cuts)))):
             self.progress.advance(samples)
-        return [Shard(*cut, self.folder) for cut in cuts], left
+        return [Shard(*cut, self.folder) for cut in cuts], missing
 
     def _sound_shards(self, rows: range) -> list[Shard]:
-        """Usable shards of these rows.
+        """List the usable shards of these rows.
 
-        A damaged one is removed, as new batches may be cut differently; a foreign one put aside.
+        A damaged shard is removed, as new batches may be cut differently; a foreign one is put
+        aside.
         """
-        sound, unusable = check_shards(listed_shards(self.folder, rows), self.identity_hash)
+        sound, unusable = check_shards(list_shards(self.folder, rows), self.identity_hash)
         for shard, error in unusable:
             self.progress.say(f"{shard.path}: {error}; its rows are made again")
             if isinstance(error, ForeignShardError):
@@ -208,14 +230,19 @@ class Build:
         return sound
 
 
-def _batch_size(left: int, jobs: int, one: int) -> int:
-    """Samples a batch, of `left` samples of `one` bytes each for `jobs` processes."""
-    most = min(max(BATCH, left // (SHARE * jobs)), MAX_BATCH, BATCH_BYTES // one)
-    return max(1, min(most, -(-left // (4 * jobs))))
+def _batch_size(samples: int, jobs: int, sample_bytes: int) -> int:
+    """Number of samples of a batch, for so many samples and processes."""
+    most = min(max(BATCH, samples // (SHARE * jobs)), MAX_BATCH, BATCH_BYTES // sample_bytes)
+    return max(1, min(most, -(-samples // (4 * jobs))))
 
 
 def disk_error(folder: Path, error: OSError) -> UnfinishedError:
-    """The error for a failed write or a full disk."""
+    """Make the error that tells of a failed write or a full disk.
+
+    Args:
+        folder: output folder, whose finished work is kept.
+        error: the error of the operating system.
+    """
     where = error.filename or folder
     if error.errno == errno.ENOSPC or "No space left" in str(error):
         why = "no space left on the disk"

@@ -63,10 +63,11 @@ BIBTEX = """\
 
 
 def write_card(source: Path, folder: Path) -> None:
-    """Write the card of an output folder and its picture where there are none.
+    """Write README.md and its picture into an output folder that lacks them.
 
     Args:
-        source: dataset.h5, or what is going to be it.
+        source: dataset.h5, or the file that is going to be renamed to it.
+        folder: output folder.
     """
     missing = [name for name in (CARD, GALLERY) if not (folder / name).exists()]
     for name in missing:
@@ -74,7 +75,9 @@ def write_card(source: Path, folder: Path) -> None:
     if not missing:
         return
     with Dataset(source) as data:
-        name = next((one for one in data.config.maps if one != "rtm"), data.config.maps[0])
+        name = next(
+            (map_name for map_name in data.config.maps if map_name != "rtm"), data.config.maps[0]
+        )
         if GALLERY in missing:
             write_whole(folder, folder / GALLERY, gallery_png(data, name))
         if CARD not in missing:
@@ -89,7 +92,7 @@ def write_card(source: Path, folder: Path) -> None:
 
 
 def gallery_png(data: Dataset, name: str) -> bytes:
-    """PNG of map `name` of the first sample of each of the first 16 classes."""
+    """Draw map `name` of the first sample of each of the first 16 classes; return the PNG file."""
     order, table = Rows.of(data.config), colour_table(data.config.image.colour_map)
     classes = list(order.classes())[:16]
     columns = min(len(classes), 4)
@@ -107,10 +110,11 @@ def gallery_png(data: Dataset, name: str) -> bytes:
 
 
 def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
-    """The text of README.md.
+    """Write the text of README.md.
 
     Args:
-        more: front matter: what `load_dataset` reads.
+        data: the data set.
+        more: additional front matter, which `load_dataset` reads.
         reading: Markdown, how to read the files next to the card.
     """
     config, measured = data.config, isinstance(data.config, MeasuredConfig)
@@ -134,7 +138,7 @@ def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
         "## How it was made",
         _making(data),
         "## Known biases and limits",
-        "\n".join(f"- {' '.join(one.split())}" for one in _limits(data)),
+        "\n".join(f"- {' '.join(limit.split())}" for limit in _limits(data)),
         "## Licence and citation",
         f"Licence: {licence}. Please cite:",
         f"```bibtex\n{BIBTEX.replace('VERSION', version)}```",
@@ -143,6 +147,7 @@ def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
 
 
 def _table(head: Sequence[str], lines: Sequence[Sequence[object]]) -> str:
+    """Write a table as Markdown."""
     rows = [head, ["---"] * len(head), *lines]
     return "\n".join(f"| {' | '.join(map(str, row))} |" for row in rows)
 
@@ -191,25 +196,27 @@ def _classes(data: Dataset) -> str:
     for label, (activity, rows) in enumerate(Rows.of(data.config).classes()):
         counts = np.bincount(data.split[rows], minlength=len(SPLITS))
         lines.append([label, f"`{activity.slug}`", *(counts[n] for n in present)])
-    others = ""
+    note = ""
     if data.labels is not None:
-        shown = zip(data.class_slugs, data.labels.sum(axis=0).tolist(), strict=True)
-        listed = ", ".join(f"`{slug}` {count}" for slug, count in shown if count)
-        others = (
+        counts_of_slugs = zip(data.class_slugs, data.labels.sum(axis=0).tolist(), strict=True)
+        occurrences = ", ".join(f"`{slug}` {count}" for slug, count in counts_of_slugs if count)
+        note = (
             "\n\nThe class is what the sample's main person does. Others are there too: column "
-            f"`labels` has what anybody does ({listed})."
+            f"`labels` has what anybody does ({occurrences})."
         )
-    return _table(["label", "class", *present.values()], lines) + others
+    return _table(["label", "class", *present.values()], lines) + note
 
 
 def _making(data: Dataset) -> str:
     config = data.config
-    made = ", ".join(f"{library} {version}" for library, version in data.versions.items())
+    library_versions = ", ".join(
+        f"{library} {version}" for library, version in data.versions.items()
+    )
     if isinstance(config, MeasuredConfig):
-        return f"`radhar generate --recordings`, seed {config.seed}; {made}."
+        return f"`radhar generate --recordings`, seed {config.seed}; {library_versions}."
     return (
         f"`radhar generate config.yaml -o OUT`, seed {config.seed}, makes the same bytes again "
-        f"with {made}."
+        f"with {library_versions}."
     )
 
 

@@ -13,14 +13,23 @@ from radhar_cli.scene import Scene
 
 
 def label_names(config: AnyConfig) -> tuple[str, ...]:
-    """What the numbers mean: PHASES, then every class beyond the twelve by its slug."""
+    """Name the numbers of column labels: PHASES, then every class beyond the twelve by its slug."""
     return (*PHASES, *(activity.slug for activity in config.every_class if activity.number > 12))
 
 
 def column_labels(scene: Scene, motion: Motion, image: MapImage, names: Sequence[str]) -> Levels:
-    """Index into `names`, the `label_names`, of each column, at the time of its middle [width].
+    """Label each column of an image with what is under way at the time of its middle.
 
     A motion that names no phases, or others than PHASES, is labelled with its class.
+
+    Args:
+        scene: the scene, whose main person is labelled.
+        motion: that person's motion.
+        image: image of a map over time.
+        names: the `label_names` of the data set.
+
+    Returns:
+        Index into `names` of each column [width].
     """
     left, right, *_ = image.extent
     width = image.levels.shape[1]

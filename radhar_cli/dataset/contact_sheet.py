@@ -16,12 +16,18 @@ MAX_SIDE = 1024  # px of a panel
 
 
 def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> None:
-    """Write a PNG with a row of `per_class` maps `name` for every class that is present.
+    """Write a PNG file with a row of maps for every class that is present.
 
     Points are drawn over the true skeletons, which the images of the data set lack.
+
+    Args:
+        data: the data set.
+        name: the map.
+        per_class: number of samples of each class.
+        path: file to write.
     """
     image, images, extent = data.config.image, data.maps[name], data.extent(name)
-    every = tuple(slice(None, None, -(-side // MAX_SIDE)) for side in image.size_px)
+    strides = tuple(slice(None, None, -(-side // MAX_SIDE)) for side in image.size_px)
     rows = {
         data.class_slugs[label].replace("_", "\n"): np.flatnonzero(data.label == label).tolist()
         for label in np.unique(data.label)
@@ -30,22 +36,22 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
     figure, panels = page_of_rows(rows, (1.5, 1.4), (1.6, 0.7))
     look: dict[str, Any] = {"cmap": image.colour_map, "vmin": 0, "vmax": 255, "aspect": "auto"}
     for panel, sample in panels:
-        shown = images[sample]
+        levels = images[sample]
         if name == "points":
-            shown = over_bones(data, sample, shown)
-        panel.imshow(shown[every], extent=extent, **look)
+            levels = over_bones(data, sample, levels)
+        panel.imshow(levels[strides], extent=extent, **look)
         panel.tick_params(labelsize=5, length=2)
         panel.label_outer()
     figure.supxlabel("time (s)", fontsize=8)
     figure.supylabel("{} ({})".format(*row_axis(name)), fontsize=8)
     power = f"power, {image.dynamic_range_db:g} dB down from the largest of each map"
-    meant = "cells that the CFAR sets" if image.kind == "cfar" else power
-    figure.suptitle(f"{name}: {meant}", fontsize=9)
+    meaning = "cells that the CFAR sets" if image.kind == "cfar" else power
+    figure.suptitle(f"{name}: {meaning}", fontsize=9)
     write_figure(figure, path, DPI)
 
 
 def over_bones(data: Dataset, sample: int, points: Levels) -> Levels:
-    """A sheet of points over the true skeletons of its frames, where they are of known joints."""
+    """Draw a sheet of points [H, W] over its frames' true skeletons, if the joints are known."""
     skeletons = data.products["skeleton"][sample] if "skeleton" in data.products else None
     if skeletons is None or skeletons.shape[2] != len(JOINTS):
         return points

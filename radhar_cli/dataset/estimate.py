@@ -1,4 +1,4 @@
-"""What a build will take: bytes and time, from a few samples made in memory there and then."""
+"""Estimate of the bytes and the time of a build, from a few samples made in memory."""
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -39,7 +39,7 @@ FILE_WRITE_S = 0.0002
 
 @dataclass(frozen=True)
 class Estimate:
-    """An estimate of a whole build; what no sample was finished for is None."""
+    """Estimated cost of a whole build; None where no sample was finished."""
 
     samples: int  # in the data set
     probes: int  # samples timed
@@ -51,7 +51,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class BuildPlan:
-    """What a dry run found out within its time."""
+    """Result of a dry run."""
 
     jobs: int  # processes of the build
     checked: int  # scenes
@@ -63,15 +63,18 @@ class BuildPlan:
 
 
 def plan_build(config: Config, jobs: int | None, progress: Progress, seconds: float) -> BuildPlan:
-    """Check scenes and time samples, for so many seconds at most; nothing is written.
+    """Check scenes and time samples; nothing is written.
 
     Args:
-        jobs: processes of the build; None for as many as pay.
+        config: that of the data set.
+        jobs: number of processes of the build; None for as many as pay.
+        progress: is told of every scene and sample.
+        seconds: longest time for all of it, s.
     """
     start = perf_counter()
-    scenes, found = check_scenes(config, CHECK_SHARE * seconds, progress)
-    left = seconds - (perf_counter() - start)
-    cost = estimate(config, jobs or 1, left, progress)
+    scenes, warnings = check_scenes(config, CHECK_SHARE * seconds, progress)
+    seconds_for_samples = seconds - (perf_counter() - start)
+    cost = estimate(config, jobs or 1, seconds_for_samples, progress)
     if jobs is None:
         jobs = _paid_jobs(len(Rows.of(config)), cost.seconds_per_sample or PAYS_S)
         cost = replace(cost, seconds=_build_seconds(cost, jobs))
@@ -79,15 +82,15 @@ def plan_build(config: Config, jobs: int | None, progress: Progress, seconds: fl
         jobs,
         len(scenes),
         sum(scene.attempt > 0 for scene in scenes),
-        found,
+        warnings,
         cost,
-        left,
+        seconds_for_samples,
         len(scenes) < min(CHECKED_SCENES, cost.samples),
     )
 
 
 def jobs_that_pay(config: Config) -> int:
-    """Processes for a build: one a core, but each with more to do than its start takes."""
+    """Number of processes for a build: one a core, but each with more work than its start."""
     rows, seconds = Rows.of(config), PAYS_S  # of a sample
     if cores() > 1:
         with suppress(RadharError), time_limit(TRIAL_S):  # errors, which the build will tell
@@ -102,12 +105,12 @@ def jobs_that_pay(config: Config) -> int:
 
 
 def _paid_jobs(samples: int, seconds: float) -> int:
-    """Processes that pay for samples of so many seconds each."""
+    """Number of processes that pay for samples of so many seconds each."""
     return max(1, min(cores(), int(samples * seconds / PAYS_S)))
 
 
 class _Probe(NamedTuple):
-    """A sample that was made to be timed."""
+    """Sample that was made to be timed."""
 
     sample: Synthesised
     scene_values: Float  # [fields]
@@ -118,16 +121,18 @@ class _Probe(NamedTuple):
 def estimate(
     config: Config, jobs: int, seconds: float = inf, progress: Progress = NO_PROGRESS
 ) -> Estimate:
-    """Time samples spread over the classes and scale up; nothing is written.
+    """Time samples spread over the classes, and scale up to a build; nothing is written.
 
     Args:
+        config: that of the data set.
+        jobs: number of processes of the build.
         seconds: no more samples are made when that time is over.
         progress: is told of every sample.
     """
     prepare_process()
     rows, plan, columns = Rows.of(config), plan_images(config), scene_fields.fields(config)
     table = colour_table(config.image.colour_map) if config.output.png else None
-    places, probes = rows.scattered(PROBES), list[_Probe]()
+    places, probes = rows.spread_progressively(PROBES), list[_Probe]()
     progress.stage("timing samples", len(places), 0)
     with time_limit(seconds):
         # Imports, tables and caches are not part of a sample: the first counts if it is the only.
@@ -138,35 +143,38 @@ def estimate(
             values = scene_fields.values(scene, columns, sample.error_db)
             if table is not None:
                 level, images = config.output.png_level, sample.images.values()
-                png_bytes = sum(len(encode_png(one.levels, table, level)) for one in images)
+                png_bytes = sum(len(encode_png(image.levels, table, level)) for image in images)
             probes.append(_Probe(sample, values, png_bytes, perf_counter() - start))
             progress.advance(int(number > 0))
             if sum(probe.seconds for probe in probes[1:]) > PROBE_SECONDS:
                 break
     probes = probes[1:] or probes
-    done = len(probes)
+    probe_count = len(probes)
     if not probes:
         return Estimate(len(rows), 0, None, None, None, None)
-    start, flags = perf_counter(), np.zeros(done, FLAG_TYPE)
-    samples, values_of = [one.sample for one in probes], np.stack([p.scene_values for p in probes])
-    whose = identity_hash(identity(config))
-    shard = encode_shard(config, whose, 0, samples, values_of, flags)
-    per_sample = (sum(probe.seconds for probe in probes) + perf_counter() - start) / done
+    start, flags = perf_counter(), np.zeros(probe_count, FLAG_TYPE)
+    samples, scene_values = (
+        [probe.sample for probe in probes],
+        np.stack([p.scene_values for p in probes]),
+    )
+    hash_of_identity = identity_hash(identity(config))
+    shard = encode_shard(config, hash_of_identity, 0, samples, scene_values, flags)
+    per_sample = (sum(probe.seconds for probe in probes) + perf_counter() - start) / probe_count
     if config.output.png:
         per_sample += FILE_WRITE_S * len(config.maps)
     cost = Estimate(
         samples=len(rows),
-        probes=done,
+        probes=probe_count,
         seconds_per_sample=per_sample,
-        hdf5_bytes=len(shard) * len(rows) // done,
-        png_bytes=sum(probe.png_bytes for probe in probes) * len(rows) // done,
+        hdf5_bytes=len(shard) * len(rows) // probe_count,
+        png_bytes=sum(probe.png_bytes for probe in probes) * len(rows) // probe_count,
         seconds=None,
     )
     return replace(cost, seconds=_build_seconds(cost, jobs))
 
 
 def _build_seconds(cost: Estimate, jobs: int) -> float | None:
-    """Wall time of a build by so many processes."""
+    """Wall time of a build by so many processes, s; None where no sample was timed."""
     if cost.seconds_per_sample is None:
         return None
     workers = 1 if jobs == 1 else 1 + (jobs - 1) * PARALLEL_EFFICIENCY

@@ -14,17 +14,22 @@ MAX_TEXT = 2**20
 
 
 def write_whole(folder: Path, path: Path, data: bytes) -> None:
-    """Write a file inside an output folder atomically: under a name in its work folder, renamed."""
+    """Write a file of an output folder atomically: in its work folder first, then renamed.
+
+    Raises:
+        FolderError: a folder on the way is a symbolic link.
+        OSError: it cannot be written.
+    """
     unfinished = unfinished_path(folder)
-    for one in (unfinished.parent, path.parent):
-        refuse_links(folder, one)
-        one.mkdir(parents=True, exist_ok=True)
+    for parent in (unfinished.parent, path.parent):
+        refuse_links(folder, parent)
+        parent.mkdir(parents=True, exist_ok=True)
     with replacing(path, unfinished):
         unfinished.write_bytes(data)
 
 
 def write_result(folder: Path, path: Path, data: bytes) -> None:
-    """Write a file inside a folder that no run holds, atomically; it has no work folder."""
+    """Write a file of a folder without a work folder, which no run holds, atomically."""
     refuse_links(folder, path.parent)
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as unfinished:
@@ -32,12 +37,16 @@ def write_result(folder: Path, path: Path, data: bytes) -> None:
 
 
 def unfinished_path(folder: Path) -> Path:
-    """A name that no other process uses, on the same file system as the output."""
+    """Make a path that no other process uses, on the same file system as the output."""
     return folder / WORK / "unfinished" / f"{os.getpid()}-{uuid.uuid4().hex}"
 
 
 def refuse_links(folder: Path, path: Path) -> None:
-    """Refuse a path inside a folder if a part of it below the folder is a symbolic link."""
+    """Refuse a path inside a folder if a part of it below the folder is a symbolic link.
+
+    Raises:
+        FolderError: a part is.
+    """
     for part in (path, *path.parents):
         if part == folder:
             return
@@ -59,10 +68,10 @@ def refuse_foreign_work(folder: Path) -> None:
 
 
 def digest_of(path: Path) -> str:
-    """SHA-256 of a regular file.
+    """SHA-256 of a regular file, in hex.
 
     Raises:
-        OSError: it is none, or cannot be read.
+        OSError: the path is no regular file, or cannot be read.
     """
     regular_size(path)
     with path.open("rb") as file:
@@ -70,11 +79,11 @@ def digest_of(path: Path) -> str:
 
 
 def read_bytes(path: Path, most: int = MAX_TEXT) -> bytes:
-    """The bytes of a regular file.
+    """Read a regular file of at most `most` bytes.
 
     Raises:
-        FolderError: it is none, larger, or cannot be read.
-        FileNotFoundError: there is none.
+        FolderError: the path is no regular file, too large, or cannot be read.
+        FileNotFoundError: there is no such file.
     """
     try:
         size = regular_size(path)

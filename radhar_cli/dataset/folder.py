@@ -31,7 +31,10 @@ def refuse_file(folder: Path) -> None:
 def folder_lock(folder: Path) -> Iterator[None]:
     """Hold an output folder; a second run on it is refused. A dead run's lock is free at once.
 
-    Nothing unfinished is left in it at the end, also of runs that were killed before.
+    On exit unfinished files are removed, also those of runs that were killed before.
+
+    Raises:
+        FolderError: another run holds it, or it cannot be made.
     """
     refuse_file(folder)
     refuse_links(folder, folder / WORK)
@@ -60,15 +63,21 @@ def reserve(
     part: str | None = None,
     allowed: tuple[str, ...] = (),
 ) -> None:
-    """Take a locked folder for this config, or refuse it.
+    """Take a locked folder for the data set of a config.
 
     Args:
-        part: which one this is, K/N.
+        folder: output folder.
+        config: that of the data set.
+        overwrite: remove what radhar has built there before.
+        part: the part of the data set that is built, K/N; None for all of it.
         allowed: names that a folder without a data set may hold already.
+
+    Raises:
+        FolderError: the folder holds other files, or another data set.
     """
     new = identity(config) | ({} if part is None else {"part": part})
     if overwrite:
-        _clear(folder, new)
+        _remove_old_build(folder, new)
     old = stored_identity(folder)
     if old is None:
         if layout.PARTS not in allowed and (folder / layout.PARTS).exists():
@@ -77,11 +86,11 @@ def reserve(
                 "--shard K/N makes one"
             )
         refuse_foreign_files(folder, "radhar data set", (WORK, *allowed))
-        _name(folder, new)
+        _write_identity(folder, new)
     elif holds_samples(folder):
         refuse_differences(folder, "data set", differences(old, new))
     else:
-        _name(folder, new)
+        _write_identity(folder, new)
     remove_unfinished(folder)
 
 
@@ -96,9 +105,19 @@ def refuse_foreign_files(
     allowed: Sequence[str] = (WORK,),
     error: type[RadharError] = FolderError,
 ) -> None:
-    """Refuse a folder that holds something, but not what is `ours`; `allowed` are names of it."""
+    """Refuse a folder that holds other files than those that radhar leaves there.
+
+    Args:
+        folder: the folder.
+        ours: what it lacks, for the message: "radhar data set".
+        allowed: names that it may hold.
+        error: type of the error.
+
+    Raises:
+        RadharError: it holds others.
+    """
     held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
-    names = [one for one in held if one not in allowed and not one.startswith(UNFINISHED)]
+    names = [name for name in held if name not in allowed and not name.startswith(UNFINISHED)]
     if names:
         raise error(f"{folder}: holds {', '.join(names[:5])} but no {ours}; choose an empty folder")
 
@@ -106,7 +125,17 @@ def refuse_foreign_files(
 def refuse_differences(
     folder: Path, ours: str, differing: list[str], error: type[RadharError] = FolderError
 ) -> None:
-    """Refuse a folder that holds another of `ours`, and say a line for each difference."""
+    """Refuse a folder that holds another data set, or another run.
+
+    Args:
+        folder: the folder.
+        ours: what it holds, for the message: "data set".
+        differing: a line for each difference; none of them is no reason to refuse.
+        error: type of the error.
+
+    Raises:
+        RadharError: there are differences.
+    """
     if differing:
         raise error(
             f"{folder}: holds another {ours}; it differs in\n  "
@@ -115,13 +144,18 @@ def refuse_differences(
         )
 
 
-def _name(folder: Path, named: dict[str, Any]) -> None:
+def _write_identity(folder: Path, named: dict[str, Any]) -> None:
+    """Write the identity of the data set that a folder is taken for."""
     # In the order of the config, which `merge` writes into dataset.h5.
     write_whole(folder, folder / WORK / layout.IDENTITY, json.dumps(named).encode())
 
 
 def stored_identity(folder: Path) -> dict[str, Any] | None:
-    """Identity of a folder's data set, finished or not; None if it is not one of radhar."""
+    """Read the identity of the data set in a folder, finished or not; None without one.
+
+    Raises:
+        FolderError: dataset.h5, or the identity, is damaged or not of radhar.
+    """
     path = folder / layout.DATASET
     if path.exists():
         from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
@@ -139,7 +173,7 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
 
 
 def checked_identity(value: Any, path: Path) -> dict[str, Any]:
-    """An identity that was read from a file."""
+    """Check the form of an identity that was read from a file at `path`, and return it."""
     parts = ("keys", "versions")
     if not isinstance(value, dict) or not all(isinstance(value.get(p), dict) for p in parts):
         raise FolderError(f"{path}: is damaged: its identity should have keys and versions")
@@ -147,10 +181,10 @@ def checked_identity(value: Any, path: Path) -> dict[str, Any]:
 
 
 def holds_samples(folder: Path) -> bool:
-    """Whether anything was made in a folder that a build has taken."""
+    """Whether a folder that a build has taken holds samples: a data set, PNG files or shards."""
     shards = folder / WORK / "shards"
-    made = (folder / name for name in (layout.DATASET, layout.PNG))
-    return any(map(Path.exists, made)) or (shards.is_dir() and any(shards.iterdir()))
+    outputs = (folder / name for name in (layout.DATASET, layout.PNG))
+    return any(map(Path.exists, outputs)) or (shards.is_dir() and any(shards.iterdir()))
 
 
 def clean_up(folder: Path) -> None:
@@ -171,16 +205,16 @@ def _remove_batches(folder: Path) -> None:
         place.rmdir()
 
 
-def _clear(folder: Path, new: dict[str, Any]) -> None:
-    """Start again where radhar was before: remove its files and nothing else.
+def _remove_old_build(folder: Path, new: dict[str, Any]) -> None:
+    """Remove the files of an old build, and nothing else; name the folder after the new one.
 
-    The new name comes first and the old data set's file last but for the PNGs that were put aside,
+    The new identity comes first and the old dataset.h5 last, but for the PNGs that were put aside,
     so that a kill in between leaves a folder that either run can go on with.
     """
-    ours = layout.is_incomplete(folder) or (folder / WORK / layout.BUILT).exists()
+    is_from_radhar = layout.is_incomplete(folder) or (folder / WORK / layout.BUILT).exists()
     with suppress(FolderError):  # of radhar, or damaged
-        ours = ours or stored_identity(folder) is not None
-    if not ours:
+        is_from_radhar = is_from_radhar or stored_identity(folder) is not None
+    if not is_from_radhar:
         return
     if (folder / layout.PNG).exists():
         put_aside = unfinished_path(folder)
@@ -189,5 +223,5 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
     for name in (layout.SCENES, layout.CONFIG, layout.CARD, layout.GALLERY):
         (folder / name).unlink(missing_ok=True)
     _remove_batches(folder)
-    _name(folder, new)
+    _write_identity(folder, new)
     (folder / layout.DATASET).unlink(missing_ok=True)

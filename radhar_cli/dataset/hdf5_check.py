@@ -19,7 +19,10 @@ MAX_BYTES = 2**26  # of an attribute
 
 @contextmanager
 def harmless() -> Iterator[None]:
-    """Ignore errors, which the reader of the file will meet again; exit if memory runs out."""
+    """Ignore errors, which the reader of the file will meet again; exit if memory runs out.
+
+    On exit the message on standard error says why.
+    """
     try:
         yield
     except Exception as error:
@@ -33,30 +36,31 @@ def walk(file: h5py.File) -> None:
     Links to other files are not followed.
     """
     _read_attributes(file)
-    seen, left = set(), [file.id]
-    while left:
-        group = left.pop()
+    seen, groups = set(), [file.id]
+    while groups:
+        group = groups.pop()
         for name in _names(group):
             with harmless():
                 if group.links.get_info(name).type != h5py.h5l.TYPE_HARD:
                     continue
-                found = h5py.h5o.open(group, name)
-                place = h5py.h5o.get_info(found).addr
-                if isinstance(found, h5py.h5g.GroupID) and place not in seen:
-                    seen.add(place)
-                    left.append(found)
-                    _read_attributes(h5py.Group(found))
-                elif isinstance(found, h5py.h5d.DatasetID):
-                    _read_attributes(h5py.Dataset(found))
-                    if found.get_create_plist().get_layout() == h5py.h5d.CHUNKED:
-                        found.get_num_chunks()
+                item = h5py.h5o.open(group, name)
+                address = h5py.h5o.get_info(item).addr
+                if isinstance(item, h5py.h5g.GroupID) and address not in seen:
+                    seen.add(address)
+                    groups.append(item)
+                    _read_attributes(h5py.Group(item))
+                elif isinstance(item, h5py.h5d.DatasetID):
+                    _read_attributes(h5py.Dataset(item))
+                    if item.get_create_plist().get_layout() == h5py.h5d.CHUNKED:
+                        item.get_num_chunks()
 
 
-def _read_attributes(held: h5py.HLObject) -> None:
-    for name in _names(held.attrs):
+def _read_attributes(item: h5py.HLObject) -> None:
+    """Read the attributes of text and numbers of a group or dataset."""
+    for name in _names(item.attrs):
         with harmless():
-            if is_plain(held.attrs.get_id(name)):
-                held.attrs[name]
+            if is_plain(item.attrs.get_id(name)):
+                item.attrs[name]
 
 
 def is_plain(attribute: Any) -> bool:
@@ -67,6 +71,7 @@ def is_plain(attribute: Any) -> bool:
 
 
 def _names(group: Iterable[Any]) -> list[Any]:
+    """Names in a group or among attributes, as far as they can be read."""
     names: list[Any] = []
     with harmless():
         names.extend(group)

@@ -1,4 +1,4 @@
-"""What a data set's bytes depend on: the config's keys and the versions of the libraries."""
+"""Identity of a data set, on which its bytes depend: keys of the config, versions of libraries."""
 
 import hashlib
 import json
@@ -32,7 +32,7 @@ def own_digest() -> str | None:
 
 
 def versions() -> dict[str, str]:
-    """Versions of everything that decides bytes."""
+    """Versions of the libraries that decide the bytes of a data set, by name."""
     own = own_digest()
     import h5py
     import isal
@@ -54,7 +54,7 @@ def versions() -> dict[str, str]:
 
 
 def identity(config: AnyConfig) -> dict[str, Any]:
-    """Plain values to store with a data set and to compare before continuing it."""
+    """Identity of a data set as plain values: stored with it, and compared before it is resumed."""
     return {
         "keys": flat_document(resolved(config)),
         "versions": versions(),
@@ -70,7 +70,7 @@ def identity_hash(named: dict[str, Any]) -> str:
 
 
 def differences(old: dict[str, Any], new: dict[str, Any]) -> list[str]:
-    """Lines naming the keys and versions in which two identities differ."""
+    """List the keys and versions in which two identities differ, a line each."""
     lines = []
     for part, prefix in (("keys", ""), ("versions", "versions.")):
         before, after = old.get(part, {}), new.get(part, {})

@@ -22,18 +22,22 @@ SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 
 
 def image_size(path: Path) -> tuple[int, int]:
-    """(H, W) of an image file, from its header."""
-    with _opened(path, None) as image:
+    """Read the size (H, W) of an image file from its header."""
+    with _open_image(path, None) as image:
         return image.height, image.width
 
 
 def read_rgb(path: Path, size: tuple[int, int] | None = None) -> Levels:
-    """RGB [H, W, 3] of an image file; 16-bit greys are scaled, transparency is dropped.
+    """Read an image file as RGB [H, W, 3]; 16-bit greys are scaled, transparency is dropped.
 
     Args:
-        size: (H, W) that it should have, or None.
+        path: the file.
+        size: (H, W) that it should have; None for any.
+
+    Raises:
+        FolderError: the file is no image of FORMATS, damaged, or of another size.
     """
-    with _opened(path, size) as image:
+    with _open_image(path, size) as image:
         return _rgb(image)
 
 
@@ -50,6 +54,7 @@ def luminance(rgb: Levels) -> Levels:
 
 
 def _rgb(image: Image.Image) -> Levels:
+    """RGB [H, W, 3] of an open image."""
     if image.mode.startswith("I;16"):
         grey = np.asarray(image).astype(np.uint32)
         return np.repeat(((grey + 128) // 257).astype(np.uint8)[..., None], 3, axis=-1)
@@ -61,29 +66,33 @@ def read_gray(
     size: tuple[int, int] | None = None,
     brightness: Callable[[Levels], Levels] = luminance,
 ) -> Levels:
-    """Levels [H, W] of an image file: the indices of a PNG of radhar, the brightness of any other.
+    """Read the levels [H, W] of an image file: the indices of a PNG of radhar, else its brightness.
 
     Args:
-        size: as in `read_rgb`, as are the errors.
-        brightness: levels [H, W] of RGB [H, W, 3].
+        path: the file.
+        size: (H, W) that it should have; None for any.
+        brightness: function that makes levels [H, W] of RGB [H, W, 3].
+
+    Raises:
+        FolderError: the file is no image of FORMATS, damaged, or of another size.
     """
-    with _opened(path, size) as image:
+    with _open_image(path, size) as image:
         levels = stored_levels(image)
         return brightness(_rgb(image)) if levels is None else levels
 
 
 @contextmanager
-def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
-    """An image whose header is as it should be; errors of Pillow's parsers become a FolderError."""
+def _open_image(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
+    """Open an image and check its header; errors of Pillow's parsers become a FolderError."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             if regular_size(path) > MAX_FILE:
                 raise FolderError(f"{path}: should be an image of at most {MAX_FILE} bytes")
             with Image.open(path, formats=FORMATS) as image:
-                wrong = _wrong(image, size)
-                if wrong is not None:
-                    raise FolderError(f"{path}: {wrong}")
+                problem = _header_problem(image, size)
+                if problem is not None:
+                    raise FolderError(f"{path}: {problem}")
                 yield image
     except FolderError:
         raise
@@ -93,7 +102,8 @@ def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
         raise FolderError(f"{path}: {getattr(error, 'strerror', None) or damaged}") from None
 
 
-def _wrong(image: Image.Image, size: tuple[int, int] | None) -> str | None:
+def _header_problem(image: Image.Image, size: tuple[int, int] | None) -> str | None:
+    """Say what is wrong with the size or the mode of an image; None if nothing is."""
     height, width = image.height, image.width
     if size is not None and (height, width) != size:
         return (

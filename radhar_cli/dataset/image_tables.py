@@ -1,4 +1,4 @@
-"""What stands beside the PNGs: names of the labels, and a table of the images of each split.
+"""Files beside the PNGs: names of the labels, and a table of the images of each split.
 
 `classes.txt` has the names of the labels, a line each in their order. A `metadata.csv` for each map
 and split makes the folder one that `datasets.load_dataset` opens as it is (format `imagefolder`).
@@ -21,10 +21,11 @@ COLUMNS = ("file_name", "label", "class", "index")
 
 
 def image_tables(config: AnyConfig, split: Levels) -> Iterator[tuple[Path, bytes]]:
-    """(path inside the output folder, text) of every file that stands beside the PNGs.
+    """Yield (path inside the output folder, text) of every file that belongs beside the PNGs.
 
     Args:
-        split: of each row [N].
+        config: that of the data set.
+        split: number of the split of each row [N].
     """
     rows = Rows.of(config)
     names = "".join(f"{name}\n" for name in rows.names).encode()
@@ -36,7 +37,7 @@ def image_tables(config: AnyConfig, split: Levels) -> Iterator[tuple[Path, bytes
 
 
 def write_missing_tables(config: AnyConfig, folder: Path, split: Levels) -> None:
-    """Write the files beside the PNGs of an output folder that are not there."""
+    """Write the files that are missing beside the PNGs of an output folder."""
     for path, text in image_tables(config, split):
         refuse_links(folder, folder / path)
         if not (folder / path).exists():
@@ -44,7 +45,7 @@ def write_missing_tables(config: AnyConfig, folder: Path, split: Levels) -> None
 
 
 def hub_configs(config: AnyConfig, split: Levels) -> list[dict[str, Any]]:
-    """Front matter of the data card, by which `load_dataset` finds maps, splits and labels."""
+    """Front matter of the data card, in which `load_dataset` finds maps, splits and labels."""
     label = {
         "class_label": {"names": {str(n): name for n, name in enumerate(Rows.of(config).names)}}
     }
@@ -65,6 +66,7 @@ def hub_configs(config: AnyConfig, split: Levels) -> list[dict[str, Any]]:
 
 
 def _table(rows: Rows, split: Levels, number: int) -> bytes:
+    """Text of metadata.csv for the split of that number."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)

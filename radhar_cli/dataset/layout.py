@@ -39,7 +39,10 @@ SPLIT_FOLDERS = ("train", "val", "test")
 
 
 def chunked(config: AnyConfig) -> Parts:
-    """The large datasets, one sample a chunk; each has its checksums at `checksum_of`."""
+    """Type and shape of a sample's part of each large dataset of dataset.h5, one sample a chunk.
+
+    The checksums of each lie at `checksum_of` its name.
+    """
     size = config.image.size_px
     parts: Parts = {f"maps/{name}": ("u1", size) for name in config.maps}
     if config.output.power is not None:
@@ -52,17 +55,17 @@ def chunked(config: AnyConfig) -> Parts:
 
 
 def checksum_of(name: str) -> str:
-    """Where the checksums of a large dataset lie."""
+    """Name of the dataset that holds the checksums of a large dataset."""
     return f"sha256/{name.removeprefix('maps/')}"
 
 
 def count_of(name: str) -> str:
-    """Where it lies how many rows of /products/<name> each sample has."""
+    """Name of the dataset that holds how many rows of /products/<name> each sample has."""
     return f"products/{name}_count"
 
 
 def columns(config: AnyConfig) -> Parts:
-    """The small datasets that a shard has beside the large ones and the scenes."""
+    """Type and shape of a sample's part of each small dataset, beside the large ones and /scene."""
     parts: Parts = {checksum_of(name): ("S64", ()) for name in chunked(config)}
     parts |= {count_of(name): ("i8", ()) for name in config.stored}
     if config.people:
@@ -88,7 +91,7 @@ _SHEETS = {
 
 
 def row_axis(name: str) -> tuple[str, str]:
-    """Quantity and unit of the rows of a map; of a user's own, what the product says."""
+    """Quantity and unit of the rows of a map; generic words for a map of the user's own."""
     if name in _SHEETS:
         return _SHEETS[name][0]
     if name not in MAP_NAMES:
@@ -97,7 +100,7 @@ def row_axis(name: str) -> tuple[str, str]:
 
 
 def column_axis(name: str) -> tuple[str, str]:
-    """Quantity and unit of the columns of a map."""
+    """Quantity and unit of the columns of a map; generic words for a map of the user's own."""
     if name in _SHEETS:
         return _SHEETS[name][1]
     return TIME if name in MAP_NAMES else ("columns of the product", "1")
@@ -115,19 +118,25 @@ def is_incomplete(folder: Path) -> bool:
 
 @dataclass(frozen=True)
 class Rows:
-    """The fixed, class-major order of a data set's samples."""
+    """The fixed, class-major order of a data set's samples.
+
+    Attributes:
+        activities: the classes, in the order of the config.
+        counts: number of samples of each.
+    """
 
     activities: tuple[Activity, ...]
     counts: tuple[int, ...]
 
     @classmethod
     def of(cls, config: AnyConfig) -> "Rows":
+        """Rows of the data set that a config describes."""
         activities = config.chosen_activities
         return cls(activities, tuple(map(config.samples_of, activities)))
 
     @cached_property
     def starts(self) -> tuple[int, ...]:
-        """First row of each class, and the number of all rows."""
+        """First row of each class, and last the number of all rows."""
         return (0, *accumulate(self.counts))
 
     def __len__(self) -> int:
@@ -145,23 +154,23 @@ class Rows:
 
     def __getitem__(self, row: int) -> tuple[Activity, int]:
         """(activity, index within its class) of a row."""
-        which = bisect_right(self.starts, row) - 1
-        return self.activities[which], row - self.starts[which]
+        label = bisect_right(self.starts, row) - 1
+        return self.activities[label], row - self.starts[label]
 
     def spread(self, count: int) -> list[int]:
-        """So many rows, or all, spread evenly over the classes."""
+        """Choose `count` rows, or all, spread evenly over the classes, in ascending order."""
         count = min(count, len(self))
         return [(2 * place + 1) * len(self) // (2 * count) for place in range(count)]
 
-    def scattered(self, count: int) -> list[int]:
-        """As `spread`, in an order in which the first few are spread over the classes, too."""
+    def spread_progressively(self, count: int) -> list[int]:
+        """Choose the rows of `spread`, in an order whose first few are spread, too."""
         rows = self.spread(count)
         bits = len(rows).bit_length()  # places by their bits from right to left: each step halves
         order = sorted(range(len(rows)), key=lambda place: int(f"{place:0{bits}b}"[::-1], 2))
         return [rows[place] for place in order]
 
     def name(self, row: int) -> str:
-        """A row's index within its class in digits, as many for all of a class: names sort."""
+        """Index of a row within its class, in the same number of digits in all of the class."""
         activity, index = self[row]
         count = self.counts[self.activities.index(activity)]
         return f"{index:0{max(5, len(str(count - 1)))}d}"
@@ -181,17 +190,17 @@ class Rows:
         return f"{activity.slug}/{inner}{self.name(row)}.png"
 
     def classes(self) -> Iterator[tuple[Activity, slice]]:
-        """Each class and its rows."""
+        """Yield each class and the slice of its rows."""
         for activity, rows in zip(self.activities, pairwise(self.starts), strict=True):
             yield activity, slice(*rows)
 
     @property
-    def counted(self) -> str:
-        """Classes and their samples, in words."""
-        each: dict[int, list[str]] = {count: [] for count in self.counts}
+    def counts_text(self) -> str:
+        """Numbers of classes and samples in words, such as `12 classes x 100`."""
+        slugs: dict[int, list[str]] = {count: [] for count in self.counts}
         for activity, count in zip(self.activities, self.counts, strict=True):
-            each[count].append(activity.slug)
-        usual, *others = sorted(each, key=lambda count: -len(each[count]))
-        more = "".join(f", {', '.join(each[count])} x {count}" for count in others)
-        same = each[usual]
+            slugs[count].append(activity.slug)
+        usual, *others = sorted(slugs, key=lambda count: -len(slugs[count]))
+        more = "".join(f", {', '.join(slugs[count])} x {count}" for count in others)
+        same = slugs[usual]
         return f"{f'{len(same)} classes' if len(same) > 1 else same[0]} x {usual}{more}"

@@ -14,13 +14,15 @@ from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import PARTS, Rows
 from radhar_cli.dataset.parts import DataSetPart, rows_by_part
 from radhar_cli.dataset.reading import stored_config
-from radhar_cli.dataset.shards import Runs, Shard, listed_shards, require_tiling
+from radhar_cli.dataset.shards import Runs, Shard, list_shards, require_tiling
 from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.errors import FolderError
 from radhar_cli.progress import Progress
 
 
 class _Place(NamedTuple):
+    """A part of a data set, and where it lies."""
+
     part: DataSetPart
     folder: Path
     identity: dict[str, Any]
@@ -29,22 +31,32 @@ class _Place(NamedTuple):
 def merge(
     out: Path, folders: Sequence[Path], jobs: int, progress: Progress
 ) -> tuple[AnyConfig, BuildOutcome]:
-    """Make the data set in `out` of its parts, which are only read.
+    """Make a data set of its parts, which are only read.
 
     Args:
-        folders: of parts, or that hold parts, in addition to those below `out`.
+        out: output folder.
+        folders: folders of parts, or that hold parts, in addition to those below `out`.
+        jobs: number of processes that write PNG files.
+        progress: is told of every row.
+
+    Returns:
+        The config of the data set, and the result of the build.
+
+    Raises:
+        FolderError: there are no parts, or parts of different data sets.
+        UnfinishedError: rows are missing.
     """
     out = out.absolute()
-    own = [out] if (out / PARTS).is_dir() else []
-    places = _places([*own, *folders] or [out])
-    config = _config(places)
+    with_parts = [out] if (out / PARTS).is_dir() else []
+    places = _find_parts([*with_parts, *folders] or [out])
+    config = _common_config(places)
     count, of = len(Rows.of(config)), places[0].part.of
 
     def run_again(runs: Runs) -> str:
-        again = ", ".join(f"--shard {part}" for part in rows_by_part(runs, of, count))
-        return f"make them with `radhar generate` and {again}, then merge again"
+        options = ", ".join(f"--shard {part}" for part in rows_by_part(runs, of, count))
+        return f"make them with `radhar generate` and {options}, then merge again"
 
-    shards = _shards(places, count)
+    shards = _list_shards(places, count)
     require_tiling(out, shards, count, run_again)
     try_files([shard.path for shard in shards])
     work = Build(config, out, jobs, progress)
@@ -57,8 +69,8 @@ def merge(
         raise disk_error(out, error) from error
 
 
-def _places(folders: Iterable[Path]) -> list[_Place]:
-    """The parts in these folders, in order, each once."""
+def _find_parts(folders: Iterable[Path]) -> list[_Place]:
+    """Find the parts in folders; return each once, in order."""
     places = {}
     for folder in folders:
         folder = Path(os.path.abspath(folder))  # noqa: PTH100 - without ..; links stay
@@ -80,8 +92,8 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
     return sorted(places.values(), key=lambda place: place.part)
 
 
-def _config(places: Sequence[_Place]) -> AnyConfig:
-    """The config that all parts have."""
+def _common_config(places: Sequence[_Place]) -> AnyConfig:
+    """Check that all parts have the same identity; return their config."""
     first = places[0]
     for place in places[1:]:
         differing = differences(first.identity, place.identity)
@@ -102,9 +114,9 @@ def _config(places: Sequence[_Place]) -> AnyConfig:
     return config
 
 
-def _shards(places: Sequence[_Place], count: int) -> list[Shard]:
-    """The shards of all parts in row order; of those that share rows, the first."""
-    listed = (listed_shards(place.folder, place.part.rows(count)) for place in places)
+def _list_shards(places: Sequence[_Place], count: int) -> list[Shard]:
+    """List the shards of all parts in row order; of those that share rows, the first."""
+    listed = (list_shards(place.folder, place.part.rows(count)) for place in places)
     shards: list[Shard] = []
     for shard in sorted(chain.from_iterable(listed)):
         if not shards or shard.start >= shards[-1].stop:

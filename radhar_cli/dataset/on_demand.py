@@ -36,10 +36,10 @@ def sample(
     """Synthesise one sample of a data set: the same as in a dataset.h5 of this config, bit for bit.
 
     Args:
-        config: of the data set, or its path; its `maps` and `output` say what is made.
+        config: config of the data set, or its path; its `maps` and `output` say what is made.
         activity: slug, S1 to S12 or Activity, one of the config's; None where it has but one.
         index: number of the sample within its class; may lie beyond `samples_per_class`.
-        seed: instead of the config's.
+        seed: seed instead of the config's.
 
     Returns:
         {name in dataset.h5: array or number}.
@@ -50,12 +50,14 @@ def sample(
         SceneError: a scene outside the model (`on_invalid`), or one in which the direct engine
             does not reach its tolerance.
     """
-    make = _recipe(ByIdentity(as_config(config)), None if seed is None else whole("seed", seed))
+    make = _recipe(
+        ByIdentity(as_config(config)), None if seed is None else require_index("seed", seed)
+    )
     return make(activity_of(activity, make.config), index)
 
 
 class Sample(dict[str, Any]):
-    """{name in dataset.h5: array or number} of one sample."""
+    """One sample: {name in dataset.h5: array or number}."""
 
     def __repr__(self) -> str:
         scene = sum(name.startswith("scene/") for name in self)
@@ -67,35 +69,44 @@ class Sample(dict[str, Any]):
 
 @dataclass(frozen=True)
 class Recipe:
-    """Makes samples of a data set; can be pickled."""
+    """Callable that makes samples of a data set; can be pickled."""
 
     config: Config
 
     @classmethod
     def of(cls, config: Config | str | Path, seed: int | None = None) -> "Recipe":
-        """The recipe for arguments as those of `sample`; its errors are theirs."""
+        """Make a recipe of a config or its path, with another seed if one is given.
+
+        Raises:
+            ConfigError: the config or the seed cannot be used.
+        """
         config = as_config(config)
         if seed is not None:
-            config = config.model_copy(update={"seed": whole("seed", seed)})
+            config = config.model_copy(update={"seed": require_index("seed", seed)})
         return cls(config)
 
     def __call__(self, activity: Activity, index: int) -> Sample:
-        """The fields of one sample; errors as of `sample`."""
-        index, label = whole("index", index), self._label(activity)
+        """Synthesise one sample: that of an index within the class of an activity.
+
+        Raises:
+            ConfigError: the activity is no class of the config, or the index no whole number.
+            SceneError: the scene lies outside the model, or misses the tolerance.
+        """
+        index, label = require_index("index", index), self._label(activity)
         with one_thread():
             scene, _ = draw_valid_scene(self.config, activity, index)
-            made = synthesise(scene, self._plan, self.config)
-        found = Sample(label=label, sample_key=np.array([label, index]))
-        found.update(made.columns)
+            synthesised = synthesise(scene, self._plan, self.config)
+        sample = Sample(label=label, sample_key=np.array([label, index]))
+        sample.update(synthesised.columns)
         for name, (_, shape) in chunked(self.config).items():
-            found[name] = np.ascontiguousarray(made.chunk(name, shape))
-        every = scene_fields.fields(self.config)
-        fields = tuple(field for field in every if field is not scene_fields.ERROR)
+            sample[name] = np.ascontiguousarray(synthesised.chunk(name, shape))
+        all_fields = scene_fields.fields(self.config)
+        fields = tuple(field for field in all_fields if field is not scene_fields.ERROR)
         for field, value in zip(fields, scene_fields.values(scene, fields), strict=True):
-            found[f"scene/{field.name}"] = float(value) * field.factor
+            sample[f"scene/{field.name}"] = float(value) * field.factor
         if self.config.split.subjects is not None:
-            found["scene/subject"] = scene.subject
-        return found
+            sample["scene/subject"] = scene.subject
+        return sample
 
     def _label(self, activity: Activity) -> int:
         """Label of a class: its place among those of the config."""
@@ -124,8 +135,12 @@ class Recipe:
         self.__dict__.update(state)
 
 
-def whole(name: str, value: int) -> int:
-    """An argument that should be a whole number from 0 to 2^63 - 1, of numpy's too."""
+def require_index(name: str, value: int) -> int:
+    """Check that an argument is a whole number from 0 to 2^63 - 1, of Python or NumPy.
+
+    Raises:
+        ConfigError: it is not; the message has the `name` of the argument.
+    """
     try:
         number = whole_number(value)
     except TypeError:
@@ -136,5 +151,5 @@ def whole(name: str, value: int) -> int:
 
 
 @lru_cache(maxsize=16)
-def _recipe(same: ByIdentity, seed: int | None) -> Recipe:
-    return Recipe.of(same.config, seed)
+def _recipe(config_key: ByIdentity, seed: int | None) -> Recipe:
+    return Recipe.of(config_key.config, seed)

@@ -18,14 +18,22 @@ _TEXT = re.compile(r"([1-9]\d{0,8})/([1-9]\d{0,8})")
 
 @dataclass(frozen=True, order=True)
 class DataSetPart:
-    """Part `number` of `of`, counted from 1."""
+    """A part of a data set: number `number` of `of`, counted from 1."""
 
     of: int
     number: int
 
     @classmethod
     def parse(cls, text: str, where: str = "--shard") -> "DataSetPart":
-        """The part that is written K/N."""
+        """Read a part from its text K/N.
+
+        Args:
+            text: the text.
+            where: option or file, for the message.
+
+        Raises:
+            FolderError: it is not K/N.
+        """
         match = _TEXT.fullmatch(text)
         if match is None or int(match[1]) > int(match[2]):
             raise FolderError(f"{where} {text}: should be K/N with K from 1 to N, such as 3/8")
@@ -35,11 +43,11 @@ class DataSetPart:
         return f"{self.number}/{self.of}"
 
     def rows(self, count: int) -> range:
-        """The part's rows of `count`."""
+        """Range of the part's rows in a data set of `count`."""
         return range(count * (self.number - 1) // self.of, count * self.number // self.of)
 
     def folder(self, out: Path) -> Path:
-        """Where the part lies below an output folder."""
+        """Folder of the part below an output folder."""
         return out / PARTS / f"{self.number}-of-{self.of}"
 
 
@@ -56,6 +64,12 @@ def refuse_other_cuts(out: Path, part: DataSetPart) -> None:
 
 
 def rows_by_part(runs: Sequence[tuple[int, int]], of: int, count: int) -> list[DataSetPart]:
-    """The parts, of so many, in which runs (first row, past-last row) lie."""
+    """List the parts in which runs of rows lie.
+
+    Args:
+        runs: (first row, past-last row) of each.
+        of: number of parts.
+        count: number of rows of the data set.
+    """
     parts = [(part, part.rows(count)) for part in (DataSetPart(of, n) for n in range(1, of + 1))]
     return [one for one, rows in parts if any(a < rows.stop and b > rows.start for a, b in runs)]

@@ -17,8 +17,8 @@ _FAST = 2  # of ISA-L's 0 to 3: about as small as zlib's 1
 _MARK = ("Software", "radhar")
 
 
-def deflated(data: bytes, level: int) -> bytes:
-    """A zlib stream (RFC 1950): level 0 none, 1 by ISA-L, 2 to 9 by zlib.
+def deflate(data: bytes, level: int) -> bytes:
+    """Compress data to a zlib stream (RFC 1950): level 0 not at all, 1 by ISA-L, 2 to 9 by zlib.
 
     Equal data give equal bytes on one machine; ISA-L may find other matches on another processor.
     """
@@ -36,7 +36,7 @@ def colour_table(name: str) -> Levels:
 
 
 def encode_png(levels: Levels, table: Levels, compress_level: int) -> bytes:
-    """PNG of levels [H, W] with a colour table [256, 3] as its palette."""
+    """Encode levels [H, W] as a PNG file whose palette is a colour table [256, 3]."""
     height, width = levels.shape
     lines = np.zeros((height, 1 + width), np.uint8)  # each after the number of its filter: none
     lines[:, 1:] = levels
@@ -45,7 +45,7 @@ def encode_png(levels: Levels, table: Levels, compress_level: int) -> bytes:
         (b"IHDR", struct.pack(">2I5B", width, height, *eight_bit_palette)),
         (b"tEXt", b"\0".join(word.encode("latin-1") for word in _MARK)),
         (b"PLTE", table.tobytes()),
-        (b"IDAT", deflated(lines.tobytes(), compress_level)),
+        (b"IDAT", deflate(lines.tobytes(), compress_level)),
         (b"IEND", b""),
     )
     return b"\x89PNG\r\n\x1a\n" + b"".join(
@@ -55,6 +55,6 @@ def encode_png(levels: Levels, table: Levels, compress_level: int) -> bytes:
 
 
 def stored_levels(picture: Image.Image) -> Levels | None:
-    """Levels [H, W] of a picture that `encode_png` wrote, None of any other."""
-    ours = picture.mode == "P" and picture.info.get(_MARK[0]) == _MARK[1]
-    return np.asarray(picture) if ours else None
+    """Levels [H, W] of a picture that `encode_png` wrote; None for any other."""
+    is_from_radhar = picture.mode == "P" and picture.info.get(_MARK[0]) == _MARK[1]
+    return np.asarray(picture) if is_from_radhar else None

@@ -6,7 +6,7 @@ import numpy as np
 
 from radhar_cli.arrays import Index, Levels
 from radhar_cli.config.schema import AnyConfig
-from radhar_cli.dataset.batch import png_rows
+from radhar_cli.dataset.batch import write_png_rows
 from radhar_cli.dataset.image_tables import write_missing_tables
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
@@ -19,12 +19,17 @@ ROWS = 32  # rows per task
 def write_missing_pngs(
     config: AnyConfig, folder: Path, split: Levels, source: Path, jobs: int, progress: Progress
 ) -> int:
-    """Write PNGs, and the tables beside them, that are not there.
+    """Write the PNG files, and the tables beside them, that an output folder lacks.
 
     They were asked for later, deleted, or lost with a killed run.
 
     Args:
-        source: HDF5 file to make them from.
+        config: that of the data set.
+        folder: output folder.
+        split: number of the split of each row [N].
+        source: HDF5 file that holds the levels.
+        jobs: number of processes.
+        progress: is told of every row.
 
     Returns:
         Number of PNGs written; none where the config asks for none.
@@ -38,18 +43,18 @@ def write_missing_pngs(
     progress.stage("png", missing.size, 0)
     where, table = (config, folder, source), colour_table(config.image.colour_map)
     pairs = list(zip(missing.tolist(), split[missing].tolist(), strict=True))
-    some = [pairs[first : first + ROWS] for first in range(0, len(pairs), ROWS)]
-    tasks = ((*where, rows, table, parent_pid()) for rows in some)
-    for written in run_tasks(png_rows, tasks, min(jobs, len(some))):
+    batches = [pairs[first : first + ROWS] for first in range(0, len(pairs), ROWS)]
+    tasks = ((*where, rows, table, parent_pid()) for rows in batches)
+    for written in run_tasks(write_png_rows, tasks, min(jobs, len(batches))):
         progress.advance(written)
     return missing.size * len(config.maps)
 
 
 def rows_without_png(config: AnyConfig, folder: Path, split: Levels) -> Index:
-    """Rows of which an image is missing."""
+    """Rows of which a PNG file is missing."""
     rows = Rows.of(config)
-    whole = (
+    is_complete = (
         all((folder / rows.png_path(name, part, row)).exists() for name in config.maps)
         for row, part in enumerate(split.tolist())
     )
-    return np.flatnonzero(~np.fromiter(whole, bool, len(rows)))
+    return np.flatnonzero(~np.fromiter(is_complete, bool, len(rows)))

@@ -28,11 +28,11 @@ class Dataset(Closing):
     Names, shapes and types of everything in it follow from its config and are checked here.
 
     Args:
-        path: of dataset.h5, or of what is going to be it.
+        path: path of dataset.h5, or of the file that is going to be renamed to it.
 
     Attributes:
-        path: of dataset.h5.
-        config: its own.
+        path: path of the file.
+        config: config of the data set.
         maps: {map name: uint8 [N, H, W]}.
         label: uint8 [N], place in `classes`, as in every other form of the data set.
         split: uint8 [N]; 0 train, 1 validation, 2 test.
@@ -40,12 +40,12 @@ class Dataset(Closing):
         labels: uint8 [N, len(class_slugs)], 1 for what anybody in the scene does; None without
             `people`.
         person_label: int16 [N, 1 + people], the class of each person, place in `class_slugs`, -1
-            absent; None without.
+            absent; None without `people`.
         sample_key: int64 [N, 2], (label, index within the class).
         scene: {field: [N]}, SI units.
-        fields: what the fields of `scene` are.
-        large: {name: [N, ...]}, all datasets with a sample a chunk, the maps among them.
-        sha256: {name of a large dataset: [N]}.
+        fields: descriptions of the columns of `scene`, but for `subject`.
+        large: {name: [N, ...]} of all datasets with a sample a chunk, the maps among them.
+        sha256: checksums {name of a large dataset: [N]}.
         products: {name: an array of each sample}, of `output.products`.
         column_label: {map name: uint8 [N, W]}, numbers in `column_labels.label_names`; empty where
             they were not asked for.
@@ -80,6 +80,7 @@ class Dataset(Closing):
             )
 
     def _check(self) -> None:
+        """Open everything that the config names, and check its shapes and types."""
         config, file, count = self.config, self.file, len(layout.Rows.of(self.config))
         self.fields = scene_fields.fields(config)
         self.classes = tuple(activity.slug for activity in config.chosen_activities)
@@ -117,8 +118,8 @@ class Dataset(Closing):
             small[name][:] if config.people else None
             for name in (layout.LABELS, layout.PERSON_LABEL)
         )
-        self.label = _small(file.column("label", np.uint8, (count,)), len(self.classes))
-        self.split = _small(file.column("split", np.uint8, (count,)), len(layout.SPLITS))
+        self.label = _small_numbers(file.column("label", np.uint8, (count,)), len(self.classes))
+        self.split = _small_numbers(file.column("split", np.uint8, (count,)), len(layout.SPLITS))
 
     def __len__(self) -> int:
         return len(self.label)
@@ -134,22 +135,27 @@ class Dataset(Closing):
 
     @property
     def present_splits(self) -> dict[int, str]:
-        """{number: name} of the splits that have samples."""
+        """Splits that have samples: {number: name}."""
         return {n: name for n, name in enumerate(layout.SPLITS) if (self.split == n).any()}
 
     @property
     def warnings(self) -> list[dict[str, Any]]:
-        """Warnings of its build: {kind, recordings, message}."""
+        """Warnings of the build: {kind, recordings, message} of each.
+
+        Raises:
+            FolderError: they are damaged.
+        """
         messages: list[dict[str, Any]] = self.file.json("warnings")
         if not isinstance(messages, list) or not all(
-            isinstance(one, dict) and isinstance(one.get("message"), str) for one in messages
+            isinstance(warning, dict) and isinstance(warning.get("message"), str)
+            for warning in messages
         ):
             raise FolderError(f"{self.path}: attribute warnings: should be a list of messages")
         return messages
 
     @property
     def versions(self) -> dict[str, str]:
-        """Versions of everything that decided its bytes; unknown where it does not say one."""
+        """Versions of the libraries that decided the bytes, by name; `unknown` if not stored."""
         named = {library: f"{library}_version" for library in versions()}
         return {
             library: self.file.text(key) if self.file.has_attribute(key) else "unknown"
@@ -157,7 +163,7 @@ class Dataset(Closing):
         }
 
     def entropy(self, name: str) -> Float:
-        """Entropies [N] of a map's power, bits."""
+        """Entropy of the power of map `name` in each sample [N], bits."""
         column = self.small[f"entropy/{name}"]
         bits: Float = column[:].astype(float)
         if not ((bits >= 0) & (bits <= MAX_ENTROPY_BITS)).all():
@@ -165,17 +171,21 @@ class Dataset(Closing):
         return bits
 
     def extent(self, name: str) -> tuple[float, float, float, float] | None:
-        """Edges (time left, right in s; bottom, top in Hz or m) that all images of a map share."""
+        """Edges of map `name`: left and right in s, bottom and top in Hz or m.
+
+        They are None where they differ from sample to sample (see `extents`).
+        """
         first = self.small[f"extent/{name}"].rows(0, 1)
         same = [bool((edges == first).all()) for edges in self._edges(name)]
         left, right, bottom, top = map(float, first[0])
         return (left, right, bottom, top) if all(same) else None
 
     def extents(self, name: str) -> Float:
-        """Edges [N, 4] of every image of a map."""
+        """Edges (left, right, bottom, top) of map `name` in each sample [N, 4]."""
         return np.concatenate([*self._edges(name)])
 
     def _edges(self, name: str) -> Iterator[Float]:
+        """Yield the edges of a map, BLOCK rows at a time, checked."""
         column = self.small[f"extent/{name}"]
         for start in range(0, len(column), BLOCK):
             edges: Float = column.rows(start, start + BLOCK)
@@ -185,7 +195,11 @@ class Dataset(Closing):
             yield edges
 
     def map_name(self, name: str | None) -> str:
-        """The map of that name, or the first."""
+        """Check the name of a map and return it; None names the first map.
+
+        Raises:
+            FolderError: there is no such map.
+        """
         if name is None:
             return self.config.maps[0]
         if name not in self.maps:
@@ -199,10 +213,10 @@ class Dataset(Closing):
 
 
 class Ragged:
-    """An array of each sample: rows of one array that holds them one after the other.
+    """Arrays of the samples, which one array holds one after the other along axis 0.
 
     Attributes:
-        counts: rows of each sample.
+        counts: number of rows of each sample [N].
     """
 
     def __init__(self, samples: NumberColumn, counts: Index) -> None:
@@ -212,7 +226,7 @@ class Ragged:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of the rows of all samples together."""
+        """Shape of the array that holds the rows of all samples."""
         return self._samples.shape
 
     def __len__(self) -> int:
@@ -223,7 +237,12 @@ class Ragged:
         return self._samples.rows(int(self._stops[row - 1]) if row else 0, stop)
 
 
-def _small(column: Column, below: int) -> Levels:
+def _small_numbers(column: Column, below: int) -> Levels:
+    """Read a column of whole numbers [N] from 0 to `below` - 1.
+
+    Raises:
+        FolderError: one is larger.
+    """
     values: Levels = column[:]
     if values.max(initial=0) >= below:
         raise FolderError(f"{column.where}: holds {values.max()}; should be 0 to {below - 1}")
@@ -231,7 +250,15 @@ def _small(column: Column, below: int) -> Levels:
 
 
 def stored_config(document: Any, where: str) -> AnyConfig:
-    """The config that is stored with a data set, from its plain values."""
+    """Read the config that is stored with a data set.
+
+    Args:
+        document: its plain values.
+        where: file or folder, for messages.
+
+    Raises:
+        FolderError: it is not a valid config.
+    """
     measured = isinstance(document, dict) and document.get("recordings") is not None
     kind: type[AnyConfig] = MeasuredConfig if measured else Config
     try:
@@ -245,7 +272,7 @@ def open_dataset(path: str | Path) -> Dataset:
     """Open the data set in a folder, or a dataset.h5.
 
     Raises:
-        FolderError: there is none, it is not radhar's, or it is damaged.
+        FolderError: there is no such data set, it is not of radhar, or it is damaged.
     """
     path = Path(path)
     file = path / layout.DATASET if path.is_dir() else path
@@ -255,7 +282,7 @@ def open_dataset(path: str | Path) -> Dataset:
 
 
 def _why_missing(path: Path) -> str:
-    """Why a path leads to no dataset.h5, and what makes one."""
+    """Say why a path leads to no dataset.h5, and what makes one."""
     if (parts := path / layout.PARTS).is_dir():
         return f"not made yet; `radhar merge {path}` puts the parts in {parts} together"
     if not layout.is_incomplete(path):

@@ -8,7 +8,7 @@ from radhar_cli.scene import ByIdentity
 
 
 class RecordedWindow(NamedTuple):
-    """One sample."""
+    """Window of a recording that makes one sample."""
 
     number: int  # of its part in the manifest
     part: RecordedPart
@@ -16,7 +16,7 @@ class RecordedWindow(NamedTuple):
 
 
 def windows(config: MeasuredConfig) -> list[RecordedWindow]:
-    """The windows of a data set of recordings: class by class, each in the manifest's order."""
+    """List the windows of a data set of recordings by class, each in the manifest's order."""
     return _windows(ByIdentity(config))
 
 

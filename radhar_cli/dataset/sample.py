@@ -24,7 +24,7 @@ from radhar_cli.scene import Scene
 
 
 class Synthesised(NamedTuple):
-    """What is made of a scene."""
+    """One sample: images of a scene, and all that is stored with them."""
 
     images: dict[str, MapImage]  # {map name: image}, in the order of the config
     error_db: float  # measured error of the direct engine; NaN where it made nothing that could err
@@ -40,17 +40,18 @@ class Synthesised(NamedTuple):
 
     @property
     def columns(self) -> dict[str, Any]:
-        """{name in dataset.h5: what it holds of this sample}, of the small datasets."""
-        found = dict[str, Any](self.labels)
+        """Values of this sample in the small datasets: {name in dataset.h5: value}."""
+        values = dict[str, Any](self.labels)
         for name, image in self.images.items():
-            found[f"entropy/{name}"] = np.float32(image.entropy)
-            found[f"extent/{name}"] = np.array(image.extent)
+            values[f"entropy/{name}"] = np.float32(image.entropy)
+            values[f"extent/{name}"] = np.array(image.extent)
             if image.decibels is not None:
-                found[f"largest_db/{name}"] = image.largest_db
-        return found | {f"{COLUMN_LABEL}/{name}": one for name, one in self.column_labels.items()}
+                values[f"largest_db/{name}"] = image.largest_db
+        labels = {f"{COLUMN_LABEL}/{name}": label for name, label in self.column_labels.items()}
+        return values | labels
 
     def chunk(self, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
-        """What a large dataset (`layout.chunked`) holds of this sample, in its shape."""
+        """Array of this sample in a large dataset (`layout.chunked`), in the shape given."""
         kind, _, map_name = name.partition("/")
         if kind == "maps":
             return self.images[map_name].levels
@@ -64,23 +65,28 @@ class Synthesised(NamedTuple):
         return padded
 
 
-class Row(NamedTuple):
-    """A sample that was not simulated."""
+class SampleRow(NamedTuple):
+    """A sample and its scene numbers, which are one row of a data set."""
 
     sample: Synthesised
-    values: Float  # of `scene_fields.fields` [fields]
+    values: Float  # numbers of `scene_fields.fields` [field]
 
 
 # Makes a row of a data set that is not simulated; what it holds can be pickled.
-RowFactory: TypeAlias = Callable[[MeasuredConfig, int], Row]
+RowFactory: TypeAlias = Callable[[MeasuredConfig, int], SampleRow]
 
 
 def synthesise(scene: Scene, plan: Plan, config: Config | None = None) -> Synthesised:
     """Run the plan of a data set on one scene.
 
     Args:
-        config: of the data set, whose classes the labels number; None for the scene's own, which
-            has but the class that is performed.
+        scene: the scene.
+        plan: plan of the images (`plan_images`).
+        config: config of the data set, whose classes the labels number; None for the scene's own,
+            which has but the class that is performed.
+
+    Raises:
+        SceneError: an engine misses its tolerance, or a product cannot be stored.
     """
     config = scene.config if config is None else config
     recording = run(plan, {"scene": scene})
@@ -98,14 +104,14 @@ def synthesise(scene: Scene, plan: Plan, config: Config | None = None) -> Synthe
     if isinstance(accuracy, Accuracy) and isfinite(accuracy.error_db):
         error_db = accuracy.error_db
     deepest = scene.config.image.dynamic_range_db
-    own = {name: _array(recording[name], name, deepest) for name in scene.config.stored}
+    products = {name: _array(recording[name], name, deepest) for name in scene.config.stored}
     return Synthesised(
-        images, error_db, fell_back, labels, slow_time, own, labels_of(scene, config)
+        images, error_db, fell_back, labels, slow_time, products, labels_of(scene, config)
     )
 
 
 def _storable(x: Complex, name: str) -> Complex:
-    """Slow time [M] of a sample, whose numbers complex64 can hold."""
+    """Check that complex64 can hold the slow time [M] of a sample, and return it."""
     largest, single = float(np.abs(x).max(initial=0.0)), np.finfo(np.float32)
     if largest > 0 and not float(single.tiny) <= largest <= float(single.max):
         raise SceneError(
@@ -117,26 +123,30 @@ def _storable(x: Complex, name: str) -> Complex:
 
 
 def labels_of(scene: Scene, config: Config) -> dict[str, NDArray[Any]]:
-    """What everybody does, where a config has `people`: LABELS and PERSON_LABEL.
+    """Labels of everybody in a scene: LABELS [class] and PERSON_LABEL [person] by name.
 
     Args:
-        config: of the data set, of whose `every_class` they are places.
+        scene: the scene.
+        config: config of the data set; labels are places in its `every_class`.
+
+    Returns:
+        The labels; none where the config has no `people`.
     """
     if not scene.config.people:
         return {}
     classes = [activity.slug for activity in config.every_class]
     person = np.full(1 + len(scene.config.people), -1, np.int16)
-    for one in scene.people:
-        person[one.number] = classes.index(one.activity.slug)
-    found = np.zeros(len(classes), np.uint8)
-    found[person[person >= 0]] = 1
-    return {LABELS: found, PERSON_LABEL: person}
+    for someone in scene.people:
+        person[someone.number] = classes.index(someone.activity.slug)
+    present = np.zeros(len(classes), np.uint8)
+    present[person[person >= 0]] = 1
+    return {LABELS: present, PERSON_LABEL: person}
 
 
 def _array(value: Any, name: str, dynamic_range_db: float) -> NDArray[Any]:
-    """A product as it is stored: the power of a map, the samples of a signal, or an array.
+    """Array of a product as it is stored: the power of a map, the samples of a signal, or an array.
 
-    Of frame maps it is grey levels, in decibels below the peak of the sample.
+    Frame maps are stored as grey levels, in decibels below the peak of the sample.
     """
     if isinstance(value, FrameMaps):
         return levels(value.power, dynamic_range_db)

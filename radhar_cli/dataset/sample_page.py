@@ -1,4 +1,4 @@
-"""What the page of `radhar view` shows of samples of a data set."""
+"""Samples of a data set as entries of the page of `radhar view`."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -26,97 +26,106 @@ from radhar_cli.vocabulary import FROM_FILES, advice_on
 MOST = 50  # samples of a page
 
 
-def chosen_rows(data: Dataset, samples: Sequence[str]) -> list[int]:
-    """Rows of samples CLASS/INDEX, or of the first of each class, stationary people last.
+def choose_rows(data: Dataset, samples: Sequence[str]) -> list[int]:
+    """Choose the rows of samples CLASS/INDEX, or the first row of each class, `stationary` last.
 
     Raises:
-        FolderError: there is no such sample, or there are too many.
+        FolderError: there is no such sample, or more than MOST are named.
     """
     classes = sorted(Rows.of(data.config).classes(), key=lambda part: part[0].slug == "stationary")
     if len(samples) > MOST:
         raise FolderError(f"--sample: {len(samples)} samples; a page holds {MOST} at most")
     if not samples:
         return [part.start for _, part in classes if part.stop > part.start][:MOST]
-    known = {name: part for one, part in classes for name in (one.slug, one.label)}
+    known = {name: part for activity, part in classes for name in (activity.slug, activity.label)}
     rows = []
     for sample in samples:
         slug, _, index = sample.partition("/")
         if slug not in known:
-            names = [one.slug for one, _ in classes]
-            there = f"there are {', '.join(sorted(names))}"
-            meant = advice_on(slug, names, there)
-            hint = there if meant == FROM_FILES else meant
+            names = [activity.slug for activity, _ in classes]
+            known_classes = f"there are {', '.join(sorted(names))}"
+            advice = advice_on(slug, names, known_classes)
+            hint = known_classes if advice == FROM_FILES else advice
             raise FolderError(f"--sample {sample}: no such class; {hint}")
         start, stop = known[slug].start, known[slug].stop
         if not index.isdecimal() or int(index) >= stop - start:
-            wanted = f"{slug}/0 to {slug}/{stop - start - 1}"
-            raise FolderError(f"--sample {sample}: should be {wanted}")
+            allowed = f"{slug}/0 to {slug}/{stop - start - 1}"
+            raise FolderError(f"--sample {sample}: should be {allowed}")
         rows.append(start + int(index))
     return rows
 
 
-def of_samples(data: Dataset, rows: Sequence[int]) -> list[Entry]:
-    """What the page shows of these rows: what is stored, and the truth of simulated scenes."""
+def sample_entries(data: Dataset, rows: Sequence[int]) -> list[Entry]:
+    """Make the entries of the page for rows: stored maps, and the truth of simulated scenes."""
     extents = {name: data.extents(name) for name in data.maps}
-    return [_of_sample(data, row, {name: extents[name][row] for name in extents}) for row in rows]
+    return [
+        _sample_entry(data, row, {name: extents[name][row] for name in extents}) for row in rows
+    ]
 
 
-def _of_sample(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Entry:
+def _sample_entry(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Entry:
+    """Make the entry of a row, whose maps have these edges by name."""
     config, (activity, index) = data.config, Rows.of(data.config)[row]
     scene, notes = _scene(data, row)
     spans = (extents[name][:2] for name in data.maps if column_axis(name)[1] == "s")
-    seen, maps, cloud = SceneView(scene_page.clock(*next(spans, (0.0, 0.0)))), list[Entry](), None
+    view, maps, cloud = SceneView(scene_page.clock(*next(spans, (0.0, 0.0)))), list[Entry](), None
     if scene is not None:
-        seen = scene_page.moving(scene, tuple(map(motion_of, scene.people)))
+        view = scene_page.moving(scene, tuple(map(motion_of, scene.people)))
     board = None
     if isinstance(config, Config) and config.radar.cfg is not None:
         drawn = scene or nominal_scene(config, activity)
         board = board_of(drawn.radar, drawn.seconds)
-        seen = seen if scene is not None else _stored_joints(data, row, board, seen)
+        view = view if scene is not None else _stored_joints(data, row, board, view)
     for name in data.maps:
         if name not in FRAME_MAPS:  # whose images are sheets of what is stored as frames
             grey, (left, right, bottom, top) = data.maps[name][row], extents[name]
             columns = Axis(*column_axis(name), _cells(left, right, grey.shape[1]))
             axes = columns, Axis(*row_axis(name), _cells(bottom, top, grey.shape[0]))
             look = (config.image, config.image.kind)
-            maps.append(scene_page.heat(seen, name, grey[None, ::-1], look, axes))
+            maps.append(scene_page.heat(view, name, grey[None, ::-1], look, axes))
     if board is not None:
-        maps += _frames(data, row, board, seen)
+        maps += _frames(data, row, board, view)
         if "points" in data.products:
             points, start = _product(data, row, "points", (8,)), _product(data, row, "points_start")
             cloud = _times(board, len(start) - 1), start.astype(int), points
     stored = {f.key: data.scene[f.name].rows(row, row + 1)[0] / f.factor for f in data.fields}
     numbers = {key: value for key, value in stored.items() if np.isfinite(value)}
     title = f"{activity.label} {activity.slug}/{index}, {SPLITS[data.split[row]]}"
-    if seen.bodies or cloud:
-        maps = [scene_page.space(seen, cloud, board if scene is not None else None), *maps]
-    return scene_page.entry(seen, maps, title, notes, numbers)
+    if view.bodies or cloud:
+        maps = [scene_page.space(view, cloud, board if scene is not None else None), *maps]
+    return scene_page.entry(view, maps, title, notes, numbers)
 
 
 def _cells(low: float, high: float, cells: int) -> NDArray[Any]:
-    """Middles of cells."""
+    """Middles of `cells` equal cells from `low` to `high` [cell]."""
     return low + (np.arange(cells) + 0.5) * (high - low) / cells
 
 
 def _times(board: Board, frames: int) -> NDArray[Any]:
-    """Middles of frames, s; a recorded sample may have others than its config says."""
+    """Middles of `frames` frames, s; a recorded sample may have other frames than its config."""
     return np.arange(frames) * board.period + board.loops * board.loop / 2
 
 
 def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] = ()) -> Any:
-    """A stored array [n, *shape] of numbers; FolderError of another."""
+    """Read a stored array of numbers [n, *shape]; None in the shape is any length.
+
+    Raises:
+        FolderError: it has another shape or type.
+    """
     values = np.atleast_1d(data.products[name][row])
-    there = values.shape[1:]
-    wanted = tuple(n or there[at] if at < len(there) else n for at, n in enumerate(shape))
+    stored_shape = values.shape[1:]
+    expected_shape = tuple(
+        n or stored_shape[at] if at < len(stored_shape) else n for at, n in enumerate(shape)
+    )
     least = {"points": 0, "points_start": 2}.get(name, 1)
-    if there != wanted or len(values) < least or values.dtype.kind not in "iuf":
-        named = ", ".join(["n", *(str(n or "any") for n in shape)])
-        raise FolderError(f"{data.path}: /products/{name}: should be numbers [{named}]")
+    if stored_shape != expected_shape or len(values) < least or values.dtype.kind not in "iuf":
+        axes = ", ".join(["n", *(str(n or "any") for n in shape)])
+        raise FolderError(f"{data.path}: /products/{name}: should be numbers [{axes}]")
     return values
 
 
-def _frames(data: Dataset, row: int, board: Board, seen: SceneView) -> Iterator[Entry]:
-    """Frame maps that are stored, as grey levels."""
+def _frames(data: Dataset, row: int, board: Board, view: SceneView) -> Iterator[Entry]:
+    """Yield the plots of the stored frame maps."""
     for name in FRAME_MAPS[:3]:
         if name in data.products:
             columns = doppler_axis(board)
@@ -124,14 +133,14 @@ def _frames(data: Dataset, row: int, board: Board, seen: SceneView) -> Iterator[
                 columns = Axis(name.removeprefix("range_"), "degree", np.arange(-90.0, 91.0))
             grey = _product(data, row, name, (board.n_fft, columns.values.size))
             look, axes = (data.config.image, "decibel"), (columns, range_axis(board))
-            yield scene_page.heat(seen, name, grey, look, axes, _times(board, len(grey)))
+            yield scene_page.heat(view, name, grey, look, axes, _times(board, len(grey)))
 
 
-def _stored_joints(data: Dataset, row: int, board: Board, seen: SceneView) -> SceneView:
-    """Joints that are stored, in the axes of the radar, where the scene is not drawn again."""
-    seen = seen._replace(axes=("ahead (m)", "left (m)", "up of the radar (m)"))
+def _stored_joints(data: Dataset, row: int, board: Board, view: SceneView) -> SceneView:
+    """Add the stored joints, in the axes of the radar, to the view of a scene."""
+    view = view._replace(axes=("ahead (m)", "left (m)", "up of the radar (m)"))
     if "skeleton" not in data.products:
-        return seen
+        return view
     joints = _product(data, row, "skeleton", (None, None, 3)).astype(float)
     count = joints.shape[2]
     known = count == len(JOINTS)
@@ -139,25 +148,25 @@ def _stored_joints(data: Dataset, row: int, board: Board, seen: SceneView) -> Sc
     still = np.concatenate([joints, np.zeros((*joints.shape[:3], 1))], axis=3)
     ends = bones(still, PARENTS if known else (None,) * count)
     bodies = [ShownBody(f"person {n}", names, ends[:, n]) for n in range(ends.shape[1])]
-    return seen._replace(time=_times(board, len(joints)), bodies=bodies)
+    return view._replace(time=_times(board, len(joints)), bodies=bodies)
 
 
 def _scene(data: Dataset, row: int) -> tuple[Scene | None, list[str]]:
-    """The scene of a sample, drawn again; None, and why, where that is not the one stored."""
+    """Draw the scene of a sample again; None, and notes why, where it is not the one stored."""
     config, (activity, index) = data.config, Rows.of(data.config)[row]
     if isinstance(config, MeasuredConfig):
         return None, ["Measured: there are no true joints."]
     if config.files_of(activity) is not None:
-        kept = "those that are stored" if "skeleton" in data.products else "not known"
-        return None, [f"Motion files are not opened: joints are {kept}."]
+        joints = "those that are stored" if "skeleton" in data.products else "not known"
+        return None, [f"Motion files are not opened: joints are {joints}."]
     try:
         scene, _ = draw_valid_scene(config, activity, index)
     except RadharError as error:
         return None, [f"No skeleton: {error}"]
     columns = [field for field in data.fields if field is not scene_fields.ERROR]
     drawn = scene_fields.values(scene, tuple(columns))
-    there = [data.scene[f.name].rows(row, row + 1)[0] / f.factor for f in columns]
-    if np.allclose(drawn, there, rtol=1e-9, atol=0, equal_nan=True):
+    stored = [data.scene[f.name].rows(row, row + 1)[0] / f.factor for f in columns]
+    if np.allclose(drawn, stored, rtol=1e-9, atol=0, equal_nan=True):
         return scene, []
     why = "this version of radhar draws another scene than the one stored"
     return None, [f"No skeleton: {why}."]

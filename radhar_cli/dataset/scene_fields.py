@@ -52,7 +52,7 @@ RECORDED = (
 
 
 def fields(config: AnyConfig) -> tuple[Field, ...]:
-    """Every number that any scene of this config depends on, in the order of the schema.
+    """List every number that any scene of a config depends on, in the order of the schema.
 
     Last comes the measured error of the direct engine, where it is at work.
     """
@@ -69,12 +69,18 @@ def fields(config: AnyConfig) -> tuple[Field, ...]:
 
 
 def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> Float:
-    """Numbers [fields] in the units of the config keys, NaN where one does not apply."""
+    """Numbers of a scene in the units of the config keys [field], NaN where one does not apply.
+
+    Args:
+        scene: the scene.
+        columns: the fields.
+        error_db: measured error of the direct engine, for the field ERROR.
+    """
     return np.array([error_db if f is ERROR else number_at(scene, f.key) for f in columns])
 
 
 def _uniquely_named(columns: list[Field]) -> list[Field]:
-    """The columns, those whose names are taken or alike with longer names."""
+    """Give longer names to columns whose names are taken or alike; return all columns."""
     for longer in (_name_with_section, lambda field: field.key):
         counts = Counter([ERROR.name, *TAKEN, *(field.name for field in columns)])
         columns = [
@@ -86,18 +92,19 @@ def _uniquely_named(columns: list[Field]) -> list[Field]:
 
 def _name_with_section(field: Field) -> str:
     """The name of a column with the section of its key before it."""
-    whose, key = "", field.key
+    prefix, key = "", field.key
     if key.startswith("people."):
         _, number, key = key.split(".", 2)
-        whose = f"people_{int(number) + 1}_"
-    return f"{whose}{key.partition('.')[0]}_{field.name.removeprefix(whose)}"
+        prefix = f"people_{int(number) + 1}_"
+    return f"{prefix}{key.partition('.')[0]}_{field.name.removeprefix(prefix)}"
 
 
 def _field(key: str) -> Field:
+    """Make the column of a config key."""
     if key.startswith("people."):
-        theirs = _field(key.split(".", 2)[2])
-        name = f"people_{int(key.split('.')[1]) + 1}_{theirs.name}"
-        return theirs._replace(key=key, name=name)
+        field_of_person = _field(key.split(".", 2)[2])
+        name = f"people_{int(key.split('.')[1]) + 1}_{field_of_person.name}"
+        return field_of_person._replace(key=key, name=name)
     if key.startswith("classes."):
         _, slug, name, *place = key.split(".")
         if not place:  # of files

@@ -19,7 +19,7 @@ from radhar_cli.arrays import Float
 from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK, checksum_of, chunked, count_of
-from radhar_cli.dataset.png import deflated
+from radhar_cli.dataset.png import deflate
 from radhar_cli.dataset.sample import Synthesised
 from radhar_cli.errors import SceneError, UnfinishedError
 
@@ -30,15 +30,15 @@ _HEADER = re.compile(rb"radhar shard of (\w{64})\nrows (\d+) (\d+)\nsha256 (\w{6
 
 
 class ShardError(Exception):
-    """A shard that cannot be used; says why."""
+    """Reason for which a shard cannot be used."""
 
 
 class ForeignShardError(ShardError):
-    """A sound shard of another data set."""
+    """The shard is sound, but belongs to another data set."""
 
 
 class Shard(NamedTuple):
-    """The shard of rows start .. stop - 1."""
+    """A shard: rows start .. stop - 1 of the data set that is built in a folder."""
 
     start: int
     stop: int
@@ -46,11 +46,11 @@ class Shard(NamedTuple):
 
     @property
     def path(self) -> Path:
-        """Of its file."""
+        """Path of the shard's file."""
         return shard_folder(self.folder) / f"rows-{self.start:09d}-{self.stop:09d}.h5"
 
     def read(self, identity_hash: str) -> bytes:
-        """The bytes of the shard, an HDF5 file.
+        """Read the bytes of the shard, an HDF5 file, and check its header.
 
         Raises:
             ShardError: it is gone, damaged, of another data set, or holds other rows.
@@ -72,7 +72,7 @@ class Shard(NamedTuple):
 
 
 def shard_folder(folder: Path) -> Path:
-    """Where the shards of an output folder lie."""
+    """Folder in which the shards of an output folder lie."""
     return folder / WORK / "shards"
 
 
@@ -98,11 +98,18 @@ def encode_shard(
     scene_values: Float,
     flags: NDArray[np.uint16],
 ) -> bytes:
-    """The bytes of the shard of the rows from `start` on; a full disk is then one failed write.
+    """Encode the rows from `start` on as a shard; a full disk is then one failed write.
 
     Args:
-        scene_values: [rows, fields].
-        flags: what there is to warn of in each row (`Flags`).
+        config: that of the data set.
+        identity_hash: hash of its identity.
+        start: first row.
+        samples: samples of the rows.
+        scene_values: numbers of the scenes [row, field].
+        flags: `Flags` of each row: what there is to warn of.
+
+    Raises:
+        SceneError: arrays of a product differ in more than their first axis.
     """
     buffer, level = io.BytesIO(), config.output.hdf5_level
     # Not libver="latest", whose groups hold the time at which they were made.
@@ -111,13 +118,13 @@ def encode_shard(
             target, checksums = chunked_dataset(file, name, len(samples), config), []
             for row, sample in enumerate(samples):
                 raw = np.asarray(sample.chunk(name, shape), dtype).tobytes()
-                stored = deflated(raw, level) if level else raw
+                stored = deflate(raw, level) if level else raw
                 target.id.write_direct_chunk((row, *[0] * len(shape)), stored)
                 checksums.append(hashlib.sha256(raw).hexdigest())
             file[checksum_of(name)] = np.array(checksums, dtype="S64")
-        every = [sample.columns for sample in samples]
-        for name in every[0]:
-            file[name] = np.stack([one[name] for one in every])
+        columns = [sample.columns for sample in samples]
+        for name in columns[0]:
+            file[name] = np.stack([values[name] for values in columns])
         for name in config.stored:
             arrays = [sample.products[name] for sample in samples]
             if len({(array.dtype, array.shape[1:]) for array in arrays}) > 1:
@@ -137,32 +144,36 @@ def encode_shard(
 
 
 def _checksum(owner: str, start: int, stop: int, content: memoryview) -> str:
+    """SHA-256 of what a shard says of itself, and of its content, in hex."""
     digest = hashlib.sha256(f"{owner} {start} {stop}\n".encode())
     digest.update(content)
     return digest.hexdigest()
 
 
 def write_shard(folder: Path, start: int, stop: int, data: bytes) -> None:
-    """Store the shard of rows start .. stop - 1."""
+    """Write the bytes of the shard of rows start .. stop - 1 into its file."""
     write_whole(folder, Shard(start, stop, folder).path, data)
 
 
-def listed_shards(folder: Path, rows: range | None = None) -> list[Shard]:
-    """Files that have the name of a shard, of these rows if they are given, in row order."""
+def list_shards(folder: Path, rows: range | None = None) -> list[Shard]:
+    """List files that have the name of a shard, in row order: all, or those within `rows`."""
     place = shard_folder(folder)
     names = (_NAME.fullmatch(path.name) for path in (place.iterdir() if place.is_dir() else ()))
     shards = sorted(Shard(int(name[1]), int(name[2]), folder) for name in names if name)
     if rows is None:
         return shards
-    return [one for one in shards if rows.start <= one.start < one.stop <= rows.stop]
+    return [shard for shard in shards if rows.start <= shard.start < shard.stop <= rows.stop]
 
 
 def check_shards(
     shards: Iterable[Shard], identity_hash: str
 ) -> tuple[list[Shard], list[tuple[Shard, ShardError]]]:
-    """Read shards, in row order: (usable ones, unusable ones with the reason).
+    """Read and check shards, which are in row order.
 
     Of two shards that share rows, from runs with other batch sizes, the first is used.
+
+    Returns:
+        The usable shards, and the unusable ones with the reason of each.
     """
     sound: list[Shard] = []
     unusable = []
@@ -181,7 +192,7 @@ Runs: TypeAlias = Sequence[tuple[int, int]]  # first row, past-last row
 
 
 def missing_rows(shards: Sequence[Shard], count: int, first: int = 0) -> list[tuple[int, int]]:
-    """Runs (first row, past-last row) of first .. count - 1 that none of the shards holds."""
+    """List runs (first row, past-last row) of rows first .. count - 1 that no shard holds."""
     missing, row = [], first
     for shard in (*sorted(shards), Shard(count, count, Path())):
         if shard.start > row:
@@ -197,11 +208,17 @@ def require_tiling(
     remedy: Callable[[Runs], str] | None = None,
     unusable: Sequence[tuple[Shard, ShardError]] = (),
 ) -> None:
-    """Refuse shards, none of which share rows, that do not hold each of `count` rows.
+    """Refuse shards that do not hold each of `count` rows; no two of them share rows.
 
     Args:
-        remedy: what to do about rows, if not to run the same command again.
+        folder: output folder, for the message.
+        shards: the shards.
+        count: number of rows of the data set.
+        remedy: advice on runs of missing rows, if not to run the same command again.
         unusable: shards that were left out, and why.
+
+    Raises:
+        UnfinishedError: rows are missing.
     """
     why = "".join(f", {shard.path} {error}" for shard, error in unusable[:RUNS_NAMED])
     why += ", ..." if len(unusable) > RUNS_NAMED else ""

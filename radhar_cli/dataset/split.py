@@ -13,16 +13,16 @@ TRAIN, VALIDATION, TEST = 0, 1, 2
 
 
 def split_rows(config: AnyConfig) -> Levels:
-    """Split numbers [N]: 0 train, 1 validation, 2 test.
+    """Split the rows of a data set; return the number of each [N]: 0 train, 1 validation, 2 test.
 
     By sample, each class is shuffled by its own stream and cut at round(share n). By subject the
     persons are shuffled and cut, and every sample goes where its person goes.
     """
-    rows, split, everyone = Rows.of(config), config.split, persons(config)
-    if everyone is not None:
+    rows, split, person = Rows.of(config), config.split, persons(config)
+    if person is not None:
         assert split.subjects is not None
         cut = _cut(split, split.subjects, stream(config.seed, SPLIT, name="subjects"))
-        return cut[everyone]
+        return cut[person]
     return np.concatenate(
         [
             _cut(split, count, stream(config.seed, SPLIT, activity.index, name="samples"))
@@ -32,7 +32,10 @@ def split_rows(config: AnyConfig) -> Levels:
 
 
 def persons(config: AnyConfig) -> Index | None:
-    """Number of the person in every row, or None; of recordings by the alphabet."""
+    """Number of the person in every row [N]; None if the data set is not split by person.
+
+    Persons of recordings are numbered in the order of the alphabet.
+    """
     subjects = config.split.subjects
     if subjects is None:
         return None
@@ -47,26 +50,33 @@ def split_warnings(config: AnyConfig, split: Levels) -> list[str]:
     rows, warnings = Rows.of(config), []
     people = config.split.subjects or 0
     for activity in rows.activities:
-        one = config.classes.get(activity.slug)
-        if isinstance(one, FilesConfig) and one.file is None and len(one.files) < people:
+        files = config.classes.get(activity.slug)
+        if isinstance(files, FilesConfig) and files.file is None and len(files.files) < people:
             warnings.append(
-                f"classes.{activity.slug}: {len(one.files)} files for split.subjects = {people}: "
+                f"classes.{activity.slug}: {len(files.files)} files for split.subjects = {people}: "
                 "persons of training and validation share them"
             )
     for number, part in enumerate(SPLITS):
         share = getattr(config.split, part)
-        without = [a.slug for a, here in rows.classes() if not (split[here] == number).any()]
-        if share and without:
-            whose = "any class" if len(without) == len(rows.activities) else ", ".join(without)
+        empty_classes = [
+            a.slug for a, class_rows in rows.classes() if not (split[class_rows] == number).any()
+        ]
+        if share and empty_classes:
+            classes = (
+                "any class"
+                if len(empty_classes) == len(rows.activities)
+                else ", ".join(empty_classes)
+            )
             key = "samples_per_class" if config.split.subjects is None else "split.subjects"
             warnings.append(
-                f"split.{part} = {share:g}, but there is no {part} sample of {whose}: "
+                f"split.{part} = {share:g}, but there is no {part} sample of {classes}: "
                 f"{key} is too small"
             )
     return warnings
 
 
 def _cut(split: SplitConfig, count: int, rng: np.random.Generator) -> Levels:
+    """Shuffle `count` things and split them; return the number of the split of each [count]."""
     train = half_up(split.train, count)
     test = min(half_up(split.test, count), count - train)
     if split.validation == 0:

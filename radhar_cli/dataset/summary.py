@@ -1,4 +1,4 @@
-"""What `radhar inspect` shows of a data set, a half-built folder or a scene, as plain values."""
+"""Summaries for `radhar inspect`: a data set, an unfinished one or a scene, as plain values."""
 
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from radhar_cli.dataset.folder import stored_identity
 from radhar_cli.dataset.identity import identity_hash
 from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
 from radhar_cli.dataset.reading import Dataset, open_dataset, stored_config
-from radhar_cli.dataset.shards import check_shards, listed_shards
+from radhar_cli.dataset.shards import check_shards, list_shards
 from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
 from radhar_cli.errors import FolderError
 
@@ -20,20 +20,25 @@ SCENE_FILE = "scene.h5"
 
 
 def summarise(path: Path) -> dict[str, Any]:
-    """Summarise what radhar wrote at `path`."""
+    """Summarise a data set, finished or not, or a scene, for `radhar inspect`.
+
+    Raises:
+        FolderError: the path holds nothing that radhar wrote, or it is damaged.
+    """
     if path.is_dir() and not (path / DATASET).exists():
         if (path / SCENE_FILE).exists():
-            return _scene(path / SCENE_FILE)
-        return _half_built(path)
+            return _summarise_scene(path / SCENE_FILE)
+        return _summarise_unfinished(path)
     if path.is_file():
         with UntrustedFile(path) as file:
             if file.has_attribute("scene"):
-                return _scene(path)
+                return _summarise_scene(path)
     with open_dataset(path) as data:
-        return _data_set(data)
+        return _summarise_dataset(data)
 
 
-def _data_set(data: Dataset) -> dict[str, Any]:
+def _summarise_dataset(data: Dataset) -> dict[str, Any]:
+    """Summarise a finished data set."""
     labels, splits = data.label, data.split
     return {
         "kind": "data set",
@@ -60,36 +65,37 @@ def _data_set(data: Dataset) -> dict[str, Any]:
         },
         "entropy_bits": {
             name: {
-                data.class_slugs[label]: _spread(bits[labels == label])
+                data.class_slugs[label]: _mean_and_range(bits[labels == label])
                 for label in sorted(set(labels.tolist()))
             }
             for name, bits in ((name, data.entropy(name)) for name in data.maps)
         },
-        "drawn": _drawn(data),
+        "drawn": _summarise_drawn_numbers(data),
         "warnings": data.warnings,
     }
 
 
-def _spread(values: np.ndarray[Any, Any]) -> dict[str, float]:
+def _mean_and_range(values: np.ndarray[Any, Any]) -> dict[str, float]:
+    """Mean, smallest and largest of values."""
     return {"mean": float(values.mean()), "min": float(values.min()), "max": float(values.max())}
 
 
-def _drawn(data: Dataset) -> dict[str, Any]:
-    """Extent of the numbers that differ from sample to sample."""
+def _summarise_drawn_numbers(data: Dataset) -> dict[str, Any]:
+    """Summarise the numbers of /scene that differ from sample to sample."""
     units = {field.name: field.unit for field in data.fields}
     drawn = {}
     for name, column in data.scene.items():
-        values = _known(column)
+        values = _finite_numbers(column)
         if values.size and values.min() < values.max():
             drawn[name] = {
                 "unit": units.get(name, "1"),
-                **_spread(values),
+                **_mean_and_range(values),
                 "samples": int(values.size),
             }
     return drawn
 
 
-def _known(column: Column) -> np.ndarray[Any, Any]:
+def _finite_numbers(column: Column) -> np.ndarray[Any, Any]:
     """The numbers of a scene field, without the NaN of samples that it does not apply to."""
     values: np.ndarray[Any, Any] = column[:]
     values = values[~np.isnan(values)]
@@ -98,13 +104,14 @@ def _known(column: Column) -> np.ndarray[Any, Any]:
     return values
 
 
-def _half_built(path: Path) -> dict[str, Any]:
+def _summarise_unfinished(path: Path) -> dict[str, Any]:
+    """Summarise the folder of an unfinished build."""
     identity = stored_identity(path)
     if identity is None:
         raise FolderError(f"{path}: holds nothing that radhar wrote")
     config = stored_config(identity.get("config"), str(path))
     rows = Rows.of(config)
-    shards, _ = check_shards(listed_shards(path), identity_hash(identity))
+    shards, _ = check_shards(list_shards(path), identity_hash(identity))
     return {
         "kind": "unfinished data set",
         "path": str(path),
@@ -115,7 +122,8 @@ def _half_built(path: Path) -> dict[str, Any]:
     }
 
 
-def _scene(path: Path) -> dict[str, Any]:
+def _summarise_scene(path: Path) -> dict[str, Any]:
+    """Summarise a scene.h5."""
     with UntrustedFile(path) as file:
         described = file.json("scene")
         if not isinstance(described, dict) or not isinstance(described.get("entropy_bits"), dict):

@@ -1,4 +1,4 @@
-"""Every sample's label, index and numbers, in the order of files that others read."""
+"""Table of the samples: label, index and numbers, in the order of files that others read."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ BLOCK = 256  # indices whose numbers are read at once
 
 
 class Entry(NamedTuple):
-    """A line of the table."""
+    """One sample in the table."""
 
     row: int  # of dataset.h5
     split: int  # 0 train, 1 validation, 2 test
@@ -31,7 +31,7 @@ class Entry(NamedTuple):
 
 
 def number_names(config: AnyConfig) -> list[str]:
-    """Names of the numbers that are drawn, not the same in all samples, as in `Entry.values`.
+    """Names of the numbers that differ from sample to sample, in the order of `Entry.values`.
 
     `subject` holds integers.
     """
@@ -55,19 +55,24 @@ def _is_same(config: Config, key: str, number: Any) -> bool:
 
 
 def entries(data: Dataset) -> Iterator[Entry]:
-    """Every sample: the first of each class, then the second of each, and so on.
+    """Yield every sample: the first of each class, then the second of each, and so on.
 
     In this order every piece of the table, or of files written from it, holds every class.
+
+    Raises:
+        FolderError: a label is not that of its row.
     """
     rows, names = Rows.of(data.config), number_names(data.config)
     for first in range(0, max(rows.counts), BLOCK):
-        held = []
-        for activity, here in rows.classes():
-            start, stop = (min(here.start + n, here.stop) for n in (first, first + BLOCK))
+        blocks = []
+        for activity, class_rows in rows.classes():
+            start, stop = (
+                min(class_rows.start + n, class_rows.stop) for n in (first, first + BLOCK)
+            )
             numbers = (data.scene[name].rows(start, stop).tolist() for name in names)
-            held.append((activity, start, list(zip(*numbers, strict=True))))
+            blocks.append((activity, start, list(zip(*numbers, strict=True))))
         for place in range(BLOCK):
-            for label, (activity, start, values) in enumerate(held):
+            for label, (activity, start, values) in enumerate(blocks):
                 if place >= len(values):
                     continue
                 row = start + place
@@ -88,5 +93,6 @@ def entries(data: Dataset) -> Iterator[Entry]:
 
 
 def _slugs(data: Dataset, row: int) -> str:
+    """Slugs of what anybody does in the scene of a row, separated by spaces."""
     assert data.labels is not None
     return " ".join(data.class_slugs[label] for label in np.flatnonzero(data.labels[row]))

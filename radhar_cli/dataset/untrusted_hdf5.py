@@ -47,7 +47,8 @@ _TRIED = "RADHAR_TRIED_HDF5"  # files that this process, or one that started it,
 
 
 @contextmanager
-def _refusing_damage(where: str) -> Iterator[None]:
+def _damage_as_folder_error(where: str) -> Iterator[None]:
+    """Turn errors of h5py on a damaged file into a FolderError that names `where`."""
     try:
         yield
     except _DAMAGED as error:
@@ -55,35 +56,40 @@ def _refusing_damage(where: str) -> Iterator[None]:
 
 
 def try_files(paths: Sequence[Path]) -> None:
-    """Read the structure of files in another process."""
+    """Read the structure of files in another process, which may crash or be killed.
+
+    Raises:
+        FolderError: a file is damaged, or takes too much memory or time.
+    """
     if not paths:
         return
     names = b"".join(os.fsencode(path) + b"\0" for path in paths)
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-P", hdf5_check.__file__],
         input=names,
         capture_output=True,
         env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
     )
-    if done.returncode == 0:
+    if process.returncode == 0:
         return
-    path = paths[len(done.stdout.split()) - 1]
-    why = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
-    if done.returncode == -signal.SIGXCPU:
+    path = paths[len(process.stdout.split()) - 1]
+    why = process.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+    if process.returncode == -signal.SIGXCPU:
         why = f"takes HDF5 more than {hdf5_check.SECONDS} s to open"
-    elif done.returncode < 0:
-        why = f"HDF5 crashes on it, {signal.Signals(-done.returncode).name}"
+    elif process.returncode < 0:
+        why = f"HDF5 crashes on it, {signal.Signals(-process.returncode).name}"
     raise FolderError(f"{path}: cannot be read, the file is damaged ({why})")
 
 
 def remember(path: Path) -> None:
-    """Do not try this file again, here or in processes started later: it is known to be sound."""
-    others = [one for one in os.environ.get(_TRIED, "").split() if one != _version_of(path)]
-    os.environ[_TRIED] = " ".join([*others[-99:], _version_of(path)])
+    """Remember that a file is sound: it is not tried again, here or in processes started later."""
+    version = _version_of(path)
+    others = [tried for tried in os.environ.get(_TRIED, "").split() if tried != version]
+    os.environ[_TRIED] = " ".join([*others[-99:], version])
 
 
 def _version_of(path: Path) -> str:
-    """What changes when a file is written or replaced."""
+    """Text that changes when a file is written or replaced."""
     status = path.stat()
     return f"{status.st_dev}:{status.st_ino}:{status.st_size}:{status.st_ctime_ns}"
 
@@ -92,21 +98,22 @@ DIGESTS = "attributes_sha256"
 
 
 def attribute_digests(file: h5py.File) -> dict[str, str]:
-    """{name: digest of the attributes} of all that a file holds, links left out.
+    """Digest the attributes of each object in a file: {name: digest}, links left out.
 
     Shapes are not asked for: HDF5 would open the files that a virtual dataset names.
     """
-    found = {"/": _attribute_digest(file)}
-    file.visititems(lambda name, held: found.__setitem__(name, _attribute_digest(held)))
-    return found
+    digests = {"/": _attribute_digest(file)}
+    file.visititems(lambda name, item: digests.__setitem__(name, _attribute_digest(item)))
+    return digests
 
 
-def _attribute_digest(held: Any) -> str:
+def _attribute_digest(item: Any) -> str:
+    """Digest of the attributes of a group or dataset."""
     attributes = dict[str, Any]()
-    for name in sorted(held.attrs):
+    for name in sorted(item.attrs):
         if name != DIGESTS:
-            plain = hdf5_check.is_plain(held.attrs.get_id(name))
-            attributes[name] = np.asarray(held.attrs[name]).tolist() if plain else "another type"
+            plain = hdf5_check.is_plain(item.attrs.get_id(name))
+            attributes[name] = np.asarray(item.attrs[name]).tolist() if plain else "another type"
     return hashlib.sha256(repr(attributes).encode()).hexdigest()[:16]
 
 
@@ -114,7 +121,11 @@ class UntrustedFile(Closing):
     """An HDF5 file, opened for reading.
 
     Args:
-        data: its bytes, of a file that was made here or tried already.
+        path: path of the file, for messages too.
+        data: bytes of a file that was made here or tried already; None reads the path.
+
+    Raises:
+        FolderError: it is no HDF5 file, or is damaged.
     """
 
     def __init__(self, path: Path, data: bytes | None = None) -> None:
@@ -133,14 +144,18 @@ class UntrustedFile(Closing):
             raise FolderError(f"{path}: is not an HDF5 file, or is truncated ({error})") from None
 
     def has_attribute(self, name: str) -> bool:
-        """Whether the file itself has an attribute of that name."""
-        with _refusing_damage(f"{self.path}: attribute {name}"):
+        """Whether the root of the file has an attribute of that name."""
+        with _damage_as_folder_error(f"{self.path}: attribute {name}"):
             return name in self._file.attrs
 
     def text(self, name: str) -> str:
-        """A text attribute of the file."""
+        """Read a text attribute of the file.
+
+        Raises:
+            FolderError: it is missing, or not text of at most MAX_TEXT characters.
+        """
         where = f"{self.path}: attribute {name}"
-        with _refusing_damage(where):
+        with _damage_as_folder_error(where):
             # HDF5 may crash on converting what is not text.
             if h5py.check_string_dtype(self._scalar(name, where)) is None:
                 raise FolderError(f"{where}: should be text")
@@ -153,21 +168,29 @@ class UntrustedFile(Closing):
             return value
 
     def json(self, name: str) -> Any:
-        """What a text attribute of the file says in JSON."""
+        """Read an attribute of the file that is JSON text.
+
+        Raises:
+            FolderError: it is missing, or not JSON.
+        """
         try:
             return parse_json(self.text(name))
         except ValueError as error:
             raise FolderError(f"{self.path}: attribute {name}: is not JSON ({error})") from None
 
     def attribute_digests(self) -> dict[str, str]:
-        """As the function of that name."""
-        with _refusing_damage(f"{self.path}: attributes"):
+        """Digest the attributes of each object in the file: {name: digest}."""
+        with _damage_as_folder_error(f"{self.path}: attributes"):
             return attribute_digests(self._file)
 
     def whole_number(self, name: str) -> int:
-        """A whole number among the attributes of the file."""
+        """Read an attribute of the file that is a whole number.
+
+        Raises:
+            FolderError: it is missing, or another value.
+        """
         where = f"{self.path}: attribute {name}"
-        with _refusing_damage(where):
+        with _damage_as_folder_error(where):
             if self._scalar(name, where).kind not in "iu":
                 raise FolderError(f"{where}: should be a whole number")
             return int(self._file.attrs[name])
@@ -182,11 +205,15 @@ class UntrustedFile(Closing):
         return kind
 
     def column(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Column":
-        """Numbers in one piece, all there: no gaps to be filled in, no filters."""
-        where, wanted = f"{self.path}: /{name}", np.dtype(dtype)
-        with _refusing_damage(where):
-            dataset = self._dataset(name, where, wanted, shape)
-            size = wanted.itemsize * prod(shape)
+        """Open a dataset of numbers stored in one piece, without gaps or filters.
+
+        Raises:
+            FolderError: it is missing, damaged, or of another type or shape.
+        """
+        where, expected_type = f"{self.path}: /{name}", np.dtype(dtype)
+        with _damage_as_folder_error(where):
+            dataset = self._dataset(name, where, expected_type, shape)
+            size = expected_type.itemsize * prod(shape)
             if dataset.chunks is not None or dataset.id.get_storage_size() != size:
                 raise FolderError(f"{where}: should be stored in one piece of {size} bytes")
         self._claimed += size
@@ -195,14 +222,26 @@ class UntrustedFile(Closing):
         return Column(where, dataset)
 
     def chunks(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Column":
-        """Samples [N, ...], each in a chunk of its own, plain or gzip."""
-        where, one, wanted = f"{self.path}: /{name}", (1, *shape[1:]), np.dtype(dtype)
-        with _refusing_damage(where):
-            dataset = self._dataset(name, where, wanted, shape)
-            if dataset.dtype != wanted:
-                raise FolderError(f"{where}: is of the type {dataset.dtype.str}; not {wanted.str}")
-            if dataset.chunks != one:
-                raise FolderError(f"{where}: has chunks of {dataset.chunks}; should be {one}")
+        """Open a dataset of samples [N, ...], each in a chunk of its own, plain or gzip.
+
+        Raises:
+            FolderError: it is missing, damaged, or of another type or shape.
+        """
+        where, chunk_shape, expected_type = (
+            f"{self.path}: /{name}",
+            (1, *shape[1:]),
+            np.dtype(dtype),
+        )
+        with _damage_as_folder_error(where):
+            dataset = self._dataset(name, where, expected_type, shape)
+            if dataset.dtype != expected_type:
+                raise FolderError(
+                    f"{where}: is of the type {dataset.dtype.str}; not {expected_type.str}"
+                )
+            if dataset.chunks != chunk_shape:
+                raise FolderError(
+                    f"{where}: has chunks of {dataset.chunks}; should be {chunk_shape}"
+                )
             filters = _filters(dataset, where, [], [_DEFLATE])
             if dataset.id.get_num_chunks() != shape[0]:
                 raise FolderError(
@@ -221,10 +260,10 @@ class UntrustedFile(Closing):
             FolderError: The dataset is missing, damaged, of another type, or holds nothing.
         """
         where = f"{self.path}: /{name}"
-        with _refusing_damage(where):
+        with _damage_as_folder_error(where):
             dataset = self._dataset(name, where, None, None)
             filters = _filters(dataset, where, [], [_DEFLATE], [_SHUFFLE, _DEFLATE])
-            found = NumberColumn(where, dataset, filters)
+            column = NumberColumn(where, dataset, filters)
             size, chunk = dataset.dtype.itemsize * prod(dataset.shape), dataset.chunks
             lengths = dataset.shape[1:] if may_be_empty else dataset.shape
             if not dataset.shape or prod(lengths) == 0:
@@ -232,20 +271,22 @@ class UntrustedFile(Closing):
             if chunk is None and dataset.id.get_storage_size() != size:
                 raise FolderError(f"{where}: should be stored in {size} bytes; it is truncated")
             if chunk is not None:
-                one = dataset.dtype.itemsize * prod(chunk)
+                chunk_bytes = dataset.dtype.itemsize * prod(chunk)
                 grid = prod(-(-n // c) for n, c in zip(dataset.shape, chunk, strict=True))
-                if one > MAX_CHUNK:
-                    raise FolderError(f"{where}: has chunks of {one} bytes; at most {MAX_CHUNK}")
+                if chunk_bytes > MAX_CHUNK:
+                    raise FolderError(
+                        f"{where}: has chunks of {chunk_bytes} bytes; at most {MAX_CHUNK}"
+                    )
                 if dataset.id.get_num_chunks() != grid:
                     raise FolderError(f"{where}: lacks pieces; it is unfinished or damaged")
             if not filters and size > self.bytes:
                 raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
-        return found
+        return column
 
     def numeric_names(self) -> list[str]:
-        """Names of the datasets of numbers at the top of the file, at most 1000."""
+        """List the names of the datasets of numbers at the top of the file, at most 1000."""
         names = []
-        with _refusing_damage(str(self.path)):
+        with _damage_as_folder_error(str(self.path)):
             for name in islice(self._file, 1000):
                 if self._file.id.links.get_info(name.encode()).type != h5py.h5l.TYPE_HARD:
                     continue
@@ -257,33 +298,33 @@ class UntrustedFile(Closing):
         return names
 
     def shape(self, name: str) -> list[int]:
-        """Shape of a dataset of any type, none of which is read."""
-        with _refusing_damage(f"{self.path}: /{name}"):
+        """Shape of a dataset of any type; no values are read."""
+        with _damage_as_folder_error(f"{self.path}: /{name}"):
             return list(self._dataset(name, f"{self.path}: /{name}", None, None).shape)
 
     def _dataset(
         self, name: str, where: str, dtype: np.dtype[Any] | None, shape: tuple[int, ...] | None
     ) -> h5py.Dataset:
-        place: Any = self._file
+        item: Any = self._file
         for part in name.split("/"):
             # `part in found` and `found.get` would open the file that an external link names.
-            if not isinstance(place, h5py.Group) or not place.id.links.exists(part.encode()):
+            if not isinstance(item, h5py.Group) or not item.id.links.exists(part.encode()):
                 raise FolderError(f"{where}: is missing")
-            if place.id.links.get_info(part.encode()).type != h5py.h5l.TYPE_HARD:
+            if item.id.links.get_info(part.encode()).type != h5py.h5l.TYPE_HARD:
                 raise FolderError(f"{where}: is a link; should be stored in this file")
-            place = place[part]
-        if not isinstance(place, h5py.Dataset):
+            item = item[part]
+        if not isinstance(item, h5py.Dataset):
             raise FolderError(f"{where}: should be a dataset")
         # First of all: to know the shape of a virtual dataset HDF5 may open its sources.
-        creation = place.id.get_create_plist()
+        creation = item.id.get_create_plist()
         virtual = creation.get_layout() == h5py.h5d.VIRTUAL
         if virtual or creation.get_external_count():
             raise FolderError(f"{where}: lies in another file; should be stored in this file")
-        if shape is not None and place.shape != shape:
-            raise FolderError(f"{where}: has the shape {place.shape}; should have {shape}")
-        if dtype is not None and place.dtype.newbyteorder("=") != dtype:
-            raise FolderError(f"{where}: is of the type {place.dtype}; should be {dtype}")
-        return place
+        if shape is not None and item.shape != shape:
+            raise FolderError(f"{where}: has the shape {item.shape}; should have {shape}")
+        if dtype is not None and item.dtype.newbyteorder("=") != dtype:
+            raise FolderError(f"{where}: is of the type {item.dtype}; should be {dtype}")
+        return item
 
     def close(self) -> None:
         """Close the file."""
@@ -295,9 +336,9 @@ class Column:
 
     Attributes:
         where: file and dataset, for messages.
-        shape: of the dataset.
-        chunk: shape of what is stored together.
-        dtype: of the values, in the byte order of this machine.
+        shape: shape of the dataset.
+        chunk: shape of the blocks that are stored together.
+        dtype: type of the values, in the byte order of this machine.
     """
 
     def __init__(self, where: str, dataset: h5py.Dataset, filters: Sequence[int] = ()) -> None:
@@ -315,19 +356,19 @@ class Column:
         rows = np.arange(len(self))[key]
         if rows.ndim:
             return np.stack([self[row] for row in rows.tolist()])
-        one: NDArray[Any] = self.rows(int(rows), int(rows) + 1)[0]
-        return one
+        row: NDArray[Any] = self.rows(int(rows), int(rows) + 1)[0]
+        return row
 
     def rows(self, start: int, stop: int) -> NDArray[Any]:
-        """Rows start .. stop - 1; no others are read."""
+        """Read rows start .. stop - 1, and no others."""
         stop = min(stop, len(self))
         if stop <= start:
             return np.empty((0, *self.shape[1:]), self.dtype)
         return self.block((slice(start, stop), *(slice(0, n) for n in self.shape[1:])))
 
     def block(self, key: tuple[slice, ...]) -> NDArray[Any]:
-        """A block of the values; slices have a start and a stop within the shape."""
-        with _refusing_damage(self.where):
+        """Read a block of the values; slices have a start and a stop within the shape."""
+        with _damage_as_folder_error(self.where):
             if not self._filters:
                 values: NDArray[Any] = self._dataset[key]
                 return values.astype(self.dtype, copy=False)
@@ -342,21 +383,24 @@ class Column:
             return out
 
     def stored(self, row: int) -> tuple[int, bytes]:
-        """Filter mask and bytes of a row's chunk as they lie in the file."""
-        with _refusing_damage(f"{self.where}[{row}]"):
+        """Read the filter mask and the bytes of a row's chunk as they lie in the file."""
+        with _damage_as_folder_error(f"{self.where}[{row}]"):
             return self._stored((row, *(0,) * (len(self.shape) - 1)))
 
     def _stored(self, corner: tuple[int, ...]) -> tuple[int, bytes]:
-        """Deflate makes nothing longer by more than a thousandth: h5py refuses what is."""
+        """Read the filter mask and the bytes of the chunk at a corner.
+
+        Deflate makes nothing longer by more than a thousandth: h5py refuses what is longer.
+        """
         raw = self.dtype.itemsize * prod(self.chunk)
         room = bytearray(raw + (raw // 1000 + 64 if self._filters else 0))
         mask, data = self._dataset.id.read_direct_chunk(corner, out=room)
         return mask, bytes(data)
 
     def _piece(self, corner: tuple[int, ...]) -> NDArray[Any]:
-        """The chunk at a corner, inflated up to its size."""
+        """Read the chunk at a corner, inflated up to its size."""
         raw = self.dtype.itemsize * prod(self.chunk)
-        with _refusing_damage(f"{self.where}[{corner[0]}]"):
+        with _damage_as_folder_error(f"{self.where}[{corner[0]}]"):
             mask, data = self._stored(corner)
             for place, kind in reversed([*enumerate(self._filters)]):
                 if mask >> place & 1:
@@ -374,11 +418,11 @@ class Column:
 
 
 class NumberColumn(Column):
-    """Real or complex numbers.
+    """Column of real or complex numbers.
 
     Attributes:
-        number: type of the numbers.
-        parts: 2 of complex numbers, 1 of real ones.
+        number: type of a real number, or of each part of a complex one.
+        parts: 2 for complex numbers, 1 for real ones.
     """
 
     def __init__(self, where: str, dataset: h5py.Dataset, filters: Sequence[int] = ()) -> None:
@@ -386,22 +430,22 @@ class NumberColumn(Column):
         self.number, self.parts = _numbers(dataset.dtype, where)
 
     def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
-        """As `block`, [..., part]: two of complex and compound numbers."""
+        """Read a block of numbers by parts [..., part], two for complex and compound numbers."""
         values = np.ascontiguousarray(self.block(key))
         return values.view(self.number).reshape(*values.shape, self.parts)
 
 
-def _filters(dataset: h5py.Dataset, where: str, *right: list[int]) -> list[int]:
-    """Numbers of the filters that a dataset is stored through."""
+def _filters(dataset: h5py.Dataset, where: str, *allowed: list[int]) -> list[int]:
+    """Numbers of the filters that a dataset is stored through, one of the lists allowed."""
     creation = dataset.id.get_create_plist()
-    found = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
-    if found not in right:
-        raise FolderError(f"{where}: is stored through filters {found}; should be gzip")
-    return found
+    filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
+    if filters not in allowed:
+        raise FolderError(f"{where}: is stored through filters {filters}; should be gzip")
+    return filters
 
 
 def _numbers(dtype: np.dtype[Any], where: str) -> tuple[np.dtype[Any], int]:
-    """(type of the numbers, parts) of a dataset's type, which may be complex or a pair."""
+    """Type of the real numbers and their parts, of a dataset's type: real, complex or a pair."""
     if dtype.kind in "iuf" and dtype.itemsize <= 8:
         return dtype.newbyteorder("="), 1
     if dtype.kind == "c" and dtype.itemsize <= 16:

@@ -1,4 +1,4 @@
-"""Check a finished data set: checksums, labels, counts, and samples synthesised anew."""
+"""Check a finished data set: checksums, labels, counts, and samples synthesised again."""
 
 import hashlib
 from dataclasses import dataclass, field
@@ -39,7 +39,7 @@ ROWS = 4096  # of a column, read at once
 
 @dataclass
 class Verification:
-    """What verification found."""
+    """Result of a verification."""
 
     samples: int  # in the data set
     resynthesised: int = 0  # of them, made anew
@@ -54,14 +54,17 @@ class Verification:
 def verify(
     folder: Path, samples: int, motion: Path | None = None, progress: Progress = NO_PROGRESS
 ) -> Verification:
-    """Verify the data set in `folder` (or the dataset.h5 itself).
+    """Verify a data set against its config and seed.
 
     Args:
-        folder: output of `generate`.
+        folder: output folder of `generate`, or its dataset.h5.
         samples: how many to synthesise anew, spread evenly over the rows.
         motion: folder of the motion files of its classes; None re-synthesises no sample of them: a
             stored config is not trusted to name files.
         progress: is told of each checksum, sample and PNG file.
+
+    Raises:
+        FolderError: there is no data set, or it cannot be read.
     """
     if motion is not None and not motion.is_dir():
         raise FolderError(f"{motion}: no such folder; should hold the motion files of the data set")
@@ -89,24 +92,26 @@ def verify(
 
 
 def _structure(data: Dataset, report: Verification) -> bool:
+    """Compare labels, splits, keys and persons with the config; return whether all agree."""
     config = data.config
     rows = Rows.of(config)
     label = rows.label
     index = np.concatenate([np.arange(count) for count in rows.counts])
-    follows = [
+    columns = [
         ("label", data.label, label),
         ("split", data.split, split_rows(config)),
         ("sample_key", data.sample_key[:], np.stack([label, index], axis=1)),
     ]
-    if (everyone := persons(config)) is not None:
-        follows.append(("scene/subject", data.scene["subject"][:], everyone))
-    for name, stored, right in follows:
-        if (stored != right).any():
-            report.problems.append(f"/{name}: {np.count_nonzero(stored != right)} wrong values")
+    if (person := persons(config)) is not None:
+        columns.append(("scene/subject", data.scene["subject"][:], person))
+    for name, stored, expected in columns:
+        if (stored != expected).any():
+            report.problems.append(f"/{name}: {np.count_nonzero(stored != expected)} wrong values")
     return not report.problems
 
 
 def _checksums(data: Dataset, report: Verification, progress: Progress) -> None:
+    """Compare every large and small dataset with its checksum."""
     progress.stage("checksums", len(data) * len(data.large), 0, "checksum")
     for name, chunks in data.large.items():
         stored = data.sha256[name][:]
@@ -126,22 +131,23 @@ def _checksums(data: Dataset, report: Verification, progress: Progress) -> None:
 
 
 def _mapping(data: Dataset, name: str, report: Verification) -> dict[str, Any]:
-    """An attribute of the file that holds a mapping."""
-    found = data.file.json(name)
-    if isinstance(found, dict):
-        return found
+    """Read an attribute of the file that should be a mapping; report any other."""
+    value = data.file.json(name)
+    if isinstance(value, dict):
+        return value
     report.problems.append(f"attribute {name}: should be a mapping")
     return {}
 
 
 def _attributes(data: Dataset, report: Verification) -> None:
-    """Compare names and attributes with those of when it was built."""
-    there, built = data.file.attribute_digests(), _mapping(data, DIGESTS, report)
-    for name in sorted(there.keys() | built.keys()):
-        if there.get(name) != built.get(name):
-            what = "attributes differ from those that were built"
-            what = "was not built" if name not in built else what
-            report.problems.append(f"{name}: {'is missing' if name not in there else what}")
+    """Compare the names and attributes in the file with those of its build."""
+    stored_digests, built_digests = data.file.attribute_digests(), _mapping(data, DIGESTS, report)
+    for name in sorted(stored_digests.keys() | built_digests.keys()):
+        if stored_digests.get(name) != built_digests.get(name):
+            problem = "attributes differ from those that were built"
+            problem = "was not built" if name not in built_digests else problem
+            problem = "is missing" if name not in stored_digests else problem
+            report.problems.append(f"{name}: {problem}")
 
 
 def _config_and_table(data: Dataset, folder: Path, report: Verification) -> None:
@@ -150,8 +156,8 @@ def _config_and_table(data: Dataset, folder: Path, report: Verification) -> None
         if not (folder / name).exists():
             report.problems.append(f"{name}: is missing")
     if (folder / CONFIG).exists() and not report.other_versions:
-        right = (CONFIG_HEADING + as_yaml(data.config)).encode()
-        if read_bytes(folder / CONFIG) != right:
+        expected = (CONFIG_HEADING + as_yaml(data.config)).encode()
+        if read_bytes(folder / CONFIG) != expected:
             report.problems.append(f"{CONFIG}: is not the config in dataset.h5")
     if (folder / SCENES).exists() and digest_of(folder / SCENES) != data.file.text(SCENES_DIGEST):
         report.problems.append(f"{SCENES}: is not that of dataset.h5")
@@ -165,15 +171,16 @@ def _resynthesise(
     motion: Path | None,
     progress: Progress,
 ) -> None:
+    """Synthesise some samples again, and compare all that is stored of them."""
     config = config if motion is None else with_folder(config, motion)
     rows, plan = Rows.of(config), plan_images(config)
     columns = data.fields
     scene_values = {field.name: data.scene[field.name][:] for field in columns}
     entropies = {name: data.entropy(name) for name in data.maps}
-    allowed, masks = 1 if report.other_versions else 0, config.image.kind == "cfar"
-    again = rows.spread(samples)
-    progress.stage("samples again", len(again), 0)
-    for number, row in enumerate(again):
+    tolerated_levels, is_mask = 1 if report.other_versions else 0, config.image.kind == "cfar"
+    chosen_rows = rows.spread(samples)
+    progress.stage("samples again", len(chosen_rows), 0)
+    for number, row in enumerate(chosen_rows):
         progress.advance(int(number > 0))
         activity, index = rows[row]
         if motion is None and config.files_of(activity) is not None:
@@ -184,62 +191,82 @@ def _resynthesise(
         for column, value in drawn:
             if column is scene_fields.ERROR:
                 continue
-            there = scene_values[column.name][row]
-            if not np.isclose(there, value * column.factor, rtol=1e-12, atol=0, equal_nan=True):
+            stored_value = scene_values[column.name][row]
+            drawn_value = value * column.factor
+            if not np.isclose(stored_value, drawn_value, rtol=1e-12, atol=0, equal_nan=True):
                 report.problems.append(
-                    f"/scene/{column.name}[{row}]: {there} instead of {value * column.factor}"
+                    f"/scene/{column.name}[{row}]: {stored_value} instead of {drawn_value}"
                 )
-        made = synthesise(scene, plan, config)
+        synthesised = synthesise(scene, plan, config)
         for name, stored in data.large.items():
             if not name.startswith("maps/"):
-                right = made.chunk(name, stored.shape[1:])
-                if not _same(stored[row], right, exactly=not report.other_versions):
+                expected = synthesised.chunk(name, stored.shape[1:])
+                if not _matches(stored[row], expected, bitwise=not report.other_versions):
                     report.problems.append(f"/{name}[{row}] ({scene.name}): differs")
-        for name, right in made.products.items():
-            there = data.products[name][row]
-            if not _same(there, right, exactly=not report.other_versions):
+        for name, expected in synthesised.products.items():
+            stored_value = data.products[name][row]
+            if not _matches(stored_value, expected, bitwise=not report.other_versions):
                 report.problems.append(f"/products/{name}[{row}] ({scene.name}): differs")
-        for name, labels in made.labels.items():
+        for name, labels in synthesised.labels.items():
             if (data.small[name].rows(row, row + 1)[0] != labels).any():
                 report.problems.append(f"/{name}[{row}] ({scene.name}): is not {labels.tolist()}")
-        for name, labels in made.column_labels.items():
-            wrong = int(np.count_nonzero(data.column_label[name].rows(row, row + 1)[0] != labels))
+        for name, labels in synthesised.column_labels.items():
+            wrong_columns = int(
+                np.count_nonzero(data.column_label[name].rows(row, row + 1)[0] != labels)
+            )
             # Under other versions a phase may begin a column later: rounding.
-            if wrong > len(label_names(config)) * allowed:
-                report.problems.append(f"/{COLUMN_LABEL}/{name}[{row}]: {wrong} wrong columns")
-        for name, image in made.images.items():
-            off = np.abs(data.maps[name][row].astype(int) - image.levels)
-            worst, share = int(off.max()), float(np.mean(off > 0))
-            report.worst_level = max(report.worst_level, worst)
+            if wrong_columns > len(label_names(config)) * tolerated_levels:
+                report.problems.append(
+                    f"/{COLUMN_LABEL}/{name}[{row}]: {wrong_columns} wrong columns"
+                )
+        for name, image in synthesised.images.items():
+            difference = np.abs(data.maps[name][row].astype(int) - image.levels)
+            largest_difference, share = int(difference.max()), float(np.mean(difference > 0))
+            report.worst_level = max(report.worst_level, largest_difference)
             # A cell at its threshold is set or not: whole levels, but few of them.
-            if share > MASK_SHARE * allowed if masks else worst > allowed:
-                by = f"in {share:.2%} of its pixels" if masks else f"by up to {worst} grey levels"
-                report.problems.append(f"/maps/{name}[{row}] ({scene.name}): differs {by}")
+            if (
+                share > MASK_SHARE * tolerated_levels
+                if is_mask
+                else largest_difference > tolerated_levels
+            ):
+                amount = (
+                    f"in {share:.2%} of its pixels"
+                    if is_mask
+                    else f"by up to {largest_difference} grey levels"
+                )
+                report.problems.append(f"/maps/{name}[{row}] ({scene.name}): differs {amount}")
             entropy = float(entropies[name][row])
             if abs(entropy - image.entropy) > 1e-3 * max(1.0, image.entropy):
                 report.problems.append(f"/entropy/{name}[{row}]: {entropy}, not {image.entropy}")
         report.resynthesised += 1
 
 
-def _same(there: NDArray[Any], right: NDArray[Any], exactly: bool) -> bool:
-    """Whether a sample is the one made anew, or nearly, as other versions of libraries round it."""
-    if exactly or there.shape != right.shape:
-        return there.shape == right.shape and there.tobytes() == right.tobytes()
-    if there.dtype.kind == "f":  # decibels; cells far below the others are rounding
-        off = np.abs(there.astype(float) - right) > POWER_DB
-        return bool(np.mean(off) <= MASK_SHARE)
-    gone = np.isnan(right)
-    error = np.linalg.norm((there - right)[~gone])
-    near: bool = error <= SIGNAL_ERROR * np.linalg.norm(right[~gone])
-    return near and np.array_equal(np.isnan(there), gone)
+def _matches(stored: NDArray[Any], expected: NDArray[Any], bitwise: bool) -> bool:
+    """Whether a stored array matches the one synthesised again.
+
+    Args:
+        stored: the stored array.
+        expected: the array synthesised again.
+        bitwise: whether every bit should agree; else as other versions of libraries may round it.
+    """
+    if bitwise or stored.shape != expected.shape:
+        return stored.shape == expected.shape and stored.tobytes() == expected.tobytes()
+    if stored.dtype.kind == "f":  # decibels; cells far below the others are rounding
+        is_off = np.abs(stored.astype(float) - expected) > POWER_DB
+        return bool(np.mean(is_off) <= MASK_SHARE)
+    is_nan = np.isnan(expected)
+    error = np.linalg.norm((stored - expected)[~is_nan])
+    near: bool = error <= SIGNAL_ERROR * np.linalg.norm(expected[~is_nan])
+    return near and np.array_equal(np.isnan(stored), is_nan)
 
 
 def _pngs(data: Dataset, folder: Path, report: Verification, progress: Progress) -> None:
+    """Compare the PNG files, and the tables beside them, with the maps."""
     config = data.config
     rows, split = Rows.of(config), split_rows(config)
     table = colour_table(config.image.colour_map)
-    for foreign in sorted({path.name for path in (folder / PNG).iterdir()} - {*config.maps}):
-        report.problems.append(f"{PNG}/{foreign}: is no map of this data set")
+    for foreign_name in sorted({path.name for path in (folder / PNG).iterdir()} - {*config.maps}):
+        report.problems.append(f"{PNG}/{foreign_name}: is no map of this data set")
     for path, text in image_tables(config, split):
         try:
             if read_bytes(folder / path, len(text)) != text:
@@ -267,10 +294,12 @@ def _pngs(data: Dataset, folder: Path, report: Verification, progress: Progress)
             report.pngs += 1
             if not same:
                 report.problems.append(f"{path}: does not show /maps/{name}[{row}]")
-        own = {rows.png_path(name, split[row], row) for row in range(len(data))}
-        own |= {parent for path in own for parent in path.parents}
+        expected_paths = {rows.png_path(name, split[row], row) for row in range(len(data))}
+        expected_paths |= {parent for path in expected_paths for parent in path.parents}
         for path in sorted((folder / PNG / name).rglob("*")):
-            there = path.relative_to(folder)
-            if there not in own and (path.is_dir() or path.suffix.lower() in SUFFIXES):
-                what = "class" if path.is_dir() else "image"
-                report.problems.append(f"{there}: is no {what} of this data set")
+            name_in_folder = path.relative_to(folder)
+            if name_in_folder not in expected_paths and (
+                path.is_dir() or path.suffix.lower() in SUFFIXES
+            ):
+                kind = "class" if path.is_dir() else "image"
+                report.problems.append(f"{name_in_folder}: is no {kind} of this data set")

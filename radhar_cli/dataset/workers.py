@@ -36,10 +36,18 @@ def run_tasks(
 
     Tasks are taken from the iterable only as fast as they are finished. With one job everything
     runs here; within `on_cluster` all runs there.
+
+    Args:
+        function: function of a module, which other processes can import.
+        tasks: arguments of each call; they can be pickled.
+        jobs: number of processes on this machine.
+
+    Raises:
+        UnfinishedError: a worker was killed, or the cluster is gone.
     """
-    own, client = (own_activities(), own_products()), _CLIENT.get()
+    extensions, client = (own_activities(), own_products()), _CLIENT.get()
     if client is not None:
-        yield from _run_on(client, ((own, function, *task) for task in tasks))
+        yield from _run_on_cluster(client, ((extensions, function, *task) for task in tasks))
         return
     if jobs == 1:
         prepare_process()
@@ -54,8 +62,10 @@ def run_tasks(
     )
     try:
         with _interrupts_blocked():
-            here = os.getpid()
-            results = pool(delayed(_with_parent)(here, own, function, *task) for task in tasks)
+            own_pid = os.getpid()
+            results = pool(
+                delayed(_run_below_parent)(own_pid, extensions, function, *task) for task in tasks
+            )
         try:
             for result in results:  # noqa: UP028 - `yield from` would close it before, and warn
                 yield result
@@ -72,38 +82,38 @@ def run_tasks(
         ) from None
 
 
-def _with_own(
-    own: tuple[tuple[Activity, ...], tuple[Any, ...]], function: Callable[..., T], *task: Any
+def _run_with_extensions(
+    extensions: tuple[tuple[Activity, ...], tuple[Any, ...]], function: Callable[..., T], *task: Any
 ) -> T:
-    """Run a task in a worker that knows the classes and products its parent knows."""
-    know_activities(own[0])
-    know_products(own[1])
+    """Run a task in a worker that knows the classes and products that its parent knows."""
+    know_activities(extensions[0])
+    know_products(extensions[1])
     return function(*task)
 
 
-def _with_parent(parent_pid: int, *task: Any) -> Any:
-    """As `_with_own`, in a worker on this machine, which ends with its parent."""
+def _run_below_parent(parent_pid: int, *task: Any) -> Any:
+    """Run a task in a worker of this machine, which ends with its parent process."""
     end_with(parent_pid)
-    return _with_own(*task)
+    return _run_with_extensions(*task)
 
 
-def _run_on(client: Any, tasks: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
-    """Yield _with_own(*task) for every task, in any order; tasks of a lost worker are run again."""
+def _run_on_cluster(client: Any, tasks: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
+    """Yield the results of tasks, in any order; tasks of a lost worker are run again."""
     from distributed import as_completed
     from distributed.client import FutureCancelledError
     from distributed.comm import CommClosedError
     from distributed.scheduler import KilledWorker
 
-    left, running = iter(tasks), as_completed()
+    waiting, running = iter(tasks), as_completed()
 
     def fill() -> None:
-        for task in islice(left, max(0, TASKS_A_CORE * _cores(client) - running.count())):
-            running.add(client.submit(_with_own, *task, pure=False))
+        for task in islice(waiting, max(0, TASKS_A_CORE * _cores(client) - running.count())):
+            running.add(client.submit(_run_with_extensions, *task, pure=False))
 
     try:
         fill()
-        for done in running:
-            yield done.result()
+        for future in running:
+            yield future.result()
             fill()
     except KilledWorker:
         fault = "several workers were lost with the same task, perhaps out of memory"
@@ -119,17 +129,20 @@ def _run_on(client: Any, tasks: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
 
 
 def _cores(client: Any) -> int:
-    """Threads of all workers of a dask cluster that are there now."""
+    """Number of threads of all present workers of a dask cluster."""
     return max(1, int(sum(client.ncores().values())))
 
 
 @contextmanager
 def on_cluster(address: str, jobs: int) -> Iterator[int]:
-    """Context in which a dask cluster runs the tasks; yields its number of cores.
+    """Run the tasks of `run_tasks` on a dask cluster within this context; yield its cores.
 
     Args:
-        address: of the scheduler, such as tcp://host:8786, or `local`: workers on this machine.
-        jobs: processes of `local`.
+        address: address of the scheduler, such as tcp://host:8786; `local` starts workers here.
+        jobs: number of processes of `local`.
+
+    Raises:
+        MachineError: dask is not installed, or no scheduler answers.
     """
     try:
         import dask
@@ -139,18 +152,18 @@ def on_cluster(address: str, jobs: int) -> Iterator[int]:
     # They log tracebacks of lost connections.
     for name in ("distributed", "distributed.client", "tornado", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
-    own = {"n_workers": jobs, "threads_per_worker": 1, "dashboard_address": None}
-    own["silence_logs"] = logging.CRITICAL
+    cluster_options = {"n_workers": jobs, "threads_per_worker": 1, "dashboard_address": None}
+    cluster_options["silence_logs"] = logging.CRITICAL
     # Dask's thread, and so its workers, inherit that Ctrl-C is blocked: it is ours to end them.
     resource_tracker.ensure_running()  # or its start, in that thread, would unblock it
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    old_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         with dask.config.set(QUIET):
-            client = Client(**own) if address == LOCAL else Client(address, timeout=10)
+            client = Client(**cluster_options) if address == LOCAL else Client(address, timeout=10)
     except (OSError, ValueError) as error:
         raise MachineError(f"--cluster {address}: no dask scheduler answers ({error})") from None
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, old_mask)
     with client:
         token = _CLIENT.set(client)
         try:
@@ -160,13 +173,13 @@ def on_cluster(address: str, jobs: int) -> Iterator[int]:
 
 
 def parent_pid() -> int:
-    """The process without which workers should stop; NO_PARENT on a cluster."""
+    """Id of the process without which workers should stop; NO_PARENT on a cluster."""
     return os.getpid() if _CLIENT.get() is None else NO_PARENT
 
 
 @contextmanager
 def _interrupts_blocked() -> Iterator[None]:
-    """Workers started meanwhile inherit the blocked signals: only the parent handles Ctrl-C."""
+    """Block signals, as workers that start meanwhile inherit it: only the parent handles Ctrl-C."""
     _start_trackers()
     old = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
     try:
@@ -194,7 +207,7 @@ def _start_trackers() -> None:
 
 
 def cores() -> int:
-    """Cores that this process may use."""
+    """Number of cores that this process may use."""
     from joblib import cpu_count
 
     return int(cpu_count())

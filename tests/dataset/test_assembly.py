@@ -24,7 +24,7 @@ from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import verify as verify_module
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.sample import Synthesised
-from radhar_cli.dataset.shards import listed_shards, shard_folder
+from radhar_cli.dataset.shards import list_shards, shard_folder
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.pipeline.validity import Flags
@@ -131,7 +131,7 @@ def test_a_damaged_shard_is_made_again_and_a_foreign_one_kept(
 ) -> None:
     other = interrupted(config.model_copy(update={"seed": 8}), tmp_path / "other", 4)
     work = interrupted(config, tmp_path / "set", 4)
-    first, second, _ = (shard.path for shard in listed_shards(tmp_path / "set"))
+    first, second, _ = (shard.path for shard in list_shards(tmp_path / "set"))
     first.write_bytes(first.read_bytes()[:-1])
     foreign = (other / "shards" / second.name).read_bytes()
     second.write_bytes(foreign)

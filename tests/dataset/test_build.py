@@ -22,7 +22,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
-from radhar_cli.dataset.shards import listed_shards
+from radhar_cli.dataset.shards import list_shards
 from radhar_cli.dataset.verify import verify
 from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import FolderError, SceneError
@@ -87,7 +87,7 @@ def test_an_unfinished_build_resumes_with_another_batch_size(config, small_set, 
     folder = tmp_path / "set"
     with full_disk_after(5):
         make(config, folder, batch_size=2)
-    assert [(s.start, s.stop) for s in listed_shards(folder)] == [(0, 2), (2, 4)]
+    assert [(s.start, s.stop) for s in list_shards(folder)] == [(0, 2), (2, 4)]
     outcome = make(config, folder, batch_size=3)
     assert outcome.made == 5, "the four finished samples are not made again"
     assert fingerprint(folder) == fingerprint(small_set)

@@ -18,7 +18,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.merge import merge
 from radhar_cli.dataset.parts import DataSetPart
-from radhar_cli.dataset.shards import listed_shards
+from radhar_cli.dataset.shards import list_shards
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
@@ -104,7 +104,7 @@ def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(cluster, 
     build(config, tmp_path / "whole", 1, Listener())
 
     def kill_after(run, shards, victim):
-        while run.poll() is None and len(listed_shards(tmp_path / "set")) < shards:
+        while run.poll() is None and len(list_shards(tmp_path / "set")) < shards:
             time.sleep(0.001)
         assert run.poll() is None
         victim.kill()
@@ -143,7 +143,7 @@ def test_ctrl_c_ends_local_workers_in_one_line(tmp_path):
         cwd=ROOT,
         start_new_session=True,
     )
-    while run.poll() is None and not listed_shards(tmp_path / "set"):
+    while run.poll() is None and not list_shards(tmp_path / "set"):
         time.sleep(0.01)
     os.killpg(run.pid, signal.SIGINT)
     output, _ = run.communicate(timeout=100)

@@ -89,9 +89,9 @@ def test_a_dry_run_says_what_it_did_not_do(tmp_path, monkeypatch):
 def test_the_first_of_the_checked_scenes_are_of_all_classes(tmp_path):
     rows = Rows.of(load_config(small_config(tmp_path), ["samples_per_class=100"]))
     for number in (3, 6, 24):
-        checked = rows.scattered(24)[:number]
+        checked = rows.spread_progressively(24)[:number]
         assert len({rows[row][0].slug for row in checked}) == 3
-    assert sorted(rows.scattered(24)) == rows.spread(24)
+    assert sorted(rows.spread_progressively(24)) == rows.spread(24)
 
 
 def test_a_build_of_slow_samples_does_not_wait_for_one_before_it_starts(tmp_path, monkeypatch):

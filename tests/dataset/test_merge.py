@@ -17,7 +17,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.merge import merge
 from radhar_cli.dataset.parts import DataSetPart
 from radhar_cli.dataset.reading import open_dataset
-from radhar_cli.dataset.shards import listed_shards
+from radhar_cli.dataset.shards import list_shards
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError, UnfinishedError
 
@@ -73,7 +73,7 @@ def test_parts_in_one_place_or_two_are_the_build_in_one_piece(out, whole, tmp_pa
 
 def test_gaps_and_damage_name_the_parts_to_run_again(config, out, whole):
     shutil.rmtree(out / "parts/3-of-4")
-    shard = listed_shards(out / "parts/1-of-4")[-1].path
+    shard = list_shards(out / "parts/1-of-4")[-1].path
     content = shard.read_bytes()
     shard.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
     with pytest.raises(UnfinishedError, match=r"rows 4-5 \(2 of 9\).* make .* --shard 3/4, then"):
@@ -91,7 +91,7 @@ def test_gaps_and_damage_name_the_parts_to_run_again(config, out, whole):
 
 
 def test_damaged_shards_are_replaced_by_shards_of_other_rows(config, out, whole):
-    damaged = listed_shards(out / "parts/2-of-4")
+    damaged = list_shards(out / "parts/2-of-4")
     assert [shard.stop - shard.start for shard in damaged] == [1, 1]
     for shard in damaged:
         shard.path.write_bytes(shard.path.read_bytes()[:-1])
@@ -163,11 +163,11 @@ def test_the_program_makes_killed_parts_whole(whole, tmp_path):
         [sys.executable, "-m", "radhar_cli", *arguments, "2/2"], stdout=subprocess.DEVNULL
     )
     part = out / "parts/2-of-2"
-    while run.poll() is None and not listed_shards(part):
+    while run.poll() is None and not list_shards(part):
         time.sleep(0.001)
     run.send_signal(signal.SIGKILL)
     run.wait()
-    assert 0 < len(listed_shards(part)) < 5
+    assert 0 < len(list_shards(part)) < 5
     failed = radhar("merge", out)
     assert (failed.returncode, "--shard 1/2, --shard 2/2" in failed.stderr) == (1, True)
     for shard in ("1/2", "2/2"):

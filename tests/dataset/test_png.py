@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from matplotlib import colormaps
 from PIL import Image
 
-from radhar_cli.dataset.png import colour_table, deflated, encode_png, stored_levels
+from radhar_cli.dataset.png import colour_table, deflate, encode_png, stored_levels
 
 LEVELS = [0, 1, 2, 6, 9]
 
@@ -57,9 +57,9 @@ def test_indices_of_a_strange_palette_are_no_levels():
 @given(data=st.binary(max_size=2000), repeats=st.integers(1, 40))
 def test_zlib_reads_it_and_equal_data_give_equal_bytes(level, data, repeats):
     data *= repeats
-    stored = deflated(data, level)
+    stored = deflate(data, level)
     assert zlib.decompress(stored) == data
-    assert deflated(data, level) == stored
+    assert deflate(data, level) == stored
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -67,10 +67,10 @@ def test_zlib_reads_it_and_equal_data_give_equal_bytes(level, data, repeats):
 def test_noise_hardly_grows(level, size):
     """A data set whose chunks are larger than this is refused as a foreign file's trick."""
     noise = np.random.default_rng(size).bytes(size)
-    assert len(deflated(noise, level)) <= size + size // 1000 + 64
+    assert len(deflate(noise, level)) <= size + size // 1000 + 64
 
 
 def test_fast_is_about_as_small():
     rng = np.random.default_rng(0)
     levels = rng.gamma(2, 12, (256, 256)).astype(np.uint8).tobytes()
-    assert len(deflated(levels, 1)) < 1.1 * len(zlib.compress(levels, 1))
+    assert len(deflate(levels, 1)) < 1.1 * len(zlib.compress(levels, 1))

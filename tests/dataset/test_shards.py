@@ -19,7 +19,7 @@ from radhar_cli.dataset.shards import (
     ShardError,
     check_shards,
     encode_shard,
-    listed_shards,
+    list_shards,
     missing_rows,
     require_tiling,
     write_shard,
@@ -104,7 +104,7 @@ def test_of_two_shards_with_the_same_rows_one_is_used(config, tmp_path):
         write_shard(tmp_path, start, stop, stub(config, start, stop))
     Shard(6, 8, tmp_path).path.write_bytes(b"half")
     (Shard(0, 4, tmp_path).path.parent / "notes.txt").write_text("mine")
-    sound, unusable = check_shards(listed_shards(tmp_path), whose(config))
+    sound, unusable = check_shards(list_shards(tmp_path), whose(config))
     assert [(s.start, s.stop) for s in sound] == [(0, 4), (4, 6), (8, 9)]
     assert [(s.start, s.stop) for s, _ in unusable] == [(6, 8)]
 

@@ -151,4 +151,4 @@ def test_an_empty_split_is_warned_of():
     ],
 )
 def test_samples_of_classes_in_words(counts, said):
-    assert Rows(tuple(ACTIVITIES[: len(counts)]), counts).counted == said
+    assert Rows(tuple(ACTIVITIES[: len(counts)]), counts).counts_text == said

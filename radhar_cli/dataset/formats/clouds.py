@@ -33,7 +33,7 @@ NO_TRACK = 255  # of a point that belongs to nobody
 
 
 class Clouds(NamedTuple):
-    """Point clouds of a sample and the joints behind them, in TI's frame."""
+    """Point clouds of a sample and the joints behind them, in TI's axes."""
 
     frame: NDArray[np.intp]  # [N], of each point
     xyz: Float  # [N, 3], m: right, ahead, up
@@ -50,7 +50,7 @@ Columns: TypeAlias = Callable[[Clouds], Sequence[Any]]
 
 
 def clouds_of(data: Dataset, row: int) -> Clouds:
-    """The clouds of a sample."""
+    """Read the point clouds of the sample in a row, in TI's axes."""
     products = data.products
     points, start = products["points"][row], products["points_start"][row]
     snr_db = points[:, 5].astype(float)
@@ -68,7 +68,7 @@ def clouds_of(data: Dataset, row: int) -> Clouds:
 
 
 def feature_map(clouds: Clouds, frame: int) -> NDArray[np.float32]:
-    """A frame of clouds as MARS has it, [8, 8, 5]: x, y, z, Doppler, amplitude.
+    """Arrange a frame of clouds as MARS does, [8, 8, 5]: x, y, z, Doppler, amplitude.
 
     Points are in ascending order of x, then y, then z; the first 64 stay, zeros follow.
     """
@@ -82,7 +82,7 @@ def feature_map(clouds: Clouds, frame: int) -> NDArray[np.float32]:
 
 
 def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write featuremap_<split>.npy, labels_<split>.npy and frames_<split>.npy."""
+    """Write featuremap_<split>.npy, labels_<split>.npy and frames_<split>.npy into a folder."""
     counts, joints = data.products["points_start"].counts - 1, data.products["skeleton"].shape[2]
     shapes = {"featuremap": (SIDE, SIDE, 5), "labels": (3 * joints,), "frames": (3,)}
     for split, part in data.present_splits.items():
@@ -109,7 +109,7 @@ def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
 
 
 def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write <split>/<class>/<sample>.csv with the columns ROS."""
+    """Write <split>/<class>/<sample>.csv into a folder, with the columns ROS."""
     header = board_header(data.config.radar.cfg or "")
     middle = 2 ** (header.loops - 1).bit_length() // 2
 
@@ -125,7 +125,7 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
 
 
 def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write <split>/<class>/<sample>.csv with the columns TI."""
+    """Write <split>/<class>/<sample>.csv into a folder, with the columns TI."""
 
     def columns(c: Clouds) -> Sequence[Any]:
         noise = 20 * np.log10(np.maximum(c.amplitude, 1e-9)) - c.snr_db
@@ -137,7 +137,7 @@ def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
 
 
 def _ti_axes(places: Float) -> Float:
-    """Right, ahead, up of [..., ahead, left, up, ...]."""
+    """Places [..., (right, ahead, up)] in TI's axes, of columns that begin (ahead, left, up)."""
     return np.stack([-places[..., 1], places[..., 0], places[..., 2]], axis=-1)
 
 

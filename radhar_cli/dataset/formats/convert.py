@@ -25,7 +25,18 @@ Writer: TypeAlias = Callable[[Dataset, Path, Progress], None]
 
 
 def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
-    """Write a data set in another format; return its number of samples."""
+    """Write a data set in another format; return its number of samples.
+
+    Args:
+        path: data set, its folder or dataset.h5.
+        out: new folder, which appears when it is complete.
+        to: the format, one of FORMATS.
+        progress: is told of every sample.
+
+    Raises:
+        FolderError: there is no data set, it lacks points, or `out` exists.
+        UnfinishedError: the disk is full or cannot be written.
+    """
     if out.exists() or out.is_symlink():
         raise FolderError(f"{out}: already exists; -o should name a new folder")
     module, function = FORMATS[to]

@@ -33,7 +33,7 @@ Samples stand in turn, one of each class. `image.bytes` of a row is a PNG file."
 
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write <map>/<split>-<number>-of-<files>.parquet, card and resolved config."""
+    """Write <map>/<split>-<number>-of-<files>.parquet, card and resolved config into a folder."""
     schema = schema_of(data.config)
     group = max(1, min(GROUP, GROUP_BYTES // prod(data.config.image.size_px)))
     for name in data.config.maps:
@@ -79,7 +79,7 @@ def _number_features(config: AnyConfig) -> list[dict[str, str]]:
 
 
 def schema_of(config: AnyConfig) -> pa.Schema:
-    """Columns; the card says what `datasets` makes of them."""
+    """Columns of the Parquet files; the card says what `datasets` makes of them."""
     kinds = {one["name"]: one["dtype"] for one in _number_features(config)}
     image = pa.struct([("bytes", pa.binary()), ("path", pa.string())])
     columns = [("image", image), ("label", pa.int64())]

@@ -9,7 +9,11 @@ from radhar_cli.errors import FolderError
 
 
 def checked_png(data: Dataset, table: Levels, map_name: str, row: int) -> bytes:
-    """The PNG file of a sample with a colour table [256, 3], as `generate` writes it."""
+    """Encode the PNG file of a sample as `generate` writes it, with a colour table [256, 3].
+
+    Raises:
+        FolderError: the stored levels do not match their checksum.
+    """
     name = f"maps/{map_name}"
     levels, stored = data.large[name][row], data.sha256[name].rows(row, row + 1)[0]
     if hashlib.sha256(levels.tobytes()).hexdigest().encode() != stored:

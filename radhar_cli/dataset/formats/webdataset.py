@@ -36,7 +36,7 @@ class; `json` has class, index, split and the numbers that were drawn."""
 
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write <map>/<split>-<number>.tar, classes.txt, card and resolved config."""
+    """Write <map>/<split>-<number>.tar, classes.txt, card and resolved config into a folder."""
     last = 0
     for name in data.config.maps:
         (folder / name).mkdir()

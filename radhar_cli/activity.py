@@ -19,7 +19,7 @@ class MovementInfo(NamedTuple):
 
     before: str
     after: str
-    seconds: float | None  # None: as long as it is asked for
+    seconds: float | None  # usual duration, s; None for one that lasts as long as it is asked for
     like: str | None = None
 
 
@@ -66,13 +66,13 @@ MOVEMENTS = {
 
 @dataclass(frozen=True)
 class Activity:
-    """One class of a data set."""
+    """One activity of people, and class of data sets."""
 
     number: int  # 1 to 12, the paper's S number; 13 and more for user-defined classes
     slug: str  # name used in folders and on the command line
-    # of people, one after the other; config keys say which of them use a number
+    # names in MOVEMENTS, one after the other; config keys say which of them use a number
     movements: tuple[str, ...] = ()
-    # makes the motion of a `scene.Person`; None for what `motion:` decides about
+    # makes the motion of a `scene.Person`; None where `motion:` decides which does
     motion: "Callable[..., Motion] | None" = None
     # keys of `motion:` and `timing:` that such a motion depends on, besides the place
     uses: tuple[str, ...] = ()
@@ -120,8 +120,8 @@ def _by_name(activities: Iterable[Activity]) -> dict[str, Activity]:
 
 
 _BY_NAME = _by_name(ACTIVITIES)
-TWELVE = {name: a.slug for name, a in _BY_NAME.items()}  # slug of each slug and label
-_OWN: dict[str, Activity] = {}
+TWELVE = {name: a.slug for name, a in _BY_NAME.items()}  # {slug or label: slug}
+_ADDED: dict[str, Activity] = {}
 
 
 def add_activity(
@@ -132,29 +132,29 @@ def add_activity(
     A config names it in `activities`; its place there is its label.
 
     Args:
-        slug: lower-case letters, digits and underscores.
-        motion: makes the motion of a `scene.Person` from their numbers. A data set built by
-            several processes needs a function that can be pickled.
-        uses: keys of `motion:` and `timing:` beside the place; other numbers are not drawn.
+        slug: Lower-case letters, digits and underscores.
+        motion: Makes the motion of a `scene.Person` from their numbers. A data set built by several
+            processes needs a function that can be pickled.
+        uses: Keys of `motion:` and `timing:` beside the place; other numbers are not drawn.
 
     Raises:
-        ValueError: the slug is taken or no slug.
+        ValueError: The slug is taken or no slug.
     """
     if not is_new_slug(slug):
         raise ValueError(f"{slug!r} should be a new name of lower-case letters, digits and _")
-    _OWN[slug] = Activity(len(ACTIVITIES) + 1, slug, (), motion, uses)
-    return _OWN[slug]
+    _ADDED[slug] = Activity(len(ACTIVITIES) + 1, slug, (), motion, uses)
+    return _ADDED[slug]
 
 
 def own_activities() -> tuple[Activity, ...]:
     """Classes that `add_activity` made known, here or in a module of RADHAR_EXTENSIONS."""
     load_extensions()
-    return tuple(_OWN.values())
+    return tuple(_ADDED.values())
 
 
-def know_activities(own: Iterable[Activity]) -> None:
-    """Register the user-defined classes of another process."""
-    for activity in own:
+def know_activities(activities: Iterable[Activity]) -> None:
+    """Register the user-defined classes of another process that are not known here yet."""
+    for activity in activities:
         if activity.motion is not None and activity not in own_activities():
             add_activity(activity.slug, activity.motion, activity.uses)
 
@@ -174,10 +174,10 @@ def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> 
             `add_activity`.
 
     Raises:
-        ValueError: no such activity; the message suggests the nearest name, or lists them all.
+        ValueError: No such activity; the message suggests the nearest name, or lists them all.
     """
-    own = {activity.slug: activity for activity in own_activities()}
-    known = _BY_NAME | own | _by_name((classes or {}).values())
+    added = {activity.slug: activity for activity in own_activities()}
+    known = _BY_NAME | added | _by_name((classes or {}).values())
     wanted = name.strip().lower()
     if wanted in known:
         return known[wanted]
@@ -188,9 +188,9 @@ def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> 
             f"{name!r} is not an activity; {meant} is a movement, of which a class can be made: "
             f"classes: {{my_class: {{sequence: [{meant}]}}}}, activities: [my_class, ...]"
         )
-    longer = [slug for slug in slugs if len(wanted) > 3 and slug.startswith(wanted)]
-    otherwise = "the slugs are " + ", ".join(slugs)
-    hint = advice_on(wanted, [*slugs, *known], otherwise)
-    if hint == otherwise and longer:
-        hint = f"did you mean {longer[0]!r}?"
+    completions = [slug for slug in slugs if len(wanted) > 3 and slug.startswith(wanted)]
+    list_of_slugs = "the slugs are " + ", ".join(slugs)
+    hint = advice_on(wanted, [*slugs, *known], list_of_slugs)
+    if hint == list_of_slugs and completions:
+        hint = f"did you mean {completions[0]!r}?"
     raise ValueError(f"{name!r} is not an activity; {hint}")

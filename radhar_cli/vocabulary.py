@@ -1,4 +1,4 @@
-"""Words that people use for movements, and ours: by meaning, and never by letters."""
+"""Words that people use for movements, and our names of the same meaning."""
 
 from collections.abc import Iterable
 
@@ -6,7 +6,7 @@ from radhar_cli.errors import did_you_mean
 
 SIMILAR = 0.74  # share of letters from which a name is taken for a mistyped one
 
-# {word: names of ours that mean it, the first that is known counts}
+# {word: our names of the same meaning, of which the first that is known counts}
 MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("picking_up", "pick_up", "picking", "bending", "bending_down"), ("grabbing",)),
     **dict.fromkeys(("picking_up_object", "reaching", "grasping", "grab"), ("grabbing",)),
@@ -96,4 +96,5 @@ def meaning_of(name: str, known: Iterable[str]) -> str | None:
 
 
 def _plain(name: str) -> str:
+    """Name in lower case with underscores for spaces and hyphens."""
     return name.strip().lower().replace(" ", "_").replace("-", "_")

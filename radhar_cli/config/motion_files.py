@@ -1,4 +1,4 @@
-"""The files of classes: patterns become paths with checksums, found from the config's folder on."""
+"""Files of classes: patterns become paths with checksums, looked up from the config's folder on."""
 
 from collections.abc import Callable, Iterator
 from glob import has_magic, iglob
@@ -13,63 +13,68 @@ from radhar_cli.untrusted import refuse_outside
 Refuse = Callable[[str, object, str], ConfigError]
 
 
-def with_files(config: Config, folder: Path, refuse: Refuse) -> Config:
-    """Expand the patterns of a config's classes to files, with the SHA-256 of each.
-
-    A checksum that stands in the config already must be the file's.
+def resolve_files(config: Config, folder: Path, refuse: Refuse) -> Config:
+    """Look up every file that classes name, and write its SHA-256 beside it.
 
     Args:
-        config: config whose `classes` may name files.
-        folder: folder of the config, from which `motion.folder` is seen.
-        refuse: makes an error of (key, value, what would be right).
+        config: Config whose `classes` may name files by patterns.
+        folder: Folder of the config, from which `motion.folder` goes on.
+        refuse: Makes an error of (key, value, what would be right).
 
     Returns:
-        The config with every file, and with `motion.folder` as an absolute path.
+        A config with paths for patterns and an absolute `motion.folder`; the same one without
+        files.
 
     Raises:
-        ConfigError: as made by `refuse`: a file is missing, is no motion, is another one than the
+        ConfigError: As made by `refuse`: a file is missing, is no motion, is another one than its
             checksum says, or there are more than MAX_FILES.
     """
-    classes = {slug: one for slug, one in config.classes.items() if isinstance(one, FilesConfig)}
+    classes = {
+        slug: files_config
+        for slug, files_config in config.classes.items()
+        if isinstance(files_config, FilesConfig)
+    }
     if not classes:
         return config
     root = (folder / (config.motion.folder or "")).resolve()
-    classes_with_files = {
-        slug: _find_files(slug, one, root, refuse) for slug, one in classes.items()
+    resolved = {
+        slug: _resolve_class(slug, files_config, root, refuse)
+        for slug, files_config in classes.items()
     }
-    count = sum(len(one.files) for one in classes_with_files.values())
+    count = sum(len(files_config.files) for files_config in resolved.values())
     if count > MAX_FILES:
         raise refuse("classes", f"{count} files", f"should have at most {MAX_FILES} files in all")
     motion = config.motion.model_copy(update={"folder": str(root)})
-    return config.model_copy(
-        update={"motion": motion, "classes": {**config.classes, **classes_with_files}}
-    )
+    return config.model_copy(update={"motion": motion, "classes": {**config.classes, **resolved}})
 
 
-def _find_files(slug: str, one: FilesConfig, root: Path, refuse: Refuse) -> FilesConfig:
+def _resolve_class(slug: str, files_config: FilesConfig, root: Path, refuse: Refuse) -> FilesConfig:
+    """Class of files with every path and its SHA-256."""
     key = f"classes.{slug}.files"
-    skeleton = None if one.skeleton is None else root / one.skeleton
+    skeleton = None if files_config.skeleton is None else root / files_config.skeleton
     files: dict[str, str] = {}
-    for path, known in sorted(_expand_patterns(one, root, key, refuse)):
+    for path, expected in sorted(_expand_patterns(files_config, root, key, refuse)):
         try:
             checksum = read_motion(root / path, skeleton).checksum
         except MotionFileError as error:
             raise refuse(key, path, str(error)) from None
-        if known not in ("", checksum):
-            raise refuse(key, path, f"should have the SHA-256 {known}; the file is another now")
+        if expected not in ("", checksum):
+            raise refuse(key, path, f"should have the SHA-256 {expected}; the file is another now")
         files[path] = checksum
-    if one.file is not None and one.file >= len(files):
-        raise refuse(f"classes.{slug}.file", one.file, f"should be below the {len(files)} files")
-    return one.model_copy(update={"files": files})
+    if files_config.file is not None and files_config.file >= len(files):
+        raise refuse(
+            f"classes.{slug}.file", files_config.file, f"should be below the {len(files)} files"
+        )
+    return files_config.model_copy(update={"files": files})
 
 
 def _expand_patterns(
-    one: FilesConfig, root: Path, key: str, refuse: Refuse
+    files_config: FilesConfig, root: Path, key: str, refuse: Refuse
 ) -> Iterator[tuple[str, str]]:
-    """Expand the patterns of a class to (path, known checksum or "") of every file."""
-    for pattern, known in one.files.items():
-        if known or not has_magic(pattern) or (root / pattern).is_file():
-            yield pattern, known
+    """(path, checksum or "") of every file that a class names."""
+    for pattern, checksum in files_config.files.items():
+        if checksum or not has_magic(pattern) or (root / pattern).is_file():
+            yield pattern, checksum
             continue
         fixed_part = Path(*takewhile(lambda part: not has_magic(part), Path(pattern).parts))
         paths = sorted(islice(iglob(pattern, root_dir=root), MAX_FILES + 1))  # noqa: PTH207 - also absolute ones
@@ -84,17 +89,20 @@ def _expand_patterns(
             yield path, ""
 
 
-def with_folder(config: Config, folder: Path) -> Config:
-    """Point a stored config to the folder in which its motion files lie.
+def set_motion_folder(config: Config, folder: Path) -> Config:
+    """Look for the files of a stored config in a folder, and nowhere else.
 
     Raises:
-        FolderError: a file of the config would lie outside of the folder.
+        FolderError: A class names a file that lies outside.
     """
     root = folder.resolve()
-    for slug, one in config.classes.items():
-        if not isinstance(one, FilesConfig):
+    for slug, files_config in config.classes.items():
+        if not isinstance(files_config, FilesConfig):
             continue
-        for path in (*one.files, *([one.skeleton] if one.skeleton else [])):
+        for path in (
+            *files_config.files,
+            *([files_config.skeleton] if files_config.skeleton else []),
+        ):
             if not (root / path).resolve().is_relative_to(root):
                 raise FolderError(
                     f"--motion {folder}: the class {slug!r} names {path}, which lies outside; "
@@ -104,21 +112,23 @@ def with_folder(config: Config, folder: Path) -> Config:
     return config.model_copy(update={"motion": motion})
 
 
-def alone(config: Config, slug: str) -> Config:
-    """Cut a scene's config down to the motion file that it uses, named by its absolute path.
+def keep_used_files(config: Config, slug: str) -> Config:
+    """Reduce a scene's config to the files that it needs: one of each class, by its full path.
 
     Args:
-        config: config of a scene, in which files are numbered.
-        slug: class of the scene; other classes keep their first file.
+        config: Config of the scene.
+        slug: Class of the scene, whose chosen file is kept; of the others the first.
     """
     classes = {}
-    for name, one in config.classes.items():
-        if isinstance(one, FilesConfig):
-            number = (one.file or 0) if name == slug else 0
-            path, checksum = [*one.files.items()][number]
-            whole = str(Path(config.motion.folder or "", path))
-            skeleton = one.skeleton and str(Path(config.motion.folder or "", one.skeleton))
-            update = {"files": {whole: checksum}, "file": 0, "skeleton": skeleton}
-            one = one.model_copy(update=update)
-        classes[name] = one
+    for name, files_config in config.classes.items():
+        if isinstance(files_config, FilesConfig):
+            number = (files_config.file or 0) if name == slug else 0
+            path, checksum = [*files_config.files.items()][number]
+            full_path = str(Path(config.motion.folder or "", path))
+            skeleton = files_config.skeleton and str(
+                Path(config.motion.folder or "", files_config.skeleton)
+            )
+            update = {"files": {full_path: checksum}, "file": 0, "skeleton": skeleton}
+            files_config = files_config.model_copy(update=update)
+        classes[name] = files_config
     return config.model_copy(update={"classes": classes})

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 from radhar_cli.config.annotations import range_of, section
 from radhar_cli.config.checks import Problem
 from radhar_cli.config.documents import BASE, Places, cfg_text, read_on_bases
-from radhar_cli.config.motion_files import with_files
+from radhar_cli.config.motion_files import resolve_files
 from radhar_cli.config.schema import Config, ConfigOfRecordings, PerActivity, Section
 from radhar_cli.config.units import key_in_our_unit, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
@@ -78,7 +78,7 @@ def load_config(
             _place(str(path), key, places, options) + _what(Problem(key, value, right))
         )
 
-    return with_files(config, Path(path).parent, refuse)
+    return resolve_files(config, Path(path).parent, refuse)
 
 
 def as_config(config: Config | str | Path) -> Config:

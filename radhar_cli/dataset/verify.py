@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.config.motion_files import with_folder
+from radhar_cli.config.motion_files import set_motion_folder
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.assembly import CONFIG_HEADING, SCENES_DIGEST
@@ -172,7 +172,7 @@ def _resynthesise(
     progress: Progress,
 ) -> None:
     """Synthesise some samples again, and compare all that is stored of them."""
-    config = config if motion is None else with_folder(config, motion)
+    config = config if motion is None else set_motion_folder(config, motion)
     rows, plan = Rows.of(config), plan_images(config)
     columns = data.fields
     scene_values = {field.name: data.scene[field.name][:] for field in columns}

@@ -1,4 +1,4 @@
-"""A scene of a class of files -> a person who moves as one of them."""
+"""Motion of a person whose class has motion files."""
 
 from collections import OrderedDict
 from math import radians
@@ -7,28 +7,32 @@ from typing import Any
 
 from radhar_cli.config.schema import FilesConfig
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, clip_of
+from radhar_cli.motion.files.clip import Clip, make_clip
 from radhar_cli.motion.files.cycle import find_cycle
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.scene import Person
 
-KEPT_BYTES = 2**26  # size of the cache of clips in a process
+CACHE_BYTES = 2**26  # size of the cache of clips in a process
 _clips: OrderedDict[tuple[Any, ...], Clip] = OrderedDict()
 
 
 def file_motion(person: Person) -> FileMotion:
-    """The motion of a person whose class has files; MotionFileError of one that cannot be used."""
-    one, slug = person.config.files_of(person.activity), person.activity.slug
+    """Motion of a person whose class has files.
+
+    Raises:
+        MotionFileError: The file of this sample is missing, changed, or cannot be used.
+    """
+    files_config, slug = person.config.files_of(person.activity), person.activity.slug
     folder = person.motion.folder
-    assert one is not None
-    assert one.file is not None
+    assert files_config is not None
+    assert files_config.file is not None
     numbers = person.own_class
-    path, checksum = [*one.files.items()][one.file]
+    path, checksum = [*files_config.files.items()][files_config.file]
     if folder is None:
         raise MotionFileError(f"{path}: where the files of {slug} lie is not known: motion.folder")
-    clip = _clip(one, Path(folder), path, checksum)
-    begin, end = one.section_s or (0.0, clip.seconds)
+    clip = _cached_clip(files_config, Path(folder), path, checksum)
+    begin, end = files_config.section_s or (0.0, clip.seconds)
     end = min(end, clip.seconds)
     if begin >= end:
         raise MotionFileError(
@@ -36,7 +40,7 @@ def file_motion(person: Person) -> FileMotion:
         )
     seconds, speed = person.seconds, numbers.playback_speed
     spare = end - begin - speed * seconds
-    cycle = find_cycle(clip, begin, end) if one.past_end == "loop" and spare < 0 else None
+    cycle = find_cycle(clip, begin, end) if files_config.past_end == "loop" and spare < 0 else None
     latest = cycle.period if cycle else max(0.0, spare)  # s after the beginning
     return FileMotion(
         clip=clip,
@@ -53,21 +57,36 @@ def file_motion(person: Person) -> FileMotion:
     )
 
 
-def _clip(one: FilesConfig, folder: Path, path: str, checksum: str) -> Clip:
-    """The clip of a file, kept for the next scene that uses it."""
-    joints = tuple(sorted(one.joints.items()))
-    how = (joints, one.up, one.unit_m, one.rate_hz, one.low_pass_hz)
-    key = (folder, path, checksum, one.skeleton, *how)
+def _cached_clip(files_config: FilesConfig, folder: Path, path: str, checksum: str) -> Clip:
+    """Clip of a file, kept for the next scene that uses it."""
+    joints = tuple(sorted(files_config.joints.items()))
+    reading_options = (
+        joints,
+        files_config.up,
+        files_config.unit_m,
+        files_config.rate_hz,
+        files_config.low_pass_hz,
+    )
+    key = (folder, path, checksum, files_config.skeleton, *reading_options)
     if key in _clips:
         _clips.move_to_end(key)
         return _clips[key]
-    read = read_motion(folder / path, folder / one.skeleton if one.skeleton else None)
-    if checksum and read.checksum != checksum:
-        raise MotionFileError(f"{read.path}: is not the file it was: its SHA-256 is another")
-    clip = clip_of(
-        read.recording(path), one.joints, one.up, one.unit_m, one.rate_hz, one.low_pass_hz
+    motion_bytes = read_motion(
+        folder / path, folder / files_config.skeleton if files_config.skeleton else None
+    )
+    if checksum and motion_bytes.checksum != checksum:
+        raise MotionFileError(
+            f"{motion_bytes.path}: is not the file it was: its SHA-256 is another"
+        )
+    clip = make_clip(
+        motion_bytes.recording(path),
+        files_config.joints,
+        files_config.up,
+        files_config.unit_m,
+        files_config.rate_hz,
+        files_config.low_pass_hz,
     )
     _clips[key] = clip
-    while len(_clips) > 1 and sum(c.positions.nbytes for c in _clips.values()) > KEPT_BYTES:
+    while len(_clips) > 1 and sum(c.positions.nbytes for c in _clips.values()) > CACHE_BYTES:
         _clips.popitem(last=False)
     return clip

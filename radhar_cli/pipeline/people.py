@@ -1,4 +1,4 @@
-"""A scene of `motion.model: human` -> a person who moves.
+"""Motion of a person in a scene of `motion.model: human`.
 
 Numbers come from the scene's config. What differs from one repetition, stride or fidget to the next
 comes from streams named by (seed, class, index) and in sizes of the config, 0 for none.
@@ -60,13 +60,14 @@ M = TypeVar("M", bound="DataclassInstance")  # a movement with a duration
 
 RAGGED_HZ = (0.1, 0.25, 0.4)
 MIN_STRIDE_S = 0.5  # no stride is shorter
-SHUFFLE = 0.9  # duration of a shuffle, s
-STEP_S, STEP_LIFT = 0.7, 0.06  # s, m
-# How many of the steps before and after go ahead, the others backwards; None for no step. People
-# feel for the chair, and leave it.
+SHUFFLE_S = 0.9  # duration of a shuffle
+STEP_S = 0.7  # duration of a step towards or from a seat, without that of its length
+STEP_LIFT = 0.06  # height of its foot, m
+# Shares of the steps before and after the movement that go ahead, the others backwards; None for
+# no step. People feel for the chair, and leave it.
 STEPS = {"sitting_down": (0.0, None), "standing_up": (None, 1.0), "grabbing": (0.8, 0.4)}
 RISING = ("sitting_to_walking", "falling_to_walking")
-SETTLING = 4  # fidgets after such a movement
+SETTLING = 4  # number of fidgets around the end of such a movement
 # Gestures at a settling of size 1: channel, rad, whether after the movement's end or its beginning,
 # from when on and for how long, s. Who stands up rocks back first; what was picked up is looked at.
 GESTURES = {
@@ -91,23 +92,23 @@ _SWAY_HZ = tuple(f * (0.9 + 0.2 * (k * GOLDEN % 1)) for k, f in enumerate(SWAY_H
 
 
 def human_motion(person: Person) -> HumanMotion:
-    """A person who does what the activity asks for."""
+    """Motion of a person who does what the activity asks for."""
     motion = person.motion
     physique = Physique(person.subject.height_m, weight=person.subject.weight_kg)
-    movements, pauses = _what(person)
+    movements, pauses = _movements_and_pauses(person)
     return HumanMotion(
         person=physique,
         movements=movements,
         start=(motion.range_m, motion.cross_range_m),
         heading=radians(motion.angle_deg),
-        begin=_begin(person),
+        begin=_first_begin(person),
         horizon=person.seconds,
         idle=_idle(person, physique, movements),
         pauses=pauses,
     )
 
 
-def _begin(person: Person) -> float:
+def _first_begin(person: Person) -> float:
     """When the first movement begins, s; what repeats is under way at 0 s."""
     timing, motion = person.timing, person.motion
     starts: dict[str, float] = {
@@ -131,8 +132,8 @@ def _begin(person: Person) -> float:
     return starts.get(slug, 0.0)
 
 
-def _what(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
-    """Movements, and the pause before each, s."""
+def _movements_and_pauses(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
+    """Movements of a person, and the pause before each, s."""
     timing, slug = person.timing, person.activity.slug
     if slug in person.config.classes:
         return _sequence(person)
@@ -146,35 +147,38 @@ def _what(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
         "walking_to_falling": timing.fall_duration_s,
     }
     duration = seconds.get(slug)
-    can = _repertoire(person, None if duration is None else duration)
-    movements = can.activity(person.activity.number)
+    repertoire = _repertoire(person, None if duration is None else duration)
+    movements = repertoire.activity(person.activity.number)
     if slug == "stationary":
-        return _shuffling(person, (Stand(0.0),), 0.0)
+        return _add_shuffles(person, (Stand(0.0),), 0.0)
     if slug in STEPS:
-        movements = _stepping(person, movements)
-        rest = _ends(movements, _begin(person)) if slug == "grabbing" else inf
-        return _shuffling(person, movements, rest)
+        movements = _add_steps(person, movements)
+        rest_s = _time_of_rest(movements, _first_begin(person)) if slug == "grabbing" else inf
+        return _add_shuffles(person, movements, rest_s)
     pause = -timing.overlap_s
     if duration is not None and slug in RISING and timing.walk_start_s is not None:
-        risen = _begin(person) + duration
+        risen = _first_begin(person) + duration
         pause = timing.walk_start_s - risen
     return movements, (0.0, pause) if len(movements) > 1 else ()
 
 
-def _stepping(person: Person, movements: tuple[Movement, ...]) -> tuple[Movement, ...]:
-    length, rng = person.motion.step_m, person.stream("motion.step_m/ways")
+def _add_steps(person: Person, movements: tuple[Movement, ...]) -> tuple[Movement, ...]:
+    """Put a step before and after the movements, as the activity has them."""
+    length = person.motion.step_m
+    rng = person.stream("motion.step_m/ways")
     if not length:
         return movements
     steps: list[tuple[Movement, ...]] = []
     for ahead in STEPS[person.activity.slug]:
-        way, left = 1 if rng.random() < (ahead or 0.0) else -1, np.clip(rng.normal(), -2, 2)
-        place = Place(way * length, float(SHUFFLE_SIZES.left * left))
-        one = StepTo(STEP_S + 0.5 * length, place, lift=STEP_LIFT)
-        steps.append(() if ahead is None else (one,))
+        direction = 1 if rng.random() < (ahead or 0.0) else -1
+        sideways = np.clip(rng.normal(), -2, 2)
+        place = Place(direction * length, float(SHUFFLE_SIZES.left * sideways))
+        step = StepTo(STEP_S + 0.5 * length, place, lift=STEP_LIFT)
+        steps.append(() if ahead is None else (step,))
     return (*steps[0], *movements, *steps[1])
 
 
-def _ends(movements: Iterable[Movement], begin: float) -> float:
+def _time_of_rest(movements: Iterable[Movement], begin: float) -> float:
     """When movements that follow each other from `begin` (s) on have come to rest, s."""
     for movement in movements:
         begin = movement.part(Physique(1.7), begin, begin).end
@@ -182,35 +186,45 @@ def _ends(movements: Iterable[Movement], begin: float) -> float:
 
 
 def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
-    one, movements = person.own_class, list[Movement]()
-    for place, (name, given) in enumerate(zip(one.sequence, one.durations_s, strict=True)):
+    """Movements of a class that is a sequence, and the pause before each, s."""
+    sequence = person.own_class
+    movements = list[Movement]()
+    for place, (name, duration_s) in enumerate(
+        zip(sequence.sequence, sequence.durations_s, strict=True)
+    ):
         usual = MOVEMENTS[name].seconds
-        duration = usual if given is None else given
-        can = _repertoire(person, duration, place)
-        (movement,) = can.sequence([name], [inf if duration is None else duration])
+        duration = usual if duration_s is None else duration_s
+        repertoire = _repertoire(person, duration, place)
+        (movement,) = repertoire.sequence([name], [inf if duration is None else duration])
         if isinstance(movement, GetUp | TryToGetUp) and movements:
-            movement = _after(movements[-1], movement)
+            movement = _getting_up_after(movements[-1], movement)
         movements.append(movement)
-    return tuple(movements), one.pauses_s
+    return tuple(movements), sequence.pauses_s
 
 
-def _after(fall: Movement, up: GetUp | TryToGetUp) -> Movement:
-    """How people get up who have fallen, or tried to get up, so."""
-    fell = fall.part(Physique(1.7), 0.0, 0.0)
-    if isinstance(fell, FallingSideways):
-        return RiseFromSide(fell.fall, up.duration, isinstance(up, TryToGetUp))
-    return replace(up, before=fell.after)
+def _getting_up_after(fall: Movement, getting_up: GetUp | TryToGetUp) -> Movement:
+    """Getting up, or trying to, from how people lie after that fall."""
+    fall_part = fall.part(Physique(1.7), 0.0, 0.0)
+    if isinstance(fall_part, FallingSideways):
+        return RiseFromSide(fall_part.fall, getting_up.duration, isinstance(getting_up, TryToGetUp))
+    return replace(getting_up, before=fall_part.after)
 
 
 def _repertoire(person: Person, duration: float | None, place: int = 0) -> Repertoire:
-    """How this person moves; `duration` (s) is that of a movement that has one."""
+    """How this person moves.
+
+    Args:
+        person: Person of the scene.
+        duration: Duration of a movement that has one, s; None for the usual one.
+        place: Place of the movement in its sequence, which names its random streams.
+    """
     motion = person.motion
     seat = Seat(
         height=motion.seat_height, recline=radians(motion.recline_deg), lap=motion.hands_on_lap
     )
     rise = Rise(lean=radians(motion.lean_deg))
-    scale, steps = motion.strike_scale, ceil(3 * person.seconds) + 8
-    paces, sizes = _repetitions(person, steps, place)
+    scale = motion.strike_scale
+    paces, sizes = _repetitions(person, ceil(3 * person.seconds) + 8, place)
     bend = motion.bend_deg
     lags = _lags(person, place)
     sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
@@ -221,10 +235,14 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
         standing_first=person.timing.walk_begin_s is not None,
         punch=Punch(
             frequency=scale * motion.punch_hz,
-            paces=_some(scale * paces),
-            sizes=_some(np.minimum(sizes, 1.0)),  # an arm gets no longer
+            paces=_nonzero_tuple(scale * paces),
+            sizes=_nonzero_tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
         ),
-        kick=Kick(frequency=scale * motion.kick_hz, paces=_some(scale * paces), sizes=_some(sizes)),
+        kick=Kick(
+            frequency=scale * motion.kick_hz,
+            paces=_nonzero_tuple(scale * paces),
+            sizes=_nonzero_tuple(sizes),
+        ),
         grab=Grab(
             down=moving * 1.2 / 2.5,
             dwell=motion.dwell_s,
@@ -234,36 +252,36 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
             lowering=lags[0],
             rising=lags[1],
         ),
-        sit_down=_lasting(duration, sitting),
-        stand_up=_lasting(duration, StandUp(seat=seat, rise=rise, lags=lags[1])),
+        sit_down=_with_duration(duration, sitting),
+        stand_up=_with_duration(duration, StandUp(seat=seat, rise=rise, lags=lags[1])),
         turn=Turn(
             frequency=motion.rotation_hz,
             angle=radians(motion.turn_deg),
-            paces=_some(paces),
-            sizes=_some(sizes),
+            paces=_nonzero_tuple(paces),
+            sizes=_nonzero_tuple(sizes),
         ),
         fall=_fall(person, duration),
         fall_on_hands=_fall(person, duration, caught=True),
-        fall_off_seat=_fall_from(seat, person, 1.0 if duration is None else duration),
-        fall_on_rising=_fall_from(seat, person, 1.7 if duration is None else duration, 0.5),
-        stumble=_lasting(duration, _stumble(person)),
+        fall_off_seat=_fall_off_seat(seat, person, 1.0 if duration is None else duration),
+        fall_on_rising=_fall_off_seat(seat, person, 1.7 if duration is None else duration, 0.5),
+        stumble=_with_duration(duration, _stumble(person)),
         trip=radians(motion.stumble_deg),
-        get_up=_lasting(duration, GetUp()),
-        try_to_get_up=_lasting(duration, TryToGetUp()),
-        turn_around=_lasting(duration, AROUND),
+        get_up=_with_duration(duration, GetUp()),
+        try_to_get_up=_with_duration(duration, TryToGetUp()),
+        turn_around=_with_duration(duration, AROUND),
         exercise_period=motion.exercise_period,
-        exercise_paces=_some(paces),
-        exercise_sizes=_some(motion.exercise_size * np.minimum(sizes, 1.05)),
+        exercise_paces=_nonzero_tuple(paces),
+        exercise_sizes=_nonzero_tuple(motion.exercise_size * np.minimum(sizes, 1.05)),
     )
 
 
-def _lasting(duration: float | None, movement: M) -> M:
-    """The movement with another duration (s), if one is given."""
+def _with_duration(duration: float | None, movement: M) -> M:
+    """Movement with another duration (s), unless that is None."""
     return movement if duration is None else replace(movement, duration=duration)
 
 
 def _lags(person: Person, place: int) -> tuple[Lags, Lags]:
-    """Which joints lead, going down and coming up."""
+    """Lags of the joints in going down, and in coming up."""
     rng = person.stream(f"motion.joint_lag/{place}")
     share, channels = person.motion.joint_lag, (*LEGS_AND_TRUNK, *SHOULDERS, *ELBOWS)
     down, up = (
@@ -274,49 +292,62 @@ def _lags(person: Person, place: int) -> tuple[Lags, Lags]:
 
 
 def _side(person: Person) -> float:
-    """1 for a fall to the left, -1 to the right."""
+    """Side of a fall: 1 to the left, -1 to the right."""
     return 1.0 if person.stream("motion.fall/side").random() < 0.5 else -1.0
 
 
 def _fall(person: Person, duration: float | None, caught: bool = False) -> Fall:
-    """A fall from standing, broken by the hands or not."""
+    """Fall from standing, broken by the hands or not."""
     motion = person.motion
     if motion.fall == "forward":
         prone, heels = OnFours() if caught else Prone(), radians(motion.heels_deg)
-        return _lasting(duration, FallForward(prone=prone, heels=heels))
+        return _with_duration(duration, FallForward(prone=prone, heels=heels))
     if motion.fall == "backward":
-        return _lasting(duration, FallBackward(supine=Sitting() if caught else Supine()))
+        return _with_duration(duration, FallBackward(supine=Sitting() if caught else Supine()))
     aside = FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)
-    return _lasting(duration, aside)
+    return _with_duration(duration, aside)
 
 
-def _fall_from(
-    seat: Seat, person: Person, whole: float, rises: float = 0.0
+def _fall_off_seat(
+    seat: Seat, person: Person, total_duration: float, rising_share: float = 0.0
 ) -> FallFromSeat | FallSideways:
-    """A fall off a seat within a `whole` duration, s, of which people rise for a share."""
-    rising, duration = rises * whole, (1 - 0.75 * rises) * whole
+    """Fall off a seat.
+
+    Args:
+        seat: Seat of the person.
+        person: Person of the scene.
+        total_duration: Duration with rising, s.
+        rising_share: Share of it for which the person rises first.
+    """
+    rising, duration = rising_share * total_duration, (1 - 0.75 * rising_share) * total_duration
     if person.motion.fall == "sideways":
         return FallSideways(duration, _side(person), seat=seat, rising=rising)
     return FallFromSeat(duration, person.motion.fall == "forward", rising, seat)
 
 
 def _stumble(person: Person) -> StepTo:
+    """Stumble in the direction in which the person would fall."""
     motion = person.motion
-    one, pitch = STUMBLES[motion.fall], radians(motion.stumble_deg)
+    stumble = STUMBLES[motion.fall]
+    pitch = radians(motion.stumble_deg)
     if motion.fall == "forward":
-        return replace(one, pitch=pitch)
+        return replace(stumble, pitch=pitch)
     if motion.fall == "backward":
-        return replace(one, pitch=-0.4 * pitch)
+        return replace(stumble, pitch=-0.4 * pitch)
     side = _side(person)
-    return replace(one, place=Place(0.0, side * one.place.left), lean=side * 0.4 * pitch)
+    return replace(stumble, place=Place(0.0, side * stumble.place.left), lean=side * 0.4 * pitch)
 
 
 def _gait(person: Person, place: int) -> Gait:
+    """Gait of a walk at some place in a sequence."""
     motion = person.motion
     strides = ceil(person.seconds / MIN_STRIDE_S) + 8
-    rng, varies = person.stream(f"motion.speed_variation/{place}"), motion.speed_variation
+    rng = person.stream(f"motion.speed_variation/{place}")
+    variation = motion.speed_variation
     # The duration of a stride is the difference of two deviations.
-    jitter, widths = (share * varies * rng.standard_normal(strides) for share in (8**-0.5, 1 / 3))
+    jitter, widths = (
+        share * variation * rng.standard_normal(strides) for share in (8**-0.5, 1 / 3)
+    )
     return Gait(
         speed=motion.speed_mps,
         period_scale=motion.period_scale,
@@ -325,30 +356,30 @@ def _gait(person: Person, place: int) -> Gait:
         trunk_pitch=radians(motion.trunk_pitch_deg),
         half_width=motion.step_width / 2,
         start=motion.speed_up,
-        ragged=_waves(motion, varies, RAGGED_HZ, 0.7),
-        jitter=_some(np.clip(jitter, -0.03, 0.03)),
-        widths=_some(np.clip(widths, -0.02, 0.03)),
+        ragged=_waves(motion, variation, RAGGED_HZ, 0.7),
+        jitter=_nonzero_tuple(np.clip(jitter, -0.03, 0.03)),
+        widths=_nonzero_tuple(np.clip(widths, -0.02, 0.03)),
         lane=_lane(person, place),
     )
 
 
 def _lane(person: Person, place: int) -> Lane | None:
-    """How far people walk before they turn round, of which a part may lie behind them."""
+    """Lane of a walker who turns round, a part of which may lie behind them; or None."""
     motion = person.motion
     if not (length := motion.lane_m):
         return None
-    left = person.stream(f"motion.lane_m/side/{place}").random() < 0.5
+    to_left = person.stream(f"motion.lane_m/side/{place}").random() < 0.5
     first = (1 - motion.lane_start) * length
-    return Lane(length, first, side=1.0 if left else -1.0)
+    return Lane(length, first, side=1.0 if to_left else -1.0)
 
 
-def _some(numbers: Float) -> tuple[float, ...]:
-    """The numbers, or none where all are 0."""
+def _nonzero_tuple(numbers: Float) -> tuple[float, ...]:
+    """Numbers as a tuple, empty where all are 0."""
     return tuple(numbers.tolist()) if numbers.any() else ()
 
 
 def _repetitions(person: Person, count: int, place: int) -> tuple[Float, Float]:
-    """Pace and size of each repetition, over the usual ones [count]."""
+    """Pace and size of each repetition over the usual ones, each [count]."""
     motion = person.motion
     tempo = person.stream(f"motion.tempo_jitter/{place}").standard_normal(count)
     size = person.stream(f"motion.size_jitter/{place}").standard_normal(count)
@@ -357,16 +388,17 @@ def _repetitions(person: Person, count: int, place: int) -> tuple[Float, Float]:
 
 
 def _waves(motion: Numbers, deviation: float, rates: Iterable[float], first: float) -> Waves:
-    """Low-pass waves that have been going on for `motion.idle_phase_s`."""
+    """Low-pass waves of a standard deviation that have been going on for `motion.idle_phase_s`."""
     f = tuple(rates)
     phases = np.array(spread_phases(len(f), first)) + 2 * pi * np.array(f) * motion.idle_phase_s
     return Waves.low_pass(deviation, tuple(phases % (2 * pi)), f) if deviation else Waves()
 
 
 def _idle(person: Person, physique: Physique, movements: tuple[Movement, ...]) -> Idle:
+    """Sway, breath and fidgets of a person."""
     subject = person.subject
     motion = person.motion
-    since = motion.idle_phase_s
+    idle_s = motion.idle_phase_s
     sway = Sway(
         _waves(motion, subject.sway_ahead_m, _SWAY_HZ, 0.0),
         _waves(motion, subject.sway_aside_m, _SWAY_HZ, 0.3),
@@ -375,67 +407,75 @@ def _idle(person: Person, physique: Physique, movements: tuple[Movement, ...]) -
     breath = Breath(
         chest=subject.chest_m,
         breathing=breathing,
-        breathing_phase=2 * pi * (breathing * since % 1),
+        breathing_phase=2 * pi * (breathing * idle_s % 1),
         heart=subject.heart_m,
         pulse=pulse,
-        pulse_phase=2 * pi * (pulse * since % 1),
+        pulse_phase=2 * pi * (pulse * idle_s % 1),
     )
-    return Idle(physique, sway, breath, (*_fidgets(person), *_settling(person, movements)))
+    return Idle(physique, sway, breath, (*_fidgets(person), *_settling_fidgets(person, movements)))
 
 
-def _instants(person: Person, rate: float, name: str, start: float) -> list[float]:
-    """Instants (s) of a Poisson process from `start` to the end of the recording."""
-    end, rng, instants = person.seconds, person.stream(name), []
-    at = start
-    while rate > 0 and (at := at + rng.exponential() / rate) < end:
-        instants.append(at)
+def _poisson_instants(person: Person, rate: float, name: str, start: float) -> list[float]:
+    """Instants (s) of a Poisson process from `start` (s) to the end; the rate in Hz."""
+    rng = person.stream(name)
+    instants = []
+    instant = start
+    while rate > 0 and (instant := instant + rng.exponential() / rate) < person.seconds:
+        instants.append(instant)
     return instants
 
 
 def _fidgets(person: Person) -> Iterable[Fidget]:
+    """Fidgets that people make all the time."""
     motion = person.motion
     rng = person.stream("motion.fidget_size")
-    for at in _instants(person, motion.fidget_hz, "motion.fidget_hz/times", -1.0):
-        yield _fidget(rng, motion.fidget_size, at, (0.5, 1.8))
+    for start_s in _poisson_instants(person, motion.fidget_hz, "motion.fidget_hz/times", -1.0):
+        yield _draw_fidget(rng, motion.fidget_size, start_s, (0.5, 1.8))
 
 
-def _settling(person: Person, movements: tuple[Movement, ...]) -> Iterable[Fidget]:
+def _settling_fidgets(person: Person, movements: tuple[Movement, ...]) -> Iterable[Fidget]:
     """Small movements around the end of S4 to S6."""
     motion, slug = person.motion, person.activity.slug
     if slug not in STEPS:
         return
-    begin = _begin(person)
+    begin = _first_begin(person)
     if size := motion.settle_size:
         rng = person.stream("motion.settle_size/fidgets")
-        count = next(n for n, one in enumerate(movements, 1) if not isinstance(one, StepTo))
-        end = _ends(movements[:count], begin)
-        for channel, target, after, start, length in GESTURES[slug]:
-            yield Fidget(channel, size * target, (end if after else begin) + start, length)
-        for at in sorted(end + rng.uniform(-0.8, 1.2, SETTLING)):
-            yield _fidget(rng, size, float(at), (0.4, 1.0))
+        count = next(
+            n for n, movement in enumerate(movements, 1) if not isinstance(movement, StepTo)
+        )
+        end = _time_of_rest(movements[:count], begin)
+        for channel, target, from_end, start, length in GESTURES[slug]:
+            yield Fidget(channel, size * target, (end if from_end else begin) + start, length)
+        for start_s in sorted(end + rng.uniform(-0.8, 1.2, SETTLING)):
+            yield _draw_fidget(rng, size, float(start_s), (0.4, 1.0))
 
 
-def _fidget(
-    rng: np.random.Generator, size: float, at: float, lengths: tuple[float, float]
+def _draw_fidget(
+    rng: np.random.Generator, size: float, start_s: float, lengths: tuple[float, float]
 ) -> Fidget:
+    """Draw a fidget that begins at `start_s`, of a `size` over the usual one."""
     channel = FIDGETS[rng.integers(len(FIDGETS))]
-    to = size * FIDGET_SIZES[channel] * np.clip(rng.standard_normal(), -2, 2)
+    target = size * FIDGET_SIZES[channel] * np.clip(rng.standard_normal(), -2, 2)
     if channel.endswith("elbow"):
-        to = abs(to)  # no arm bends backwards
-    return Fidget(channel, float(to), at, float(rng.uniform(*lengths)))
+        target = abs(target)  # no arm bends backwards
+    return Fidget(channel, float(target), start_s, float(rng.uniform(*lengths)))
 
 
-def _shuffling(
-    person: Person, movements: tuple[Movement, ...], rest: float
+def _add_shuffles(
+    person: Person, movements: tuple[Movement, ...], rest_s: float
 ) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
-    """Movements that end standing at `rest` (s), and after them steps to other stances."""
-    if rest == inf:
+    """Put steps to other stances after movements that end standing at `rest_s`."""
+    if rest_s == inf:
         return movements, ()
-    rng, more, pauses = person.stream("motion.shuffle_hz/places"), [], []
-    for at in _instants(person, person.motion.shuffle_hz, "motion.shuffle_hz/times", rest):
+    rng = person.stream("motion.shuffle_hz/places")
+    shuffles, pauses = [], []
+    for start_s in _poisson_instants(
+        person, person.motion.shuffle_hz, "motion.shuffle_hz/times", rest_s
+    ):
         place = Place(*(np.array(SHUFFLE_SIZES) * np.clip(rng.standard_normal(3), -2, 2)).tolist())
-        if at >= rest:
-            more.append(StepTo(SHUFFLE, place))
-            pauses.append(at - rest)
-            rest = at + SHUFFLE
-    return (*movements, *more), (*[0.0] * len(movements), *pauses)
+        if start_s >= rest_s:
+            shuffles.append(StepTo(SHUFFLE_S, place))
+            pauses.append(start_s - rest_s)
+            rest_s = start_s + SHUFFLE_S
+    return (*movements, *shuffles), (*[0.0] * len(movements), *pauses)

@@ -10,7 +10,7 @@ import h5py
 
 from radhar_cli import __version__
 from radhar_cli.config.identity import as_yaml, resolved
-from radhar_cli.config.motion_files import alone
+from radhar_cli.config.motion_files import keep_used_files
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.protocol import Motion
@@ -43,7 +43,7 @@ def write_scene(simulation: Simulation, path: Path) -> None:
             write_frames(file, simulation.frames, simulation.board, simulation.config)
         _write_truth(file, simulation)
         file.attrs["scene"] = json.dumps(describe(simulation))
-        own = alone(simulation.config, simulation.activity.slug)
+        own = keep_used_files(simulation.config, simulation.activity.slug)
         file.attrs["config"] = json.dumps(resolved(own))
         file.attrs["radhar_version"] = __version__
 
@@ -163,7 +163,7 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         write_scene(simulation, folder / SCENE_FILE)
         write_text(folder / SCENE_JSON, json.dumps(describe(simulation), indent=2) + "\n")
-        own = alone(simulation.config, simulation.activity.slug)
+        own = keep_used_files(simulation.config, simulation.activity.slug)
         command = f"radhar simulate {SCENE_YAML} -o OUT --index {simulation.scene.index}"
         head = f"# One scene, nothing left to draw: {command}\n"
         write_text(folder / SCENE_YAML, head + as_yaml(own))

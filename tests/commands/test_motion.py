@@ -7,7 +7,7 @@ from command_line import ROOT, ok, radhar
 from recorded import frames, write_npz
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.motion.files.clip import clip_of
+from radhar_cli.motion.files.clip import make_clip
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import read_motion
 
@@ -34,7 +34,7 @@ def test_a_motion_is_exported_and_read_back(tmp_path):
         *(2, f"radhar: {bvh}: already exists; --overwrite replaces it\n"),
     )
     assert "Frames: 301" in bvh.read_text()
-    scale = clip_of(read_motion(bvh).recording()).stature
+    scale = make_clip(read_motion(bvh).recording()).stature
     shown = ["--no-figures", "--maps", "stft", "-o"]
     radhar("simulate", *common, *shown, tmp_path / "a")
     done = ok(

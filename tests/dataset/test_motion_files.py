@@ -11,7 +11,7 @@ from recorded import frames, write_amc, write_bvh, write_npz
 from small import fingerprint
 
 from radhar_cli.config import load_config
-from radhar_cli.config.motion_files import with_folder
+from radhar_cli.config.motion_files import set_motion_folder
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
@@ -150,4 +150,4 @@ def test_two_user_defined_classes_alone(place, tmp_path):
 def test_motion_file_paths_cannot_leave_the_given_folder(path, tmp_path):
     config = Config(classes={"wave": {"files": {path: "0" * 64}}}, activities=("wave",))
     with pytest.raises(FolderError, match=r"names .* which lies outside"):
-        with_folder(config, tmp_path)
+        set_motion_folder(config, tmp_path)

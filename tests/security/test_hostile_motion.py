@@ -14,7 +14,7 @@ from security.bounded import answers, limited, refused
 from security.mutations import mutate_file
 
 from radhar_cli.errors import MotionFileError, RadharError
-from radhar_cli.motion.files.clip import clip_of
+from radhar_cli.motion.files.clip import make_clip
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.motion.files.recording import MAX_BYTES
 
@@ -114,7 +114,7 @@ def written(folder: Path, name: str) -> Path:
 def test_hostile_files_are_refused(name: str, tmp_path: Path) -> None:
     path = written(tmp_path, name)
     with limited(), pytest.raises(MotionFileError) as error:
-        clip_of(read_motion(path).recording())
+        make_clip(read_motion(path).recording())
     assert str(error.value).startswith(str(tmp_path / HOSTILE[name][0]))
     assert len(str(error.value)) < 2000
     assert "\n" not in str(error.value)
@@ -164,7 +164,7 @@ def test_damage_is_refused_or_does_no_harm(tmp_path: Path, first: int, count: in
         try:
             with limited():
                 used = tmp_path / name.replace(".asf", ".amc")
-                clip = clip_of(read_motion(used).recording("x"))
+                clip = make_clip(read_motion(used).recording("x"))
         except RadharError as error:
             found["refused"] += 1
             long = str(error)

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.files.frames import BLOCK, SHOWN, numbers, odd_word
-from radhar_cli.motion.files.recording import wrong
+from radhar_cli.motion.files.frames import BLOCK, SHOWN, first_bad_number, parse_numbers
+from radhar_cli.motion.files.recording import motion_file_error
 
 MAX_FRAME = 2**20  # bytes of one frame; the largest skeleton allowed has about 100 kB
 FRAME_NUMBER = re.compile(rb"(?m)^[ \t]*(\d{1,9})[ \t]*\r?$")
@@ -23,17 +23,17 @@ def amc_frames(
     Every frame has the bones in the order of the first one, whichever that is.
 
     Args:
-        data: the bytes of the file.
-        start: where the number of the first frame begins.
-        line: number of the line there.
+        data: Bytes of the file.
+        start: Byte at which the number of the first frame begins.
+        line: Number of the line there.
         widths: {bone: numbers that a frame has of it}, in the order of the columns.
-        where: what messages call the file.
+        where: Name of the file in messages.
 
     Yields:
         Numbers [frames, columns] of one block.
 
     Raises:
-        MotionFileError: a bone is missing, unknown or has other numbers; frames are missing.
+        MotionFileError: A bone is missing, unknown or has other numbers; frames are missing.
     """
     first = FRAME_NUMBER.match(data, start)
     assert first is not None
@@ -45,7 +45,7 @@ def amc_frames(
         stop = _next_frame(data, min(start + BLOCK, len(data) - 1), line, where)
         piece = data[start:stop]
         listed = [name.strip() for name in _NAME.findall(piece)]
-        values = numbers(_NAME.sub(b"", piece))
+        values = parse_numbers(_NAME.sub(b"", piece))
         count = len(listed) // len(names)
         if (
             values is None
@@ -55,40 +55,49 @@ def amc_frames(
             or (values[:: columns + 1] != np.arange(expected, expected + count)).any()
         ):
             _refuse_frames(piece, line, widths, names, expected, where)
-            raise wrong(f"{where}:{line}", "the frames from here on are not like the first")
+            raise motion_file_error(
+                f"{where}:{line}", "the frames from here on are not like the first"
+            )
         yield values.reshape(count, columns + 1)[:, 1:][:, order]
         expected += count
         start, line = stop, line + piece.count(b"\n")
 
 
 def _next_frame(data: bytes, at: int, line: int, where: str) -> int:
-    """Where the first frame begins whose number stands in a line after the byte `at`."""
+    """Byte at which the first frame begins whose number stands in a line after the byte `at`."""
     begin = data.find(b"\n", at) + 1 or len(data)
     match = FRAME_NUMBER.search(data, begin, begin + MAX_FRAME)
     if match is not None:
         return match.start()
     if len(data) - begin > MAX_FRAME:
-        raise wrong(f"{where}:{line}", f"a frame after this line is longer than {MAX_FRAME} bytes")
+        raise motion_file_error(
+            f"{where}:{line}", f"a frame after this line is longer than {MAX_FRAME} bytes"
+        )
     return len(data)
 
 
 def _names_of_first_frame(
     frame: bytes, line: int, widths: Mapping[str, int], where: str
 ) -> list[bytes]:
+    """Names of the bones of a frame, in their order."""
     names = [name.strip() for name in _NAME.findall(frame)]
     times, moving = Counter(names), {name.encode() for name in widths}
     for name in times:
         if name not in moving:
             shown = name[:SHOWN].decode("ascii", "replace")
-            raise wrong(f"{where}:{line}", f"the skeleton has no bone {shown!r} that moves")
+            raise motion_file_error(
+                f"{where}:{line}", f"the skeleton has no bone {shown!r} that moves"
+            )
     for bone in widths:
         if times[bone.encode()] != 1:
-            raise wrong(f"{where}:{line}", f"its first frame should have the bone {bone!r} once")
+            raise motion_file_error(
+                f"{where}:{line}", f"its first frame should have the bone {bone!r} once"
+            )
     return names
 
 
 def _columns(names: list[bytes], widths: Mapping[str, int]) -> list[int]:
-    """For each wanted column its place in a frame of the file."""
+    """Place in a frame of the file of each column, in the order of `widths`."""
     starts, at = dict[str, int](), 0
     for name in map(bytes.decode, names):
         starts[name] = at
@@ -104,7 +113,7 @@ def _refuse_frames(
     expected: int,
     where: str,
 ) -> None:
-    """Raise an error for the first line that is wrong in a block of an AMC."""
+    """Raise the error of the first line that is wrong in a block of an AMC."""
     missing: list[bytes] = []  # bones that the frame does not have yet, the next one last
     for line, text in enumerate(piece.split(b"\n"), first):
         words, place = text.split(), f"{where}:{line}"
@@ -112,23 +121,33 @@ def _refuse_frames(
             continue
         if len(words) == 1 and words[0].isdigit():
             if missing:
-                raise wrong(place, f"frame {expected - 1} lacks the bone {missing[-1].decode()!r}")
+                raise motion_file_error(
+                    place, f"frame {expected - 1} lacks the bone {missing[-1].decode()!r}"
+                )
             if int(words[0][:18]) != expected:
                 shown = words[0][:SHOWN].decode()
-                raise wrong(place, f"frame {shown} should be frame {expected}: frames are missing")
+                raise motion_file_error(
+                    place, f"frame {shown} should be frame {expected}: frames are missing"
+                )
             missing, expected = names[::-1], expected + 1
             continue
-        name, row = words[0], numbers(b" ".join(words[1:]))
+        name, row = words[0], parse_numbers(b" ".join(words[1:]))
         shown = name[:SHOWN].decode("ascii", "replace")
         if not missing or name != missing[-1]:
-            right = missing[-1].decode() if missing else "a frame's number"
-            raise wrong(place, f"{shown!r} should be {right!r}, as in the first frame")
+            expected_word = missing[-1].decode() if missing else "a frame's number"
+            raise motion_file_error(
+                place, f"{shown!r} should be {expected_word!r}, as in the first frame"
+            )
         if row is None or not np.isfinite(row).all():
-            raise wrong(place, f"{odd_word(b' '.join(words[1:]))!r} should be a number")
+            raise motion_file_error(
+                place, f"{first_bad_number(b' '.join(words[1:]))!r} should be a number"
+            )
         if row.size != widths[name.decode()]:
-            raise wrong(
+            raise motion_file_error(
                 place, f"{shown} has {row.size} numbers; should have {widths[name.decode()]}"
             )
         missing.pop()
     if missing:
-        raise wrong(f"{where}:{line}", f"the file ends before the bone {missing[-1].decode()!r}")
+        raise motion_file_error(
+            f"{where}:{line}", f"the file ends before the bone {missing[-1].decode()!r}"
+        )

@@ -13,13 +13,13 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.files.clip import Clip
-from radhar_cli.motion.files.recording import wrong
+from radhar_cli.motion.files.recording import motion_file_error
 from radhar_cli.motion.skeleton import JOINTS
 
 BLEND = 0.5  # s in which one cycle fades into the next
-SHORTEST = 0.5  # share of the section that a cycle has, at least
+SHORTEST = 0.5  # least share of the section that a cycle has
 LEAST_FRAMES = 12
-COMPARED = 9  # instants of a seam that are compared
+COMPARED = 9  # number of instants of a seam that are compared
 STRAIGHT = pi / 12  # turns from cycle to cycle below this are none: people walk on straight
 _HIP = JOINTS.index("hip")
 _RIGHT = [JOINTS.index("right_shoulder"), len(JOINTS)]
@@ -28,16 +28,16 @@ _LEFT = [JOINTS.index("left_shoulder"), len(JOINTS) + 1]
 
 @dataclass(frozen=True)
 class Cycle:
-    """Which seconds of a clip are repeated.
+    """The seconds of a clip that are repeated.
 
     From `begin` on for `blend` seconds a cycle fades in, while the one before it goes on from
     `begin + period` to the end of its seconds.
     """
 
-    begin: float  # s of the clip
-    period: float  # s from the beginning of a cycle to that of the next
-    blend: float  # s
-    gap: float  # farthest that a joint is from where the next cycle has it, over the stature
+    begin: float  # second of the clip
+    period: float  # time from the beginning of a cycle to that of the next, s
+    blend: float  # time in which a cycle fades in, s
+    gap: float  # largest distance of a joint from where the next cycle has it, over the stature
 
     @property
     def end(self) -> float:
@@ -46,21 +46,21 @@ class Cycle:
 
 
 def find_cycle(clip: Clip, begin: float, end: float) -> Cycle:
-    """The longest part of a section, at least half of it, that fits best to itself at its ends.
+    """Find the longest part of a section that fits best to itself at its ends, at least half of it.
 
     Args:
-        clip: the recording.
-        begin: of the section, s.
-        end: of the section, s.
+        clip: Recording.
+        begin: Beginning of the section, s.
+        end: End of the section, s.
 
     Raises:
-        MotionFileError: the section is too short to be repeated.
+        MotionFileError: The section is too short to be repeated.
     """
     first, last = int(np.ceil(begin * clip.rate - 1e-9)), floor(end * clip.rate + 1e-9)
     last = min(last, len(clip.positions) - 1)
     count = last - first + 1
     if count < LEAST_FRAMES or (last - first) / clip.rate < BLEND:
-        raise wrong(
+        raise motion_file_error(
             clip.where,
             f"has {max(0, last - first) / clip.rate:.3g} s to repeat (past_end: loop); should have "
             f"{BLEND:g} s and {LEAST_FRAMES} frames or more",
@@ -72,14 +72,14 @@ def find_cycle(clip: Clip, begin: float, end: float) -> Cycle:
     periods = np.arange(int(SHORTEST * (count - 1)), count - blend)
     error = np.zeros(len(periods))
     for offset in offsets:
-        apart = poses[periods + offset] - poses[offset]
-        error += np.einsum("fja,fja->f", apart, apart)
+        difference = poses[periods + offset] - poses[offset]
+        error += np.einsum("fja,fja->f", difference, difference)
     # of seams as good as the best but for a millimetre in the mean, the last
-    good = error <= error.min() + offsets.size * p.shape[1] * 1e-6
-    period = int(periods[np.flatnonzero(good)[-1]])
+    is_best = error <= error.min() + offsets.size * p.shape[1] * 1e-6
+    period = int(periods[np.flatnonzero(is_best)[-1]])
     seam = np.arange(blend + 1)
-    there = carried(p[seam], *carry_between(p[seam], p[seam + period]))
-    gap = float(np.linalg.norm(there - p[seam + period], axis=2).max())
+    carried_seam = carry(p[seam], *carry_between(p[seam], p[seam + period]))
+    gap = float(np.linalg.norm(carried_seam - p[seam + period], axis=2).max())
     return Cycle(first / clip.rate, period / clip.rate, blend / clip.rate, gap)
 
 
@@ -87,8 +87,8 @@ def carry_between(early: Float, late: Float) -> tuple[float, Float]:
     """Turn about the vertical (rad) and shift [2] that bring poses to others, in least squares.
 
     Args:
-        early: positions [frames, joints, 3].
-        late: of the same joints; heights do not matter.
+        early: Positions [frames, joints, 3].
+        late: Positions of the same joints; heights do not matter.
     """
     a, b = early[..., :2].reshape(-1, 2), late[..., :2].reshape(-1, 2)
     centre_a, centre_b = a.mean(axis=0), b.mean(axis=0)
@@ -98,15 +98,15 @@ def carry_between(early: Float, late: Float) -> tuple[float, Float]:
     return turn, centre_b - _turned(centre_a, turn)
 
 
-def carried(p: Float, turn: float, shift: Float) -> Float:
-    """Positions [..., 3], turned about the vertical axis through the origin and shifted."""
+def carry(p: Float, turn: float, shift: Float) -> Float:
+    """Positions [..., 3] turned about the vertical through the origin (rad) and shifted [2]."""
     moved = p.copy()
     moved[..., :2] = _turned(p[..., :2], turn) + shift
     return moved
 
 
-def carried_often(turn: float, shift: Float, times: int) -> tuple[float, Float]:
-    """The turn and the shift of a carry that is repeated."""
+def repeated_carry(turn: float, shift: Float, times: int) -> tuple[float, Float]:
+    """Turn (rad) and shift [2] of a carry that is repeated so many times."""
     total = np.zeros(2)
     for _ in range(times):
         total = _turned(total, turn) + shift
@@ -120,7 +120,7 @@ def _turned(xy: Float, angle: float) -> Float:
 
 
 def _in_own_axes(p: Float) -> Float:
-    """Positions [frames, 15, 3] about the hip, ahead along x; heights stay."""
+    """Positions [frames, 15, 3] about the hip, with x ahead of the body; heights stay."""
     left = (p[:, _LEFT] - p[:, _RIGHT])[..., :2].sum(axis=1)
     angle = np.arctan2(-left[:, 0], left[:, 1])  # of what is ahead: left turned by -90 degrees
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]

@@ -1,4 +1,4 @@
-"""Frames as text: numbers by NumPy in blocks, and the line that is wrong."""
+"""Frames as text: NumPy reads numbers in blocks; errors name the line that is wrong."""
 
 import warnings
 from collections.abc import Iterator
@@ -6,14 +6,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.files.recording import MAX_FRAMES, wrong
+from radhar_cli.motion.files.recording import MAX_FRAMES, motion_file_error
 
 BLOCK = 2**20  # bytes of text at once
 SHOWN = 30
 
 
-def numbers(text: bytes) -> Float | None:
-    """The numbers in a text, None where something else stands in it."""
+def parse_numbers(text: bytes) -> Float | None:
+    """Numbers [N] in a text; None where something else stands in it."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # NumPy warns of text that is no number
@@ -23,50 +23,70 @@ def numbers(text: bytes) -> Float | None:
 
 
 def bvh_frames(data: bytes, start: int, line: int, columns: int, where: str) -> Iterator[Float]:
-    """Blocks [frames, columns] of a text with a frame a line, from byte `start` in `line` on."""
+    """Read the frames of a BVH in blocks, one frame a line.
+
+    Args:
+        data: Bytes of the file.
+        start: Byte at which the first frame begins.
+        line: Number of the line there.
+        columns: Numbers that a frame has.
+        where: Name of the file in messages.
+
+    Yields:
+        Numbers [frames, columns] of one block.
+
+    Raises:
+        MotionFileError: A line has other numbers than its joints have channels.
+    """
     while start < len(data):
         stop = data.find(b"\n", min(start + BLOCK, len(data) - 1)) + 1 or len(data)
         piece = data[start:stop]
-        values = numbers(piece)
-        whole = values is not None and np.isfinite(values).all()
+        values = parse_numbers(piece)
+        is_finite = values is not None and np.isfinite(values).all()
         lines = piece.count(b"\n") + (not piece.endswith(b"\n"))
-        if not whole or values is None or values.size != columns * lines:
-            values = _line_by_line(piece, line, columns, where)
+        if not is_finite or values is None or values.size != columns * lines:
+            values = _read_lines(piece, line, columns, where)
         if values.size:
             yield values.reshape(-1, columns)
         start, line = stop, line + piece.count(b"\n")
 
 
-def _line_by_line(piece: bytes, first: int, columns: int, where: str) -> Float:
-    """The numbers of a piece with empty lines, or the error in its first wrong line."""
+def _read_lines(piece: bytes, first: int, columns: int, where: str) -> Float:
+    """Numbers of a piece with empty lines; raises the error of its first wrong line."""
     rows: list[Float] = [np.empty(0)]
     for line, text in enumerate(piece.split(b"\n"), first):
         if not text.strip():
             continue
-        place, row = f"{where}:{line}", numbers(text)
+        place, row = f"{where}:{line}", parse_numbers(text)
         if row is None or not np.isfinite(row).all():
-            raise wrong(place, f"{odd_word(text)!r} should be a number")
+            raise motion_file_error(place, f"{first_bad_number(text)!r} should be a number")
         if row.size != columns:
-            raise wrong(place, f"has {row.size} numbers; its joints have {columns} channels")
+            raise motion_file_error(
+                place, f"has {row.size} numbers; its joints have {columns} channels"
+            )
         rows.append(row)
     return np.concatenate(rows)
 
 
-def odd_word(text: bytes) -> str:
-    """The first word of a text that is no finite number, as messages show it."""
+def first_bad_number(text: bytes) -> str:
+    """First word of a text that is no finite number, as messages show it."""
     for word in text.split():
-        value = numbers(word)
+        value = parse_numbers(word)
         if value is None or value.size != 1 or not np.isfinite(value).all():
             return word[:SHOWN].decode("ascii", "replace")
     return text[:SHOWN].decode("ascii", "replace")
 
 
-def stacked(parts: Iterator[Float], where: str) -> Float:
-    """The blocks [frames, ...] one after the other; a MotionFileError if there are too many."""
-    kept, count = [], 0
-    for part in parts:
-        kept.append(part)
-        count += len(part)
+def concatenate_blocks(blocks: Iterator[Float], where: str) -> Float:
+    """Join blocks of frames [frames, ...].
+
+    Raises:
+        MotionFileError: There are more than MAX_FRAMES frames.
+    """
+    joined, count = [], 0
+    for block in blocks:
+        joined.append(block)
+        count += len(block)
         if count > MAX_FRAMES:
-            raise wrong(where, f"has more than {MAX_FRAMES} frames; cut it into pieces")
-    return np.concatenate(kept) if kept else np.empty((0, 0, 3))
+            raise motion_file_error(where, f"has more than {MAX_FRAMES} frames; cut it into pieces")
+    return np.concatenate(joined) if joined else np.empty((0, 0, 3))

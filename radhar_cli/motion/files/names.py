@@ -9,13 +9,13 @@ import re
 from collections.abc import Mapping, Sequence
 
 from radhar_cli.errors import did_you_mean
-from radhar_cli.motion.files.recording import MotionRecording, wrong
+from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
 from radhar_cli.motion.skeleton import JOINTS
 
 HIP_JOINTS = ("right_hip_joint", "left_hip_joint")
 WANTED = (*JOINTS, *HIP_JOINTS)
 
-# Words of each joint, the better first, without side, prefix, case and punctuation.
+# Names of each joint, the best first, without side, prefix, case and punctuation.
 _BEGINS: dict[str, tuple[str, ...]] = {
     "torso": (
         *("thorax", "spine2", "spine1", "chest2", "upperchest", "chest", "spinechest"),
@@ -45,44 +45,53 @@ _ENDS: dict[str, tuple[str, ...]] = {
 _PREFIX = re.compile(r"^(?:.*:|bip\d+|mixamorig\d*)")
 
 
-def joint_numbers(file: MotionRecording, own: Mapping[str, str]) -> list[int | None]:
-    """Numbers in the file of the thirteen joints, then of the hip joints, None where it has none.
+def joint_numbers(file: MotionRecording, configured: Mapping[str, str]) -> list[int | None]:
+    """Numbers in the file of the thirteen joints, then of the hip joints.
 
-    `own` is {our name: the file's}, before the tables.
+    Args:
+        file: Recording whose joints have names of any common kind.
+        configured: {our name: the file's} by the config, which goes before the tables.
+
+    Returns:
+        A number for each of WANTED; None for a hip joint that the file does not have.
 
     Raises:
-        MotionFileError: one of the thirteen is not there.
+        MotionFileError: One of the thirteen is not there.
     """
     numbers = {_plain(name): n for n, name in reversed([*enumerate(file.names)])}
     table = _ENDS if file.at_bone_ends else _BEGINS
-    found: dict[str, int | None] = {}
+    chosen: dict[str, int | None] = {}
     for joint in WANTED:
-        if joint in own:
-            if own[joint] not in file.names:
-                hint = did_you_mean(own[joint], file.names, f"it has {_listed(file.names)}")
-                raise wrong(file.where, f"has no joint {own[joint]!r} (joints.{joint}); {hint}")
-            found[joint] = file.names.index(own[joint])
+        if joint in configured:
+            if configured[joint] not in file.names:
+                hint = did_you_mean(
+                    configured[joint], file.names, f"it has {_list_names(file.names)}"
+                )
+                raise motion_file_error(
+                    file.where, f"has no joint {configured[joint]!r} (joints.{joint}); {hint}"
+                )
+            chosen[joint] = file.names.index(configured[joint])
             continue
-        words = _written(joint, table)
-        found[joint] = next((numbers[word] for word in words if word in numbers), None)
+        possible = _possible_names(joint, table)
+        chosen[joint] = next((numbers[word] for word in possible if word in numbers), None)
     for side, joint in zip(("right", "left"), HIP_JOINTS, strict=True):
-        knee = found[f"{side}_knee"]
-        parent = None if knee is None or joint in own else file.parents[knee]
+        knee = chosen[f"{side}_knee"]
+        parent = None if knee is None or joint in configured else file.parents[knee]
         if parent is not None:
-            found[joint] = parent
-    missing = [joint for joint in JOINTS if found[joint] is None]
+            chosen[joint] = parent
+    missing = [joint for joint in JOINTS if chosen[joint] is None]
     if missing:
-        raise wrong(
+        raise motion_file_error(
             file.where,
             f"has no joint that is {' or '.join(missing)} by its name; it has "
-            f"{_listed(file.names)}; joints: {{{missing[0]}: NAME, ...}} of its class says which "
-            "these are (--joints FILE.yaml)",
+            f"{_list_names(file.names)}; joints: {{{missing[0]}: NAME, ...}} of its class says "
+            "which these are (--joints FILE.yaml)",
         )
-    return [found[joint] for joint in WANTED]
+    return [chosen[joint] for joint in WANTED]
 
 
-def _written(joint: str, table: Mapping[str, tuple[str, ...]]) -> list[str]:
-    """Every plain name that a joint may have."""
+def _possible_names(joint: str, table: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """Every plain name that a joint may have, the best first."""
     side, _, part = joint.partition("_")
     if part not in table:
         return list(table[joint])
@@ -91,10 +100,10 @@ def _written(joint: str, table: Mapping[str, tuple[str, ...]]) -> list[str]:
 
 
 def _plain(name: str) -> str:
-    """Lower case, without prefix and punctuation: `mixamorig:RightArm` is `rightarm`."""
+    """Name in lower case, without prefix and punctuation: `mixamorig:RightArm` is `rightarm`."""
     return re.sub(r"[^a-z0-9]", "", _PREFIX.sub("", name.lower()))
 
 
-def _listed(names: Sequence[str]) -> str:
+def _list_names(names: Sequence[str]) -> str:
     shown = ", ".join(name[:30] for name in names[:40])
     return f"{shown}, ..." if len(names) > 40 else shown

@@ -22,7 +22,7 @@ from radhar_cli.motion.files.recording import (
     MAX_FRAMES,
     MAX_JOINTS,
     RATES,
-    wrong,
+    motion_file_error,
 )
 
 MAX_NAMES_BYTES = 2**20
@@ -49,14 +49,16 @@ class Npz:
         return (None,) * len(self.names)
 
     def positions(self, joints: Sequence[int]) -> Float:
-        """Positions [frames, len(joints), 3]."""
+        """Positions [frames, len(joints), 3] of some joints."""
         points: Float = self.values[:, list(joints)].astype(float)
         bad = np.argwhere(~(np.abs(points) < 1e9))
         if bad.size:
             frame, joint, axis = bad[0].tolist()
             value = points[frame, joint, axis]
             name = self.names[joints[joint]]
-            raise wrong(self.place(frame), f"{name} {'xyz'[axis]} is {value}; should be a number")
+            raise motion_file_error(
+                self.place(frame), f"{name} {'xyz'[axis]} is {value}; should be a number"
+            )
         return points
 
     def place(self, frame: int) -> str:
@@ -64,52 +66,76 @@ class Npz:
 
 
 def read_npz(data: bytes, where: str) -> Npz:
-    """Read an npz file; a MotionFileError names the file, the array and what is missing or odd."""
+    """Read an npz file with `names`, `positions` and `rate`.
+
+    Args:
+        data: Bytes of the file.
+        where: Name of the file in messages.
+
+    Raises:
+        MotionFileError: Names the file, the array and what is missing or odd.
+    """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            names = _array(archive, "names", MAX_NAMES_BYTES, where)
-            rate = _array(archive, "rate", 1024, where)
-            positions = _array(archive, "positions", MAX_BYTES, where)
+            names = _read_array(archive, "names", MAX_NAMES_BYTES, where)
+            rate = _read_array(archive, "rate", 1024, where)
+            positions = _read_array(archive, "positions", MAX_BYTES, where)
     except _DAMAGE as error:
-        raise wrong(where, f"is not a complete npz file ({str(error)[:120]})") from None
+        raise motion_file_error(where, f"is not a complete npz file ({str(error)[:120]})") from None
     if names.dtype.kind not in "US" or names.ndim != 1 or not 0 < names.size <= MAX_JOINTS:
-        raise wrong(where, f"names should be 1 to {MAX_JOINTS} texts, not {_kind(names)}")
-    text = [n.decode("utf-8", "replace") if isinstance(n, bytes) else n for n in names.tolist()]
-    if any(len(name) > LONGEST_NAME for name in text):
-        raise wrong(where, f"names should have at most {LONGEST_NAME} characters each")
+        raise motion_file_error(
+            where, f"names should be 1 to {MAX_JOINTS} texts, not {_kind(names)}"
+        )
+    joint_names = [
+        n.decode("utf-8", "replace") if isinstance(n, bytes) else n for n in names.tolist()
+    ]
+    if any(len(name) > LONGEST_NAME for name in joint_names):
+        raise motion_file_error(where, f"names should have at most {LONGEST_NAME} characters each")
     if rate.size != 1 or rate.dtype.kind not in "iuf" or not RATES[0] <= rate.item() <= RATES[1]:
-        raise wrong(where, f"rate should be one number of {RATES[0]:g} to {RATES[1]:g} Hz")
-    if positions.dtype.kind not in "iuf" or positions.shape[1:] != (len(text), 3):
-        raise wrong(
-            where, f"positions should be numbers [frames, {len(text)}, 3], not {_kind(positions)}"
+        raise motion_file_error(
+            where, f"rate should be one number of {RATES[0]:g} to {RATES[1]:g} Hz"
+        )
+    if positions.dtype.kind not in "iuf" or positions.shape[1:] != (len(joint_names), 3):
+        raise motion_file_error(
+            where,
+            f"positions should be numbers [frames, {len(joint_names)}, 3], not {_kind(positions)}",
         )
     if not 0 < len(positions) <= MAX_FRAMES:
-        raise wrong(where, f"has {len(positions)} frames; should have 1 to {MAX_FRAMES}")
-    return Npz(where, tuple(text), float(rate.item()), positions)
+        raise motion_file_error(
+            where, f"has {len(positions)} frames; should have 1 to {MAX_FRAMES}"
+        )
+    return Npz(where, tuple(joint_names), float(rate.item()), positions)
 
 
 def _kind(array: NDArray[Any]) -> str:
     return f"{array.dtype} {list(array.shape)}"
 
 
-def _array(archive: zipfile.ZipFile, name: str, most: int, where: str) -> NDArray[Any]:
+def _read_array(archive: zipfile.ZipFile, name: str, max_bytes: int, where: str) -> NDArray[Any]:
+    """Read one array of numbers of at most `max_bytes`."""
     try:
         member = archive.getinfo(f"{name}.npy")
     except KeyError:
-        raise wrong(where, f"has no array {name!r}; should have names, positions, rate") from None
+        raise motion_file_error(
+            where, f"has no array {name!r}; should have names, positions, rate"
+        ) from None
     if member.compress_type not in _PACKED:
-        raise wrong(where, f"{name} is packed in another way than NumPy's")
-    if member.file_size > most:
-        raise wrong(where, f"{name} has {member.file_size} bytes; should have at most {most}")
+        raise motion_file_error(where, f"{name} is packed in another way than NumPy's")
+    if member.file_size > max_bytes:
+        raise motion_file_error(
+            where, f"{name} has {member.file_size} bytes; should have at most {max_bytes}"
+        )
     with archive.open(member) as file:
-        data = io.BytesIO(file.read(most))
+        data = io.BytesIO(file.read(max_bytes))
     try:
         version = np.lib.format.read_magic(data)
         if version not in ((1, 0), (2, 0)):
             raise ValueError(f"of version {version}")
-        form, old = np.lib.format, version == (1, 0)
-        head = form.read_array_header_1_0 if old else form.read_array_header_2_0
-        shape, fortran, dtype = head(data)
+        npy_format, is_version_1 = np.lib.format, version == (1, 0)
+        read_header = (
+            npy_format.read_array_header_1_0 if is_version_1 else npy_format.read_array_header_2_0
+        )
+        shape, fortran, dtype = read_header(data)
         if dtype.hasobject:
             raise ValueError("of Python objects, which are not read")
         content = data.read()
@@ -118,5 +144,5 @@ def _array(archive: zipfile.ZipFile, name: str, most: int, where: str) -> NDArra
         flat = np.frombuffer(content, dtype)
         return flat.reshape(shape, order="F" if fortran else "C")
     except (ValueError, TypeError, OverflowError, SyntaxError, MemoryError) as error:
-        first = str(error).splitlines()[0][:120] if str(error) else "damaged"
-        raise wrong(where, f"{name} is not an array of numbers ({first})") from None
+        reason = str(error).splitlines()[0][:120] if str(error) else "damaged"
+        raise motion_file_error(where, f"{name} is not an array of numbers ({reason})") from None

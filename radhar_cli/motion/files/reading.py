@@ -8,32 +8,35 @@ from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.amc import MAX_SKELETON, read_amc
 from radhar_cli.motion.files.bvh import read_bvh
 from radhar_cli.motion.files.npz import read_npz
-from radhar_cli.motion.files.recording import MAX_BYTES, MotionRecording, wrong
+from radhar_cli.motion.files.recording import MAX_BYTES, MotionRecording, motion_file_error
 from radhar_cli.untrusted import refuse_outside, regular_size
 
 SUFFIXES = (".bvh", ".amc", ".npz")
 
 
 class MotionBytes(NamedTuple):
-    """A motion file as it was read: an AMC with its skeleton."""
+    """Bytes of a motion file as it was read; with an AMC its skeleton."""
 
-    path: Path  # of it
-    data: bytes  # its bytes
-    skeleton: tuple[Path, bytes] | None  # (path, bytes) of the ASF
+    path: Path
+    data: bytes
+    skeleton: tuple[Path, bytes] | None  # path and bytes of the ASF
 
     @property
     def checksum(self) -> str:
-        """SHA-256 of the bytes, the skeleton's after them."""
+        """SHA-256 of the bytes, with the skeleton's after them."""
         digest = hashlib.sha256(self.data)
         if self.skeleton:
             digest.update(self.skeleton[1])
         return digest.hexdigest()
 
     def recording(self, where: str | None = None) -> MotionRecording:
-        """What is in it.
+        """Read the joints and frames.
+
+        Args:
+            where: Name of the file in messages; its path where it is None.
 
         Raises:
-            MotionFileError: names file, line and what is missing or odd.
+            MotionFileError: Names file, line and what is missing or odd.
         """
         where = where or str(self.path)
         if self.skeleton:
@@ -43,56 +46,66 @@ class MotionBytes(NamedTuple):
 
 
 def read_motion(path: Path, skeleton: Path | None = None) -> MotionBytes:
-    """Read a motion file; the skeleton of an AMC is found beside it.
+    """Read the bytes of a motion file.
+
+    Args:
+        path: The file: .bvh, .amc or .npz.
+        skeleton: ASF of an AMC; None looks for it beside the file.
 
     Raises:
-        MotionFileError: it cannot be read, is too large, or of no kind that we know.
+        MotionFileError: It cannot be read, is too large, or of no kind that we know.
+        FolderError: The skeleton is a link that leads elsewhere.
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         hint = "; name its .amc files" if suffix == ".asf" else ""
-        raise wrong(str(path), f"should be one of {', '.join(SUFFIXES)}{hint}")
-    data, found = _bytes(path, MAX_BYTES), None
+        raise motion_file_error(str(path), f"should be one of {', '.join(SUFFIXES)}{hint}")
+    data = _read_bytes(path, MAX_BYTES)
+    asf_bytes = None
     if suffix == ".amc":
-        asf = skeleton or skeleton_of(path)
+        asf = skeleton or find_skeleton(path)
         if asf.suffix.lower() != ".asf":
-            raise wrong(str(asf), "should be an .asf file")
-        found = (asf, _bytes(asf, MAX_SKELETON))
-    return MotionBytes(path, data, found)
+            raise motion_file_error(str(asf), "should be an .asf file")
+        asf_bytes = (asf, _read_bytes(asf, MAX_SKELETON))
+    return MotionBytes(path, data, asf_bytes)
 
 
-def skeleton_of(path: Path) -> Path:
-    """The ASF of an AMC: of the same name, CMU's `02.asf` of `02_01.amc`, or the folder's only one.
+def find_skeleton(path: Path) -> Path:
+    """Find the ASF of an AMC: of its name, CMU's `02.asf` of `02_01.amc`, or the folder's only one.
 
     Raises:
-        MotionFileError: there is none.
-        FolderError: it is a link that leads elsewhere.
+        MotionFileError: There is none.
+        FolderError: It is a link that leads elsewhere.
     """
     names = [f"{path.stem}.asf"]
     if "_" in path.stem:
         names.append(path.stem.rpartition("_")[0] + ".asf")
     try:
-        beside = sorted(one for one in path.parent.iterdir() if one.suffix.lower() == ".asf")
+        files_beside = sorted(
+            file for file in path.parent.iterdir() if file.suffix.lower() == ".asf"
+        )
     except OSError:
-        beside = []
-    named = [one for name in names for one in beside if one.name.lower() == name.lower()]
-    for candidate in named or (beside if len(beside) == 1 else []):
+        files_beside = []
+    matching = [
+        file for name in names for file in files_beside if file.name.lower() == name.lower()
+    ]
+    for candidate in matching or (files_beside if len(files_beside) == 1 else []):
         refuse_outside(candidate, path.parent)
         return candidate
-    wanted = " or ".join(names)
-    raise wrong(
+    expected = " or ".join(names)
+    raise motion_file_error(
         str(path),
-        f"needs its skeleton beside it, {wanted}; or name it: "
+        f"needs its skeleton beside it, {expected}; or name it: "
         "skeleton: FILE.asf of its class (--skeleton FILE.asf)",
     )
 
 
-def _bytes(path: Path, most: int) -> bytes:
+def _read_bytes(path: Path, max_bytes: int) -> bytes:
     try:
         size = regular_size(path)
-        if size > most:
-            raise wrong(str(path), f"is {size} bytes; should be at most {most}")
+        if size > max_bytes:
+            raise motion_file_error(str(path), f"is {size} bytes; should be at most {max_bytes}")
         with path.open("rb") as file:
-            return file.read(most)
+            return file.read(max_bytes)
     except OSError as error:
         raise MotionFileError(f"{path}: cannot be read ({error.strerror})") from None

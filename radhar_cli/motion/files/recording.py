@@ -16,16 +16,17 @@ RATES = (1.0, 10_000.0)  # frames per second
 
 
 class MotionRecording(Protocol):
-    """Joints over frames, as a file has them: its own units and axes.
+    """Joints over frames as a file has them, in its own units and axes.
 
     Attributes:
-        where: what messages call the file.
-        names: of the J joints.
-        parents: number of the joint that each hangs on, None for a root.
-        rest: positions [J, 3] of the skeleton without rotations; None where the file has none.
-        rate: frames per second; None where the file does not say.
-        unit: length of a file unit, m; None where the file does not say.
-        at_bone_ends: the joint of a name is where its bone ends, as in ASF; else where it begins.
+        where: Name of the file in messages.
+        names: Names of the J joints.
+        parents: Number of the joint that each one hangs on, None for a root.
+        rest: Positions [J, 3] of the skeleton without rotations; None where the file has none.
+        rate: Frames per second; None where the file does not say.
+        unit: Length of a file unit, m; None where the file does not say.
+        at_bone_ends: Whether the joint of a name is where its bone ends, as in ASF; else it is
+            where its bone begins.
     """
 
     @property
@@ -44,32 +45,36 @@ class MotionRecording(Protocol):
     def at_bone_ends(self) -> bool: ...
 
     def positions(self, joints: Sequence[int]) -> Float:
-        """Positions [frames, len(joints), 3] of some joints; MotionFileError of what is wrong."""
+        """Positions [frames, len(joints), 3] of some joints, in units of the file.
+
+        Raises:
+            MotionFileError: A frame cannot be read; the message names file and line.
+        """
         ...
 
     def place(self, frame: int) -> str:
-        """File and line, or frame, for messages."""
+        """Name of a frame in messages: file and line, or file and frame."""
         ...
 
 
-def wrong(where: str, what: str) -> MotionFileError:
-    """The error to raise: `where` is a file, or a file and a line."""
+def motion_file_error(where: str, what: str) -> MotionFileError:
+    """Error to raise about a file, or about a file and a line (`where`)."""
     return MotionFileError(f"{where}: {what}")
 
 
 def with_ancestors(joints: Sequence[int], parents: Sequence[int | None]) -> list[int]:
-    """The joints and all that they hang on, parents first."""
-    wanted: set[int] = set()
+    """Numbers of the joints and of all that they hang on, parents first."""
+    numbers: set[int] = set()
     for joint in joints:
-        at: int | None = joint
-        while at is not None and at not in wanted:
-            wanted.add(at)
-            at = parents[at]
-    return sorted(wanted)
+        ancestor: int | None = joint
+        while ancestor is not None and ancestor not in numbers:
+            numbers.add(ancestor)
+            ancestor = parents[ancestor]
+    return sorted(numbers)
 
 
 def turn(axes: Float, axis: int, degrees: Float) -> None:
-    """Turn local axes [3, 3, M] (columns) about their own x, y or z (0, 1, 2), in place."""
+    """Turn axes [3, 3, M] (columns) about their own x, y or z (0, 1, 2), angles [M], in place."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     i, j = (axis + 1) % 3, (axis + 2) % 3
     first = c * axes[:, i] + s * axes[:, j]
@@ -77,7 +82,7 @@ def turn(axes: Float, axis: int, degrees: Float) -> None:
     axes[:, i] = first
 
 
-def applied(axes: Float, vector: Float) -> Float:
-    """R v [3, M] of axes R [3, 3, M] and vectors v [3, 1 or M]."""
+def apply_axes(axes: Float, vector: Float) -> Float:
+    """Products R v [3, M] of axes R [3, 3, M] and vectors v [3, 1 or M]."""
     product: Float = np.einsum("rcm,cm->rm", axes, np.broadcast_to(vector, (3, axes.shape[2])))
     return product

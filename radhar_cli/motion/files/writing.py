@@ -31,7 +31,8 @@ _ARM = (("Arm", "shoulder"), ("ForeArm", "elbow"), ("Hand", "hand"))
 _LEG = (("UpLeg", "hip_joint"), ("Leg", "knee"), ("Foot", "ankle"))
 
 
-def _limbs() -> Iterator[_Node]:
+def _make_nodes() -> Iterator[_Node]:
+    """Nodes in the order of the file, parents first."""
     yield _Node("Hips", "hip", None, (0, 0, 0))
     yield _Node("Spine2", "torso", 0, (0, 1, 0))
     yield _Node("Head", "head", 1, (0, 1, 0))
@@ -46,15 +47,17 @@ def _limbs() -> Iterator[_Node]:
                 number += 1
 
 
-NODES = tuple(_limbs())
+NODES = tuple(_make_nodes())
 _NUMBERS = [(*JOINTS, *HIP_JOINTS).index(node.joint) for node in NODES]
 
 
 def bvh_text(positions: Float, rate: float) -> str:
-    """A BVH file of joints over frames; each link comes back to 1e-7 m.
+    """Write a BVH file of joints over frames; each link comes back to 1e-7 m.
 
-    Positions [frames, 15, 3], m: the thirteen joints, then right and left hip joint; x ahead,
-    y left, z up. `rate` is frames per second.
+    Args:
+        positions: The thirteen joints, then right and left hip joint [frames, 15, 3], m; x ahead, y
+            left, z up.
+        rate: Frames per second.
     """
     p = PER_METRE * positions[:, _NUMBERS][..., [1, 2, 0]]  # x left, y up, z ahead
     parents = [node.parent for node in NODES]
@@ -67,32 +70,32 @@ def bvh_text(positions: Float, rate: float) -> str:
     channels: list[list[str]] = []
     axes: list[Float] = []
     for number, parent in enumerate(parents):
-        outer = np.tile(np.eye(3), (len(p), 1, 1)) if parent is None else axes[parent]
-        children = [n for n, one in enumerate(parents) if one == number]
-        axes.append(_turned(outer, rest[children], links[:, children]))
-        local = p[:, number] if parent is None else _inside(outer, links[:, number])
+        parent_axes = np.tile(np.eye(3), (len(p), 1, 1)) if parent is None else axes[parent]
+        children = [n for n, other_parent in enumerate(parents) if other_parent == number]
+        axes.append(_fit_axes(parent_axes, rest[children], links[:, children]))
+        local = p[:, number] if parent is None else _to_local(parent_axes, links[:, number])
         moves = parent is None or np.ptp(local, axis=0).max() > STIFF * PER_METRE
         if moves:
             columns.append(local)
         else:
             rest[number] = local.mean(axis=0)
         if children or moves:
-            columns.append(_euler(outer, axes[number]))
+            columns.append(_euler_angles(parent_axes, axes[number]))
         names = ["Xposition", "Yposition", "Zposition"] if moves else []
         channels.append(names + [f"{a}rotation" for a in _EULER] if children or moves else [])
     rows = np.concatenate(columns, axis=1)
-    head = "\n".join(["HIERARCHY", *_tree(0, rest, channels, ""), "MOTION"])
+    head = "\n".join(["HIERARCHY", *_hierarchy_lines(0, rest, channels, ""), "MOTION"])
     lines = "\n".join(" ".join(f"{value:.7f}" for value in row) for row in rows.tolist())
     return f"{head}\nFrames: {len(p)}\nFrame Time: {1 / rate:.10f}\n{lines}\n"
 
 
-def _inside(axes: Float, vectors: Float) -> Float:
-    """R^T v [frames, 3] of axes [frames, 3, 3]."""
+def _to_local(axes: Float, vectors: Float) -> Float:
+    """Vectors R^T v [frames, 3] in axes [frames, 3, 3]."""
     local: Float = np.einsum("frc,fr->fc", axes, vectors)
     return local
 
 
-def _turned(outer: Float, rest: Float, links: Float) -> Float:
+def _fit_axes(outer: Float, rest: Float, links: Float) -> Float:
     """Axes [frames, 3, 3] that point `rest` [children, 3] along `links` [frames, children, 3]."""
     from scipy.spatial.transform import Rotation
 
@@ -114,24 +117,27 @@ def _turned(outer: Float, rest: Float, links: Float) -> Float:
     return fitted
 
 
-def _euler(outer: Float, axes: Float) -> Float:
-    """Angles [frames, 3] in degrees, of the channels in their order."""
+def _euler_angles(outer: Float, axes: Float) -> Float:
+    """Angles [frames, 3] in degrees, of the rotation channels in their order."""
     from scipy.spatial.transform import Rotation
 
     inner = np.einsum("frc,frd->fcd", outer, axes)
     return Rotation.from_matrix(inner).as_euler(_EULER, degrees=True)
 
 
-def _tree(number: int, rest: Float, channels: list[list[str]], indent: str) -> Iterator[str]:
+def _hierarchy_lines(
+    number: int, rest: Float, channels: list[list[str]], indent: str
+) -> Iterator[str]:
+    """Lines of the hierarchy from one node on."""
     node, names = NODES[number], channels[number]
     inner = indent + "  "
     yield f"{indent}{'ROOT' if node.parent is None else 'JOINT'} {node.name}"
     yield indent + "{"
     yield f"{inner}OFFSET {' '.join(f'{value:.9f}' for value in rest[number].tolist())}"
     yield f"{inner}CHANNELS {len(names)} {' '.join(names)}".rstrip()
-    children = [n for n, one in enumerate(NODES) if one.parent == number]
+    children = [n for n, other in enumerate(NODES) if other.parent == number]
     for child in children:
-        yield from _tree(child, rest, channels, inner)
+        yield from _hierarchy_lines(child, rest, channels, inner)
     if not children:
         yield from (f"{inner}End Site", inner + "{", f"{inner}  OFFSET 0 0 0", inner + "}")
     yield indent + "}"

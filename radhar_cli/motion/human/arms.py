@@ -31,9 +31,7 @@ def arm_directions(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, F
 def raised_arm_directions(
     trunk: Axes, shoulder: Float, elbow: Float, outwards: Float
 ) -> tuple[Float, Float]:
-    """Unit vectors of `arm_directions` [3, 2, M] that are raised outwards too, by angles [2, M],
-    rad.
-    """
+    """Unit vectors [3, 2, M] of `arm_directions` raised outwards by angles [2, M], rad."""
     upper, fore = arm_directions(trunk, shoulder, elbow)
     beside = SIDES * trunk.left[:, None]
     return (
@@ -87,8 +85,7 @@ def arm_directions_near_floor(
     share: Float,
     elbows: Float = UPWARDS,
 ) -> tuple[Float, Float]:
-    """Unit vectors of arms between hanging (share 0) and hands on the floor (1), as far as they
-    reach.
+    """Unit vectors of arms between hanging (share 0) and hands on the floor (1), if they reach.
 
     A hand is on the line from shoulder to floor, at a distance below both the floor's and the
     stretched arm's: -ln(exp(-k d) + exp(-k d_max))/k.

@@ -18,16 +18,15 @@ Points = tuple[tuple[float, float], ...]
 
 
 def cycle_duration(rv: float) -> float:
-    """Duration T = Rc/Rv of a stride (s); the relative stride is Rc = 1.346 sqrt(Rv), a stride v T
-    = Rc h.
+    """Duration of a stride, s: T = Rc/Rv with the relative stride Rc = 1.346 sqrt(Rv).
+
+    A stride is v T = Rc h long.
     """
     return 1.346 / sqrt(rv)
 
 
 def support(duration: float) -> float:
-    """Fraction of a stride (duration in s) at which the foot leaves the floor: (0.752 T - 0.143
-    s)/T.
-    """
+    """Fraction of a stride of T s at which the foot leaves the floor: (0.752 T - 0.143 s)/T."""
     return 0.752 - 0.143 / duration
 
 
@@ -75,9 +74,7 @@ def thorax_yaw(rv: float) -> Float:
 
 
 def shoulder(rv: float, swing: float) -> Float:
-    """Coefficients [17] of the right shoulder's flexion, rad; `swing` scales the paper's
-    amplitude.
-    """
+    """Coefficients [17] of the right shoulder's flexion, rad; `swing` scales its amplitude."""
     a = radians(9.88 * rv) * swing
     c = harmonic(1, -a)
     c[0] = radians(3) - 0.5 * a

@@ -156,9 +156,7 @@ class Exercising(Striking[Exercise]):
 
     @cached_property
     def _hop(self) -> "tuple[BPoly[np.float64], BPoly[np.float64]] | None":
-        """Curves over time of the heights of feet and hip above their course, m; None without
-        hops.
-        """
+        """Curves over time of feet and hip above their course, m; None without hops."""
         if not self._flights:
             return None
         feet, hip = list[Knot](), list[Knot]()

@@ -50,9 +50,7 @@ UNDONE = (0.35, 0.65), (0.0, 0.75)
 
 @dataclass(frozen=True)
 class FallFromSeat:
-    """Falls off a seat to the floor within about `duration` s, after half of a `rising` of so
-    many s.
-    """
+    """Falls off a seat to the floor within about `duration` s, first rising for `rising` s."""
 
     duration: float = 1.0
     ahead: bool = True  # or backwards: off the seat's edge, on rising behind the feet

@@ -85,9 +85,7 @@ class Sway:
 
 @dataclass(frozen=True)
 class Breath:
-    """Breathing and pulse as a displacement of the chest: amplitudes in m, rates in Hz, phases
-    in rad.
-    """
+    """Breathing and pulse as a displacement of the chest; in m, Hz and rad."""
 
     chest: float = 0.004
     breathing: float = 0.25

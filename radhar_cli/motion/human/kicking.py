@@ -80,9 +80,7 @@ class Kicking(Striking[Kick]):
 
     @cached_property
     def course(self) -> Course:
-        """Course of the right leg's angles beyond the stance, of the trunk, and of both legs
-        standing.
-        """
+        """Course of the right leg beyond the stance, the trunk, and both standing legs, rad."""
         kick, rest = self.strikes, self.person.rest_lean
         steps, stance = (
             list(self._strike_steps),

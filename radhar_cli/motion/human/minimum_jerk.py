@@ -143,9 +143,7 @@ class Course:
         return steps, self.initial + np.pad(after, ((0, 0), (1, 0)))
 
     def _values_from_few_steps(self, t: Float) -> Float:
-        """Values [C, M] at times t [M] (s), in a time that does not grow with the number of
-        steps.
-        """
+        """Values [C, M] at times t [M] (s), from the few steps that may be under way."""
         steps, after = self._in_order
         earliest = steps.earliest(t)
         values = after[:, earliest]
@@ -164,9 +162,7 @@ class Course:
 
 @dataclass(frozen=True)
 class Lags:
-    """How far joints lead and lag: each channel moves in a part of its own of the time of a
-    step.
-    """
+    """How far joints lead and lag: each channel moves in its own part of a step's time."""
 
     # by which share of its length each step is shorter; 0 moves all joints at the same time
     share: float = 0.0

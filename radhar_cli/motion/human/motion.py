@@ -123,9 +123,7 @@ class HumanMotion:
         return self._gather(t, len(JOINTS), lambda pose, p: pose.joints(self.person, p))
 
     def landmark_positions(self, t: Float) -> Float:
-        """Positions [3, 15, M] (m) of the joints, then of the right and left hip joint, at times t
-        [M].
-        """
+        """Positions [3, 15, M] (m) of the joints, then of the right and left hip joint."""
 
         def fill(pose: Pose, p: Float) -> None:
             pose.joints(self.person, p)
@@ -144,9 +142,7 @@ class HumanMotion:
         return skeleton.cross_sections(height, weight)[:, None]
 
     def hip_joints(self, t: Float) -> Float:
-        """Positions [3, 2, M] (m) of the right and left hip joint, from which the thighs go to the
-        knees.
-        """
+        """Positions [3, 2, M] (m) of the right and left hip joint, where the thighs begin."""
         return self._gather(t, 2, lambda pose, p: np.copyto(p, pose.hip_joints))
 
     def _gather(self, t: Float, count: int, fill: Callable[[Pose, Float], None]) -> Float:
@@ -194,9 +190,7 @@ class HumanMotion:
 
 
 def _join_overlapping(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Place], Part]:
-    """Make a part and the one that begins before it ends aware of each other; at least one is a
-    walk.
-    """
+    """Make a part and the one that begins before it ends aware of each other; one is a walk."""
     last, place = before
     if part.begin >= last.begin:
         if isinstance(part, Walking) and isinstance(last, Planted):

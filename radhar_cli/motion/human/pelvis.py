@@ -29,11 +29,11 @@ def hip_height(
     ankles: Float,
     softness: Float | float,
 ) -> Float:
-    """Height of the hip point [M] (m) that no leg is too short for: softmin(z_stand, z_right,
-    z_left).
+    """Height of the hip point [M] (m) that no leg is too short for.
 
-    z_i = z_ankle + sqrt(D^2 - rho^2) - z of the hip joint, rho the horizontal distance from hip
-    joint to ankle; softmin = -ln(sum exp(-k z))/k is below the least, so the reach D holds exactly.
+    It is softmin(z_stand, z_right, z_left), z_i = z_ankle + sqrt(D^2 - rho^2) - z of the hip joint,
+    rho the horizontal distance from hip joint to ankle; softmin = -ln(sum exp(-k z))/k is below the
+    least, so the reach D holds exactly.
 
     Args:
         person: Has the reach D.
@@ -74,8 +74,7 @@ def hip_point_with_sway(
     softness: Float | float,
     sway: Float,
 ) -> Float:
-    """Hip point [3, M] (m) of a body that sways over its ankles, at a height that its legs can
-    reach.
+    """Hip point [3, M] (m) of a body that sways over its ankles, at a height its legs can reach.
 
     At rest the body turns about its ankles as a whole; the soft minimum is not quite the circle on
     which the hip is then, so the difference between the two is added.

@@ -86,7 +86,7 @@ class Physique:
 
     @cached_property
     def rest_height(self) -> float:
-        """Height of the hip at rest, m: soft minimum of `tallest` and, twice, of a leg at full
+        """Height of the hip at rest, m: soft minimum of `tallest` and of both legs at full
         reach.
         """
         k, stretched = self.softness, self.ankle + self.reach

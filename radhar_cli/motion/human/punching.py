@@ -26,9 +26,7 @@ ENTRY = {"right_foot": (0.0, 0.6), "left_foot": (0.4, 0.6), "guard": (0.0, 1.0)}
 
 @dataclass(frozen=True)
 class Punch:
-    """Punches in turn, right and left, for `duration` s; lengths in m at a stature of 1.75 m,
-    angles in rad.
-    """
+    """Punches in turn, right and left, for `duration` s; lengths in m for 1.75 m, angles in rad."""
 
     duration: float = inf
     frequency: float = 0.7  # of a right and a left punch together, Hz
@@ -120,9 +118,7 @@ class Punching(Striking[Punch]):
         return Pose(hip, trunk, joints, knees, ankles, *arms, idle.breath)
 
     def _ankles(self, feet: Float) -> Float:
-        """Ankles [3, 2, M] (m) of feet that are shares [2, M] of the way from rest to their
-        stance.
-        """
+        """Ankles [3, 2, M] (m) of feet that have gone shares [2, M] of the way to their stance."""
         scale = self.person.stature / REFERENCE_STATURE
         ahead, beside = scale * self.strikes.stance[0], scale * self.strikes.stance[1]
         y = SIDES * (self.person.hip + (beside - self.person.hip) * feet)

@@ -75,9 +75,7 @@ S = TypeVar("S", bound=Strikes)
 
 @dataclass(frozen=True)
 class Striking(Generic[S]):
-    """The `part.Part` of a person who strikes; subclasses have the steps of the blows and the
-    pose.
-    """
+    """The `part.Part` of a person who strikes; subclasses have the blows and the pose."""
 
     person: Physique
     strikes: S
@@ -119,9 +117,7 @@ class Striking(Generic[S]):
     def _stance_steps(
         self, channel: str, change: float, delay: float = 0.0, share: float = 1.0
     ) -> list[Step]:
-        """Steps by which the stance is taken and left, each `delay` late and for a `share` of the
-        entry.
-        """
+        """Steps that take and leave the stance, `delay` late and within a `share` of the entry."""
         entry = self.strikes.entry
         steps = []
         if self.strikes.from_rest:

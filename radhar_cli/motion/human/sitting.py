@@ -90,9 +90,7 @@ class StandUp:
 
 @dataclass(frozen=True)
 class SitDown:
-    """Sits down from standing within `duration` s, then leans back against the chair if it
-    reclines.
-    """
+    """Sits down from standing within `duration` s, then leans back if the seat reclines."""
 
     duration: float = 2.0
     seat: Seat = field(default_factory=Seat)

@@ -76,9 +76,7 @@ class Stepping:
 
     @cached_property
     def course(self) -> Course:
-        """Course of the body's share of the way, of how far it is upset, and of each step's
-        share.
-        """
+        """Course of the body's share of the way, its upset, and the share of each step."""
         slot = self.step.duration / self.step.steps
         channels = [f"step {n}" for n in range(self.step.steps)]
         steps = [

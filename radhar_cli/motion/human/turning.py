@@ -64,9 +64,7 @@ class Turning:
 
     @cached_property
     def course(self) -> Course:
-        """Course of the turning's share of its amplitude, and of each turn's size over the usual
-        one.
-        """
+        """Course of the turning's amplitude, 0 to 1, and of each turn's size over the usual one."""
         entry, sizes = self.turn.entry, self.turn.sizes
         steps = []
         if self.turn.from_rest:
@@ -88,9 +86,7 @@ class Turning:
         return starts
 
     def _cycles(self, t: Float) -> Float:
-        """Turns since the beginning at times t [M]; the frequency changes smoothly from each to the
-        next.
-        """
+        """Turns since the beginning [M] at times t [M], s; their frequency changes smoothly."""
         f, paces, starts = self.turn.frequency, self.turn.paces, self._starts
         rates = f / np.array((*paces[: starts.size + 1],) or (1.0,))
         if not f or rates.size == 1:

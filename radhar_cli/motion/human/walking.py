@@ -176,9 +176,7 @@ class Walking:
         return x
 
     def _position_at(self, s: Float) -> tuple[Float, Float, Float | None]:
-        """Where a walker is who has gone s [M] (m): x, y (m), and the heading (rad) unless it is
-        0.
-        """
+        """Position x, y (m) and heading (rad), None for 0, of a walker who has gone s [M], m."""
         if not self._turn_starts.size:
             return s, np.zeros_like(s), None
         assert self.gait.lane is not None
@@ -259,9 +257,7 @@ class Walking:
 
     @cached_property
     def _jitter(self) -> Course | None:
-        """Course of the phase gained from stride to stride and of a trip's upset; None without
-        both.
-        """
+        """Course of the phase gained by each stride and of a trip's upset, if there are any."""
         if not self.gait.jitter and not self.gait.trip:
             return None
         gains = np.diff(self.gait.jitter, prepend=0.0)
@@ -313,9 +309,7 @@ class Walking:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants (s) of the feet's events, and where ramps, strides and half turns begin and
-        end.
-        """
+        """Instants (s) of the feet's events, and both ends of ramps, strides and half turns."""
         ends = [track.breakpoints for track in self._foot_tracks]
         if self.from_rest:
             ends.append(np.array([self.begin, self.begin + self.start]))

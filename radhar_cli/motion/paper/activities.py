@@ -19,19 +19,20 @@ LYING_HEIGHT = 0.15
 
 @dataclass(frozen=True)
 class PaperGait:
-    """How fast and how far the limbs swing: Hz, rad, m/s."""
+    """How fast and how far the limbs of the paper's model swing."""
 
-    frequency: float
+    frequency: float  # Hz
+    # thigh, calf, arm: amplitudes of the joint angles, rad
     thigh: float
     calf: float
     arm: float
-    turn: float
-    speed: float
+    turn: float  # amplitude of the body's turn in S7, rad
+    speed: float  # m/s
 
 
 @dataclass(frozen=True)
 class Timing:
-    """When phases begin and how long they last, all in s."""
+    """When the phases of an activity begin and how long they last, all in s."""
 
     seat_start: float
     seat_duration: float
@@ -48,7 +49,7 @@ class Timing:
 class Posture:
     """What an activity asks of the body at times t [M]."""
 
-    # {joint name: theta [M]} in rad; joints left out do not turn
+    # {joint name: theta [M]} in rad; joints that are not named do not turn
     angles: dict[str, Float] = field(default_factory=dict)
     travelled: Float | float = 0.0  # path of the torso along the motion angle [M], m
     seated: Float | float = 0.0  # fraction of the seat taken, 0 standing, 1 seated [M]
@@ -78,7 +79,7 @@ def _kicking(t: Float, gait: PaperGait, timing: Timing) -> Posture:
 
 
 def _grabbing(t: Float, gait: PaperGait, timing: Timing) -> Posture:
-    """S4: the hip turns back by as much as the torso bends, so the feet stay planted."""
+    """Posture of S4: the hip turns back by as much as the torso bends, so the feet stay planted."""
     bow = 1 - np.cos(2 * pi * gait.frequency * t)
     return Posture(
         angles={
@@ -96,7 +97,7 @@ def _body_rotating(t: Float, gait: PaperGait, timing: Timing) -> Posture:
 
 
 def _swing(t: Float, gait: PaperGait, strength: Float | float) -> dict[str, Float]:
-    """Angles of S8, t counted from the start of the gait, scaled by `strength`."""
+    """Joint angles {joint: [M]} of S8, rad; t [M] counts from the start of the gait."""
     phase = 2 * pi * gait.frequency * t
     thigh = strength * gait.thigh * np.sin(phase)
     calf = strength * gait.calf * np.sin(phase + pi / 4)
@@ -112,7 +113,7 @@ def _swing(t: Float, gait: PaperGait, strength: Float | float) -> dict[str, Floa
 
 
 def _walking(t: Float, gait: PaperGait, timing: Timing) -> Posture:
-    """S8."""
+    """Posture of S8: all limbs swing and the torso goes on at the same speed."""
     return Posture(angles=_swing(t, gait, 1.0), travelled=gait.speed * t)
 
 
@@ -123,7 +124,7 @@ Phases: TypeAlias = Callable[[Timing], tuple[tuple[float, str], ...]]
 
 @dataclass(frozen=True)
 class PaperActivity:
-    """How the paper moves a body in one activity."""
+    """Posture, phases and ramps of one activity in the paper's model."""
 
     posture: Postures  # what it asks of the body at times t [M] (s)
     phases: Phases  # (start in s, name) of the movements within it (`motion.phases.PHASES`)
@@ -132,26 +133,26 @@ class PaperActivity:
 
     def breakpoints(self, timing: Timing) -> tuple[float, ...]:
         """Instants (s) at which the acceleration, or more, jumps: both ends of every ramp."""
-        ends = {at for start, length in self.ramps(timing) for at in (start, start + length)}
+        ends = {end for start, length in self.ramps(timing) for end in (start, start + length)}
         return tuple(sorted(ends))
 
     def highest_frequency(self, gait: PaperGait, timing: Timing) -> float:
-        """Fundamental (Hz) of the fastest motion: the gait or the shortest ramp."""
+        """Fundamental of the fastest motion, Hz: the gait or the shortest ramp."""
         ramps = [0.5 / length for _, length in self.ramps(timing) if length > 0]
         return max([0.0, *ramps, *([gait.frequency] if self.swings else [])])
 
 
-def _repeated(posture: Postures, phase: str, swings: bool = True) -> PaperActivity:
-    """S1 to S4, S7, S8: all the time the same."""
+def _repeating_activity(posture: Postures, phase: str, swings: bool = True) -> PaperActivity:
+    """S1 to S4, S7 and S8, in which the body does the same all the time."""
     return PaperActivity(posture, lambda timing: ((-inf, phase),), swings=swings)
 
 
-def _on_seat(leaves: bool, before: str, moving: str, after: str) -> PaperActivity:
-    """S5, S6."""
+def _seat_activity(leaves: bool, before: str, moving: str, after: str) -> PaperActivity:
+    """S5 and S6, in which the body takes a seat or leaves it."""
 
     def posture(t: Float, gait: PaperGait, timing: Timing) -> Posture:
-        taken = progress(t, timing.seat_start, timing.seat_duration)
-        return Posture(seated=1 - taken if leaves else taken)
+        share = progress(t, timing.seat_start, timing.seat_duration)
+        return Posture(seated=1 - share if leaves else share)
 
     def phases(timing: Timing) -> tuple[tuple[float, str], ...]:
         start, end = timing.seat_start, timing.seat_start + timing.seat_duration
@@ -160,15 +161,15 @@ def _on_seat(leaves: bool, before: str, moving: str, after: str) -> PaperActivit
     return PaperActivity(posture, phases, lambda t: ((t.seat_start, t.seat_duration),))
 
 
-def _rising(down: Callable[[Float], Posture], before: str, moving: str) -> PaperActivity:
-    """S9, S11: from the seat or the floor into a gait whose time and ramp start at `walk_start`."""
+def _rising_activity(down: Callable[[Float], Posture], before: str, moving: str) -> PaperActivity:
+    """S9 and S11: up from seat or floor into a gait whose time and ramp start at `walk_start`."""
 
     def posture(t: Float, gait: PaperGait, timing: Timing) -> Posture:
-        now = down(1 - progress(t, timing.rise_start, timing.rise_duration))
-        on = progress(t, timing.walk_start, timing.blend)
-        now.angles = _swing(t - timing.walk_start, gait, on)
-        now.travelled = gait.speed * progress_integral(t, timing.walk_start, timing.blend)
-        return now
+        body = down(1 - progress(t, timing.rise_start, timing.rise_duration))
+        share = progress(t, timing.walk_start, timing.blend)
+        body.angles = _swing(t - timing.walk_start, gait, share)
+        body.travelled = gait.speed * progress_integral(t, timing.walk_start, timing.blend)
+        return body
 
     def phases(timing: Timing) -> tuple[tuple[float, str], ...]:
         risen = timing.rise_start + timing.rise_duration
@@ -181,17 +182,17 @@ def _rising(down: Callable[[Float], Posture], before: str, moving: str) -> Paper
     return PaperActivity(posture, phases, ramps, swings=True)
 
 
-def _stopping(
+def _stopping_activity(
     down: Callable[[Float], Posture], takes: Callable[[Timing], float], moving: str, after: str
 ) -> PaperActivity:
-    """S10, S12: a gait that fades out from `walk_stop` on, onto the seat or the floor."""
+    """S10 and S12: a gait that fades out from `walk_stop` on, onto the seat or the floor."""
 
     def posture(t: Float, gait: PaperGait, timing: Timing) -> Posture:
-        now = down(progress(t, timing.walk_stop, takes(timing)))
-        off = progress(t, timing.walk_stop, timing.blend)
-        now.angles = _swing(t, gait, 1 - off)
-        now.travelled = gait.speed * (t - progress_integral(t, timing.walk_stop, timing.blend))
-        return now
+        body = down(progress(t, timing.walk_stop, takes(timing)))
+        share = progress(t, timing.walk_stop, timing.blend)
+        body.angles = _swing(t, gait, 1 - share)
+        body.travelled = gait.speed * (t - progress_integral(t, timing.walk_stop, timing.blend))
+        return body
 
     def phases(timing: Timing) -> tuple[tuple[float, str], ...]:
         end = timing.walk_stop + max(takes(timing), timing.blend)
@@ -212,20 +213,20 @@ def _lying(share: Float) -> Posture:
 
 
 PAPER_ACTIVITIES: dict[str, PaperActivity] = {
-    "stationary": _repeated(lambda *_: Posture(), "standing", swings=False),
-    "punching": _repeated(_punching, "punching"),
-    "kicking": _repeated(_kicking, "kicking"),
-    "grabbing": _repeated(_grabbing, "picking up"),
-    "sitting_down": _on_seat(False, "standing", "sitting down", "seated"),
-    "standing_up": _on_seat(True, "seated", "standing up", "standing"),
-    "body_rotating": _repeated(_body_rotating, "turning"),
-    "walking": _repeated(_walking, "walking"),
-    "sitting_to_walking": _rising(_seated, "seated", "standing up"),
-    "walking_to_sitting": _stopping(
+    "stationary": _repeating_activity(lambda *_: Posture(), "standing", swings=False),
+    "punching": _repeating_activity(_punching, "punching"),
+    "kicking": _repeating_activity(_kicking, "kicking"),
+    "grabbing": _repeating_activity(_grabbing, "picking up"),
+    "sitting_down": _seat_activity(False, "standing", "sitting down", "seated"),
+    "standing_up": _seat_activity(True, "seated", "standing up", "standing"),
+    "body_rotating": _repeating_activity(_body_rotating, "turning"),
+    "walking": _repeating_activity(_walking, "walking"),
+    "sitting_to_walking": _rising_activity(_seated, "seated", "standing up"),
+    "walking_to_sitting": _stopping_activity(
         _seated, lambda timing: timing.sit_duration, "sitting down", "seated"
     ),
-    "falling_to_walking": _rising(_lying, "lying", "getting up"),
-    "walking_to_falling": _stopping(
+    "falling_to_walking": _rising_activity(_lying, "lying", "getting up"),
+    "walking_to_falling": _stopping_activity(
         _lying, lambda timing: timing.fall_duration, "falling", "lying"
     ),
 }

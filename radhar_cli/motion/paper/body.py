@@ -20,14 +20,13 @@ from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO
 
 @dataclass(frozen=True)
 class PaperBody:
-    """A person performing one activity as the paper has it: a `Motion`."""
+    """A `Motion` of a person who performs one activity as the paper has it."""
 
     activity: str  # slug of the activity
     height: float  # stature, m
     weight: float  # kg
     start: tuple[float, float]  # where the torso stands, (range, cross-range), m
     angle: float  # motion angle, rad; 0 walks away from the radar
-    # gait, timing: how and when the limbs move
     gait: PaperGait
     timing: Timing
 
@@ -36,7 +35,7 @@ class PaperBody:
 
     @cached_property
     def links(self) -> Float:
-        """Vectors [13, 3] (m) from the joint that each one hangs on."""
+        """Vectors [13, 3] (m) to each joint from the one that it hangs on."""
         return skeleton.links(self.height)
 
     @property
@@ -51,7 +50,7 @@ class PaperBody:
 
     @property
     def phases(self) -> tuple[tuple[float, str], ...]:
-        """(start in s, name) of the movements of S9 to S12."""
+        """(start in s, name) of the activity's movements."""
         return self._record.phases(self.timing)
 
     @property
@@ -62,7 +61,7 @@ class PaperBody:
         return self._record.posture(t, self.gait, self.timing)
 
     def cross_sections(self, t: Float) -> Float:
-        """RCS [13, 1], m^2: the same from everywhere, at all times."""
+        """RCS of the joints [13, 1] (m^2): the same from everywhere, at all times."""
         return skeleton.cross_sections(self.height, self.weight)[:, None]
 
     def torso(self, t: Float) -> Float:
@@ -71,48 +70,52 @@ class PaperBody:
 
     def positions(self, t: Float) -> Float:
         """Positions [3, 13, M] (m) of all scatterers at times t [M] (s)."""
-        now = self._posture(t)
-        if np.any(now.seated):
-            bend = np.pi / 2 * np.asarray(now.seated)
+        posture = self._posture(t)
+        if np.any(posture.seated):
+            bend = np.pi / 2 * np.asarray(posture.seated)
             for side in ("right", "left"):
                 for joint, sign in ((f"{side}_knee", -1), (f"{side}_ankle", 1)):
-                    now.angles[joint] = np.asarray(now.angles.get(joint, 0.0)) + sign * bend
+                    posture.angles[joint] = np.asarray(posture.angles.get(joint, 0.0)) + sign * bend
         p = np.empty((3, len(JOINTS), t.size))
-        p[:, TORSO] = self._torso(now, t.size)
-        forward, sideways = self._relative(now, p)
-        yaw = self.angle + now.twist
+        p[:, TORSO] = self._torso(posture, t.size)
+        forward, sideways = self._relative(posture, p)
+        yaw = self.angle + posture.twist
         cos, sin = np.cos(yaw), np.sin(yaw)
         p[0] = p[0, TORSO] + cos * forward - sin * sideways
         p[1] = p[1, TORSO] + sin * forward + cos * sideways
         return p
 
-    def _torso(self, now: Posture, count: int) -> Float:
-        """Torso track [3, M]: travel and seat along the heading, seat and fall in height."""
+    def _torso(self, posture: Posture, count: int) -> Float:
+        """Torso track [3, count] (m): travel and seat along the heading, seat and fall in z."""
         thigh = skeleton.thigh_length(self.height)
-        bend = np.pi / 2 * now.seated
-        along = now.travelled - thigh * np.sin(bend)
+        bend = np.pi / 2 * posture.seated
+        along = posture.travelled - thigh * np.sin(bend)
         standing = skeleton.standing_height(self.height)
         track = np.empty((3, count))
         track[0] = self.start[0] + np.cos(self.angle) * along
         track[1] = self.start[1] + np.sin(self.angle) * along
-        track[2] = standing + (LYING_HEIGHT - standing) * now.lying - thigh * (1 - np.cos(bend))
+        track[2] = standing + (LYING_HEIGHT - standing) * posture.lying - thigh * (1 - np.cos(bend))
         return track
 
-    def _relative(self, now: Posture, p: Float) -> tuple[Float, Float]:
-        """Fill the heights p[2]; return offsets from the torso ahead [13, M] and aside [13, 1]."""
+    def _relative(self, posture: Posture, p: Float) -> tuple[Float, Float]:
+        """Fill in the heights p[2] of all joints.
+
+        Returns:
+            Offsets from the torso ahead [13, M] and aside [13, 1], m.
+        """
         count = p.shape[2]
         ahead = np.zeros((len(JOINTS), count))
         aside = np.zeros((len(JOINTS), 1))
-        angle = now.pitch + now.angles.get(JOINTS[TORSO], 0.0)
+        angle = posture.pitch + posture.angles.get(JOINTS[TORSO], 0.0)
         turned = [(angle, np.cos(angle), np.sin(angle))]
         for joint, parent in enumerate(PARENTS):
             if parent is None:
                 continue
             x, y, z = self.links[joint]
             angle, cos, sin = turned[parent]
-            own = now.angles.get(JOINTS[joint])
-            if own is not None:
-                angle = angle + own
+            joint_angle = posture.angles.get(JOINTS[joint])
+            if joint_angle is not None:
+                angle = angle + joint_angle
                 cos, sin = np.cos(angle), np.sin(angle)
             turned.append((angle, cos, sin))
             ahead[joint] = ahead[parent] + (x * cos + z * sin)

@@ -6,9 +6,14 @@ from radhar_cli.arrays import Float
 
 
 def progress(t: Float, start: float, duration: float) -> Float:
-    """P(t; start, duration) = (1 - cos(pi clip((t - start)/duration, 0, 1)))/2 [...], times in s.
+    """Raised-cosine progress P = (1 - cos(pi clip((t - start)/duration, 0, 1)))/2 [...].
 
     A duration of 0 is a step, on at t >= start (docs/physics/model.md, Activities).
+
+    Args:
+        t: Times [...], s.
+        start: When the progress begins, s.
+        duration: Time that it takes, s.
     """
     if duration == 0:
         return (t >= start).astype(float)
@@ -17,9 +22,10 @@ def progress(t: Float, start: float, duration: float) -> Float:
 
 
 def progress_integral(t: Float, start: float, duration: float) -> Float:
-    """Exact integral of P from minus infinity to t, in s.
+    """Exact integral of P from minus infinity to t [...], s.
 
-    Within the ramp: duration (s/2 - sin(pi s)/(2 pi)) with s = (t - start)/duration.
+    Within the ramp it is duration (s/2 - sin(pi s)/(2 pi)) with s = (t - start)/duration; arguments
+    are those of `progress`.
     """
     if duration == 0:
         return np.asarray(np.maximum(t - start, 0))

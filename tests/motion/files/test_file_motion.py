@@ -9,7 +9,7 @@ from recorded import frames, write_npz
 
 from radhar_cli.arrays import Float
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import ANKLE, LEG, Clip, clip_of
+from radhar_cli.motion.files.clip import ANKLE, LEG, Clip, make_clip
 from radhar_cli.motion.files.cycle import find_cycle
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.names import WANTED
@@ -22,7 +22,7 @@ HIP, HEAD = JOINTS.index("hip"), JOINTS.index("head")
 
 
 def clip(positions: Float, rate: float = 120.0, **how: object) -> Clip:
-    return clip_of(Npz("x.npz", WANTED, rate, positions), **how)  # type: ignore[arg-type]
+    return make_clip(Npz("x.npz", WANTED, rate, positions), **how)  # type: ignore[arg-type]
 
 
 def mover(one: Clip, **how: object) -> FileMotion:
@@ -60,7 +60,7 @@ def test_up_is_what_the_moving_body_says(order: list[int]) -> None:
     p = frames(seconds=1.0)
     for sign in (1, -1):
         file = Posed("x", WANTED, 120.0, p, sign * p[0][:, order])
-        one = clip_of(file)
+        one = make_clip(file)
         assert one.up == "z"
         np.testing.assert_allclose(one.positions, clip(p).positions)
 
@@ -99,7 +99,7 @@ def test_the_rest_pose_tells_the_up_axis_where_nobody_stands(tmp_path: Path) -> 
     with pytest.raises(MotionFileError, match=r"which axis points up, .* \(--up y\)"):
         clip(rolls)
     assert clip(rolls, up="y").up == "y"
-    assert clip_of(Posed("x", WANTED, 120.0, rolls, p[0])).up == "z"
+    assert make_clip(Posed("x", WANTED, 120.0, rolls, p[0])).up == "z"
 
 
 def test_legs_give_the_stature_and_ankles_the_floor() -> None:
@@ -300,7 +300,7 @@ def test_torso_is_that_of_positions() -> None:
 
 def test_a_rig_without_hip_joints_has_them_at_the_hip(tmp_path: Path) -> None:
     p = frames(seconds=1.0)
-    one = clip_of(read_motion(write_npz(tmp_path / "x.npz", p[:, :13], names=JOINTS)).recording())
+    one = make_clip(read_motion(write_npz(tmp_path / "x.npz", p[:, :13], names=JOINTS)).recording())
     motion, t = mover(one), np.array([0.3])
     np.testing.assert_allclose(motion.hip_joints(t)[:, 0], motion.positions(t)[:, HIP], atol=1e-12)
     assert not one.hip_joints

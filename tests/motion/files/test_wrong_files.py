@@ -9,7 +9,7 @@ import pytest
 from recorded import frames, write_amc, write_bvh, write_npz
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import clip_of
+from radhar_cli.motion.files.clip import make_clip
 from radhar_cli.motion.files.reading import read_motion
 
 FIRST = 100  # line of the first frame in our BVH files
@@ -104,7 +104,7 @@ def test_broken_bvh_is_refused(name: str, tmp_path: Path) -> None:
     assert path.read_text().split("\n")[FIRST - 2].startswith("Frame Time")
     path.write_text(change(path.read_text()))
     with pytest.raises(MotionFileError) as refused:
-        clip_of(read_motion(path).recording("x.bvh"))
+        make_clip(read_motion(path).recording("x.bvh"))
     assert re.match(message, str(refused.value)), refused.value
     assert "\n" not in str(refused.value)
 
@@ -167,7 +167,7 @@ def test_broken_amc_is_refused(name: str, tmp_path: Path) -> None:
     broken = path.with_suffix(suffix)
     broken.write_text(change(broken.read_text()))
     with pytest.raises(MotionFileError) as refused:
-        clip_of(read_motion(path).recording("x.amc"))
+        make_clip(read_motion(path).recording("x.amc"))
     assert re.match(message, str(refused.value)), refused.value
     assert "\n" not in str(refused.value)
 
@@ -194,7 +194,7 @@ def test_broken_npz_is_refused(tmp_path: Path) -> None:
             arrays = {**file, **more}
         np.savez(path, allow_pickle=True, **arrays)
         with pytest.raises(MotionFileError, match=message):
-            clip_of(read_motion(path).recording("x.npz"))
+            make_clip(read_motion(path).recording("x.npz"))
     np.savez(path, positions=p)
     with pytest.raises(MotionFileError, match="has no array 'names'"):
         read_motion(path).recording()

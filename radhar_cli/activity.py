@@ -178,19 +178,19 @@ def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> 
     """
     added = {activity.slug: activity for activity in own_activities()}
     known = _BY_NAME | added | _by_name((classes or {}).values())
-    wanted = name.strip().lower()
-    if wanted in known:
-        return known[wanted]
+    plain_name = name.strip().lower()
+    if plain_name in known:
+        return known[plain_name]
     slugs = list(dict.fromkeys(a.slug for a in known.values()))
-    meant = meaning_of(wanted, (*slugs, *MOVEMENTS))
+    meant = meaning_of(plain_name, (*slugs, *MOVEMENTS))
     if meant in MOVEMENTS and meant not in slugs:
         raise ValueError(
             f"{name!r} is not an activity; {meant} is a movement, of which a class can be made: "
             f"classes: {{my_class: {{sequence: [{meant}]}}}}, activities: [my_class, ...]"
         )
-    completions = [slug for slug in slugs if len(wanted) > 3 and slug.startswith(wanted)]
+    completions = [slug for slug in slugs if len(plain_name) > 3 and slug.startswith(plain_name)]
     list_of_slugs = "the slugs are " + ", ".join(slugs)
-    hint = advice_on(wanted, [*slugs, *known], list_of_slugs)
+    hint = advice_on(plain_name, [*slugs, *known], list_of_slugs)
     if hint == list_of_slugs and completions:
         hint = f"did you mean {completions[0]!r}?"
     raise ValueError(f"{name!r} is not an activity; {hint}")

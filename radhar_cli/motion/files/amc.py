@@ -188,9 +188,9 @@ def _read_skeleton(data: bytes, where: str) -> _Skeleton:
         elif section == ":bonedata" and word == "end":
             bone = _bone(entry, radians, place)
             if bone.name in bones or len(bones) >= MAX_JOINTS:
-                shown = bone.name[:30]
+                bone_name = bone.name[:30]
                 raise motion_file_error(
-                    place, f"the bone {shown!r} is there twice, or one of too many"
+                    place, f"the bone {bone_name!r} is there twice, or one of too many"
                 )
             bones[bone.name], entry = bone, {}
         elif section == ":bonedata" and word != "begin":

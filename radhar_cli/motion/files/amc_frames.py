@@ -63,9 +63,9 @@ def amc_frames(
         start, line = stop, line + piece.count(b"\n")
 
 
-def _next_frame(data: bytes, at: int, line: int, where: str) -> int:
-    """Byte at which the first frame begins whose number stands in a line after the byte `at`."""
-    begin = data.find(b"\n", at) + 1 or len(data)
+def _next_frame(data: bytes, position: int, line: int, where: str) -> int:
+    """Byte at which the first frame begins whose number stands in a line after `position`."""
+    begin = data.find(b"\n", position) + 1 or len(data)
     match = FRAME_NUMBER.search(data, begin, begin + MAX_FRAME)
     if match is not None:
         return match.start()
@@ -84,9 +84,9 @@ def _names_of_first_frame(
     times, moving = Counter(names), {name.encode() for name in widths}
     for name in times:
         if name not in moving:
-            shown = name[:SHOWN].decode("ascii", "replace")
+            bone_name = name[:SHOWN].decode("ascii", "replace")
             raise motion_file_error(
-                f"{where}:{line}", f"the skeleton has no bone {shown!r} that moves"
+                f"{where}:{line}", f"the skeleton has no bone {bone_name!r} that moves"
             )
     for bone in widths:
         if times[bone.encode()] != 1:
@@ -98,10 +98,10 @@ def _names_of_first_frame(
 
 def _columns(names: list[bytes], widths: Mapping[str, int]) -> list[int]:
     """Place in a frame of the file of each column, in the order of `widths`."""
-    starts, at = dict[str, int](), 0
+    starts, column = dict[str, int](), 0
     for name in map(bytes.decode, names):
-        starts[name] = at
-        at += widths[name]
+        starts[name] = column
+        column += widths[name]
     return [starts[name] + k for name, width in widths.items() for k in range(width)]
 
 
@@ -125,18 +125,18 @@ def _refuse_frames(
                     place, f"frame {expected - 1} lacks the bone {missing[-1].decode()!r}"
                 )
             if int(words[0][:18]) != expected:
-                shown = words[0][:SHOWN].decode()
+                word = words[0][:SHOWN].decode()
                 raise motion_file_error(
-                    place, f"frame {shown} should be frame {expected}: frames are missing"
+                    place, f"frame {word} should be frame {expected}: frames are missing"
                 )
             missing, expected = names[::-1], expected + 1
             continue
         name, row = words[0], parse_numbers(b" ".join(words[1:]))
-        shown = name[:SHOWN].decode("ascii", "replace")
+        word = name[:SHOWN].decode("ascii", "replace")
         if not missing or name != missing[-1]:
             expected_word = missing[-1].decode() if missing else "a frame's number"
             raise motion_file_error(
-                place, f"{shown!r} should be {expected_word!r}, as in the first frame"
+                place, f"{word!r} should be {expected_word!r}, as in the first frame"
             )
         if row is None or not np.isfinite(row).all():
             raise motion_file_error(
@@ -144,7 +144,7 @@ def _refuse_frames(
             )
         if row.size != widths[name.decode()]:
             raise motion_file_error(
-                place, f"{shown} has {row.size} numbers; should have {widths[name.decode()]}"
+                place, f"{word} has {row.size} numbers; should have {widths[name.decode()]}"
             )
         missing.pop()
     if missing:

@@ -149,9 +149,9 @@ def read_bvh(data: bytes, where: str) -> Bvh:
         rate = 0.0
     last = data.count(b"\n", 0, head.end(2)) + 1
     if not RATES[0] <= rate <= RATES[1]:
-        shown = head[2].decode("ascii", "replace")
+        frame_time = head[2].decode("ascii", "replace")
         raise motion_file_error(
-            f"{where}:{last}", f"a frame time of {shown} s should be 0.0001 to 1 s"
+            f"{where}:{last}", f"a frame time of {frame_time} s should be 0.0001 to 1 s"
         )
     if not 0 < frames <= MAX_FRAMES:
         raise motion_file_error(

@@ -105,5 +105,5 @@ def _plain(name: str) -> str:
 
 
 def _list_names(names: Sequence[str]) -> str:
-    shown = ", ".join(name[:30] for name in names[:40])
-    return f"{shown}, ..." if len(names) > 40 else shown
+    listed = ", ".join(name[:30] for name in names[:40])
+    return f"{listed}, ..." if len(names) > 40 else listed

@@ -10,7 +10,7 @@ An and Ogras 2021), jumps 0.9 s and jumping jacks 1.2 to 1.8 s (RadHAR, Singh et
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, radians
+from math import inf, isinf, radians
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,11 +19,11 @@ from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import raised_arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import STANDING
+from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
-from radhar_cli.motion.human.repetitions import Repetition, Striking, repetitions
+from radhar_cli.motion.human.repetitions import Repetition, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def moves_of_both_sides(channel: str, *change_and_spans: object) -> tuple[Move, 
 
 def _smooth(knots: Sequence[Knot]) -> "BPoly[np.float64]":
     """Quintic curve through knots, twice continuously differentiable."""
-    times, values = np.array([at for at, _ in knots]), np.array([value for _, value in knots])
+    times, values = np.array([time for time, _ in knots]), np.array([value for _, value in knots])
     from scipy.interpolate import BPoly  # slow to import
 
     return BPoly.from_derivatives(times, values)
@@ -81,7 +81,6 @@ class Exercise:
     duration: float = inf
     first: float = 0.5  # time before the first repetition, s
     entry: float = 0.2  # time of rest at the end, s
-    from_rest: bool = True
     # paces, sizes: time and size of each repetition, over the usual ones
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
@@ -90,21 +89,32 @@ class Exercise:
         return Exercising(person, self, begin, horizon)
 
 
-class Exercising(Striking[Exercise]):
+@dataclass(frozen=True)
+class Exercising:
     """The `part.Part` of a person who exercises."""
 
-    @property
-    def before(self) -> str:
-        return STANDING
+    person: Physique
+    exercise: Exercise
+    begin: float
+    horizon: float  # end of the recording, s
+
+    before = STANDING
+    after = STANDING
+    place = Place()
 
     @property
-    def name(self) -> str:  # type: ignore[override]
-        """Name of the exercise's phase."""
-        return self.strikes.name
+    def end(self) -> float:
+        return self._end + self.exercise.entry
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        under_way = Phase(self.begin, self.exercise.name)
+        return (under_way,) if isinf(self.end) else (under_way, Phase(self.end, "standing"))
 
     @cached_property
     def _repetitions(self) -> list[Repetition]:
-        exercise = self.strikes
+        """Repetitions within the duration and the recording, at least one."""
+        exercise = self.exercise
         start = self.begin + exercise.first
         until = min(self.horizon + 1.0, start + exercise.duration)
         return repetitions(
@@ -112,12 +122,13 @@ class Exercising(Striking[Exercise]):
         )
 
     @cached_property
-    def _strike_steps(self) -> list[Step]:
+    def _steps(self) -> list[Step]:
+        """Steps of all repetitions."""
         steps = []
-        hops, flights = self.strikes.hops, iter(self._flights)
+        hops, flights = self.exercise.hops, iter(self._flights)
         for start, pace, size in self._repetitions:
-            period, in_air = pace * self.strikes.period, [next(flights) for _ in hops]
-            for channel, change, *spans in self.strikes.moves:
+            period, in_air = pace * self.exercise.period, [next(flights) for _ in hops]
+            for channel, change, *spans in self.exercise.moves:
                 for hop, (sign, span) in enumerate(zip((1, -1), spans, strict=True)):
                     if span is IN_THE_AIR:
                         begin, length = in_air[hop]
@@ -127,21 +138,22 @@ class Exercising(Striking[Exercise]):
         return steps
 
     @property
-    def _stance_end_s(self) -> float:
+    def _end(self) -> float:
+        """When the body has done the last repetition, s; infinity for what goes on."""
         start, pace, _ = self._repetitions[-1]
-        end = start + pace * self.strikes.period
-        return inf if self.strikes.duration == inf else end + CROUCH_S * bool(self.strikes.hops)
+        end = start + pace * self.exercise.period
+        return inf if self.exercise.duration == inf else end + CROUCH_S * bool(self.exercise.hops)
 
     @cached_property
     def course(self) -> Course:
         """Course of the channels of both sides and of the body."""
         limbs = [f"{side}_{channel}" for channel in LIMBS for side in SIDE]
-        return Course.of(dict.fromkeys((*limbs, *BODY), 0.0), self._strike_steps)
+        return Course.of(dict.fromkeys((*limbs, *BODY), 0.0), self._steps)
 
     @cached_property
     def _flights(self) -> list[tuple[float, float]]:
         """When the feet leave the floor, and how long they are in the air, s."""
-        exercise = self.strikes
+        exercise = self.exercise
         take_offs = [
             (start + pace * exercise.period * hop, exercise.flight * size**0.5)
             for start, pace, size in self._repetitions
@@ -160,7 +172,7 @@ class Exercising(Striking[Exercise]):
         if not self._flights:
             return None
         feet, hip = list[Knot](), list[Knot]()
-        crouch = self.strikes.crouch * self.person.stature
+        crouch = self.exercise.crouch * self.person.stature
         landed = None
         for take_off, flight in self._flights:
             speed = G * flight / 2

@@ -117,8 +117,8 @@ class FallingSideways:
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         body, fall = self.person, self.fall
-        legs, behind, length, pelvis, trunk, *others, still, near = self.course(t)
-        curl, arms, elbows, share = others
+        legs, behind, length, pelvis, trunk, *channels, still, near = self.course(t)
+        curl, arms, elbows, share = channels
         idle_share, zero = 1 - still, np.zeros(t.size)
         sway_share = idle_share * (self.before != SEATED)  # who sits does not sway
         lean, roll = behind + sway_share * idle.lean, fall.side * legs + sway_share * idle.legs_roll

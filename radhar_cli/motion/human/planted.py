@@ -110,8 +110,8 @@ class Planted:
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         body = self.person
-        shank, thigh, trunk, *others, heels, feet = self.course(t)
-        *arms, standing, upright, share, far, beside = others
+        shank, thigh, trunk, *channels, heels, feet = self.course(t)
+        *arms, standing, upright, share, far, beside = channels
         ankle = np.array([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankle, (3, 2, t.size))
         knee, hip = legs(body, shank, thigh, standing * idle.lean, standing * idle.legs_roll)

@@ -191,7 +191,8 @@ class Walking:
     @cached_property
     def _turn_starts(self) -> Float:
         """Distances at which half turns begin [K], m."""
-        lane, v, starts = self.gait.lane, self.gait.speed, [0.0][:0]
+        lane, v = self.gait.lane, self.gait.speed
+        starts: list[float] = []
         if lane is None:
             return np.array(starts)
         ramp_distance = v * self.ramp  # to change speed between turns

@@ -5,7 +5,7 @@ import numpy as np
 from radhar_cli.dataset import scene_fields, shards
 from radhar_cli.dataset.batch import Batch
 from radhar_cli.dataset.sample import Synthesised
-from radhar_cli.pipeline.validity import Flags
+from radhar_cli.pipeline.validity import FLAG_TYPE, Flags
 from radhar_cli.processing.power_map import MapImage
 
 
@@ -22,7 +22,7 @@ def stub_shard(batch: Batch, size: int, made: dict[int, bytes]) -> int:
         image = MapImage(np.zeros((size, size), np.uint8), 0.0, (0.0, 1.0, -1.0, 1.0))
         samples = [Synthesised({"stft": image}, -100.0, False, {})] * count
         values = np.zeros((count, len(scene_fields.fields(batch.config))))
-        flags = np.full(count, Flags.ALIASING, np.uint8)
+        flags = np.full(count, Flags.ALIASING, FLAG_TYPE)
         made[count] = shards.encode_shard(batch.config, "0" * 64, 0, samples, values, flags)
     content = made[count][shards.USER_BLOCK :]
     whose, start, stop = batch.identity_hash, batch.start, batch.stop

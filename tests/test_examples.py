@@ -53,5 +53,5 @@ def test_config_to_confusion_matrix(
     assert lines[0].startswith("24 samples in ")
     assert lines[2].startswith("test accuracy")
     rows = [line.split() for line in lines[-3:]]
-    assert [row[0] for row in rows] == ["punching", "sitting_down", "walking"]
+    assert [row[0] for row in rows] == ["walking", "punching", "sitting_down"]
     assert sum(int(cell) for row in rows for cell in row[1:4]) == 6

@@ -26,7 +26,7 @@ def predict(
     resize: Resize = False,
     device: Device = "auto",
 ) -> None:
-    """Print the most likely classes of every image, or write the joints in every sequence.
+    """Print the likeliest classes of images, or write the joints of sequences.
 
     Example:
 

@@ -36,6 +36,7 @@ from radhar_cli.learning.run_folder import (
 )
 from radhar_cli.learning.skeleton_result import evaluate_skeletons, predict_skeletons
 from radhar_cli.progress import Progress
+from radhar_cli.untrusted import shown as escaped
 
 MIN_EMBEDDED = 2
 MAX_MISTAKES, FEW = 12, 4  # images that are shown
@@ -257,7 +258,7 @@ class _ClassFigures:
         ]
         names = [found.images.names[row] for row in rows]
         captions = [
-            f"{name}\ntrue: {true}\nfound: {guess}, {sure}"
+            f"{escaped(name)}\ntrue: {true}\nfound: {guess}, {sure}"
             for name, (true, guess, sure) in zip(names, lines, strict=True)
         ]
         pictures = [found.images.pixels.read(row) for row in rows]

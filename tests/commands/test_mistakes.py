@@ -59,7 +59,7 @@ MISTAKES = {
     "eval run tree --split test": "has no test images",
     "eval run tree --device cdua": "did you mean 'cuda'",
     "predict run train.json": "is not a data set",
-    "adapt run tree -o x --mix tree": "--mix: needs --epochs",
+    "adapt run tree -o x --epochs 0 --mix tree": "--mix: needs --epochs",
     "export tree -o x.onnx": "holds no best.safetensors",
 }
 

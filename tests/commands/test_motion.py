@@ -89,7 +89,7 @@ def test_options_say_what_a_motion_file_does_not(tmp_path):
         ("--skeleton", "x.asf"): "--skeleton: classes.from_file",
     }
     for words, message in refused.items():
-        done = radhar(*play, *words)
+        done = radhar(*play, *words, "--overwrite")
         assert done.returncode == 2
         assert message in done.stderr
     alone = radhar("simulate", config, "-o", tmp_path / "out", "--up", "y")

@@ -23,7 +23,7 @@ def test_generate_verify_and_generate_again(tmp_path):
     checked = ok("verify", out, "--samples", 3)
     assert "byte for byte" in checked.stdout
     with h5py.File(out / "dataset.h5", "r+") as file:
-        file["label"][0] = 3
+        file["label"][0] = 2
     wrong = radhar("verify", out)
     assert wrong.returncode == 1
     assert "WRONG /label" in wrong.stdout

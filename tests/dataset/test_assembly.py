@@ -36,8 +36,8 @@ def stub_draw(config: Config, activity: Activity, index: int) -> tuple[Scene, Fl
     return draw_scene(config, activity, index, index % 3), Flags(0)
 
 
-def stub_synthesise(scene: Scene, plan: object) -> Synthesised:
-    config = scene.config
+def stub_synthesise(scene: Scene, plan: object, config: Config) -> Synthesised:
+    assert config.maps == scene.config.maps
 
     def image(name: str) -> MapImage:
         drawn = json.dumps([name, scene.name, scene_numbers(scene)], sort_keys=True)

@@ -18,7 +18,7 @@ from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import train
 
 SIZE = 32
-CLASSES = ("kicking", "punching", "walking")  # S3, S2 and S8: not the order of the alphabet
+CLASSES = ("kicking", "punching", "walking")  # by the alphabet, as trees are; S3, S2 and S8
 BASE = {
     "model": "smallnet",
     "epochs": 3,

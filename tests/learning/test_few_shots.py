@@ -62,8 +62,8 @@ def test_draws_are_k_of_each_class_and_all_others_are_tested(measured):
 def test_a_class_that_has_too_few_is_named(measured):
     some = opened(measured)
     assert missing(some, drawn(some, 7, 1, 0), 7) is None
-    assert missing(some, drawn(some, 8, 1, 0), 8) == "punching"
-    assert missing(some, drawn(some, 9, 1, 0), 9) == "punching"
+    assert missing(some, drawn(some, 8, 1, 0), 8) == "kicking"
+    assert missing(some, drawn(some, 9, 1, 0), 9) == "kicking"
 
 
 def test_labelled_images_come_from_other_persons_than_tested_ones(measured):
@@ -81,7 +81,7 @@ def test_labelled_images_come_from_other_persons_than_tested_ones(measured):
         assert np.bincount(some.images.label[more.labelled]).tolist() == [4, 4, 4]
         assert sorted([*more.labelled, *more.tested]) == list(range(24))
     assert missing(some, more, 4) is None
-    assert missing(some, drawn(some, 5, 1, 0), 5) == "punching"
+    assert missing(some, drawn(some, 5, 1, 0), 5) == "kicking"
 
 
 def test_mixed_images_are_shown_as_often_as_labelled_ones_unless_these_are_few(
@@ -111,7 +111,7 @@ def test_the_curve_of_a_run(run_dir, data, measured, tmp_path, capsys):
         *((0, way) for way in ("as trained", "adapted")),
         *((2, way) for way in ("fine-tuned", "adapted", "from scratch")),
     ]
-    assert "8 a class: left out; punching has too few" in capsys.readouterr().out
+    assert "8 a class: left out; kicking has too few" in capsys.readouterr().out
     metadata, as_trained = load_best(run_dir)
     every = predict(as_trained, metadata, opened(measured).images, np.arange(24), CPU, 8)
     assert found[0]["accuracies"] == [(every.predicted == every.truth).mean()]

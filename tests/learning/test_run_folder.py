@@ -89,7 +89,7 @@ def test_weights_that_may_not_be_read_are_not_called_damaged(copy, monkeypatch):
 def test_a_weights_file_alone_can_be_loaded(run_dir, tmp_path):
     shutil.copy(run_dir / run_files.BEST, tmp_path / "model.safetensors")
     metadata, model = run.load_best(tmp_path / "model.safetensors")
-    assert metadata.classes == ("punching", "kicking", "walking")
+    assert metadata.classes == ("kicking", "punching", "walking")
     assert same(
         dict(sorted(model.state_dict().items())), dict(sorted(best_weights(run_dir).items()))
     )
@@ -167,7 +167,7 @@ def test_a_folder_with_a_run_on_other_data_is_refused(run_dir, tmp_path):
 
     with clear_line(RunError, "data:"):
         trained(split_tree(tmp_path / "t", seed=5), run_dir)
-    with clear_line(RunError, 'classes: ["punching", "kicking", "walking"] there, ["a", "b"]'):
+    with clear_line(RunError, 'classes: ["kicking", "punching", "walking"] there, ["a", "b"]'):
         trained(split_tree(tmp_path / "u", classes=("a", "b")), run_dir)
 
 

@@ -61,13 +61,13 @@ def test_files_of_a_run(run_dir, data):
     assert metrics["best_epoch"] == best.epoch
     assert metrics["val_accuracy"] == best.val_accuracy
     assert (metrics["device"], metrics["precision"]) == ("cpu", "float32")
-    assert metrics["classes"] == ["punching", "kicking", "walking"]
+    assert metrics["classes"] == ["kicking", "punching", "walking"]
     assert (metrics["data"]["train"], metrics["data"]["val"]) == (12, 6)
     assert metrics["data"]["path"] == str(data)
     assert (run_dir / run_files.CURVES).read_bytes().startswith(b"\x89PNG")
     lines = (run_dir / run_files.TRAINED_ON).read_text().splitlines()
     assert len(lines) == 13
-    assert lines[1].startswith("punching/000,")
+    assert lines[1].startswith("kicking/000,")
 
 
 def test_normalisation_is_of_the_training_images_alone(run_dir, data):

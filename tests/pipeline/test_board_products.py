@@ -293,7 +293,7 @@ def test_what_frames_of_few_loops_show_is_made_and_the_rest_refused(path: Path, 
     possible |= {"range_doppler", "points"} if loops >= 4 else set()
     possible |= {"stft", "stft_compensated"} if loops >= 8 else set()
     possible |= {"stft_denoised", "stft_compensated_denoised"} if loops >= 11 else set()
-    simulation = simulate(load_config(path, ["maps=[rtm]", still]))
+    simulation = simulate(load_config(path, ["maps=[rtm]", still]), maps="all")
     shown = {*simulation.maps, *simulation.frames} - {"cloud", "skeletons", "points_person"}
     assert shown == possible - {"points"}
     assert ("cloud" in simulation.frames) == ("points" in possible)
@@ -351,7 +351,7 @@ def test_a_person_who_does_not_move_at_all_is_black_and_said_to_be(
     path: Path, engine: str, body: str
 ) -> None:
     options = *STILL, f"engine.kind={engine}", f"body.scatterers={body}"
-    simulation = simulate(load_config(path, options))
+    simulation = simulate(load_config(path, options), maps="all")
     names = ["stft", "rtm", "range_doppler", "range_azimuth", "range_elevation", "points"]
     (said,) = [one for one in simulation.warnings if "a map is black" in one]
     assert not {*names} - {*said.partition(": ")[0].split(", ")}

@@ -246,5 +246,5 @@ def test_a_scene_has_the_half_band_sum_beside_gated_maps():
     assert len(found.maps) == 5
     right = record("direct", "signal", processing={"range_sum": "coherent"})["signal"].x
     assert np.array_equal(found.signals["raw"].x, right)
-    with pytest.raises(ConfigError, match=r"no fsst with processing\.range_sum: gated"):
+    with pytest.raises(ConfigError, match=r"fsst.*processing\.range_sum: gated adds up powers"):
         simulate(scene.config, "walking", maps=map_names(["fsst"], scene.config))

@@ -429,7 +429,8 @@ def test_every_movement_can_begin_a_sequence(name: str) -> None:
 @pytest.mark.parametrize(
     ("classes", "expected"),
     [
-        ({"own": {"sequence": ["swimming"]}}, "movements are stationary"),
+        ({"own": {"sequence": ["qwerty"]}}, "movements are stationary"),
+        ({"own": {"sequence": ["swimming"]}}, "motion files can"),
         ({"own": {"sequence": ["waking", "falling"]}}, "did you mean 'walking'"),
         ({"own": {"sequence": ["walking", "falling"]}}, "a duration of walking"),
         (

@@ -214,7 +214,7 @@ replaced("maps/stft", "of the type int8", **{**ONE, "data": None, "dtype": "i1"}
 replaced("maps/stft", r"has the shape \(6, 32\)", shape=(6, 32), dtype="u1")
 replaced("maps/stft", "of the type object", shape=(6, 32, 32), dtype=h5py.vlen_dtype(np.uint8))
 replaced("maps/stft", "of the type", shape=(6, 32, 32), dtype=[("a", "u1"), ("b", "f8")])
-replaced("label", "holds 200; should be 0 to 11", data=np.full(6, 200, np.uint8))
+replaced("label", "holds 200; should be 0 to 1", data=np.full(6, 200, np.uint8))
 replaced("label", "of the type object", data=["a"] * 6)
 replaced("label", "of the type object", shape=(6,), dtype=h5py.ref_dtype)
 replaced("label", "of the type int64", data=np.zeros(6, np.int64))

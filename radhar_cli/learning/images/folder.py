@@ -56,7 +56,13 @@ class FilePixels:
         return (f"{where}: drawn in {self.colours}; its levels are learned from, not brightness",)
 
 
-def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = False) -> ImageSet:
+def folder_images(
+    root: Path,
+    map_name: str | None,
+    kind: str,
+    any_size: bool = False,
+    looks_at_colours: bool = True,
+) -> ImageSet:
     """Open a tree of images: class folders, or train, val and test with class folders in them.
 
     Args:
@@ -64,6 +70,7 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
         map_name: map to open where there are several; None takes `root` itself.
         kind: "rgb" or "gray".
         any_size: images may differ in size; `size` is that of the first.
+        looks_at_colours: read some pictures to recognise their colour map.
 
     Raises:
         FolderError: no such map, no class folders with images, a class without any, images of
@@ -108,7 +115,7 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
     files = tuple(file for _, _, file in images)
     size = image_size(files[0])
     return replace(
-        open_pictures(root, files, kind, None if any_size else size),
+        open_pictures(root, files, kind, None if any_size else size, looks_at_colours),
         map=folder_map,
         classes=classes,
         label=np.array([classes.index(name) for _, name, _ in images], dtype=np.intp),
@@ -129,7 +136,11 @@ def _empty_hint(empty: set[str], images: Sequence[tuple[int, str, Path]]) -> str
 
 
 def open_pictures(
-    where: Path, files: Sequence[Path], kind: str, size: tuple[int, int] | None
+    where: Path,
+    files: Sequence[Path],
+    kind: str,
+    size: tuple[int, int] | None,
+    looks_at_colours: bool = True,
 ) -> ImageSet:
     """Image set of files of which nothing is known but the colour map that they are drawn in.
 
@@ -138,8 +149,11 @@ def open_pictures(
         files: image files, one a row.
         kind: "rgb" or "gray".
         size: (H, W) that all of them should have, None for any.
+        looks_at_colours: read some pictures to recognise their colour map.
     """
-    pixels = FilePixels(tuple(files), kind, size).with_recognised_colours()
+    pixels = FilePixels(tuple(files), kind, size)
+    if looks_at_colours:
+        pixels = pixels.with_recognised_colours()
     return ImageSet(
         where=where,
         map=None,

@@ -87,7 +87,7 @@ def is_h5(path: Path) -> bool:
 
 def summarise_tree(root: Path) -> dict[str, Any]:
     """Numbers of images of a tree by class, split and size, for `inspect`; pixels are not read."""
-    images = open_images(root, None, "rgb")
+    images = folder_images(root, None, "rgb", looks_at_colours=False)
     assert isinstance(images.pixels, FilePixels)
     files = images.pixels.files
     sizes = Counter(map(image_size, files))

@@ -26,7 +26,7 @@ def predict(
     resize: Resize = False,
     device: Device = "auto",
 ) -> None:
-    """Print the likeliest classes of images, or write the joints of sequences.
+    """Print the likely classes of images, or write joints of sequences.
 
     Example:
 

@@ -18,7 +18,7 @@ def tradeoff(
     set_: Overrides = None,
     overwrite: ReplaceResults = False,
 ) -> None:
-    """Measure what accuracy costs: error and time of tolerances and engines.
+    """Measure what accuracy costs: error and time of engine settings.
 
     Example:
 

@@ -221,7 +221,7 @@ def test_people_settle_when_they_sit_down() -> None:
         fidgets = motion.idle.fidgets
         assert channels is None or {fidget.channel for fidget in fidgets} == channels
         if channels is None:
-            at = [fidget.at - motion.parts[-1][0].end for fidget in fidgets]
+            at = [fidget.start_s - motion.parts[-1][0].end for fidget in fidgets]
             assert len(at) == 4
             assert -0.9 < min(at) < max(at) < 1.3
 

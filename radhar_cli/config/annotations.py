@@ -90,7 +90,8 @@ class ActsIf:
         if GIVEN in self.values:
             return value not in (None, (), {})
         if ABOVE_ZERO in self.values:
-            return value is not None and support(value)[1] > 0
+            forms = getattr(value, "per_activity", {"": value}).values()
+            return any(one is not None and support(one)[1] > 0 for one in forms)
         return value in self.values
 
     def entry(self, value_at: ValueAt) -> str:
@@ -128,6 +129,30 @@ class ActsIfAny:
     def right(self) -> str:
         """Keys and values under which this one would act, in words."""
         return " or ".join(one.right for one in self.choices)
+
+
+@dataclass(frozen=True)
+class Unless:
+    """The key acts unless a property of a section holds, which is called by these words."""
+
+    key: str
+    words: str
+
+    def holds(self, value_at: ValueAt) -> bool:
+        """Whether the property does not hold."""
+        return not value_at(self.key)
+
+    def entry(self, value_at: ValueAt) -> str:
+        """What is in the way."""
+        return self.words
+
+    @property
+    def right(self) -> str:
+        """What it should be."""
+        return "none"
+
+
+Condition: TypeAlias = ActsIf | ActsIfAny | Unless
 
 
 def entry(key: str, value: object) -> str:
@@ -203,15 +228,15 @@ def of_kind(kind: type[BaseModel], wanted: type[A]) -> tuple[tuple[str, A], ...]
 
 
 @cache
-def conditions(kind: type[BaseModel], key: str) -> tuple[ActsIf | ActsIfAny, ...]:
+def conditions(kind: type[BaseModel], key: str) -> tuple[Condition, ...]:
     """Conditions under which a dotted key acts, those of the sections around it first.
 
     `radar.tx_m.0` is one of the numbers of `radar.tx_m`.
     """
-    known, names, found = annotations(kind), key.split("."), list[ActsIf | ActsIfAny]()
+    known, names, found = annotations(kind), key.split("."), list[Condition]()
     for count in range(1, len(names) + 1):
         about = known.get(".".join(names[:count]), ())
-        found += [one for one in about if isinstance(one, ActsIf | ActsIfAny)]
+        found += [one for one in about if isinstance(one, Condition)]
     return tuple(found)
 
 

@@ -247,6 +247,10 @@ def _people_problems(c: Config) -> Iterator[Problem]:
 def _board_problems(c: Config) -> Iterator[Problem]:
     """Keys that a board cannot have, or that are not simulated for boards."""
     board, radar, clutter = c.radar.header, c.radar, c.processing.clutter
+    if radar.waveform != "fmcw":
+        right = "should be left out with radar.cfg: a board sends chirps (fmcw)"
+        yield Problem("radar.waveform", radar.waveform, right)
+        return
     if radar.elements is None:
         right = (
             f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
@@ -281,8 +285,6 @@ def _board_problems(c: Config) -> Iterator[Problem]:
     if clutter == "mean" and board.loops == 1:
         right = "should be none with frames of 1 loop (frameCfg), of which a mean leaves nothing"
         yield Problem("processing.clutter", clutter, right)
-    if radar.waveform != "fmcw":
-        yield Problem("radar.waveform", radar.waveform, "should be fmcw with radar.cfg")
     if c.image.kind == "signed":
         right = "should be decibel or cfar without radar.waveform: impulse"
         yield Problem("image.kind", "signed", right)
@@ -296,9 +298,14 @@ def _board_problems(c: Config) -> Iterator[Problem]:
     products = [name for name in c.output.products if name in FRAME_MAPS]
     if reasons := [why for name in products if (why := why_no_map(c, name)) is not None]:
         yield Problem("output.products", products, f"should not have these: {reasons[0]}")
-    if c.receiver.tones or support(c.receiver.noise_corner_hz)[1] > 0:
-        right = "should have neither with radar.cfg: they are of one channel"
-        yield Problem("receiver", "tones, noise_corner_hz", right)
+    corner = c.receiver.noise_corner_hz
+    for name, value in (
+        ("tones", [one.model_dump(mode="json") for one in c.receiver.tones]),
+        ("noise_corner_hz", corner if support(corner)[1] > 0 else None),
+    ):
+        if value:
+            right = "should be left out with radar.cfg: it is of one channel"
+            yield Problem(f"receiver.{name}", value, right)
     if c.engine.motion_in_chirp:
         right = "should be false with radar.cfg: positions are frozen when a chirp begins"
         yield Problem("engine.motion_in_chirp", True, right)

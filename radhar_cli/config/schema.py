@@ -50,6 +50,7 @@ from radhar_cli.config.annotations import (
     OnlyMaps,
     Paper,
     People,
+    Unless,
     at,
     conditions,
     of_kind,
@@ -176,7 +177,8 @@ def for_activity(value: Any, activity: Activity) -> Any:
 Place: TypeAlias = tuple[Real, Real]
 HalfPower = Annotated[float, Field(ge=1, le=1000, strict=True)]
 _BOARD, _NO_BOARD = ActsIf("radar.cfg", GIVEN), ActsIf("radar.cfg", None)
-_CHIRPS = ActsIf("radar.waveform", "fmcw", "sfcw")
+_NO_IMPULSE = ActsIf("radar.waveform", "fmcw", "sfcw", "cw")
+_EVEN = Unless("radar.frames_apart", "the pauses between a board's frames (radar.cfg)")
 BOOST = "IWR1443BOOST"
 
 
@@ -248,11 +250,15 @@ class RadarConfig(Section):
     output: Annotated[Literal["iq", "real"], ActsIf("radar.waveform", "cw")] = "iq"
     """Output of a cw radar: iq, or real for the in-phase channel alone, whose Doppler is
     symmetric."""
-    steps: Annotated[int, Field(ge=2, le=2**20, strict=True)] | None = None
+    steps: Annotated[
+        Annotated[int, Field(ge=2, le=2**20, strict=True)] | None, ActsIf("radar.waveform", "sfcw")
+    ] = None
     """Number of frequencies of an sfcw sweep, carrier_hz + n bandwidth_hz/steps."""
-    dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)] | None = None
+    dwell_s: Annotated[
+        Annotated[float, Field(gt=0, le=1e3, strict=True)] | None, ActsIf("radar.waveform", "sfcw")
+    ] = None
     """Time that an sfcw radar stays on each frequency."""
-    profile_m: tuple[Real, Real] | None = None
+    profile_m: Annotated[tuple[Real, Real] | None, ActsIf("radar.waveform", "impulse")] = None
     """Range axis [from, to] of an impulse radar's profiles, m."""
     profile_samples: Annotated[
         int, Field(ge=2, le=2**16, strict=True), ActsIf("radar.waveform", "impulse")
@@ -302,6 +308,11 @@ class RadarConfig(Section):
 
         assert self.cfg is not None
         return board_header(self.cfg)
+
+    @property
+    def frames_apart(self) -> bool:
+        """Whether a board pauses between its frames."""
+        return self.cfg is not None and self.header.frames_apart
 
     @property
     def elements(self) -> Array | None:
@@ -438,7 +449,9 @@ class MotionConfig(Section):
     times is half as much, that of the step width a third, in metres."""
     lane_m: Annotated[By[Coordinate], People("walking", 0, 1000)] = 0.0
     """Length of the lane after which walkers turn round, again and again; 0 is never."""
-    lane_start: Annotated[By[Ratio], People("walking", 0, 1)] = uniform(0.0, 1.0)
+    lane_start: Annotated[
+        By[Ratio], People("walking", 0, 1), ActsIf("motion.lane_m", ABOVE_ZERO)
+    ] = uniform(0.0, 1.0)
     """Share of the first lane that lies behind a walker at 0 s."""
     speed_up: Annotated[By[Ratio], People("walking", 0.4, 2)] = 0.6
     """Strides in which a walker gains speed from rest."""
@@ -921,7 +934,14 @@ class ReceiverConfig(Section):
     """Standard deviation of the virtual channels' gains."""
     channel_phase_deg: Annotated[NotNegative, within(0, 180, "degree"), _BOARD] = 0.0
     """Standard deviation of the virtual channels' phases."""
-    channel_errors: Annotated[Literal["data_set", "sample"], _BOARD] = "data_set"
+    channel_errors: Annotated[
+        Literal["data_set", "sample"],
+        _BOARD,
+        ActsIfAny(
+            ActsIf("receiver.channel_gain_db", ABOVE_ZERO),
+            ActsIf("receiver.channel_phase_deg", ABOVE_ZERO),
+        ),
+    ] = "data_set"
     """How often gains and phases of the channels are drawn: once a data set, or once a sample."""
 
 
@@ -994,7 +1014,7 @@ class ProcessingConfig(Section):
     window_s: Annotated[float | None, Field(gt=0, le=1e7, strict=True), _SPECTRA] = None
     """Length of the STFT's window; null is a tenth of duration_s (paper), else by the wavelength,
     as limbs need."""
-    overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True), _SPECTRA] = 0.9
+    overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True), _SPECTRA, _EVEN] = 0.9
     """Overlap of consecutive STFT windows, as a fraction of the window."""
     stft_fft_length: Annotated[int | None, Field(ge=8, strict=True), OnlyMaps("stft")] = None
     """Length of the STFT's FFT, at least the window; null finds one."""
@@ -1170,11 +1190,11 @@ class EngineConfig(Section):
     kind: Literal["direct", "cube"] = "direct"
     """Echo engine: the closed form within the tolerance, or the exact reference."""
     tolerance_db: Annotated[
-        float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True), _DIRECT
+        float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True), _DIRECT, _NO_IMPULSE
     ] = -80.0
     """Largest relative L2 error of the noiseless signal after the canceller, measured in every
     scene."""
-    fallback: Annotated[Literal["refuse", "cube"], _DIRECT] = "refuse"
+    fallback: Annotated[Literal["refuse", "cube"], _DIRECT, _NO_IMPULSE] = "refuse"
     """What to do with a scene in which `direct` misses the tolerance."""
     precision: Annotated[Literal["auto", "double"], _DIRECT] = "auto"
     """Arithmetic of the direct engine: single where the tolerance allows it, or float64 always."""

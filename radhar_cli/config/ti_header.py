@@ -308,6 +308,12 @@ class BoardHeader:
     not_simulated: tuple[str, ...]  # commands that switch on what is not simulated
 
     @property
+    def frames_apart(self) -> bool:
+        """Whether there is time between the last chirp of a frame and the next frame."""
+        chirps_s = self.loops * len(self.order) * self.slot_s
+        return abs(self.period_s - chirps_s) >= 1e-9 * self.period_s
+
+    @property
     def numbers(self) -> dict[str, float]:
         """{key of `radar`: number} of all that the .cfg gives."""
         chirp_s = self.samples / self.adc_rate_hz

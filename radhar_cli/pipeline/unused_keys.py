@@ -27,8 +27,6 @@ from radhar_cli.config.schema import (
 )
 from radhar_cli.scene import FALL, numbers
 
-# What defaults of other keys follow from.
-_RADAR = ("waveform", "cfg", "steps", "dwell_s")
 _OF_PEOPLE = ("subject.", "motion.", "timing.")
 
 
@@ -37,7 +35,8 @@ def unused_keys(config: Config) -> list[str]:
     fixed = all(isinstance(number, int | float) for _, number in numbers(config))
     same = _drawn_from if fixed else eq
     usual = _left_out(config)
-    without = dict([*_without_condition(config), *_of_other_maps(config), *_of_nobody(config)])
+    without = {"recordings": "the scenes of a config; it needs radhar generate --recordings"}
+    without |= dict([*_of_nobody(config), *_of_other_maps(config), *_without_condition(config)])
     found = [
         f"{key} has no effect with {why}"
         for key, why in without.items()
@@ -56,7 +55,8 @@ def unused_keys(config: Config) -> list[str]:
 
 def _left_out(config: Config) -> Config:
     """What a config says where it says nothing, with the radar and the motion that it has."""
-    radar = {name: getattr(config.radar, name) for name in _RADAR}
+    stepped = ("steps", "dwell_s") if config.radar.waveform == "sfcw" else ()
+    radar = {name: getattr(config.radar, name) for name in ("waveform", "cfg", *stepped)}
     wall = config.wall and WallConfig.model_construct({"layers"}, layers=config.wall.layers)
     return Config.model_construct(
         motion=MotionConfig(model=config.motion.model),

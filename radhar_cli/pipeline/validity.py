@@ -491,8 +491,21 @@ def config_warnings(config: Config) -> list[str]:
         header = config.radar.header
         lines = [f"radar.cfg: {one} is not known and has no effect" for one in header.unknown]
         off = "switches on what is not simulated: it has no effect"
+        frame_s = header.loops * len(header.order) * header.slot_s
+        window_s = config.processing.window_s if _says_window(config) else None
+        if window_s is not None and window_s > frame_s:
+            lines.append(
+                f"processing.window_s has no effect beyond the {frame_s:.3g} s of a frame's chirps "
+                f"(radar.cfg): it is {window_s:g} s"
+            )
         lines += [f"radar.cfg: {one} {off}" for one in header.not_simulated]
     return unused_keys(config) + tone_warnings(config) + lines + _buried(config) + _folded(config)
+
+
+def _says_window(config: Config) -> bool:
+    """Whether a config gives the window of maps that it asks for."""
+    of_doppler = any(name.startswith(("stft", "fsst")) for name in config.maps)
+    return of_doppler and "window_s" in config.processing.model_fields_set
 
 
 def _folded(config: Config) -> list[str]:

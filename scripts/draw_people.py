@@ -115,7 +115,8 @@ def draw_falls(index: int, out: Path) -> None:
     rows = []
     for sequence, direction in FALLS:
         own = f"classes={{own: {{sequence: [{sequence.replace(' ', ', ')}]}}}}"
-        chosen = (own, "activities=[own]", f"motion.fall={direction}", "motion.angle_deg=180")
+        chosen = [own, "activities=[own]", f"motion.fall={direction}", "motion.angle_deg=180"]
+        chosen.append("motion.range_m={uniform: [4, 6]}")  # the file's has classes by name
         config = load_config(ROOT / "configs/human/older.yaml", chosen)
         motion = motion_of(draw_scene(config, config.chosen_activities[0], index).people[0])
         assert isinstance(motion, HumanMotion)

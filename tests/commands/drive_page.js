@@ -7,6 +7,10 @@ console.error = see;
 
 const wait = ms => new Promise(resolve => setTimeout(resolve, ms));
 
+async function until(met) {
+  for (let n = 0; n < 50 && !await met(); n++) await wait(200);
+}
+
 async function views() {
   const [space, ...others] = plots, z = plot => JSON.stringify(plot.box.data[0].z);
   return {
@@ -23,14 +27,17 @@ async function drive() {
   const before = await views(), moved = {};
   at("time").value = 8;
   at("time").dispatchEvent(new Event("input"));
-  await wait(1000);
-  const after = await views();
-  for (const key in before) moved[key] = before[key].map((one, i) => one !== after[key][i]);
+  await until(async () => {
+    const after = await views();
+    for (const key in before) moved[key] = before[key].map((one, i) => one !== after[key][i]);
+    const {traces, ...others} = moved;
+    return traces.some(Boolean) && Object.values(others).flat().every(Boolean);
+  });
   const doppler = plots.find(plot => plot.data.length > 1 && plot.cursor).box;
   const visible = () => doppler._fullData.filter(one => one.visible === true).length, hidden = visible();
   for (const kind of ["mousedown", "mouseup"])
     doppler.querySelector(".legendtoggle").dispatchEvent(new MouseEvent(kind, {bubbles: true}));
-  await wait(1000);
+  await until(() => visible() > hidden);
   const curves = visible() - hidden - 1;  // one is the key of the legend
   await choose(1);
   const headings = plots.slice(1).map(plot => plot.box.querySelector(".gtitle").textContent);

@@ -42,8 +42,10 @@ def headings(maps: list[dict]) -> list[str]:
 
 @pytest.fixture(scope="module")
 def board():
-    """What the page shows of half a second of a board."""
-    return of_simulation(simulate(load_config(BOARD, ["duration_s=0.5"]), "punching"))
+    """What the page shows of half a second of a board: two maps over time, three of frames."""
+    frames = ("range_doppler", "range_azimuth", "range_elevation")
+    maps = ("rtm", "stft", *frames, "points")
+    return of_simulation(simulate(load_config(BOARD, ["duration_s=0.5"]), "punching", maps=maps))
 
 
 def test_simulate_writes_a_page_that_needs_nothing_else(tmp_path):

@@ -87,6 +87,7 @@ class Flags(IntFlag):
     SEAM = 256
     RADAR = 512
     BEHIND = 1024
+    SWEEP = 2048
 
 
 BLACK = (
@@ -112,6 +113,8 @@ _WORDING = {
     f"{BODY_RADIUS_M:g} m of an antenna (motion.range_m, motion.angle_deg, duration_s)",
     Flags.BEHIND: f"a person walks past the radar, to more than {BEHIND_M:g} m behind it "
     "(motion.range_m, motion.angle_deg, duration_s)",
+    Flags.SWEEP: "positions are frozen during a sweep, in which a joint is so fast that its echo "
+    "belongs more than a range cell elsewhere",
 }
 
 
@@ -211,6 +214,7 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     near, c = list[Approach](), scene.config
     inside_wall, beyond_band, outside = 0.0, 0.0, (0.0, "")
     shared = not c.people and c.room.faces is None and c.radar.cfg is None
+    frozen = c.radar.waveform in ("fmcw", "sfcw") and not c.engine.motion_in_chirp
     ahead = list[Float]()
     for asked, places, pulses in _grid(motion, w, shared):
         if body is not None and isinstance(body.motion, Landmarks):  # which its echo asks for too
@@ -236,6 +240,9 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
         rate = np.abs(np.diff(tau)).max(axis=0, initial=0.0) / np.maximum(np.diff(t), 1e-300)
         if rate.max(initial=0.0) * w.f0 > w.prf / 2:
             flags |= Flags.ALIASING
+        speed = SPEED_OF_LIGHT / 2 * rate.max(initial=0.0)
+        if frozen and speed * sweep_shift(w) > SPEED_OF_LIGHT / (2 * w.bandwidth):
+            flags |= Flags.SWEEP
         if isinstance(gate, tuple):
             torso = point_delay(motion.torso(asked)[..., places], antennas, wall)
             distance = torso * (SPEED_OF_LIGHT / 2)
@@ -251,6 +258,16 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     if min(part.min() for part in ahead) < -BEHIND_M and ahead[0][0] > 0:
         flags |= Flags.BEHIND
     return SceneCheck(min(near), flags, max(inside_wall, outside[0]), beyond_band, outside)
+
+
+def sweep_shift(waveform: Waveform) -> float:
+    """How far motion within a sweep moves the echo of 1 m/s, m (that is, s): (fc + B)/K.
+
+    The beat of tau + 2 v t/c at the middle of the sweep, t = T/2, is that of the range where the
+    sweep begins and v (fc + K T)/K: the Doppler of the mid frequency, v (fc + B/2)/K, and v T/2
+    that is walked by then. Positions that are frozen where a sweep begins have neither.
+    """
+    return (waveform.fc + waveform.bandwidth) / waveform.slope
 
 
 def _meets(torso: Float, top: Float, antennas: Antennas) -> bool:
@@ -605,7 +622,23 @@ def _words(flag: Flags, config: Config | None) -> str:
     if flag is Flags.ALIASING and config is not None and board:
         turns = len(config.radar.header.order) > 1
         return _WORDING[flag] + ANGLES_ALIAS * turns
+    if flag is Flags.SWEEP and config is not None:
+        return f"{_WORDING[flag]}: {_slow_sweep(config)}"
     return _WORDING[flag]
+
+
+def _slow_sweep(config: Config) -> str:
+    """How far frozen positions leave echoes from where they belong, and the remedies."""
+    radar = config.radar
+    w = waveform_of(nominal_scene(config, config.chosen_activities[0]))
+    shorter = "radar.dwell_s or radar.steps" if radar.waveform == "sfcw" else "radar.chirp_s"
+    within = "engine.motion_in_chirp: true with engine.kind: cube has it, "
+    if radar.cfg is not None:
+        shorter, within = "a ramp of radar.cfg", ""
+    return (
+        f"by {sweep_shift(w):.2g} m at 1 m/s, with {w.chirp:.2g} s a sweep and cells of "
+        f"{SPEED_OF_LIGHT / (2 * w.bandwidth):.2g} m ({within}a smaller {shorter} leaves less)"
+    )
 
 
 def flagged(

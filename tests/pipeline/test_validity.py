@@ -2,6 +2,7 @@
 
 import re
 from math import radians
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES, activity_named
-from radhar_cli.config import Config
+from radhar_cli.arrays import Float
+from radhar_cli.config import Config, load_config
+from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
+from radhar_cli.echo.paths import Paths
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS
@@ -25,13 +29,21 @@ from radhar_cli.pipeline.validity import (
     config_warnings,
     draw_valid_scene,
     scene_warnings,
+    sweep_shift,
     warnings,
 )
 from radhar_cli.radar.wall import crossing, extra_delay
+from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Scene, draw_scene, nominal_scene, scene_numbers
 
 C = 299_792_458.0
 WALKING = activity_named("walking")
+CONFIGS = Path(__file__).resolve().parents[2] / "configs"
+SCENES_SHIPPED = [
+    path
+    for path in sorted(CONFIGS.rglob("*.yaml"))
+    if path.parent.name not in ("measured", "train")
+]
 # The paper's fixed person, and the two columns of its table "Experimental Parameter Settings".
 PERSON: dict[str, Any] = {
     "subject": {"height_m": 1.8},
@@ -582,6 +594,91 @@ def test_who_walks_through_the_radar_is_drawn_again_or_refused() -> None:
         assert scene_numbers(scene)["motion.range_m"] > 4
     with pytest.raises(SceneError, match=r"a person walks through the radar: .*motion\.range_m"):
         draw_valid_scene(Config(**walker("human"), on_invalid="error"), WALKING, 0)
+
+
+@pytest.mark.parametrize("name", ["exercises", "older", "free_space_77GHz", "people"])
+def test_nobody_walks_past_the_radar_in_shipped_configs_without_walls(name: str) -> None:
+    """Whatever is drawn: 40 of each class."""
+    config = load_config(CONFIGS / f"human/{name}.yaml")
+    for activity in config.chosen_activities:
+        if not {"walking", "tripping"} & {*activity.movements}:
+            continue
+        for index in range(40):
+            scene = draw_scene(config, activity, index)
+            torso = motion_of(scene.people[0]).torso(np.linspace(0, scene.seconds, 30))
+            assert torso[0].min() > scene.radar.tx_m[0] - module.BEHIND_M, (activity.slug, index)
+
+
+SLOW = Waveform(fc=24e9, bandwidth=5e8, chirp=0.05, adc_rate=2e4, prf=19, duration=0.2)
+
+
+@pytest.mark.parametrize("speed", [-1.3, 0.2, 0.7])
+def test_motion_in_a_sweep_moves_an_echo_as_the_warning_says(speed: float) -> None:
+    """Against the echo itself, of a point at 5 m where a sweep begins."""
+
+    def point(t: Float) -> Paths:
+        return Paths(2 / C * (5 + speed * t)[None], np.ones((1, t.size)))
+
+    beat, padded = moving_beat_matrix(point, SLOW, np.zeros(1))[:, 0], 2**15
+    spectrum = np.abs(np.fft.fft(np.conj(beat), padded))
+    apparent = int(spectrum.argmax()) * SLOW.adc_rate / padded * C / (2 * SLOW.slope)
+    assert apparent - 5 == pytest.approx(speed * sweep_shift(SLOW), abs=0.02)
+
+
+def sweeps(share: float, waveform: str = "sfcw", **engine: Any) -> dict[str, Any]:
+    """A walker whose fastest joint is moved by a share of a cell in a sweep of 24 to 24.5 GHz."""
+    document: dict[str, Any] = {
+        **{"activities": ["walking"], "duration_s": 2, "maps": ["rtm"], "engine": engine},
+        "motion": {"range_m": 8, "angle_deg": 180, "speed_mps": 1.3, "speed_variation": 0},
+        "radar": {"carrier_hz": 24e9, "bandwidth_hz": 5e8, "prf_hz": 400},
+    }
+    p = at_every_pulse(scene := scene_of(Config(**document)))
+    legs = [np.linalg.norm(p - antenna(scene, one)[:, None, None], axis=0) for one in ("tx", "rx")]
+    fastest = np.abs(np.diff(sum(legs) / 2)).max() * 400
+    seconds = share * C / (2 * 24.5e9 * fastest)
+    form: dict[str, Any] = {"waveform": waveform, "steps": 100, "dwell_s": seconds / 100}
+    if waveform == "fmcw":
+        form = {"chirp_s": seconds, "adc_rate_hz": 100 / seconds}
+    return {**document, "radar": {**document["radar"], **form, "prf_hz": 0.99 / seconds}}
+
+
+@pytest.mark.parametrize("waveform", ["fmcw", "sfcw"])
+def test_sweeps_too_slow_for_frozen_positions_are_warned_of(waveform: str) -> None:
+    slow, fast = sweeps(1.15, waveform), sweeps(0.85, waveform)
+    assert not check_scene(scene_of(Config(**fast))).flags & Flags.SWEEP
+    assert check_scene(scene_of(Config(**slow))).flags & Flags.SWEEP
+    moving = sweeps(1.15, waveform, kind="cube", motion_in_chirp=True)
+    assert not check_scene(scene_of(Config(**moving))).flags & Flags.SWEEP
+
+
+def test_the_warning_of_a_slow_sweep_has_the_shift_and_the_remedies() -> None:
+    """Its ridge is 3 m from where it belongs (24 GHz, 0.5 GHz, 50 ms, 1.3 m/s)."""
+    config = Config.model_validate(
+        {
+            **{"activities": ["walking"], "duration_s": 3, "maps": ["rtm"], "samples_per_class": 1},
+            "motion": {"range_m": 8, "angle_deg": 180, "speed_mps": 1.3, "speed_variation": 0},
+            "radar": {
+                **{"waveform": "sfcw", "carrier_hz": 24e9, "bandwidth_hz": 5e8, "prf_hz": 19},
+                **{"steps": 1000, "dwell_s": 5e-5},
+            },
+        }
+    )
+    (said,) = (one for one in scene_warnings(scene_of(config)) if "frozen during a sweep" in one)
+    assert "by 2.5 m at 1 m/s, with 0.05 s a sweep and cells of 0.3 m" in said
+    for key in ("engine.motion_in_chirp", "engine.kind: cube", "radar.dwell_s", "radar.steps"):
+        assert key in said
+    (counted,) = warnings(config, {Flags.SWEEP: 1})
+    assert counted["kind"] == "sweep"
+    assert said in counted["message"]
+
+
+@pytest.mark.parametrize("path", SCENES_SHIPPED, ids=lambda path: path.stem)
+def test_sweeps_of_the_shipped_configs_are_fast_enough_for_any_joint(path: Path) -> None:
+    """A limb at 15 m/s, a kick's, is moved by less than a cell."""
+    config = load_config(path)
+    w = waveform_of(scene_of(config))
+    if config.radar.waveform in ("fmcw", "sfcw"):
+        assert 15 * sweep_shift(w) < C / (2 * w.bandwidth)
 
 
 ROOM = {"box_m": {"x": [0, 7], "y": [-3, 3]}, "faces": {"left": "concrete"}}

@@ -15,7 +15,7 @@ from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion, cache_motion
 from radhar_cli.motion.reflectors import Reflectors
-from radhar_cli.pipeline.bodies import sources_of, together
+from radhar_cli.pipeline.bodies import sources_of, sum_of_paths
 from radhar_cli.pipeline.fallback import EchoAccuracy, fall_back
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.pipeline.noise import noise_products, snr_of_other_paths, snr_paths
@@ -49,24 +49,35 @@ NEAR_M = 0.5  # of a point from a joint of the person whose it is
 
 
 class Echo(NamedTuple):
-    """The echo of a board without noise."""
+    """Noiseless echo of a board.
 
-    cube: Complex  # samples [frame, loop, virtual, sample]
-    power: float  # P_s of a sample, mean over frames, loops and channels
-    accuracy: EchoAccuracy  # measured error of the fast sum, or why the exact one was made
+    Attributes:
+        cube: samples [frame, loop, virtual, sample].
+        power: P_s of a sample, mean over frames, loops and channels.
+        accuracy: measured error of the fast sum, or why the exact one was made.
+    """
+
+    cube: Complex
+    power: float
+    accuracy: EchoAccuracy
 
 
 class Skeletons(NamedTuple):
-    """Joints of everybody in the middle of each frame's chirps, as the radar sees them."""
+    """Joints of everybody in the middle of each frame's chirps, as the radar sees them.
 
-    # positions, velocities: [frame, person, joint, 3], m and m/s; ahead, left, up
+    Attributes:
+        positions: positions [frame, person, joint, (ahead, left, up)], m; NaN of who is absent.
+        velocities: velocities of the same shape, m/s.
+        names: names of the joints.
+    """
+
     positions: Float
     velocities: Float
-    names: tuple[str, ...]  # of the joints
+    names: tuple[str, ...]
 
 
 def board_products(c: Config) -> Iterator[Product]:
-    """Rows of the table that a config with `radar.cfg` has."""
+    """Rows of the table of products that a config with `radar.cfg` has."""
     seen = ("scene", "motions", "board", "wall", *(("room",) if c.room.reflectors else ()))
     still = c.processing.clutter == "mean"
     does = "canceller of each frame"
@@ -85,7 +96,7 @@ def board_products(c: Config) -> Iterator[Product]:
         yield Product("signal_power", ("echo",), lambda echo: echo.power, "P_s, for snr_db")
     yield from noise_products(c)
     needs = ("echo", "noise", "board", "scene")
-    yield Product("cube", needs, _received, "raw samples with noise and channel errors")
+    yield Product("cube", needs, _add_impairments, "raw samples with noise and channel errors")
     make = partial(range_doppler, remove_mean=still)
     yield Product("range_doppler", ("cube", "board"), make, "range-Doppler maps of the frames")
     for axis, name in enumerate(("range_azimuth", "range_elevation")):
@@ -145,11 +156,22 @@ def channels(
     wall: Wall | None,
     room: Reflectors | None = None,
 ) -> list[PathSource]:
-    """The paths of every virtual channel; all are of the same motions, evaluated once."""
-    once = tuple(cache_motion(motion) for motion in motions)
-    make = partial(sources_of, scene, once, first=board.antennas(*board.pairs[0]))
+    """Make the paths of every virtual channel; all are of the same motions, evaluated once.
+
+    Args:
+        scene: what is simulated.
+        motions: motions of its people, or of parts of one.
+        board: the board.
+        wall: wall that the paths cross, or None.
+        room: what stands in the room.
+
+    Returns:
+        The paths of the virtual channels, in the order of `board.pairs`.
+    """
+    cached_motions = tuple(cache_motion(motion) for motion in motions)
+    make = partial(sources_of, scene, cached_motions, first=board.antennas(*board.pairs[0]))
     return [
-        together(make(board.antennas(k, r), wall, board.path_waveform, room))
+        sum_of_paths(make(board.antennas(k, r), wall, board.path_waveform, room))
         for k, r in board.pairs
     ]
 
@@ -157,13 +179,14 @@ def channels(
 def _snr_channels(
     c: Config, scene: Scene, motions: tuple[Motion, ...], board: Board, wall: Wall | None
 ) -> list[PathSource]:
-    """The paths of every virtual channel whose power is P_s."""
+    """Make the paths of every virtual channel whose power is P_s."""
     make = partial(snr_paths, c, scene, (cache_motion(motions[0]),))
     first = board.antennas(*board.pairs[0])
     return [make(board.antennas(k, r), wall, board.path_waveform, first) for k, r in board.pairs]
 
 
 def _echo(c: Config, sources: list[PathSource], board: Board, scene: Scene) -> Echo:
+    """Sum up the paths of all channels: fast within the tolerance, or exactly."""
     accuracy: EchoAccuracy = Accuracy(1, 1, False, -inf)
     if c.engine.kind == "direct":
         try:
@@ -175,13 +198,18 @@ def _echo(c: Config, sources: list[PathSource], board: Board, scene: Scene) -> E
     return Echo(cube, power, accuracy)
 
 
-def _received(echo: Echo, noise: WhiteNoise, board: Board, scene: Scene) -> Complex:
+def _add_impairments(echo: Echo, noise: WhiteNoise, board: Board, scene: Scene) -> Complex:
+    """Apply the errors of the channels to a cube, and add noise."""
     receiver = scene.receiver
     cube: Complex = echo.cube
     if receiver.channel_gain_db > 0 or receiver.channel_phase_deg > 0:
         name = "receiver.channel_errors"
-        whole = receiver.channel_errors == "data_set"
-        rng = stream(scene.config.seed, NOISE, name=name) if whole else noise_stream(scene, name)
+        of_data_set = receiver.channel_errors == "data_set"
+        rng = (
+            stream(scene.config.seed, NOISE, name=name)
+            if of_data_set
+            else noise_stream(scene, name)
+        )
         gain_db, phase = rng.standard_normal((2, board.channels))
         gain_db, phase = gain_db * receiver.channel_gain_db, phase * receiver.channel_phase_deg
         errors = 10 ** (gain_db / 20) * np.exp(1j * np.radians(phase))
@@ -199,11 +227,11 @@ def _cloud(c: Config, cube: Complex, board: Board) -> Cloud:
 
 
 def skeletons_of(scene: Scene, motions: tuple[Motion, ...], board: Board) -> Skeletons:
-    """Joints of everybody; NaN of who is not there, and where one has fewer than another."""
+    """Find the joints of everybody; NaN for who is absent, and where one has fewer than another."""
     names, people = motions[0].names, scene.people
     numbers = [one.number for one in people] if len(people) == len(motions) else range(len(motions))
-    everybody = max(1 + len(scene.config.people), len(motions))
-    shape = (board.frames, everybody, len(names), 3)
+    person_count = max(1 + len(scene.config.people), len(motions))
+    shape = (board.frames, person_count, len(names), 3)
     found = np.full((2, *shape), np.nan, np.float32)
     t = board.middles
     for person, motion in zip(numbers, motions, strict=True):
@@ -218,10 +246,15 @@ def skeletons_of(scene: Scene, motions: tuple[Motion, ...], board: Board) -> Ske
 
 
 class Owners(NamedTuple):
-    """Whose the nearest joint of each point [N] is, straight or as an image; -1 beyond NEAR_M."""
+    """Person whose joint, or image of a joint, is nearest to each point; -1 beyond NEAR_M.
+
+    Attributes:
+        person: number of the person [N].
+        kind: number of the way by which the joint is seen [N], in `kinds_of` the config.
+    """
 
     person: Index
-    kind: Index  # of `kinds_of` the config
+    kind: Index
 
 
 def owners_of(cloud: Cloud, skeletons: Skeletons, board: Board, scene: Scene) -> Owners:
@@ -247,19 +280,27 @@ def _apparent(skeletons: Skeletons, board: Board, legs: tuple[Leg, Leg]) -> Floa
     The range is half of both legs. TI's arrays have their receivers in a row and a raised
     transmitter: the azimuth is about that of the receiver's leg, the elevation the transmitter's.
     """
-    here, axes = np.array(board.position), np.array(board.aim.axes)
-    p = (skeletons.positions @ axes + here).T
-    images = [way.image(p).T - here for way in legs]
-    far = [np.linalg.norm(one, axis=-1, keepdims=True) for one in images]
-    tx, rx = (one / length @ axes.T for one, length in zip(images, far, strict=True))
+    radar_position, axes = np.array(board.position), np.array(board.aim.axes)
+    p = (skeletons.positions @ axes + radar_position).T
+    images = [way.image(p).T - radar_position for way in legs]
+    lengths = [np.linalg.norm(one, axis=-1, keepdims=True) for one in images]
+    tx, rx = (one / length @ axes.T for one, length in zip(images, lengths, strict=True))
     left, up = rx[..., 1], tx[..., 2]
     ahead = np.sqrt(np.maximum(1 - left**2 - up**2, 0))
-    seen: Float = 0.5 * (far[0] + far[1]) * np.stack([ahead, left, up], axis=-1)
-    return seen
+    apparent: Float = 0.5 * (lengths[0] + lengths[1]) * np.stack([ahead, left, up], axis=-1)
+    return apparent
 
 
 def range_bins(cube: Complex, board: Board, canceller: Canceller = NO_CANCELLER) -> Signal:
-    """The range bins of every virtual channel, pulse by pulse.
+    """Compute the range bins of every virtual channel, pulse by pulse.
+
+    Args:
+        cube: raw samples [frame, loop, virtual, sample].
+        board: board of the cube.
+        canceller: canceller of every channel.
+
+    Returns:
+        The bins [virtual, bin, pulse].
 
     Raw samples go through the canceller, not bins: nothing is left then of what stands still.
     """
@@ -273,7 +314,7 @@ def range_bins(cube: Complex, board: Board, canceller: Canceller = NO_CANCELLER)
 
 
 def torso_track(motions: tuple[Motion, ...], board: Board, wall: Wall | None) -> Float:
-    """Delay of the first person's torso at every pulse of a channel [M], s."""
+    """Compute the delay of the first person's torso at every pulse of a channel [M], s."""
     t = board.pulses.times(np.arange(board.frames * board.loops))
     track: Float = point_delay(motions[0].torso(t), board.antennas(*board.pairs[0]), wall)[0]
     return track
@@ -281,7 +322,7 @@ def torso_track(motions: tuple[Motion, ...], board: Board, wall: Wall | None) ->
 
 def _windows(c: Config, of: Callable[..., Frames], board: Board) -> Frames:
     """Windows of the Doppler maps: within frames, one of each where frames have gaps between."""
-    whole = of(c, board.frames * board.period, 1 / board.loop, board.centre)
-    length = min(whole.length, board.loops)
+    ungapped = of(c, board.frames * board.period, 1 / board.loop, board.centre)
+    length = min(ungapped.length, board.loops)
     gaps = len(board.pulses) > 1
-    return Frames(length, board.loops if gaps else min(whole.hop, length))
+    return Frames(length, board.loops if gaps else min(ungapped.hop, length))

@@ -29,19 +29,25 @@ from radhar_cli.scene import Person, Scene
 POINTS = 14  # of a surface
 
 
-class Whose(NamedTuple):
-    """Paths, and whose echo they are."""
+class OwnedPaths(NamedTuple):
+    """Paths, and whose echo they are.
+
+    Attributes:
+        source: the paths.
+        person: number of the person; 0 is the sample's own, -1 what stands in the room.
+        legs: ways of the transmitter's leg and of the receiver's leg.
+    """
 
     source: PathSource
-    person: int  # 0 is the sample's own, -1 what stands in the room
-    legs: tuple[Leg, Leg]  # of transmitter and receiver
+    person: int
+    legs: tuple[Leg, Leg]
 
 
-def together(sources: list[Whose]) -> PathSource:
-    """All their paths."""
+def sum_of_paths(sources: list[OwnedPaths]) -> PathSource:
+    """Combine the paths of several sources into one source."""
     if len(sources) == 1:
         return sources[0].source
-    return SumOfPaths(tuple(one.source for one in sources))
+    return SumOfPaths(tuple(owned.source for owned in sources))
 
 
 def sources_of(
@@ -53,58 +59,63 @@ def sources_of(
     room: Reflectors | None = None,
     mirrored: bool = True,
     first: Antennas | None = None,
-) -> list[Whose]:
-    """The paths of everything in a scene: of who moves, and of what stands in the room.
+) -> list[OwnedPaths]:
+    """Make the paths of everything in a scene: of who moves, and of what stands in the room.
 
     People shadow each other, unless `body.shadowing` is false. By way of a room's faces they are
     there again, unshadowed, unless not `mirrored`.
 
     Args:
         scene: what is simulated.
-        motions: of its people, or of parts of one.
-        antennas: between which the paths run.
-        wall: the slab between, or None.
-        waveform: its duration and window say how many points segments have.
-        room: what stands there.
+        motions: motions of its people, or of parts of one.
+        antennas: antennas between which the paths run.
+        wall: wall between, or None.
+        waveform: waveform whose duration and window say how many points segments have.
+        room: what stands in the room.
         mirrored: whether people are there again by way of the room's faces.
         first: antennas of the first channel of an array, all channels of which see the same points
             of a body; None where there is one channel.
     """
-    sources: list[Whose] = []
+    sources: list[OwnedPaths] = []
     images = [antennas.by_way(*way) for way in ways_of(scene)] if mirrored else []
     people = scene.people
-    own = len(people) == len(motions)  # not so where one body is seen in parts
-    several = own and len(people) > 1 and scene.config.body.shadowing
+    one_motion_per_person = len(people) == len(motions)  # not so where one body is seen in parts
+    several = one_motion_per_person and len(people) > 1 and scene.config.body.shadowing
     if several or images:  # asked for the same times again and again
         motions = tuple(map(cache_motion, motions))
     shades = [shade_of(*one) for one in zip(people, motions, strict=True)] if several else []
     for number, motion in enumerate(motions):
-        theirs: list[SegmentPaths | SurfacePaths | MotionPaths] = []
-        rest: Motion | None = motion
+        body_sources: list[SegmentPaths | SurfacePaths | MotionPaths] = []
+        other_joints: Motion | None = motion
         if scene.config.body.scatterers != "points":
-            whose = people[min(number, len(people) - 1)]
-            given = 0 if own else number  # streams are the person's own
-            parts = body_paths(whose, motion, antennas, wall, waveform, given, first)
-            theirs += [parts] if parts else []
-            rest = _without_segments(motion)
-        if rest is not None:
-            theirs.append(MotionPaths(rest, antennas, waveform.fc, wall))
-        others = tuple(shade for at, shade in enumerate(shades) if at != number)
-        person = people[number].number if own else number
-        straight = [ShadowedPaths(one, others, waveform.fc) if others else one for one in theirs]
-        sources += [Whose(one, person, antennas.legs) for one in straight]
+            mover = people[min(number, len(people) - 1)]
+            stream_number = 0 if one_motion_per_person else number  # streams are the person's own
+            parts = body_paths(mover, motion, antennas, wall, waveform, stream_number, first)
+            body_sources += [parts] if parts else []
+            other_joints = _without_segments(motion)
+        if other_joints is not None:
+            body_sources.append(MotionPaths(other_joints, antennas, waveform.fc, wall))
+        others = tuple(shade for place, shade in enumerate(shades) if place != number)
+        person = people[number].number if one_motion_per_person else number
+        straight = [
+            ShadowedPaths(source, others, waveform.fc) if others else source
+            for source in body_sources
+        ]
+        sources += [OwnedPaths(source, person, antennas.legs) for source in straight]
         sources += [
-            Whose(replace(one, antennas=seen), person, seen.legs)
-            for seen in images
-            for one in theirs
+            OwnedPaths(replace(source, antennas=image), person, image.legs)
+            for image in images
+            for source in body_sources
         ]
     if room is not None:
-        sources.append(Whose(MotionPaths(room, antennas, waveform.fc, wall), -1, antennas.legs))
+        sources.append(
+            OwnedPaths(MotionPaths(room, antennas, waveform.fc, wall), -1, antennas.legs)
+        )
     return sources
 
 
 def shade_of(person: Person, motion: Motion) -> Shade:
-    """What a person hides others with."""
+    """Make the shade with which a person hides others."""
     stature, weight = person.subject.height_m, person.subject.weight_kg
     of_points = person.scene.config.body.scatterers == "points"
     joints = motion.positions if of_points else getattr(motion, "landmark_positions", None)
@@ -124,10 +135,20 @@ def body_paths(
     number: int = 0,
     first: Antennas | None = None,
 ) -> SegmentPaths | SurfacePaths | None:
-    """The paths of the segments of a motion or of their surfaces, None where its joints have none.
+    """Make the paths of the segments of a motion, or of their surfaces (`body.scatterers`).
 
-    The motion is whole, or a `ScattererSubset`; `number` is its own among several; points of
-    segments are as many as antennas need that are `first` in an array, or these.
+    Args:
+        person: person who moves.
+        motion: their motion, or a `ScattererSubset` of it.
+        antennas: antennas between which the paths run.
+        wall: wall between, or None.
+        waveform: waveform whose duration and window say how many points segments have.
+        number: number of the motion among several, which names random streams.
+        first: antennas of the first channel of an array, which say how many points segments have;
+            None for `antennas`.
+
+    Returns:
+        The paths, or None where no segment belongs to the joints.
     """
     body, config = body_of(person, motion), person.scene.config
     kept = tuple(
@@ -159,7 +180,7 @@ def _tapered(points: Points) -> Points:
 
 
 def _without_segments(motion: Motion) -> Motion | None:
-    """The joints that no segment stands for, which go on being points."""
+    """Keep the joints of a motion that no segment stands for, which go on being points."""
     whole = motion.motion if isinstance(motion, ScattererSubset) else motion
     segments = segments_between(landmark_names(whole))
     alone = tuple(

@@ -11,7 +11,7 @@ from radhar_cli.scene import Scene
 
 
 class Fallback(NamedTuple):
-    """The cube made the echo instead of the direct engine; says why."""
+    """Why the cube made the echo instead of the direct engine."""
 
     reason: str
 
@@ -23,9 +23,9 @@ def fall_back(config: Config, scene: Scene, error: AccuracyError) -> Fallback:
     """Decide, for every radar, what happens when the direct engine cannot keep the tolerance.
 
     Args:
-        config: `engine.fallback` and `engine.tolerance_db` of it count.
-        scene: its name is said.
-        error: what the direct engine reaches.
+        config: config whose `engine.fallback` and `engine.tolerance_db` count.
+        scene: scene that a message names.
+        error: error that the direct engine reaches.
 
     Returns:
         The fall-back to the cube, which the caller then computes.

@@ -18,7 +18,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 
 class OfMotion:
-    """What sources of paths through air or a wall have of what moves."""
+    """Base of sources of paths through air or a wall: properties that follow from the motion."""
 
     motion: Motion | Reflectors
     wall: Wall | None
@@ -35,7 +35,7 @@ class OfMotion:
 
     @property
     def smooth(self) -> bool:
-        """Paths kink where a leg passes an edge of the wall."""
+        """Whether paths are smooth between breakpoints: not where legs pass an edge of the wall."""
         return self.wall is None
 
 
@@ -49,7 +49,7 @@ class MotionPaths(OfMotion):
     wall: Wall | None  # the slab between, or None
 
     def places(self, t: Float) -> tuple[Float, Index]:
-        """Positions [3, I, M] (m) that shadows fall on, and which of them each path has [I]."""
+        """Positions at times t [M] (s) that shadows fall on, as `PlacedPaths.places`."""
         p = self.motion.positions(t)
         return p, np.arange(p.shape[1])
 
@@ -82,20 +82,34 @@ class TorsoPath(OfMotion):
 
 
 class PlacedPaths(PathSource, Protocol):
-    """Paths that say where they end."""
+    """Source of paths that says where they end."""
 
     @property
-    def antennas(self) -> Antennas: ...
-    def places(self, t: Float) -> tuple[Float, Index]: ...
+    def antennas(self) -> Antennas:
+        """Antennas between which the paths run."""
+
+    def places(self, t: Float) -> tuple[Float, Index]:
+        """Positions at times t [M] (s) that shadows fall on.
+
+        Returns:
+            Positions [3, P, M], m, and the number of the position of each path [I].
+        """
 
 
 class Shade(NamedTuple):
-    """What throws a person's shadow (`radar/person_shadow.py`)."""
+    """Strip that throws a person's shadow (`radar/person_shadow.py`).
+
+    Attributes:
+        motion: motion of the person.
+        place: positions of the torso [3, 1, M], m, at times [M], s.
+        half_width: half of the strip's width, m.
+        top: height of its upper end, m.
+    """
 
     motion: Motion
-    place: Callable[[Float], Float]  # positions [3, 1, M] (m) at times t [M] (s)
-    half_width: float  # m
-    top: float  # m
+    place: Callable[[Float], Float]
+    half_width: float
+    top: float
 
 
 @dataclass(frozen=True)
@@ -114,27 +128,27 @@ class ShadowedPaths:
 
     @property
     def highest_frequency(self) -> float:
-        """Of the fastest of them, Hz."""
+        """Fundamental of the fastest of the people, Hz."""
         others = (shade.motion.highest_frequency for shade in self.shades)
         return max(self.source.highest_frequency, *others)
 
     @property
     def smooth(self) -> bool:
-        """As the source's own paths."""
+        """Whether the source's own paths are smooth between breakpoints."""
         return self.source.smooth
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the source at times t [M] (s)."""
-        paths, (p, which) = self.source(t), self.source.places(t)
-        left, wavelength = np.ones(p.shape[1:]), SPEED_OF_LIGHT / self.fc
+        paths, (p, position_numbers) = self.source(t), self.source.places(t)
+        remaining_field, wavelength = np.ones(p.shape[1:]), SPEED_OF_LIGHT / self.fc
         for shade in self.shades:
             place, legs = shade.place(t), np.ones(p.shape[1:])
             for antenna in (self.source.antennas.tx, self.source.antennas.rx):
                 legs *= field_behind_person(
                     p, antenna, place, shade.half_width, shade.top, wavelength
                 )
-            left *= limit_shadow(legs)
-        return paths._replace(amplitude=paths.amplitude * left[which])
+            remaining_field *= limit_shadow(legs)
+        return paths._replace(amplitude=paths.amplitude * remaining_field[position_numbers])
 
 
 @dataclass(frozen=True)
@@ -150,7 +164,7 @@ class SumOfPaths:
 
     @property
     def highest_frequency(self) -> float:
-        """Of the fastest source, Hz."""
+        """Fundamental of the fastest source, Hz."""
         return max(source.highest_frequency for source in self.sources)
 
     @property
@@ -165,7 +179,7 @@ class SumOfPaths:
 
 
 def point_delay(p: Float, antennas: Antennas, wall: Wall | None) -> Float:
-    """Delay tau [I, M] (s) to positions p [3, I, M] (m) and back, the wall's included."""
+    """Two-way delay tau [I, M], s, of positions p [3, I, M], m, with what the wall adds."""
     tau = bistatic_delay(leg(p, antennas.tx), leg(p, antennas.rx))
     return tau if wall is None else tau + through_wall_delay(p, antennas, wall)
 

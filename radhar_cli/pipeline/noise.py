@@ -9,7 +9,7 @@ from radhar_cli.config.schema import Config
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.pipeline.bodies import sources_of, together
+from radhar_cli.pipeline.bodies import sources_of, sum_of_paths
 from radhar_cli.pipeline.physics import noise_stream
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.radar.propagation import Antennas
@@ -21,7 +21,7 @@ from radhar_cli.scene import Scene
 
 
 def noise_law_of(config: Config) -> NoiseLaw:
-    """The law of a config: `snr_db`, or else `receiver.noise_figure_db`, or else no noise.
+    """Law of the noise of a config: `snr_db`, or `receiver.noise_figure_db`, or no noise.
 
     Numbers that are still to be drawn are taken at their middle.
     """
@@ -37,8 +37,9 @@ def noise_products(config: Config, channel: str | None = None) -> Iterator[Produ
     """Rows `noise_sigma` and `noise` of the table of products.
 
     Args:
-        config: says the law.
-        channel: product that names whose noise it is; None where a stream is shared.
+        config: config that gives the law.
+        channel: product that names the channel whose noise it is; None where all channels share a
+            stream.
     """
     law = noise_law_of(config)
     needs = ("scene", "waveform", *(("signal_power",) if law.by_signal else ()))
@@ -48,7 +49,16 @@ def noise_products(config: Config, channel: str | None = None) -> Iterator[Produ
 
 
 def noise_sigma(scene: Scene, w: Waveform, signal_power: float = 0.0) -> float:
-    """Standard deviation of the noise of a raw sample, for unit transmit power; 0 without noise."""
+    """Standard deviation of the noise of a raw sample, for unit transmit power; 0 without noise.
+
+    Args:
+        scene: scene that gives the law.
+        w: waveform, whose sample rate is the bandwidth of thermal noise.
+        signal_power: P_s of a sample, which `snr_db` refers to.
+
+    Raises:
+        SceneError: no echo is left that an SNR could refer to.
+    """
     try:
         return noise_law_of(scene.config).sigma(signal_power, w.sample_rate)
     except ValueError as error:
@@ -57,15 +67,15 @@ def noise_sigma(scene: Scene, w: Waveform, signal_power: float = 0.0) -> float:
 
 
 def white_noise_of(scene: Scene, sigma: float, channel: object = "") -> WhiteNoise:
-    """The noise of a receive channel of a scene."""
+    """Make the white noise of a receive channel of a scene, of standard deviation sigma."""
     return WhiteNoise(sigma, partial(noise_stream, scene, channel=channel))
 
 
 def snr_of_other_paths(c: Config) -> bool:
     """Whether the SNR refers to another echo than the simulated one.
 
-    It is of people alone, without the room and without others; in free space also without what
-    wall and beam take.
+    It refers to the sample's own person, without the room and without others; in free space also
+    without what wall and beam take.
     """
     takes = c.wall is not None or c.radar.beam is not None or c.radar.cfg is not None
     others = c.room.reflectors or c.people or c.room.faces or c.room.back_wall_m is not None
@@ -81,14 +91,21 @@ def snr_paths(
     w: Waveform,
     first: Antennas | None = None,
 ) -> PathSource:
-    """The paths whose power is P_s: of the sample's own person, straight there and back.
+    """Make the paths whose power is P_s: of the sample's own person, straight there and back.
 
-    `first` are the antennas of the first channel of an array.
+    Args:
+        c: config whose `snr_reference` counts.
+        scene: what is simulated.
+        motions: motions of its people, of which the first counts.
+        antennas: antennas between which the paths run.
+        wall: wall between, or None; left out in free space, as is the beam.
+        w: waveform.
+        first: antennas of the first channel of an array, as of `sources_of`.
     """
     if c.snr_reference == "free_space":
         antennas, wall = replace(antennas, aim=None), None
     own = sources_of(scene, motions[:1], antennas, wall, w, mirrored=False, first=first)
-    return together(own)
+    return sum_of_paths(own)
 
 
 def _words(law: NoiseLaw) -> str:

@@ -41,7 +41,7 @@ from radhar_cli.scene import Numbers, Person, Scene, nominal_scene
 
 
 def board_of(radar: Numbers, seconds: float = 0.0) -> Board:
-    """The board of a `radar.cfg`, with the frames of so many seconds, at least one."""
+    """Make the board of a `radar.cfg`, with the frames of so many seconds, at least one."""
     header = radar.header
     frames = max(int(seconds / header.period_s + 1e-9), 1)
     return Board(
@@ -67,15 +67,19 @@ def board_of(radar: Numbers, seconds: float = 0.0) -> Board:
 
 
 def detection_of(config: Config) -> Detection:
-    """What the .cfg says of detection, as far as the board heeds it; clutter is the config's."""
-    found = replace(config.radar.header.detection, remove_mean=config.processing.clutter == "mean")
+    """Read detection from the .cfg, as far as the board heeds it; clutter is the config's."""
+    detection = replace(
+        config.radar.header.detection, remove_mean=config.processing.clutter == "mean"
+    )
     if "1443" in str(config.radar.device):
-        found = replace(found, azimuth_deg=None, elevation_deg=None, range_m=None, doppler_mps=None)
-    return found
+        detection = replace(
+            detection, azimuth_deg=None, elevation_deg=None, range_m=None, doppler_mps=None
+        )
+    return detection
 
 
 def waveform_of(scene: Scene) -> Waveform:
-    """The waveform of a scene."""
+    """Make the waveform of a scene."""
     radar, processing = scene.radar, scene.config.processing
     if radar.cfg is not None:
         return board_of(radar, scene.seconds).waveform
@@ -97,7 +101,7 @@ def waveform_of(scene: Scene) -> Waveform:
 
 
 def antennas_of(scene: Scene) -> Antennas:
-    """The antennas of a scene; of a board its first channel's."""
+    """Make the antennas of a scene; for a board those of its first channel."""
     radar = scene.radar
     if radar.cfg is not None:
         board = board_of(radar)
@@ -112,7 +116,10 @@ def antennas_of(scene: Scene) -> Antennas:
 
 
 def wall_of(scene: Scene) -> Wall | None:
-    """The wall of a scene, if there is one."""
+    """Make the wall of a scene, or None where it has none.
+
+    Layers are one slab of their mean refractive index, in the middle of the band, besides.
+    """
     radar, wall = scene.radar, scene.wall
     if wall is None:
         return None
@@ -141,7 +148,11 @@ def wall_of(scene: Scene) -> Wall | None:
 
 
 def motion_of(person: Person) -> Motion:
-    """How a person moves: as the activity's own function, its files, or the model in `motion:`."""
+    """Make a person's motion: by the activity's own function, its files, or the model of `motion`.
+
+    Raises:
+        MotionFileError: a motion file cannot be used.
+    """
     if person.activity.motion is not None:
         return person.activity.motion(person)
     if person.config.files_of(person.activity) is not None:
@@ -164,14 +175,14 @@ def moving(person: Person) -> Motion:
 
 
 def body_of(person: Person, motion: Motion) -> Body:
-    """The body of a person who moves like this, with such segments as the joints have."""
+    """Make the body of a person, with the segments that the joints of their motion have."""
     whole = motion.motion if isinstance(motion, ScattererSubset) else motion
     stature, weight = person.subject.height_m, person.subject.weight_kg
     return Body(whole, segments_between(landmark_names(whole)), stature, thickness(stature, weight))
 
 
 def beam_of(radar: Numbers) -> Aim | None:
-    """Where both antennas look, with -min(12 (az/bw)^2 + 12 (el/bw)^2, most_db) dB, if at all."""
+    """Aim of both antennas, of -min(12 (az/bw)^2 + 12 (el/bw)^2, most_db) dB; None without beam."""
     beam = radar.beam
     if beam is None:
         return None
@@ -183,35 +194,37 @@ def beam_of(radar: Numbers) -> Aim | None:
 
 
 def box_of(scene: Scene) -> Box | None:
-    """Where the faces of a scene's room are; None without faces, or of a floor alone."""
+    """Box of the faces of a scene's room; None without faces, or for a floor alone."""
     box = scene.room.box_m
     return None if scene.room.faces is None or box is None else Box(box.x, box.y, box.height)
 
 
 def ways_of(scene: Scene) -> list[tuple[Leg, Leg]]:
-    """Ways of transmitter and receiver by faces of the room, or by the wall behind people."""
+    """Ways of the transmitter's and the receiver's leg by faces of the room, or by a back wall."""
     radar, room = scene.radar, scene.room
     if room.back_wall_m is not None:
-        left = 10 ** (room.back_wall_reflection_db / 20)
-        way = Leg((Face("back", FACES["back"], room.back_wall_m, constant_reflection=left),))
+        reflection = 10 ** (room.back_wall_reflection_db / 20)
+        way = Leg((Face("back", FACES["back"], room.back_wall_m, constant_reflection=reflection),))
         return [(way, way)]
     if room.faces is None:
         return []
     box, faces = box_of(scene), []
-    at = {"floor": 0.0} if box is None else box.face_offsets
+    face_offsets = {"floor": 0.0} if box is None else box.face_offsets
     normal = FACES["floor" if radar.polarisation == "vertical" else "left"]
     for name, material in room.faces.given.items():
-        parallel, fixed = FACES[name] != normal, None
+        parallel, reflection_coefficient = FACES[name] != normal, None
         if material == "metal":
-            fixed = -1.0 if parallel else 1.0
+            reflection_coefficient = -1.0 if parallel else 1.0
         eps = _permittivity(material, radar.carrier_hz + radar.bandwidth_hz / 2)
-        faces.append(Face(name, FACES[name], at[name], eps, parallel, fixed))
-    outside = min(p[0] for p in antennas_of(scene).places) < at.get("front", -inf)
+        faces.append(
+            Face(name, FACES[name], face_offsets[name], eps, parallel, reflection_coefficient)
+        )
+    outside = min(p[0] for p in antennas_of(scene).places) < face_offsets.get("front", -inf)
     return list(reflected_legs(faces, scene.config.room.order, outside))
 
 
 def kinds_of(config: Config) -> list[str]:
-    """Names of the ways on which people are seen, the straight one first."""
+    """Names of the ways by which people are seen, as "floor/-", the straight one, "-/-", first."""
     scene = nominal_scene(config, config.chosen_activities[0])
     return ["-/-", *map(names_of, ways_of(scene))]
 
@@ -223,7 +236,7 @@ def _permittivity(material: str | Numbers, frequency: float) -> complex:
 
 
 def reflectors_of(scene: Scene) -> Reflectors | None:
-    """What stands in the room of a scene, if anything does."""
+    """Make the reflectors that stand in the room of a scene; None where there are none."""
     each, antennas = scene.room.reflectors, antennas_of(scene)
     if not each:
         return None
@@ -240,7 +253,7 @@ def reflectors_of(scene: Scene) -> Reflectors | None:
 
 
 def impairments_of(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impairment, ...]:
-    """What a receiver adds to white noise.
+    """Make the impairments that a receiver adds to white noise.
 
     Coloured noise is the channel's own, as white noise is. Interference comes from outside: tones
     are the same in all channels, phases included.
@@ -278,8 +291,8 @@ def _paper_body(person: Person) -> PaperBody:
 
 
 def canceller_of(config: AnyConfig, prf: float) -> canceller.Canceller:
-    """The canceller of a config, for pulses per second."""
-    given = config.processing.highpass
+    """Make the canceller of a config, for `prf` pulses per second."""
+    highpass = config.processing.highpass
     match config.processing.clutter:
         case "difference":
             return canceller.FIRST_DIFFERENCE
@@ -287,13 +300,19 @@ def canceller_of(config: AnyConfig, prf: float) -> canceller.Canceller:
             return canceller.MeanRemoval()
         case "none":
             return canceller.NO_CANCELLER
-    return canceller.HighPass(given.order, given.cutoff(prf), given.zero_phase, given.remove_mean)
+    return canceller.HighPass(
+        highpass.order, highpass.cutoff(prf), highpass.zero_phase, highpass.remove_mean
+    )
 
 
 def gate_of(config: AnyConfig, ranges: Float, torso: Float | None) -> Gate:
-    """The gate of a config in range bins at `ranges`, m.
+    """Make the gate of a config.
 
-    A gate that follows the torso needs its range in the middle of every frame [frames], m.
+    Args:
+        config: config whose `processing.gate_m` counts.
+        ranges: ranges of the bins, m.
+        torso: range of the torso in the middle of every frame [frames], m; None for a gate of fixed
+            ranges.
     """
     within = config.processing.gate_m
     if isinstance(within, tuple):
@@ -303,9 +322,14 @@ def gate_of(config: AnyConfig, ranges: Float, torso: Float | None) -> Gate:
 
 
 def gate_in_windows(c: AnyConfig, after: Signal, frames: Frames, t: Float, track: Float) -> Gate:
-    """The gate of a config in every window `frames` of the signal after the canceller.
+    """Make the gate of a config for every window of a signal.
 
-    `track` is the delay (s) of the torso at the pulses before the canceller, at times t (s).
+    Args:
+        c: config whose `processing.gate_m` counts.
+        after: range bins after the canceller.
+        frames: windows of the signal.
+        t: times of the pulses before the canceller [M], s.
+        track: delay of the torso at those times [M], s.
     """
     assert after.ranges is not None
     middle = np.interp(Stft(after, frames).time.values, t, range(track.size))
@@ -320,7 +344,7 @@ def max_samples(config: AnyConfig) -> int:
 
 
 def cfar_of(config: AnyConfig) -> CellAveraging:
-    """The CFAR of a scene's config; of another's, its numbers at their middle."""
+    """Make the CFAR of a config; numbers that are still to be drawn are taken at their middle."""
     cfar = config.image.cfar
     return CellAveraging(
         guard=cfar.guard,
@@ -333,20 +357,27 @@ def cfar_of(config: AnyConfig) -> CellAveraging:
 
 
 def frames_of(config: AnyConfig, duration: float, prf: float, f0: float) -> Frames:
-    """The frames of the STFT in a recording (s, pulses per s), whose Doppler is one of f0 (Hz)."""
+    """Make the windows of the STFT of a recording.
+
+    Args:
+        config: length and overlap of the windows.
+        duration: duration of the recording, s.
+        prf: pulses per second.
+        f0: frequency that Dopplers refer to, Hz, from which a default length follows.
+    """
     processing = config.processing
     length = processing.window_pulses(duration, prf, f0)
     return Frames.of(length, processing.overlap_fraction)
 
 
 def fsst_frames_of(config: AnyConfig, duration: float, prf: float, f0: float) -> Frames:
-    """`frames_of`, with the hop of the FSST where it has its own."""
+    """Make the windows of the FSST: `frames_of`, with a hop of its own if the config has one."""
     frames, hop = frames_of(config, duration, prf, f0), config.processing.fsst_hop_pulses
     return frames if hop is None else Frames(frames.length, hop)
 
 
 def channel_of(scene: Scene, antennas: Antennas) -> str:
-    """Name of a receive channel: empty for the antennas of the config, of others their numbers."""
+    """Name of a receive channel: "" for the antennas of the config, else the antennas' numbers."""
     if antennas == antennas_of(scene):
         return ""
     numbers = (*antennas.tx, *antennas.rx, antennas.gain, antennas.isolation_db)
@@ -354,7 +385,13 @@ def channel_of(scene: Scene, antennas: Antennas) -> str:
 
 
 def noise_stream(scene: Scene, name: str, channel: object = "") -> np.random.Generator:
-    """The stream of unit noise of a scene with that name, in a channel (`channel_of`)."""
+    """Random stream of a scene's noise.
+
+    Args:
+        scene: the scene, whose seed, class and index name the stream.
+        name: what the noise is.
+        channel: name of the receive channel (`channel_of`).
+    """
     key = (scene.activity.index, scene.index)
     name = f"{name} channel {channel}" if channel else name
     return stream(scene.config.seed, NOISE, *key, name=name)

@@ -14,27 +14,39 @@ from radhar_cli.errors import RadharError
 
 @dataclass(frozen=True)
 class Product:
-    """One row of the table of products."""
+    """One row of the table of products.
 
-    name: str  # ``kind`` or ``kind:variant``
-    needs: tuple[str, ...]  # the products that it is made from
-    make: Callable[..., Any]  # makes it; called with those products, in that order
-    does: str  # one line for people
+    Attributes:
+        name: ``kind`` or ``kind:variant``.
+        needs: names of the products that it is made from.
+        make: makes it; called with those products, in that order.
+        does: one line for people.
+    """
+
+    name: str
+    needs: tuple[str, ...]
+    make: Callable[..., Any]
+    does: str
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The products of one request, each after everything it needs."""
+    """The products of one request, each after everything it needs.
 
-    products: tuple[Product, ...]  # in running order
-    asked: tuple[str, ...]  # the products that were asked for, which are kept
+    Attributes:
+        products: the products, in running order.
+        asked: names of those that were asked for, which are kept.
+    """
+
+    products: tuple[Product, ...]
+    asked: tuple[str, ...]
 
     def __contains__(self, name: str) -> bool:
         return any(product.name == name for product in self.products)
 
     @cached_property
     def released_after(self) -> dict[str, tuple[str, ...]]:
-        """{product: the products that are read for the last time when it is made}."""
+        """Products that are read for the last time when a product is made, {product: those}."""
         last = {need: product.name for product in self.products for need in product.needs}
         return {
             product.name: tuple(
@@ -47,19 +59,26 @@ class Plan:
 
 
 def plan(table: Mapping[str, Product], asked: Iterable[str], given: Iterable[str] = ()) -> Plan:
-    """The products of a table {name: product} that these need, less those given, in running order.
+    """Plan a request: the products that it needs, in running order.
+
+    Args:
+        table: every product there is, {name: product}.
+        asked: names of the products that are asked for.
+        given: names of products that are there already.
 
     Raises:
         RadharError: a product is neither in the table nor given.
     """
-    asked, ordered, there = tuple(asked), dict[str, Product](), set(given)
+    asked, ordered, available = tuple(asked), dict[str, Product](), set(given)
 
     def visit(name: str) -> None:
-        if name in there or name in ordered:
+        if name in available or name in ordered:
             return
         if name not in table:
-            by = ", ".join(one.name for one in table.values() if name in one.needs)
-            raise RadharError(f"product {name!r}: is unknown" + (f"; {by} needs it" if by else ""))
+            users = ", ".join(one.name for one in table.values() if name in one.needs)
+            raise RadharError(
+                f"product {name!r}: is unknown" + (f"; {users} needs it" if users else "")
+            )
         for need in table[name].needs:
             visit(need)
         ordered[name] = table[name]

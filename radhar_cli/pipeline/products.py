@@ -14,9 +14,8 @@ import json
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from itertools import chain, repeat
 from math import inf
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -31,7 +30,7 @@ from radhar_cli.echo.knots import delay_track, mean_power
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.pipeline.bodies import sources_of, together
+from radhar_cli.pipeline.bodies import sources_of, sum_of_paths
 from radhar_cli.pipeline.fallback import EchoAccuracy, fall_back
 from radhar_cli.pipeline.motion_paths import TorsoPath
 from radhar_cli.pipeline.noise import noise_products, snr_of_other_paths, snr_paths
@@ -85,13 +84,17 @@ SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensate
 
 
 def signal_of(map_name: str) -> str:
-    """Which of SIGNALS a Doppler-time map shows."""
+    """Name of the signal, of SIGNALS, that a Doppler-time map shows."""
     suffix = map_name.partition("_")[2]
     return f"signal_{suffix}" if suffix else "signal"
 
 
 def plan_images(config: Config) -> Plan:
-    """The plan of a data set: the image of every map, by signal."""
+    """Plan the products of a data set: the image of every map, by signal, and what it stores.
+
+    Raises:
+        ConfigError: `output.products` names one that the radar or the engine does not make.
+    """
     own = {product.name for product in own_products()}
     of_signals = [name for name in config.maps if name in MAP_NAMES and name not in own]
     maps = sorted(of_signals, key=lambda name: SIGNALS.index(signal_of(name)))
@@ -112,7 +115,7 @@ def plan_images(config: Config) -> Plan:
 
 
 def products(config: Config) -> dict[str, Product]:
-    """Every product there could be under a config, by name.
+    """Collect every product that a scene of a config can have, {name: product}.
 
     Raises:
         ConfigError: a product of a user's own would replace one that a board does not have.
@@ -130,16 +133,20 @@ def products(config: Config) -> dict[str, Product]:
                 )
         echo = board_products(config)
     rows = (*_physics(config), *_signals(config), *_maps(config), *echo, *own_products())
-    found = {row.name: row for row in rows}
+    table = {row.name: row for row in rows}
     if config.radar.output == "real" and config.radar.waveform == "cw":
-        made = found["signal"]
-        real = lambda *g: (x := made.make(*g)).with_samples(x.x.real.astype(complex))  # noqa: E731
-        found["signal"] = replace(made, make=real)
-    return found
+        table["signal_iq"] = replace(table["signal"], name="signal_iq")
+        table["signal"] = Product("signal", ("signal_iq",), in_phase, "in-phase channel")
+    return table
+
+
+def in_phase(signal: Signal) -> Signal:
+    """Signal of a receiver without a quadrature channel: the real part alone."""
+    return signal.with_samples(signal.x.real.astype(complex))
 
 
 def products_of_signals(config: AnyConfig) -> dict[str, Product]:
-    """Every product of a recorded signal, by name."""
+    """Collect every product that a recorded signal can have, {name: product}."""
     rows = (*_signals(config), *_maps(config), *_gate(config), *own_products())
     return {row.name: row for row in rows}
 
@@ -173,14 +180,17 @@ def _physics(c: Config) -> Iterator[Product]:
     if room:
         yield Product("room", ("scene",), reflectors_of, "what stands in the room")
     parts = f"delay and amplitude of every {c.body.scatterers.removesuffix('s')}, {walled}"
-    yield Product("paths", ("scene", *seen, *room), lambda *g: together(sources_of(*g)), parts)
+    yield Product("paths", ("scene", *seen, *room), lambda *g: sum_of_paths(sources_of(*g)), parts)
     if snr_of_other_paths(c):
         yield Product("snr_paths", ("scene", *seen), of_people, "paths of people, for the SNR")
     yield Product("torso_track", seen, torso_track, "delay of the torso at every pulse")
 
 
 def _knots_per_second(c: Config, source: PathSource, w: Waveform) -> float:
-    """Knots of the echo, where positions are known, unless a wide band needs closer ones."""
+    """Knots per second at which positions are evaluated: the echo's, or inf for every pulse.
+
+    Every pulse is evaluated where a wide band needs knots closer than the echo's.
+    """
     chosen = settings(first_aim(c.engine.tolerance_db), w, source.highest_frequency)
     per_second, least = chosen.spacing.per_second, (GatedEcho if _gated(c) else DirectEcho).min_step
     return per_second if w.prf >= least * per_second else inf
@@ -225,20 +235,16 @@ def _receiver(c: Config) -> Iterator[Product]:
     )
 
 
-class EchoInputs(NamedTuple):
-    """What products of an echo are made with, in the order in which they need it."""
-
-    paths: PathSource
-    waveform: Waveform
-    canceller: Canceller
-    receiver: tuple[Impairment, ...]
-
-
-SEEN = ("paths", "waveform", "canceller", "receiver")
+ECHO_NEEDS = ("paths", "waveform", "canceller", "receiver")  # of signals made from paths
 
 
 def signal_of_look(x: Complex, look: Look) -> Signal:
-    """The signal of one channel [K, M]; times are those in the middle of the taps."""
+    """Make the signal of one channel of what a look shows.
+
+    Args:
+        x: samples [K, M]: K range bins, or one sum over range, at M pulses.
+        look: pulses, taps and range axis of the samples; times are in the middle of the taps.
+    """
     w, later = look.fast.waveform, (len(look.taps) - 1) / 2
     times = PulseTimes.even(look.count, w.prf, later / w.prf)
     if not isinstance(look.pulses, range):
@@ -253,7 +259,17 @@ def signal_of_look(x: Complex, look: Look) -> Signal:
 def received(
     x: Complex, look: Look, receiver: tuple[Impairment, ...], canceller: Canceller | None = None
 ) -> Signal:
-    """What a receiver adds to an echo [K, M] as one look shows it, and the canceller after it."""
+    """Pass an echo through the receiver and the canceller, as one look shows it.
+
+    Args:
+        x: noiseless samples [K, M].
+        look: pulses, taps and range axis of the samples.
+        receiver: impairments that are added, in this order.
+        canceller: canceller after them; None where the look has its taps.
+
+    Raises:
+        SceneError: an impairment is not additive, so that raw samples would be needed.
+    """
     for impairment in receiver:
         if not impairment.additive:
             raise SceneError(
@@ -266,22 +282,28 @@ def received(
     return signal if canceller is None else signal.cancelled(canceller, spans)
 
 
-def _exactly(c: Config, seen: EchoInputs, looks: list[Look]) -> list[Signal]:
+def _exact_signals(
+    c: Config,
+    paths: PathSource,
+    canceller: Canceller,
+    receiver: tuple[Impairment, ...],
+    looks: list[Look],
+) -> list[Signal]:
     """Signals after the canceller from raw samples, in one pass; a `Fir` is applied to those."""
-    fir = isinstance(seen.canceller, Fir)
-    static = fir or not seen.canceller.removes_static
-    made = exact_echo(seen.paths, looks, seen.receiver, static, c.engine.motion_in_chirp)
-    signals = [signal_of_look(x, look) for x, look in zip(made, looks, strict=True)]
-    return signals if fir else [one.cancelled(seen.canceller) for one in signals]
+    fir = isinstance(canceller, Fir)
+    static = fir or not canceller.removes_static
+    echoes = exact_echo(paths, looks, receiver, static, c.engine.motion_in_chirp)
+    signals = [signal_of_look(x, look) for x, look in zip(echoes, looks, strict=True)]
+    return signals if fir else [signal.cancelled(canceller) for signal in signals]
 
 
 def _taps(canceller: Canceller) -> tuple[float, ...]:
-    """Those of a canceller that acts before W; (1,) of one that acts on the whole recording."""
+    """Taps of a canceller that acts before W; (1,) for one that acts on the whole recording."""
     return canceller.taps if isinstance(canceller, Fir) else (1.0,)
 
 
 def _profile_look(c: Config, w: Waveform, canceller: Canceller) -> Look:
-    """The pulses that a range-time map shows, after a `Fir`; all of them before another."""
+    """Look at the pulses that a range-time map shows, after a `Fir`; at all before another one."""
     if not isinstance(canceller, Fir):
         return Look.of_all("range_signals", RangeBins(w), spans=[slice(0, w.n_pulses)] * w.n_bins)
     shown = shown_pulses(w.n_pulses - canceller.lost, c.image.size_px[1])
@@ -307,17 +329,19 @@ def _direct(c: Config) -> Iterator[Product]:
     ) -> Signal:
         return received(echo[0], made_by.look, receiver, canceller)
 
-    def range_profiles(*given: Any) -> Signal:
-        seen = EchoInputs(*given)
-        look = _profile_look(c, seen.waveform, seen.canceller)
-        if not isinstance(seen.canceller, Fir):
-            (x,) = exact_echo(seen.paths, [look], static=not seen.canceller.removes_static)
-            return received(x, look, seen.receiver, seen.canceller).columns(width)
-        x = look.fast(beat_at(seen.paths, seen.waveform, np.asarray(look.pulses), look.taps))
-        return received(x, look, seen.receiver)
+    def range_profiles(
+        paths: PathSource, w: Waveform, canceller: Canceller, receiver: tuple[Impairment, ...]
+    ) -> Signal:
+        look = _profile_look(c, w, canceller)
+        if not isinstance(canceller, Fir):
+            (x,) = exact_echo(paths, [look], static=not canceller.removes_static)
+            return received(x, look, receiver, canceller).columns(width)
+        x = look.fast(beat_at(paths, w, np.asarray(look.pulses), look.taps))
+        return received(x, look, receiver)
 
-    yield Product("direct", SEEN[:3], direct, "closed form of the echo at knots")
-    yield Product("echo", ("direct", "scene"), partial(_echo_of, c), f"{ECHO_IS} sum over range")
+    yield Product("direct", ECHO_NEEDS[:3], direct, "closed form of the echo at knots")
+    does = "samples and their measured error, of the sum over range"
+    yield Product("echo", ("direct", "scene"), partial(_echo_of, c), does)
     yield Product(
         "slow_time",
         ("echo", "direct"),
@@ -327,14 +351,14 @@ def _direct(c: Config) -> Iterator[Product]:
     needs = ("echo", "direct", "canceller", "receiver")
     yield Product("signal", needs, signal, "receiver, then canceller")
     does = "range profiles at the pulses that the range-time map shows"
-    yield Product("range_profiles", SEEN, range_profiles, does)
-    made = "gated" if _gated(c) else "direct"  # from the knots that are there anyway
+    yield Product("range_profiles", ECHO_NEEDS, range_profiles, does)
+    engine_row = "gated" if _gated(c) else "direct"  # from the knots that are there anyway
     if snr_of_other_paths(c):
         yield Product("signal_power", ("snr_paths", "waveform"), power, "P_s, for snr_db")
     else:
-        yield Product("signal_power", (made,), DirectEcho.signal_power, "P_s, for snr_db")
-    echo = "gated_echo" if _gated(c) else "echo"
-    yield Product("accuracy", (echo,), lambda echo: echo[1], "its measured error")
+        yield Product("signal_power", (engine_row,), DirectEcho.signal_power, "P_s, for snr_db")
+    echo_row = "gated_echo" if _gated(c) else "echo"
+    yield Product("accuracy", (echo_row,), lambda echo: echo[1], "its measured error")
     if not _gated(c):
         return
 
@@ -358,18 +382,20 @@ def _direct(c: Config) -> Iterator[Product]:
 
     of_frames = ("gate", "frames", "waveform", "canceller")
     yield Product("gate_needed", of_frames, needed, "its bins that frames show, pulse by pulse")
-    of_gate = (*SEEN[:3], "gate", "gate_needed")
+    of_gate = (*ECHO_NEEDS[:3], "gate", "gate_needed")
     yield Product("gated", of_gate, gated, "closed form of them at knots")
     needs = ("gated_echo", "gated", "canceller", "receiver")
-    yield Product("gated_echo", ("gated", "scene"), partial(_echo_of, c), f"{ECHO_IS} gate's bins")
+    does = "samples and their measured error, of the gate's bins"
+    yield Product("gated_echo", ("gated", "scene"), partial(_echo_of, c), does)
     yield Product("range_signals", needs, signal, "receiver, then canceller, of the gate's bins")
 
 
-ECHO_IS = "samples and their measured error, of the"
-
-
 def _echo_of(c: Config, echo: DirectEcho, scene: Scene) -> tuple[Complex, EchoAccuracy]:
-    """x [K, M] of the direct engine, or of the exact one where that cannot keep the tolerance."""
+    """Samples x [K, M] of the direct engine and their error, or of the exact engine and why.
+
+    Raises:
+        SceneError: the direct engine cannot keep the tolerance, and `engine.fallback` is refuse.
+    """
     try:
         return echo.rows()
     except AccuracyError as error:
@@ -379,43 +405,55 @@ def _echo_of(c: Config, echo: DirectEcho, scene: Scene) -> tuple[Complex, EchoAc
 
 
 def _exact(c: Config) -> Iterator[Product]:
-    """Everything from raw samples, the receiver's included."""
+    """Rows of the exact engine: all signals are made from raw samples, noise included."""
 
-    def beat_cube(*given: Any) -> list[Signal]:
-        seen = EchoInputs(*given)
-        w, taps = seen.waveform, _taps(seen.canceller)
-        looks = [Look.of_all("slow_time", RangeSum(w), taps)]
-        if isinstance(seen.canceller, Fir):
-            looks.append(_profile_look(c, w, seen.canceller))
-        return _exactly(c, seen, looks)
+    def beat_cube(
+        paths: PathSource, w: Waveform, canceller: Canceller, receiver: tuple[Impairment, ...]
+    ) -> list[Signal]:
+        looks = [Look.of_all("slow_time", RangeSum(w), _taps(canceller))]
+        if isinstance(canceller, Fir):
+            looks.append(_profile_look(c, w, canceller))
+        return _exact_signals(c, paths, canceller, receiver, looks)
 
-    def range_profiles(signals: list[Signal], *given: Any) -> Signal:
+    def range_profiles(
+        signals: list[Signal],
+        paths: PathSource,
+        w: Waveform,
+        canceller: Canceller,
+        receiver: tuple[Impairment, ...],
+    ) -> Signal:
         if len(signals) > 1:
             return signals[1]
-        seen = EchoInputs(*given)
-        look = _profile_look(c, seen.waveform, seen.canceller)
-        return _exactly(c, seen, [look])[0].columns(c.image.size_px[1])
+        look = _profile_look(c, w, canceller)
+        (signal,) = _exact_signals(c, paths, canceller, receiver, [look])
+        return signal.columns(c.image.size_px[1])
 
-    def range_signals(gate: Gate, *given: Any) -> Signal:
-        seen = EchoInputs(*given)
-        bins = RangeBins(replace(seen.waveform, centred=True), gate.bins)
-        look = Look.of_all("range_signals", bins, _taps(seen.canceller))
-        return _exactly(c, seen, [look])[0]
+    def range_signals(
+        gate: Gate,
+        paths: PathSource,
+        w: Waveform,
+        canceller: Canceller,
+        receiver: tuple[Impairment, ...],
+    ) -> Signal:
+        bins = RangeBins(replace(w, centred=True), gate.bins)
+        look = Look.of_all("range_signals", bins, _taps(canceller))
+        return _exact_signals(c, paths, canceller, receiver, [look])[0]
 
     power_of = "snr_paths" if snr_of_other_paths(c) else "paths"
     yield Product("signal_power", (power_of, "waveform"), signal_power, "P_s, for snr_db")
-    yield Product("beat_cube", SEEN, beat_cube, "the whole beat matrix, cancelled, compressed")
+    does = "the whole beat matrix, cancelled, compressed"
+    yield Product("beat_cube", ECHO_NEEDS, beat_cube, does)
     yield Product(
         "signal", ("beat_cube",), lambda signals: signals[0], "its sum over the kept bins"
     )
-    yield Product("range_profiles", ("beat_cube", *SEEN), range_profiles, "its range bins")
+    yield Product("range_profiles", ("beat_cube", *ECHO_NEEDS), range_profiles, "its range bins")
     if _gated(c):
         does = "the beat matrix, compressed, of the gate's bins"
-        yield Product("range_signals", ("gate", *SEEN), range_signals, does)
+        yield Product("range_signals", ("gate", *ECHO_NEEDS), range_signals, does)
 
 
 def _impulse(c: Config) -> Iterator[Product]:
-    """Everything from the samples of an impulse radar's profiles."""
+    """Rows of an impulse radar: all signals are made from samples of its profiles."""
 
     def signal(
         r: Float, w: Impulse, canceller: Canceller, receiver: tuple[Impairment, ...]
@@ -429,8 +467,8 @@ def _impulse(c: Config) -> Iterator[Product]:
     yield Product("signal_power", (power_of, "waveform"), impulse_power, "P_s, for snr_db")
     needs = ("profiles", "waveform", "canceller", "receiver")
     yield Product("range_signals", needs, signal, "receiver, then canceller")
-    shown = lambda x: x.columns(c.image.size_px[1])  # noqa: E731
-    yield Product("range_profiles", ("range_signals",), shown, "those that the map shows")
+    profiles = lambda x: x.columns(c.image.size_px[1])  # noqa: E731
+    yield Product("range_profiles", ("range_signals",), profiles, "those that the map shows")
     yield Product("signal", ("range_signals",), Signal.summed, "their sum over range")
     yield Product("accuracy", (), lambda: Accuracy(1, 0, False, -inf), "paths at every pulse")
 
@@ -508,16 +546,20 @@ def _maps(c: AnyConfig) -> Iterator[Product]:
 
 
 class DopplerPower(NamedTuple):
-    """The power of a Doppler-time map in blocks, in units of 2^(2 exponent), and its axes."""
+    """Power of a Doppler-time map in blocks, in units of 2^(2 exponent), and its axes.
 
-    blocks: Iterator[Float]  # [some columns, rows] in the order of time
+    Attributes:
+        blocks: blocks [columns, rows] in the order of time, for one pass.
+    """
+
+    blocks: Iterator[Float]
     exponent: int
     rows: Axis
     columns: Axis
 
 
 def _doppler_maps(c: AnyConfig, signal: str) -> Iterator[Product]:
-    """STFT and FSST of a signal, whole in float64, and their images from float32."""
+    """Rows of the STFT and FSST of a signal, in float64, and of their images, from float32."""
     suffix = signal.removeprefix("signal")
     masks = ("cfar",) if c.image.kind == "cfar" else ()
     # A mask compares cells with their neighbours, down to the noise, if there is any.
@@ -532,11 +574,12 @@ def _doppler_maps(c: AnyConfig, signal: str) -> Iterator[Product]:
     for kind, (needs, does) in kinds.items():
         power = partial(_doppler_power, c, kind)
         single = c.engine.precision == "auto" and shallow
+        image = partial(_doppler_image, c, power, single)
         yield Product(kind + suffix, needs, partial(_doppler_map, power), f"power of the {does}")
         yield Product(
             f"image:{kind}{suffix}",
             (*masks, *needs),
-            partial(_doppler_image, c, power, single),
+            image if masks else partial(image, None),
             f"power of the {does}{', in float32' * single}; its {_shape(c)}",
         )
 
@@ -547,7 +590,16 @@ MakePower: TypeAlias = Callable[..., DopplerPower]
 def _doppler_power(
     c: AnyConfig, kind: str, single: bool, x: Signal, frames: Frames, gate: Gate | None = None
 ) -> DopplerPower:
-    """Power at the bins whose middle lies within `image.doppler_limits_mps`, with its axes."""
+    """Compute the power at the bins whose middle lies within `image.doppler_limits_mps`.
+
+    Args:
+        c: limits, FFT length and thresholds.
+        kind: stft or fsst.
+        single: whether it is computed in float32.
+        x: signal.
+        frames: windows.
+        gate: range bins of each window whose powers are summed; None for all of the signal.
+    """
     bins = c.processing.stft_fft_length if kind == "stft" else None
     of_stft = single and kind == "stft"
     stft = Stft(x, frames, bins, of_stft, gate, c.processing.gate_sum == "magnitude")
@@ -568,7 +620,7 @@ def _shape(c: AnyConfig) -> str:
 
 
 def image_of(config: AnyConfig, power_map: PowerMap) -> MapImage:
-    """The image of a map that was measured, as a data set shows it; masks by fixed numbers."""
+    """Make the image of a measured map as a data set has it; masks by numbers at their middle."""
     cfar = cfar_of(config) if config.image.kind == "cfar" else None
     small = partial(reduced_map, power_map.power, config.image.size_px)
     return _image(config, cfar, small, power_map.extent, binary_exponent(power_map.power))
@@ -581,9 +633,14 @@ def _image(
     extent: tuple[float, float, float, float],
     exponent: int,
 ) -> MapImage:
-    """The image of a map from its resized power, and its unclipped decibels where they are stored.
+    """Make the image of a map from its resized power, with its decibels where they are stored.
 
-    `resize` resizes a function of the power, or the power itself, in units of 2^exponent.
+    Args:
+        c: what pixels show, and whether unclipped decibels are stored.
+        cfar: threshold of masks; None for grey levels.
+        resize: resizes a function of the power, or for None the power itself.
+        extent: edges of the map, (left, right, low, high).
+        exponent: the power is in units of 2^exponent.
     """
     masks_decibels = cfar is not None and cfar.decibel
     small = resize(decibels_of if masks_decibels else None)
@@ -596,18 +653,30 @@ def _image(
     return replace(image, decibels=stored, largest_db=largest_db)
 
 
-def _doppler_map(make: MakePower, *given: Any) -> PowerMap:
-    doppler = make(False, *given)
+def _doppler_map(make: MakePower, x: Signal, frames: Frames, gate: Gate | None = None) -> PowerMap:
+    doppler = make(False, x, frames, gate)
     power = np.concatenate(list(doppler.blocks), dtype=float)
     np.ldexp(power, 2 * doppler.exponent, out=power)
     return PowerMap(power.T, doppler.rows, doppler.columns)
 
 
-def _doppler_image(c: AnyConfig, make: MakePower, single: bool, *given: Any) -> MapImage:
-    cfar, given = (given[0], given[1:]) if c.image.kind == "cfar" else (None, given)
-    doppler = make(single, *given)
-    again = (make(single, *given).blocks for _ in repeat(None))
-    passes = chain([doppler.blocks], again)
+def _doppler_image(
+    c: AnyConfig,
+    make: MakePower,
+    single: bool,
+    cfar: CellAveraging | None,
+    x: Signal,
+    frames: Frames,
+    gate: Gate | None = None,
+) -> MapImage:
+    doppler = make(single, x, frames, gate)
+
+    def passes_over_blocks() -> Iterator[Iterator[Float]]:
+        yield doppler.blocks
+        while True:
+            yield make(single, x, frames, gate).blocks
+
+    passes = passes_over_blocks()
 
     def small(of: Callable[[Float], Float] | None) -> Reduced:
         return reduced(next(passes), doppler.columns.values.size, c.image.size_px, of)

@@ -18,32 +18,40 @@ from radhar_cli.scene import Scene
 
 @dataclass
 class Results:
-    """What was made of one scene, or of one recorded signal."""
+    """Products of one scene, or of one recorded signal.
 
-    products: dict[str, Any] = field(default_factory=dict)  # {name: product}, those asked for
-    seconds: dict[str, float] = field(default_factory=dict)  # {name: processor time it took}
+    Attributes:
+        products: {name: product} of those asked for.
+        seconds: {name: processor time, s} of every product that was made.
+    """
+
+    products: dict[str, Any] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Any:
         return self.products[name]
 
 
 def run(steps: Plan, given: Mapping[str, Any], progress: Progress = NO_PROGRESS) -> Results:
-    """Make the products of a plan from those that are given.
+    """Make the products of a plan.
 
     Args:
+        steps: the plan.
+        given: products that are there already, {name: product}.
         progress: is told of every product that is made.
     """
-    there, recording = dict(given), Results()
+    available = dict(given)
+    results = Results()
     progress.stage("synthesis", len(steps.products), 0, "step")
     for product in steps.products:
         start = process_time()
-        there[product.name] = product.make(*(there[need] for need in product.needs))
-        recording.seconds[product.name] = process_time() - start
+        available[product.name] = product.make(*(available[need] for need in product.needs))
+        results.seconds[product.name] = process_time() - start
         for name in steps.released_after[product.name]:
-            del there[name]
+            del available[name]
         progress.advance(1)
-    recording.products = {name: there[name] for name in steps.asked}
-    return recording
+    results.products = {name: available[name] for name in steps.asked}
+    return results
 
 
 def record(
@@ -55,9 +63,18 @@ def record(
 ) -> Results:
     """Make products of a scene, by name (`radhar_cli.pipeline.products`).
 
-    `more` are further products, or others in place of those of the same name. Given are products
-    that are there already: `motions=`, `antennas=`, `paths=` and so on. Antennas other than the
-    config's have noise of their own; equal ones have it by `channel=1`, `channel=2`, ...
+    Args:
+        scene: what is simulated.
+        asked: names of the products.
+        more: further products, or others in place of those of the same name.
+        progress: is told of every product that is made.
+        given: products that are there already: `motions=`, `antennas=`, `paths=` and so on.
+            Antennas other than the config's have noise of their own; equal ones have it by
+            `channel=1`, `channel=2`, ...
+
+    Raises:
+        RadharError: there is no product of a name.
+        SceneError: the scene cannot be simulated, as the message says.
     """
     table = products(scene.config) | {product.name: product for product in more}
     given = {"scene": scene, **given}
@@ -71,11 +88,15 @@ def process(
     more: Iterable[Product] = (),
     **given: Any,
 ) -> Results:
-    """Make products of a recorded signal: a sum over range after the canceller, or range bins
-    before it. Powers of its channels are added up.
+    """Make products of a recorded signal, by name; powers of its channels are added up.
 
-    As `record`, without a scene. Compensated maps need `torso_track=`, its delay [M] in s, and so
-    does a gate that follows the torso.
+    Args:
+        signal: sum over range after the canceller, or range bins before it.
+        config: processing, image and maps.
+        asked: names of the products.
+        more: further products, or others in place of those of the same name.
+        given: products that are there already. Compensated maps, and a gate that follows the torso,
+            need `torso_track=`, its delay at the pulses [M], s.
 
     Raises:
         RadharError: a product would need a scene.
@@ -103,6 +124,6 @@ def process(
                     config, after, given["frames"], signal.t, track
                 )
         profiles = after.columns(config.image.size_px[1])
-        made = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
-        given = {**made, "range_axis": signal.ranges, **given}
+        signals = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
+        given = {**signals, "range_axis": signal.ranges, **given}
     return run(plan(table, asked, given), given)

@@ -37,15 +37,24 @@ SQUARES = [0, 1, 2, 3, 8, 9], [4, 5, 6, 7, 8, 9]  # rows of what is seen, for bo
 
 
 class Points(NamedTuple):
-    """The n points of a segment."""
+    """The n points of a segment.
 
-    along: Float  # from the middle, -1/2 to 1/2 of the length [n]
-    across: Float  # in two directions [2, n], m
-    share: Float  # of the amplitude [n]; squares add up to 1
+    Attributes:
+        along: places along the segment from its middle, -1/2 to 1/2 of the length [n].
+        across: offsets in two directions across it [2, n], m.
+        share: shares of the amplitude [n], whose squares add up to 1.
+    """
+
+    along: Float
+    across: Float
+    share: Float
 
 
 def draw_points(count: int, rng: np.random.Generator) -> Points:
-    """Points one to each n-th of a segment, with exponential powers; a single one in its middle."""
+    """Draw points, one in each n-th of a segment, with exponential powers.
+
+    A single point is in the middle, and nothing is drawn.
+    """
     if count == 1:
         return Points(np.zeros(1), np.zeros((2, 1)), np.ones(1))
     jitter, power = JITTER * (rng.random(count) - 0.5), rng.exponential(size=count)
@@ -56,29 +65,40 @@ def draw_points(count: int, rng: np.random.Generator) -> Points:
 
 @dataclass(frozen=True)
 class Body:
-    """Whose segments they are."""
+    """Body of ellipsoids that follow the joints of a motion.
 
-    motion: Motion  # how the joints move
-    segments: tuple[Segment, ...]  # those that its joints have
-    stature: float  # of the person, m
-    thickness: float  # of the segments, over the usual one
+    Attributes:
+        motion: how the joints move.
+        segments: segments between its joints, S of them.
+        stature: stature of the person, m.
+        thickness: thickness of the segments, over the usual one.
+    """
+
+    motion: Motion
+    segments: tuple[Segment, ...]
+    stature: float
+    thickness: float
 
     @cached_property
     def radii(self) -> Float:
-        """Semi-axes across [S, 1], m."""
+        """Semi-axes of the segments across [S, 1], m."""
         return self.thickness * np.array([[one.radius] for one in self.segments])
 
     @cached_property
     def flatness(self) -> Float:
-        """Of the segments [S, 1]."""
+        """Flatness of the segments [S, 1]."""
         return np.array([[one.flatness] for one in self.segments])
 
     def at(self, t: Float) -> SegmentPositions:
-        """The segments at times t [M] (s)."""
+        """Places of the segments at times t [M] (s)."""
         return segment_positions(self.motion, self.segments, self.stature, t)
 
     def clearance(self, antenna: tuple[float, float, float], t: Float) -> Float:
-        """Way [S, M] (m) from an antenna to the nearest point of each segment, below 0 in it."""
+        """Distance of an antenna from the surface of each segment at times t [M] (s).
+
+        Returns:
+            Distances [S, M], m; below 0 inside of a segment.
+        """
         frame = frame_of(self.at(t))
         seen = ellipsoid.seen_from(frame, antenna)
         aside = seen.aside / seen.distance
@@ -91,10 +111,18 @@ class Body:
 def point_counts(
     body: Body, antennas: Antennas, wavelength: float, window: float, duration: float, most: int
 ) -> tuple[int, ...]:
-    """n = min(ceil(2 dv T_w/lambda), most), 1 or more, of each segment; lambda in m, times in s.
+    """Number of points that each segment needs: n = min(ceil(2 dv T_w/lambda), most), 1 or more.
 
     dv is the largest difference of the radial speeds of the segment's ends: n points are less than
     a Doppler cell of the window T_w apart, so that no gaps show between their lines.
+
+    Args:
+        body: the body.
+        antennas: antennas that the speeds are seen by.
+        wavelength: lambda, m.
+        window: T_w, s.
+        duration: duration of the recording, s.
+        most: largest number of points of a segment.
     """
     count = int(np.clip(RATES_PER_SECOND * duration, 64, MAX_RATES))
     t = np.linspace(0, duration, count)
@@ -124,7 +152,7 @@ class SegmentPaths(OfMotion):
 
     @property
     def motion(self) -> Motion:  # type: ignore[override]
-        """Of the body."""
+        """Motion of the body."""
         return self.body.motion
 
     @cached_property
@@ -155,7 +183,7 @@ class SegmentPaths(OfMotion):
         return np.cumsum([0, *(kept * self._sizes[2, :, 0])]).astype(np.intp)
 
     def places(self, t: Float) -> tuple[Float, Index]:
-        """Middles [3, S, M] (m) of the segments, and that of each path [I]."""
+        """Middles of the segments, which shadows fall on, as `PlacedPaths.places`."""
         placed = self.body.at(t)
         middles: Float = 0.5 * (placed.start + placed.end)[:, list(self.kept)]
         return middles, np.repeat(np.arange(len(self.kept)), np.diff(self._first)[list(self.kept)])
@@ -245,7 +273,7 @@ class SegmentPaths(OfMotion):
 
 
 def frame_of(placed: SegmentPositions) -> Frame:
-    """Segments as frames of reference, all numbers of which are arrays [S, M]."""
+    """Frames of reference of the segments, with numbers [S, M]."""
     start, end, beside = map(tuple, placed)
     return ellipsoid.frame_of(start, end, beside, SOFTNESS)
 

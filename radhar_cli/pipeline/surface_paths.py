@@ -45,18 +45,33 @@ TONES = 4
 
 
 class Drawn(NamedTuple):
-    """What is drawn of a body's points [I]."""
+    """Drawn numbers of a body's points and of its tremor.
 
-    segment: np.ndarray[tuple[int], np.dtype[np.intp]]  # number of the segment
-    along: Float  # 0 at its start, 1 at its end
-    around: Float  # angle from the side that faces the radar, rad
-    weight: Complex  # circular Gaussian
-    rate: Float  # of the tones of the tremor [segment + 1, TONES], Hz; the last row is the body's
-    phase: Float  # of these, cycles
+    Attributes:
+        segment: number of the segment of each point [I].
+        along: place of the point along it [I], 0 at its start, 1 at its end.
+        around: angle from the side that faces the radar [I], rad.
+        weight: circular Gaussian factor of the field [I].
+        rate: rates of the tones of the tremor [S + 1, TONES], Hz; the last row is the body's.
+        phase: phases of the tones [S + 1, TONES], cycles.
+    """
+
+    segment: np.ndarray[tuple[int], np.dtype[np.intp]]
+    along: Float
+    around: Float
+    weight: Complex
+    rate: Float
+    phase: Float
 
 
 def draw_surface(segments: int, points: int, rng: np.random.Generator) -> Drawn:
-    """So many points of each segment, spread evenly along it and drawn around it."""
+    """Draw points of each segment, spread evenly along it, and the tones of the tremor.
+
+    Args:
+        segments: number of segments.
+        points: number of points of each.
+        rng: random numbers.
+    """
     shape = (segments, points)
     weight = rng.standard_normal((2, *shape)) * np.sqrt(0.5)
     along = (np.arange(points) + rng.random(shape)) / points
@@ -85,11 +100,11 @@ class SurfacePaths(OfMotion):
 
     @property
     def motion(self) -> Motion:  # type: ignore[override]
-        """Of the body."""
+        """Motion of the body."""
         return self.body.motion
 
     def places(self, t: Float) -> tuple[Float, Index]:
-        """Middles [3, S, M] (m) of the segments, and that of each path [I]."""
+        """Middles of the segments, which shadows fall on, as `PlacedPaths.places`."""
         placed, segment = self.body.at(t), self.drawn.segment
         return 0.5 * (placed.start + placed.end), segment[np.isin(segment, self.kept)]
 

@@ -143,6 +143,7 @@ class SceneCheck:
 
     @property
     def too_close(self) -> bool:
+        """Whether a scatterer comes within MIN_DISTANCE_M of an antenna."""
         return self.closest.distance < MIN_DISTANCE_M
 
     @property

@@ -11,7 +11,7 @@ from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.phases import phase_numbers
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.pipeline.bodies import Whose
+from radhar_cli.pipeline.bodies import OwnedPaths
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Leg, names_of
@@ -68,7 +68,7 @@ class PathTruth(NamedTuple):
     bounces: Index
 
 
-def path_truth(sources: list[Whose], t: Float) -> PathTruth:
+def path_truth(sources: list[OwnedPaths], t: Float) -> PathTruth:
     """Evaluate the paths of all sources, I in all, at times t [M] (s)."""
     paths = [one.source(t) for one in sources]
     counts = [len(one.delay) for one in paths]

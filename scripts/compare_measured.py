@@ -86,7 +86,7 @@ def statistics(one: Map) -> dict[str, float]:
     """What a radar engineer looks at in the map of a walker, in the units of the names."""
     v, power = one.speed, DopplerMap(one.power, one.speed)
     numbers = power_statistics(power, ZERO_MPS, NOISE_MPS, NEAR_MPS)
-    occupied, band = power.occupied(NOISE_MPS), (v >= 0.2) & (v <= 4.5)
+    occupied, band = power.signal_mask(NOISE_MPS), (v >= 0.2) & (v <= 4.5)
     envelope = v[np.argmax(occupied & (v < NOISE_MPS)[:, None], axis=0)]
     return {
         "peak over floor, dB": numbers["peak_over_floor"],

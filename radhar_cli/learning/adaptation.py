@@ -47,19 +47,27 @@ class Mixed:
     """Labelled images that are shown while a network learns from unlabelled ones."""
 
     images: ImageSet
-    weights: tuple[float, ...] | None = None  # how often those of each joined set; None: all alike
+    weights: tuple[float, ...] | None = None  # of the images of each joined set; None is 1 each
 
     def batches(
         self, metadata: RunMetadata, epoch: int, count: int
     ) -> Iterator[tuple[Tensor, Tensor]]:
-        """`count` batches (uint8 [MIXED, 3, H, W], labels [MIXED]), changed as in training."""
+        """Yield `count` batches (uint8 [MIXED, 3, H, W], labels [MIXED]), augmented as in training.
+
+        Args:
+            metadata: description of the network, with its augmentation and classes.
+            epoch: number of the epoch; each draws other images.
+            count: number of batches.
+        """
         config, rows = metadata.settings, self.images.rows("train")
         weights = sampling_weights(self.images, rows, self.weights, balanced=False)
         rng = stream(config.seed, TRAINING, epoch, name="adaptation mixed")
-        drawn = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
+        batch_rows = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
         labels = labels_for(self.images, metadata.classes)
-        change = Augmentation(config.augment, config.seed) if config.input_kind == "gray" else None
-        yield from Reader(self.images.pixels, labels, change)(list(drawn), epoch)
+        augmentation = (
+            Augmentation(config.augment, config.seed) if config.input_kind == "gray" else None
+        )
+        yield from Reader(self.images.pixels, labels, augmentation)(list(batch_rows), epoch)
 
 
 def adapt(
@@ -75,20 +83,34 @@ def adapt(
     mix: Sequence[Path] | Mixed = (),
     progress: Messages | None = None,
 ) -> RunMetadata:
-    """Write a copy of a run that has learned from all images of `data`.
+    """Write a copy of a run whose network has learned from unlabelled images.
 
     Classes of `data` are not looked at, and may be others than the model's. Learning takes every
     class to be there about equally often. Without epochs only the statistics of batch norm change;
     the images should show the classes about as often as those that will be predicted.
 
     Args:
+        run: folder of the run.
         data: a data set, or some rows of images that are open already.
-        map_name: of a data set, if not the one of the run.
-        split: of `data`, where it has any.
+        folder: folder of the copy.
+        device: where the network runs.
+        map_name: map of a data set; None is the one of the training.
+        split: split of `data`, where it has any.
         resize: bring images to the model's size.
-        epochs: passes in which it learns from the images; None is none where there is batch norm
-            and nothing to mix, else EPOCHS.
-        mix: labelled data sets that it shows as well, those that the run learned from.
+        overwrite: replace another run in `folder`.
+        epochs: passes over the images in which the network learns; None is none where there is
+            batch norm and nothing to mix, else EPOCHS.
+        mix: labelled data sets that are shown as well, those that the run learned from.
+        progress: receives messages.
+
+    Returns:
+        Metadata of the copy.
+
+    Raises:
+        ConfigError: fewer than MIN_IMAGES images, a network of another target, or nothing to adapt.
+        RunError: `run` is no folder of a run, `folder` holds something else, or a loss is not
+            finite.
+        FolderError: data that cannot be used.
     """
     metadata, model = load_best(run)
     epochs = _epochs(run, metadata, model, epochs, bool(mix))
@@ -97,11 +119,11 @@ def adapt(
         rows, _ = rows_of(images, split)
     else:
         images, rows = data
-    mixed: Mixed | None = None
+    labelled_images: Mixed | None = None
     if isinstance(mix, Mixed):
-        mixed = mix
+        labelled_images = mix
     elif mix:
-        mixed = Mixed(joined([training_images(metadata, path) for path in mix]))
+        labelled_images = Mixed(joined([training_images(metadata, path) for path in mix]))
     if not run.is_dir():
         raise run_folder.RunError(f"{run}: should be the folder of a run")
     if run.resolve() == folder.resolve():
@@ -120,12 +142,14 @@ def adapt(
     learner = _Learner(model.to(device), metadata, images, rows, device)
     learner.adapt_batch_norm()
     if epochs:
-        learner.maximise_information(epochs, mixed, progress)
+        learner.maximise_information(epochs, labelled_images, progress)
         learner.adapt_batch_norm()
-    seen = content_hash(images, rows)
-    work = {**metadata.work, "adapted_to": seen, "adapted_epochs": epochs}
-    if mixed is not None:
-        work["adapted_with"] = content_hash(mixed.images, mixed.images.rows("train"))
+    digest = content_hash(images, rows)
+    work = {**metadata.work, "adapted_to": digest, "adapted_epochs": epochs}
+    if labelled_images is not None:
+        work["adapted_with"] = content_hash(
+            labelled_images.images, labelled_images.images.rows("train")
+        )
     metadata = metadata.model_copy(update={"work": work})
     with folder_lock(folder):
         run_folder.reserve_run(folder, metadata, overwrite)
@@ -138,22 +162,26 @@ def adapt(
 
 
 def _epochs(
-    run: Path, metadata: RunMetadata, model: nn.Module, epochs: int | None, mixed: bool
+    run: Path,
+    metadata: RunMetadata,
+    model: nn.Module,
+    epochs: int | None,
+    has_labelled_images: bool,
 ) -> int:
-    """Passes over the images, of a network that can be adapted.
+    """Number of passes over the images, for a network that can be adapted.
 
     Raises:
         ConfigError: the network does not tell classes apart, one for each image; or would stay as
             it is, having no batch norm.
     """
     run_folder.refuse_other_targets(run, metadata)
-    normed = any(isinstance(layer, _BatchNorm) for layer in model.modules())
-    if epochs == 0 and not normed:
+    has_batch_norm = any(isinstance(layer, _BatchNorm) for layer in model.modules())
+    if epochs == 0 and not has_batch_norm:
         raise ConfigError(
             f"epochs = 0: should be at least 1 for {metadata.model}, which has no batch norm"
         )
     if epochs is None:
-        return 0 if normed and not mixed else EPOCHS
+        return 0 if has_batch_norm and not has_labelled_images else EPOCHS
     return epochs
 
 
@@ -169,6 +197,7 @@ class _Learner:
 
     @property
     def norms(self) -> list[_BatchNorm]:
+        """Layers of batch norm."""
         return [layer for layer in self.model.modules() if isinstance(layer, _BatchNorm)]
 
     def adapt_batch_norm(self) -> None:
@@ -191,15 +220,25 @@ class _Learner:
     def maximise_information(
         self, epochs: int, mixed: Mixed | None, progress: Messages | None
     ) -> None:
-        """Lower the entropy of each prediction, raise that of their mean: all but the last layer.
+        """Train all layers but the last to raise the mutual information of images and predictions.
 
-        The mutual information of images and predictions grows; without labels, batch norm as in
-        training, in the batches of `adapt_batch_norm`. Mixed images, in batches of their own, add
-        their cross-entropy, smoothed as in training.
+        The loss is the mean entropy of the predictions less the entropy of their mean. Batch norm
+        works as in training, in the batches of `adapt_batch_norm`. Labelled images, in batches of
+        their own, add their cross-entropy, smoothed as in training.
+
+        Args:
+            epochs: number of passes over the images.
+            mixed: labelled images that are shown as well.
+            progress: receives a line for each epoch.
+
+        Raises:
+            RunError: a loss is not finite.
         """
         model, metadata = self.model, self.metadata
-        learned = [p for name, p in model.named_parameters() if not is_of_last_layer(name, model)]
-        optimiser = torch.optim.Adam(learned)
+        parameters = [
+            p for name, p in model.named_parameters() if not is_of_last_layer(name, model)
+        ]
+        optimiser = torch.optim.Adam(parameters)
         smoothing = metadata.settings.label_smoothing
         for epoch in range(1, epochs + 1):
             for layer in self.norms:
@@ -207,14 +246,17 @@ class _Learner:
             batches = self._batches(epoch)
             labelled = mixed.batches(metadata, epoch, len(batches)) if mixed else None
             for step, levels in enumerate(self._levels(batches)):
-                done = (epoch - 1 + step / len(batches)) / epochs
-                optimiser.param_groups[0]["lr"] = RATE * (1 + cos(pi * done)) / 2
-                shares = model(levels).softmax(1)
-                entropy, of_mean = _entropy(shares).mean(), _entropy(shares.mean(0))
-                loss = entropy - of_mean
+                share_done = (epoch - 1 + step / len(batches)) / epochs
+                optimiser.param_groups[0]["lr"] = RATE * (1 + cos(pi * share_done)) / 2
+                probabilities = model(levels).softmax(1)
+                entropy, entropy_of_mean = (
+                    _entropy(probabilities).mean(),
+                    _entropy(probabilities.mean(0)),
+                )
+                loss = entropy - entropy_of_mean
                 if labelled is not None:
-                    shown, label = (part.to(self.device) for part in next(labelled))
-                    logits = model(metadata.normalisation(shown))
+                    labelled_levels, label = (part.to(self.device) for part in next(labelled))
+                    logits = model(metadata.normalisation(labelled_levels))
                     loss = loss + cross_entropy(logits, label, label_smoothing=smoothing)
                 if not loss.isfinite():
                     raise run_folder.RunError(
@@ -226,23 +268,23 @@ class _Learner:
             if progress is not None:
                 progress.say(
                     f"epoch {epoch}/{epochs}  entropy of a prediction {entropy:.3f}, of their mean "
-                    f"{of_mean:.3f}"
+                    f"{entropy_of_mean:.3f}"
                 )
         model.eval()
 
     def _batches(self, epoch: int) -> list[Index]:
-        """The rows in nearly equal batches, in the order of an epoch."""
+        """Rows in nearly equal batches, in the order of an epoch."""
         seed = int(self.metadata.config.get("seed", 0))
         rng = stream(seed, TRAINING, epoch, name="adaptation")
         order = self.rows[rng.permutation(self.rows.size)]
         return batches_in_order(order, -(-order.size // max(1, order.size // BATCH)))
 
     def _levels(self, batches: list[Index]) -> Iterator[Tensor]:
-        """The network's input [B, 3, H, W] of each batch."""
+        """Yield the network's input [B, 3, H, W] of each batch."""
         for levels, _ in Reader(self.images.pixels, None)(batches):
             yield self.metadata.normalisation(levels.to(self.device))
 
 
-def _entropy(shares: Tensor) -> Tensor:
-    """Entropy [...] of shares [..., classes], nats."""
-    return -(shares * shares.clamp_min(1e-12).log()).sum(-1)
+def _entropy(probabilities: Tensor) -> Tensor:
+    """Entropy [...] of probabilities [..., classes], nats."""
+    return -(probabilities * probabilities.clamp_min(1e-12).log()).sum(-1)

@@ -22,37 +22,47 @@ class Augmentation:
     seed: int  # of the training run
 
     def __call__(self, levels: Levels, row: int, epoch: int) -> Levels:
-        """A changed copy of grey levels [H, W], row 0 the highest frequency."""
+        """Changed copy of grey levels.
+
+        Args:
+            levels: [H, W], row 0 the highest frequency.
+            row: number of the image in its data set.
+            epoch: number of the epoch.
+        """
         c = self.config
         rng = stream(self.seed, TRAINING, epoch, row, name="augment")
-        shift, stretch, scale, offset, contrast, share = rng.uniform(-1, 1, 6)
+        shift, stretch, scale, offset, contrast, noise_share = rng.uniform(-1, 1, 6)
         height, width = levels.shape
-        changed = _resampled(
+        values = _resampled(
             levels,
             scale=(np.exp(c.doppler_scale * scale), np.exp(c.time_stretch * stretch)),
             shift=(c.doppler_shift * offset * height, c.time_shift * shift * width),
         )
         if rng.random() < c.morphology:
-            grow = ndimage.maximum_filter if rng.random() < 0.5 else ndimage.minimum_filter
-            changed = grow(changed, size=((3, 1), (1, 3), (3, 3))[rng.integers(3)])
-        changed = 255 - (255 - changed) * (1 + c.contrast * contrast)
+            extreme_filter = (
+                ndimage.maximum_filter if rng.random() < 0.5 else ndimage.minimum_filter
+            )
+            values = extreme_filter(values, size=((3, 1), (1, 3), (3, 3))[rng.integers(3)])
+        values = 255 - (255 - values) * (1 + c.contrast * contrast)
         # Some pixels take the level of another place: noise, whatever the levels mean.
-        there, here = rng.integers(levels.size, size=(2, int(c.noise * abs(share) * levels.size)))
-        flat = changed.reshape(-1)
-        flat[here] = flat[there]
+        sources, targets = rng.integers(
+            levels.size, size=(2, int(c.noise * abs(noise_share) * levels.size))
+        )
+        flat = values.reshape(-1)
+        flat[targets] = flat[sources]
         for axis, count in enumerate((c.doppler_bands, c.time_bands)):
             for _ in range(rng.integers(count + 1)):
-                size = int(rng.uniform(0, c.band_width) * changed.shape[axis])
-                first = rng.integers(changed.shape[axis] - size + 1)
-                changed[(slice(None),) * axis + (slice(first, first + size),)] = 0
-        new: Levels = np.clip(changed + 0.5, 0, 255).astype(np.uint8)
-        return new
+                size = int(rng.uniform(0, c.band_width) * values.shape[axis])
+                first = rng.integers(values.shape[axis] - size + 1)
+                values[(slice(None),) * axis + (slice(first, first + size),)] = 0
+        augmented: Levels = np.clip(values + 0.5, 0, 255).astype(np.uint8)
+        return augmented
 
 
 def _resampled(levels: Levels, scale: tuple[float, float], shift: tuple[float, float]) -> Float:
     """Levels [H, W] scaled about the centre, then shifted (px); level 0 comes in from outside."""
-    change = np.array(scale)
+    factors = np.array(scale)
     centre = (np.array(levels.shape) - 1) / 2
-    offset = centre - (centre + np.array(shift)) / change
-    single = levels.astype(np.float32)
-    return np.asarray(ndimage.affine_transform(single, 1 / change, offset, order=1))
+    offset = centre - (centre + np.array(shift)) / factors
+    values = levels.astype(np.float32)
+    return np.asarray(ndimage.affine_transform(values, 1 / factors, offset, order=1))

@@ -43,7 +43,13 @@ class Normalisation:
 def epoch_order(weights: Float, seed: int, epoch: int) -> Index:
     """Shuffled numbers of the images of one epoch: number i as often as weights[i] on average.
 
-    A weight of 1 is once; of 2.3 twice, and a third time with probability 0.3.
+    Args:
+        weights: [images]; 1 is once, 2.3 twice and, with probability 0.3, a third time.
+        seed: seed of the training run.
+        epoch: number of the epoch; each has an order of its own.
+
+    Returns:
+        [sum of the times] places in `weights`.
     """
     rng = stream(seed, TRAINING, epoch, name="order")
     if (weights == 1).all():
@@ -53,9 +59,9 @@ def epoch_order(weights: Float, seed: int, epoch: int) -> Index:
 
 
 def epoch_batches(order: Index, size: int) -> list[Index]:
-    """The batches of one epoch, of images in their order.
+    """Batches of one epoch, `size` images each, in the order of the epoch.
 
-    What is left over at the end is a smaller batch; a single image joins the last one, since batch
+    The images left at the end are a smaller batch; a single one joins the batch before, since batch
     norm needs two.
     """
     count = order.size
@@ -66,7 +72,7 @@ def epoch_batches(order: Index, size: int) -> list[Index]:
 
 
 class Labels(Protocol):
-    """What is to be learned of every row: the number of its class, or an array."""
+    """Target of every row: the number of its class, or an array."""
 
     def __getitem__(self, row: int, /) -> ArrayLike: ...
 
@@ -79,13 +85,13 @@ class _Rows(Dataset[tuple[Tensor, Tensor]]):
     ) -> None:
         self.pixels, self.labels, self.augmentation = pixels, labels, augmentation
 
-    def __getitem__(self, place: tuple[int, int]) -> tuple[Tensor, Tensor]:
-        row, epoch = place
-        rgb = self.pixels.read(row)
+    def __getitem__(self, item: tuple[int, int]) -> tuple[Tensor, Tensor]:
+        row, epoch = item
+        values = self.pixels.read(row)
         if self.augmentation is not None and epoch >= 0:
-            rgb = repeated(self.augmentation(rgb[..., 0], row, epoch))
+            values = repeated(self.augmentation(values[..., 0], row, epoch))
         label = torch.as_tensor(0 if self.labels is None else self.labels[row])
-        return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), label
+        return torch.from_numpy(np.ascontiguousarray(values.transpose(2, 0, 1))), label
 
 
 class Reader:
@@ -102,6 +108,15 @@ class Reader:
         workers: int = 0,
         pin: bool = False,
     ) -> None:
+        """Prepare to read; workers start with the first batch.
+
+        Args:
+            pixels: images or sequences by row.
+            labels: target of every row; None gives 0 for all.
+            augmentation: changes of training images; None leaves all as they are stored.
+            workers: number of processes that read; 0 reads in this one.
+            pin: keep batches in memory from which CUDA copies without waiting.
+        """
         self._batches: list[list[tuple[int, int]]] = []
         self._loader = DataLoader(
             _Rows(pixels, labels, augmentation),
@@ -116,9 +131,14 @@ class Reader:
     def __call__(
         self, batches: Sequence[Index], epoch: int = AS_STORED
     ) -> Iterator[tuple[Tensor, Tensor]]:
-        """Yield ([B, C, H, W], labels [B, ...]) for every batch of row numbers.
+        """Yield (inputs [B, C, H, W], labels [B, ...]) for every batch of row numbers.
 
-        With an epoch number images are augmented as in that epoch; AS_STORED leaves them.
+        Args:
+            batches: row numbers of each batch.
+            epoch: number of the epoch as which images are augmented; AS_STORED leaves them.
+
+        Raises:
+            FolderError: an image cannot be read.
         """
         self._batches[:] = [[(int(row), epoch) for row in batch] for batch in batches]
         try:
@@ -128,5 +148,5 @@ class Reader:
 
 
 def batches_in_order(rows: Index, size: int) -> list[Index]:
-    """Rows in their order, `size` at a time."""
+    """Batches of `size` rows in their order; the last may be smaller."""
     return [rows[start : start + size] for start in range(0, rows.size, size)]

@@ -14,12 +14,12 @@ SIDE = 64
 
 
 def select_rows(count: int) -> Index:
-    """At most 2,000 of `count` rows, evenly spread."""
+    """Numbers of at most 2,000 of `count` rows, evenly spread."""
     return np.unique(np.linspace(0, count - 1, min(count, MAX_POINTS)).astype(int))
 
 
 def shrink(rgb: Levels) -> Float:
-    """An image [H, W, 3] as a vector: one channel, averaged down to at most 64 x 64."""
+    """Vector of an image [H, W, 3]: one channel from 0 to 1, averaged down to at most 64 x 64."""
     gray = rgb.mean(2)
     down, across = -(-gray.shape[0] // SIDE), -(-gray.shape[1] // SIDE)
     height, width = gray.shape[0] // down * down, gray.shape[1] // across * across
@@ -29,11 +29,11 @@ def shrink(rgb: Levels) -> Float:
 
 
 def embed(vectors: Float) -> Float:
-    """t-SNE [N, 2] of [N, F], after the first 50 principal components."""
+    """Places [N, 2] of vectors [N, F] by t-SNE, after the first 50 principal components."""
     vectors = np.asarray(vectors, dtype=np.float64)
-    most = min(FIRST_COMPONENTS, vectors.shape[0], vectors.shape[1])
-    if vectors.shape[1] > most:
-        vectors = PCA(most, svd_solver="full").fit_transform(vectors)
+    components = min(FIRST_COMPONENTS, vectors.shape[0], vectors.shape[1])
+    if vectors.shape[1] > components:
+        vectors = PCA(components, svd_solver="full").fit_transform(vectors)
     perplexity = min(PERPLEXITY, max(1.0, (vectors.shape[0] - 1) / 3))
     tsne = TSNE(2, perplexity=perplexity, init="pca", random_state=0)
     return np.asarray(tsne.fit_transform(vectors))
@@ -41,7 +41,7 @@ def embed(vectors: Float) -> Float:
 
 def separation(vectors: Float, label: Index) -> float | None:
     """Mean silhouette of the classes, -1 to 1; None where a class stands alone."""
-    kinds = np.unique(label)
-    if not 2 <= kinds.size < len(label):
+    classes = np.unique(label)
+    if not 2 <= classes.size < len(label):
         return None
     return float(silhouette_score(np.asarray(vectors, dtype=np.float64), label))

@@ -37,7 +37,7 @@ SPEEDS = (
 
 @dataclass(frozen=True)
 class Predictions:
-    """Predictions for rows of an image set."""
+    """Probabilities and features of N rows of an image set, and their true classes."""
 
     images: ImageSet
     rows: Index  # [N] rows of the set
@@ -47,7 +47,7 @@ class Predictions:
 
     @property
     def predicted(self) -> Index:
-        """Class numbers [N]."""
+        """Likeliest class of each row [N], in the model's numbering."""
         winners: Index = self.probabilities.argmax(1)
         return winners
 
@@ -67,10 +67,17 @@ def open_for_model(
     colours that the run learned from.
 
     Args:
+        metadata: description of the model.
+        path: data set, or tree of images.
+        map_name: map or product to open; None takes the one of the training.
         labelled: keep the classes that the model knows, and no other; of a model that finds joints,
             all are kept.
         resize: bring images to the model's size.
-        names: {class there: class here, or None to leave it out}.
+        names: {class of the data: class of the model, or None to leave it out}.
+
+    Raises:
+        FolderError: data that cannot be used, of another size, or without a known class.
+        ConfigError: `names` leads to an unknown class.
     """
     images = open_inputs(
         path,
@@ -100,7 +107,7 @@ def open_for_model(
 
 
 def _map_to_open(metadata: RunMetadata, path: Path) -> str | None:
-    """The model's map if a data set has several; a tree of images has its own and no other."""
+    """Name of the model's map where a data set has several; None for a tree, which has its own."""
     if not is_h5(path):
         inside = metadata.map is not None and (path / metadata.map).is_dir()
         return metadata.map if inside else None
@@ -114,7 +121,7 @@ def _map_to_open(metadata: RunMetadata, path: Path) -> str | None:
 
 
 def training_images(metadata: RunMetadata, path: Path) -> ImageSet:
-    """Training images of a data set, of the classes that a run knows."""
+    """Training images of a data set, of the classes that a run knows; all have the split train."""
     config = metadata.settings
     images = open_for_model(metadata, path, None).cut(config.validation_share, config.seed)
     images = images.take(images.rows("train"))
@@ -122,7 +129,7 @@ def training_images(metadata: RunMetadata, path: Path) -> ImageSet:
 
 
 def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:
-    """Rows of a split and its name; all of them where images come without a split."""
+    """Rows of a split, and its name; all rows, and "all", where images come without a split."""
     split = "all" if images.split is None else split
     return images.rows(split), split
 
@@ -137,7 +144,18 @@ def predict_batches(
 ) -> Iterator[tuple[Float, Float]]:
     """Yield (probabilities [B, classes], features [B, F]) of some rows, batch by batch.
 
-    The model is in evaluation mode and on the device; float32, whatever it was trained in.
+    Everything is computed in float32, whatever the model was trained in.
+
+    Args:
+        model: network in evaluation mode, on the device.
+        metadata: description of the model.
+        pixels: images or sequences by row.
+        rows: rows that are read.
+        device: where the network is.
+        batch: rows at a time.
+
+    Raises:
+        RunError: a logit is not finite.
     """
     reader = Reader(pixels, None)
     with torch.inference_mode():
@@ -148,8 +166,10 @@ def predict_batches(
                     f"the network {metadata.model} trained on {metadata.data['path']}: its logits "
                     "are not finite; its weights or its mean and sd are damaged"
                 )
-            each = logits.sigmoid() if metadata.settings.target == "labels" else logits.softmax(1)
-            yield each.cpu().numpy(), features.cpu().numpy()
+            probabilities = (
+                logits.sigmoid() if metadata.settings.target == "labels" else logits.softmax(1)
+            )
+            yield probabilities.cpu().numpy(), features.cpu().numpy()
 
 
 def predict(
@@ -161,11 +181,21 @@ def predict(
     batch: int,
     progress: Progress = NO_PROGRESS,
 ) -> Predictions:
-    """Predictions of a model for rows of a labelled set."""
+    """Predictions of a model for rows of a labelled set.
+
+    Args:
+        model: network in evaluation mode, on the device.
+        metadata: description of the model.
+        images: labelled images, whose classes the model knows.
+        rows: rows that are predicted.
+        device: where the network is.
+        batch: rows at a time.
+        progress: receives the number of rows done.
+    """
     batches = []
-    for found in predict_batches(model, metadata, images.pixels, rows, device, batch):
-        batches.append(found)
-        progress.advance(len(found[0]))
+    for prediction in predict_batches(model, metadata, images.pixels, rows, device, batch):
+        batches.append(prediction)
+        progress.advance(len(prediction[0]))
     return Predictions(
         images=images,
         rows=rows,
@@ -177,7 +207,7 @@ def predict(
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a network is asked about: images or sequences without regard to their classes."""
+    """Images or sequences that a network is asked about, without regard to their classes."""
 
     pixels: Pixels
     rows: Index
@@ -194,13 +224,20 @@ def predict_paths(
     resize: bool = False,
     say: Callable[[str], None] | None = None,
 ) -> Iterator[tuple[str, dict[str, float]]]:
-    """Yield (name, probability of every class) for every image.
+    """Yield (name, {class: probability}) for every image.
 
     Args:
+        run: folder of the run.
         paths: images, folders of images, or data sets.
-        map_name: of a data set, if not the one of the run.
-        split: of a data set.
-        say: is told what was done to make the images fit.
+        device: where the network runs.
+        map_name: map of a data set; None is the one of the training.
+        split: split of a data set.
+        resize: bring images to the model's size.
+        say: receives what was done to make the images fit.
+
+    Raises:
+        RunError: the run is damaged, or finds joints.
+        FolderError: no such data, or images of another size.
     """
     metadata, model = load_best(run)
     if metadata.finds_joints:
@@ -211,17 +248,31 @@ def predict_paths(
         if say is not None:
             for note in inputs.notes:
                 say(note)
-        each = iter(inputs.names)
-        found = predict_batches(model, metadata, inputs.pixels, inputs.rows, device, PREDICT_BATCH)
-        for probabilities, _ in found:
-            for row in probabilities.tolist():
-                yield next(each), dict(zip(metadata.classes, row, strict=True))
+        image_names = iter(inputs.names)
+        batches = predict_batches(
+            model, metadata, inputs.pixels, inputs.rows, device, PREDICT_BATCH
+        )
+        for probabilities, _ in batches:
+            for shares in probabilities.tolist():
+                yield next(image_names), dict(zip(metadata.classes, shares, strict=True))
 
 
 def open_unlabelled(
     metadata: RunMetadata, path: Path, map_name: str | None, split: str, resize: bool
 ) -> Inputs:
-    """Open an image, a folder of images or a data set for a network that is asked about it."""
+    """Open an image, a folder of images or a data set for a network that is asked about it.
+
+    Args:
+        metadata: description of the model.
+        path: what to open.
+        map_name: map of a data set; None is the one of the training.
+        split: split of a data set.
+        resize: bring images to the model's size.
+
+    Raises:
+        FolderError: no such data, or images of another size.
+        RunError: the network reads sequences, which come from data sets only.
+    """
     if not path.exists():
         raise FolderError(f"{path}: no such file or folder")
     if is_run(path):
@@ -249,30 +300,45 @@ def measure_speed(
     The libraries are loaded and the weights' file is in the system's cache, as it would be in a
     program that is already running.
 
+    Args:
+        run: folder of the run.
+        images: images of the model's size.
+        row: row of the image that is timed.
+        device: where the network runs.
+        batch: images of the batch that is timed.
+
     Returns:
-        SPEEDS: reading the weights and building the network; the median of one image; until the
-        first answer, loading included; images at once; throughput at that batch; of a single one.
+        {key of SPEEDS: value}: seconds to read the weights and build the network; median seconds of
+        one image; seconds until the first answer, loading included; images of the batch; images per
+        second in batches; the same of a single batch with loading.
     """
-    one = torch.from_numpy(images.pixels.read(row).transpose(2, 0, 1).copy())[None]
-    many = one.expand(batch, -1, -1, -1)
-    began = time.perf_counter()
+    single = torch.from_numpy(images.pixels.read(row).transpose(2, 0, 1).copy())[None]
+    repeated_image = single.expand(batch, -1, -1, -1)
+    load_start = time.perf_counter()
     metadata, model = load_best(run)
     model.to(device)
-    loaded = time.perf_counter()
+    load_end = time.perf_counter()
 
-    def ask(levels: torch.Tensor) -> float:
+    def time_answer(levels: torch.Tensor) -> float:
         start = time.perf_counter()
         model(metadata.normalisation(levels.to(device))).cpu()
         return time.perf_counter() - start
 
     with torch.inference_mode():
-        ask(one)
-        first = time.perf_counter()
+        time_answer(single)
+        first_answer_end = time.perf_counter()
         for _ in range(WARM_UP - 1):
-            ask(one)
-        image = statistics.median(ask(one) for _ in range(REPEATS))
-        ask(many)
-        batch_time = statistics.median(ask(many) for _ in range(BATCH_REPEATS))
-    with_loading = batch / (loaded - began + batch_time)
-    found = (loaded - began, image, first - began, batch, batch / batch_time, with_loading)
-    return dict(zip(SPEEDS, found, strict=True))
+            time_answer(single)
+        image_time = statistics.median(time_answer(single) for _ in range(REPEATS))
+        time_answer(repeated_image)
+        batch_time = statistics.median(time_answer(repeated_image) for _ in range(BATCH_REPEATS))
+    throughput_with_loading = batch / (load_end - load_start + batch_time)
+    values = (
+        load_end - load_start,
+        image_time,
+        first_answer_end - load_start,
+        batch,
+        batch / batch_time,
+        throughput_with_loading,
+    )
+    return dict(zip(SPEEDS, values, strict=True))

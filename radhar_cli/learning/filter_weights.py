@@ -11,7 +11,7 @@ from radhar_cli.learning.models.fftnet import GlobalFilter
 
 
 def filter_magnitudes(model: nn.Module) -> list[Float]:
-    """|H| averaged over channels, [H, W] in FFT order, of every filter from first to last.
+    """Magnitudes |H| [H, W] of every global filter, first to last; mean over channels, FFT order.
 
     H is the Hermitian part of the stored weight, the only part that acts.
     """
@@ -27,7 +27,7 @@ def filter_magnitudes(model: nn.Module) -> list[Float]:
 
 
 def filter_table(filters: list[Float]) -> list[dict[str, Any]]:
-    """A row for every filter: size, mean weight, and how much of it lies at low frequencies.
+    """Rows of numbers, one for each filter: size, mean weight, share at low frequencies.
 
     `low_gain` is the mean squared weight at frequencies below 1/8 of the sampling rate on both
     axes, over the mean of the whole plane: 1 for a filter without a preference. `concentration` is

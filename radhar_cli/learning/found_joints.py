@@ -32,7 +32,10 @@ class FoundJoints:
     first_frame: Index  # [N] number of the first frame in its sample
 
     def write(self, path: Path) -> None:
-        """Write them as NumPy arrays, or as CSV of a row a joint and frame.
+        """Write the joints as NumPy arrays, or as CSV of a row for each joint and frame.
+
+        Args:
+            path: file that ends in .npz or .csv.
 
         Raises:
             FolderError: the file cannot be written.
@@ -58,16 +61,22 @@ class FoundJoints:
             raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
 
     def _rows(self) -> Iterator[tuple[object, ...]]:
-        for sample, frames, first in zip(self.samples, self.joints, self.first_frame, strict=True):
-            for number, skeleton in enumerate(frames, start=int(first)):
+        for sample, frames, first_frame in zip(
+            self.samples, self.joints, self.first_frame, strict=True
+        ):
+            for number, skeleton in enumerate(frames, start=int(first_frame)):
                 if np.isnan(skeleton).any():
                     continue
-                for name, place in zip(self.names, skeleton.tolist(), strict=True):
-                    yield (sample, number, name, *(f"{x:.4f}" for x in place))
+                for name, coordinates in zip(self.names, skeleton.tolist(), strict=True):
+                    yield (sample, number, name, *(f"{x:.4f}" for x in coordinates))
 
 
 def check_joints_file(path: Path) -> None:
-    """Refuse a file name that says no format, before anything is computed."""
+    """Refuse a file name that says no format, before anything is computed.
+
+    Raises:
+        ConfigError: it ends in neither .npz nor .csv.
+    """
     if path.suffix not in SUFFIXES:
         raise ConfigError(f"-o {path}: should end in {' or '.join(SUFFIXES)}")
 
@@ -80,9 +89,20 @@ def joint_batches(
     device: torch.device,
     batch: int,
 ) -> Iterator[Float]:
-    """Yield joints [B, T, joint, 3] (m) of some rows, batch by batch.
+    """Yield joints [B, T, joint, 3] (m, radar's axes) of some rows, batch by batch.
 
-    The model is in evaluation mode and on the device; float32, whatever it was trained in.
+    Everything is computed in float32, whatever the model was trained in.
+
+    Args:
+        model: network in evaluation mode, on the device.
+        metadata: description of the model.
+        pixels: sequences by row.
+        rows: rows that are read.
+        device: where the network is.
+        batch: rows at a time.
+
+    Raises:
+        RunError: a coordinate is not finite.
     """
     with torch.inference_mode():
         for values, _ in Reader(pixels, None)(batches_in_order(rows, batch)):
@@ -103,23 +123,28 @@ def find_joints(
     """Joints in the sequences of data sets.
 
     Args:
-        model: on the device, in evaluation mode.
-        map_name: of a data set, if not the one of the run.
-        split: of a data set.
+        metadata: description of the model.
+        model: network in evaluation mode, on the device.
+        paths: data sets.
+        device: where the network is.
+        map_name: product of a data set; None is the one of the training.
+        split: split of a data set.
     """
-    samples, joints, first = list[str](), list[Float](), list[int]()
+    samples, joints, first_frames = list[str](), list[Float](), list[int]()
     for path in paths:
         inputs = open_unlabelled(metadata, path, map_name, split, resize=False)
         reader = inputs.pixels
         assert isinstance(reader, SequenceReader)
         batches = joint_batches(model, metadata, reader, inputs.rows, device, PREDICT_BATCH)
         joints.append(np.concatenate(list(batches)))
-        for one, row in zip(joints[-1], inputs.rows.tolist(), strict=True):
+        for sequence, row in zip(joints[-1], inputs.rows.tolist(), strict=True):
             start, count = reader.span(row)
-            one[count:] = np.nan
-            first.append(start)
+            sequence[count:] = np.nan
+            first_frames.append(start)
         samples += inputs.names
-    return FoundJoints(tuple(samples), metadata.joints, np.concatenate(joints), np.array(first))
+    return FoundJoints(
+        tuple(samples), metadata.joints, np.concatenate(joints), np.array(first_frames)
+    )
 
 
 def predict_joints(

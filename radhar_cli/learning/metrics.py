@@ -14,7 +14,7 @@ CALIBRATION_BINS = 15
 
 
 def wilson(correct: float, count: float) -> tuple[float, float]:
-    """Wilson's interval of 95 % of the proportion correct/count; (0, 1) where count is 0."""
+    """Wilson's interval (low, high) of 95 % of the share correct/count; (0, 1) where count is 0."""
     if count == 0:
         return 0.0, 1.0
     z2 = NormalDist().inv_cdf(0.975) ** 2
@@ -41,30 +41,37 @@ class Calibration:
 
 
 def calibration(truth: Index, probabilities: Float) -> Calibration:
-    """How often the winning class is right, by its probability.
+    """Reliability of the winning class by its probability, in equal bins.
 
     Args:
-        truth: [N].
+        truth: [N] numbers of the true classes.
         probabilities: [N, classes].
     """
     confidence, correct = probabilities.max(1), probabilities.argmax(1) == truth
     bins = np.clip(np.ceil(confidence * CALIBRATION_BINS).astype(int) - 1, 0, CALIBRATION_BINS - 1)
     count = np.bincount(bins, minlength=CALIBRATION_BINS)
-    sums = [np.bincount(bins, of, CALIBRATION_BINS) for of in (confidence, correct)]
-    mean, share = (np.where(count, one / np.maximum(count, 1), np.nan) for one in sums)
-    return Calibration(mean, share, count)
+    sums = [np.bincount(bins, values, CALIBRATION_BINS) for values in (confidence, correct)]
+    mean, accuracy = (np.where(count, total / np.maximum(count, 1), np.nan) for total in sums)
+    return Calibration(mean, accuracy, count)
 
 
 def calibration_error(truth: Index, probabilities: Float) -> float:
-    """Expected calibration error of predictions, as `Calibration.error`."""
+    """Expected calibration error (Guo et al., 2017) of probabilities [N, classes], truth [N]."""
     return calibration(truth, probabilities).error
 
 
 def summarise(truth: Index, probabilities: Float, classes: Sequence[str]) -> dict[str, Any]:
-    """Everything of report.json: accuracy, macro F1, calibration, per class, confusion matrix.
+    """Numbers of report.json: accuracy, macro F1, calibration, numbers by class, confusion matrix.
 
-    `confusion` is counts [true class, predicted class]. Precision, recall and F1 are 0 where they
-    are 0/0; macro F1 is the mean over classes that occur as truth or as prediction.
+    Args:
+        truth: [N] numbers of the true classes.
+        probabilities: [N, classes].
+        classes: names of the classes.
+
+    Returns:
+        Plain numbers by their keys in report.json. `confusion` is counts [true class,
+        predicted class]. Precision, recall and F1 are 0 where they are 0/0; macro F1 is the mean
+        over classes that occur as truth or as prediction.
     """
     from sklearn.metrics import confusion_matrix, precision_recall_fscore_support
 

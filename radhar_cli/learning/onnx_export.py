@@ -40,15 +40,26 @@ def export(run: Path, path: Path) -> float:
     float32 [batch, classes], or `joints` float32 [batch, T, joint, 3] in m. The file's metadata
     names the classes or the joints.
 
+    Args:
+        run: folder of the run.
+        path: ONNX file that is written.
+
     Returns:
-        The largest difference of a logit; relative to the largest logit where that is above 1.
+        Largest difference of an output, over the largest output where that is above 1.
+
+    Raises:
+        RunError: PyTorch cannot write the network, or the two differ by more than TOLERANCE.
+        FolderError: the file cannot be written.
     """
     import onnx
     import onnxruntime
 
     metadata, network = load_best(run)
     model = _FromInputs(network, metadata.normalisation).eval()
-    of, answer = INPUTS[metadata.input], "joints" if metadata.finds_joints else "logits"
+    input_name, output_name = (
+        INPUTS[metadata.input],
+        "joints" if metadata.finds_joints else "logits",
+    )
     inputs = _trial(2, metadata)
     try:
         with warnings.catch_warnings(), torch.no_grad():
@@ -58,38 +69,40 @@ def export(run: Path, path: Path) -> float:
                 (inputs,),
                 dynamo=True,
                 dynamic_shapes={"inputs": {0: torch.export.Dim("batch")}},
-                input_names=[of],
-                output_names=[answer],
+                input_names=[input_name],
+                output_names=[output_name],
                 verbose=False,
             )
     except torch.onnx.errors.OnnxExporterError as error:
         raise RunError(
             f"{run}: PyTorch cannot write {metadata.model} as ONNX ({first_line(error)})"
         ) from None
-    written = program.model_proto
+    onnx_model = program.model_proto
     onnx.helper.set_model_props(
-        written,
+        onnx_model,
         {
             **{key: json.dumps(value) for key, value in _names(metadata).items()},
             "model": metadata.model,
             "input": metadata.input,
         },
     )
-    onnx.checker.check_model(written)
-    content = written.SerializeToString()
+    onnx.checker.check_model(onnx_model)
+    content = onnx_model.SerializeToString()
     session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
-    worst = 0.0
+    largest_difference = 0.0
     for images in (1, 3):
         trial = _trial(images, metadata)
         with torch.inference_mode():
             expected = model(trial).numpy()
-        outputs = session.run([answer], {of: trial.numpy()})[0]
+        outputs = session.run([output_name], {input_name: trial.numpy()})[0]
         scale = max(1.0, float(np.abs(expected).max()))
-        worst = max(worst, float(np.abs(outputs - expected).max()) / scale)
-    if not worst <= TOLERANCE:
+        largest_difference = max(
+            largest_difference, float(np.abs(outputs - expected).max()) / scale
+        )
+    if not largest_difference <= TOLERANCE:
         raise RunError(
-            f"{run}: ONNX Runtime's {answer} differ from PyTorch's by {worst:.2g}, more than "
-            f"{TOLERANCE:g}; {path} was not written"
+            f"{run}: ONNX Runtime's {output_name} differ from PyTorch's by "
+            f"{largest_difference:.2g}, more than {TOLERANCE:g}; {path} was not written"
         )
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -97,11 +110,11 @@ def export(run: Path, path: Path) -> float:
             unfinished.write_bytes(content)
     except OSError as error:
         raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
-    return worst
+    return largest_difference
 
 
 def _names(metadata: RunMetadata) -> dict[str, tuple[str, ...]]:
-    """What the outputs of a network stand for."""
+    """Names of what the outputs of a network stand for: joints, or classes."""
     return {"joints": metadata.joints} if metadata.finds_joints else {"classes": metadata.classes}
 
 
@@ -111,7 +124,7 @@ def _trial(count: int, metadata: RunMetadata) -> Tensor:
 
 
 def _clouds(count: int, metadata: RunMetadata) -> Tensor:
-    """Random clouds [count, 6, T, points], of which a third of the points is missing."""
+    """Random clouds [count, 6, T, points], in which a third of the points is missing."""
     generator = torch.Generator().manual_seed(0)
     clouds = torch.randn(count, len(COLUMNS), *metadata.size, generator=generator)
     present = torch.rand(count, 1, *metadata.size, generator=generator) < 2 / 3

@@ -12,33 +12,42 @@ _ADAM = {"step", "exp_avg", "exp_avg_sq"}
 
 
 def learning_rate_of_step(config: TrainConfig, epoch: int, step: int, steps: int) -> float:
-    """Learning rate of a step (from 0) of an epoch (from 0) that has `steps` of them.
+    """Learning rate of one step: a linear rise, then the schedule.
 
-    A linear rise over the first `warmup_epochs` that reaches the initial rate with their last
-    step, then the schedule.
+    The rise over the first `warmup_epochs` reaches the initial rate with their last step.
+
+    Args:
+        config: learning rate, warm-up and schedule.
+        epoch: number of the epoch, from 0.
+        step: number of the step in its epoch, from 0.
+        steps: steps of the epoch.
     """
     initial, schedule = config.learning_rate, config.schedule
-    risen = epoch + (step + 1) / steps
-    if risen < config.warmup_epochs:
-        return initial * min(1.0, risen / config.warmup_epochs)
+    epochs_done = epoch + (step + 1) / steps
+    if epochs_done < config.warmup_epochs:
+        return initial * min(1.0, epochs_done / config.warmup_epochs)
     if schedule.kind == "step":
         return initial * float(schedule.factor ** (epoch // schedule.every_epochs))
     if schedule.kind == "cosine":
-        since = max(0.0, epoch + step / steps - config.warmup_epochs)
-        return initial * (1 + cos(pi * since / max(config.epochs - config.warmup_epochs, 1e-9))) / 2
+        epochs_since_warmup = max(0.0, epoch + step / steps - config.warmup_epochs)
+        return (
+            initial
+            * (1 + cos(pi * epochs_since_warmup / max(config.epochs - config.warmup_epochs, 1e-9)))
+            / 2
+        )
     return initial
 
 
 def optimiser_for(config: TrainConfig, model: nn.Module) -> torch.optim.Optimizer:
-    """The config's optimiser; biases, norm layers and what timm exempts have no weight decay."""
+    """Optimiser of a config; biases, norm layers and weights that timm exempts have no decay."""
     exempt: set[str] = getattr(model, "no_weight_decay", set)()
     weights: list[nn.Parameter] = []
-    others: list[nn.Parameter] = []
+    undecayed: list[nn.Parameter] = []
     for name, parameter in model.named_parameters():
-        (others if parameter.ndim <= 1 or name in exempt else weights).append(parameter)
+        (undecayed if parameter.ndim <= 1 or name in exempt else weights).append(parameter)
     groups: list[dict[str, Any]] = [
         {"params": weights, "weight_decay": config.weight_decay},
-        {"params": others, "weight_decay": 0.0},
+        {"params": undecayed, "weight_decay": 0.0},
     ]
     groups = [group for group in groups if group["params"]]
     if config.optimiser == "adam":
@@ -51,15 +60,19 @@ def optimiser_for(config: TrainConfig, model: nn.Module) -> torch.optim.Optimize
 def check_state(optimiser: torch.optim.Optimizer, stored: dict[str, Any]) -> None:
     """Check the stored state of an optimiser before it is used.
 
+    Args:
+        optimiser: new optimiser of the same network.
+        stored: state_dict of an optimiser, from a file that is not trusted.
+
     Raises:
         ValueError: other settings, or numbers that do not belong to the weights.
         KeyError, TypeError, AttributeError: it is not the state of an optimiser.
     """
-    settings, here = (
+    stored_settings, settings = (
         [{k: v for k, v in group.items() if k != "lr"} for group in groups]
         for groups in (stored["param_groups"], optimiser.state_dict()["param_groups"])
     )
-    if settings != here:
+    if stored_settings != settings:
         raise ValueError("its optimiser has other settings")
     names = {"momentum_buffer"} if isinstance(optimiser, torch.optim.SGD) else _ADAM
     parameters = [p for group in optimiser.param_groups for p in group["params"]]

@@ -62,7 +62,7 @@ class ReportSection:
 
 @dataclass
 class Report:
-    """Lines, figures and tables of a report, in the order in which they are read; its numbers."""
+    """Numbers of a report, and its lines, figures and tables in the order of the page."""
 
     numbers: dict[str, Any]
     title: str = "Evaluation"
@@ -73,7 +73,7 @@ class Report:
     sections: list[ReportSection] = field(default_factory=lambda: [ReportSection("")])
 
     def section(self, title: str) -> None:
-        """Begin a part of the page; what is added goes below its heading."""
+        """Begin a part of the page, below whose heading the next parts are added."""
         self.sections.append(ReportSection(title))
 
     def line(self, text: str) -> None:
@@ -83,11 +83,11 @@ class Report:
         self.sections[0].parts.append(top)
 
     def details(self, title: str, text: str) -> None:
-        """Add a text that the page shows when it is asked to."""
+        """Add a text that the page folds away until a reader opens it."""
         self._add("details", title=title, text=text)
 
     def figure(self, name: str, caption: str, png: bytes) -> None:
-        """Add a figure."""
+        """Add a figure: name of its file, caption, and content of the PNG."""
         self.figures.append((name, caption, png))
         self._add("figure", caption=caption, data=b64encode(png).decode())
 
@@ -101,32 +101,38 @@ class Report:
         """Add a table.
 
         Args:
-            name: of its file.
-            title: what the page calls it; None leaves it to its file.
+            name: name of its CSV file.
+            header: titles of the columns.
+            rows: cells, row by row.
+            title: title on the page; None leaves the table to its file.
         """
-        listed = [[*row] for row in rows]
-        self.tables.append((name, header, listed))
+        table_rows = [[*row] for row in rows]
+        self.tables.append((name, header, table_rows))
         if title is not None:
-            self.show_table(title, [str(one).replace("_", " ") for one in header], listed)
+            self.show_table(title, [str(column).replace("_", " ") for column in header], table_rows)
 
     def show_table(
         self, title: str, header: Sequence[object], rows: Iterable[Iterable[object]]
     ) -> None:
         """Add a table that the page alone has."""
-        shown = [[_as_people_read(value) for value in row] for row in rows]
-        self._add("table", title=title, head=list(header), rows=shown)
+        cells = [[_as_people_read(value) for value in row] for row in rows]
+        self._add("table", title=title, head=list(header), rows=cells)
 
-    def _add(self, kind: str, **what: object) -> None:
-        self.sections[-1].parts.append({"kind": kind, **what})
+    def _add(self, kind: str, **content: object) -> None:
+        self.sections[-1].parts.append({"kind": kind, **content})
 
     def write(self, folder: Path) -> None:
-        """Write everything into a folder; report.json comes last."""
+        """Write page, figures and tables into a folder, report.json last.
+
+        Raises:
+            FolderError: a file cannot be written.
+        """
         files = {name: png for name, _, png in self.figures}
-        for name, head, rows in self.tables:
-            files[name] = csv_text(head, rows).encode("utf-8", "surrogateescape")
+        for name, header, rows in self.tables:
+            files[name] = csv_text(header, rows).encode("utf-8", "surrogateescape")
         page = Environment(autoescape=True).from_string(_PAGE)
-        shown = [section for section in self.sections if section.parts]
-        text = page.render(title=self.title, about=self.about, sections=shown)
+        sections = [section for section in self.sections if section.parts]
+        text = page.render(title=self.title, about=self.about, sections=sections)
         write_result(folder, folder / PAGE, text.encode("utf-8", "backslashreplace"))
         write_report(folder, files, self.numbers)
 

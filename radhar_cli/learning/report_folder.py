@@ -16,13 +16,24 @@ NUMBERS = "report.json"
 
 
 def write_report(folder: Path, files: Mapping[str, bytes], numbers: dict[str, Any]) -> None:
-    """Write files and report.json, which lists them; those that it listed before go."""
+    """Write files and report.json, which lists them; remove the files of an earlier report.
+
+    Args:
+        folder: folder of the report.
+        files: {name: content}.
+        numbers: numbers of report.json, to which the list of files is added.
+
+    Raises:
+        FolderError: a file cannot be written.
+    """
     try:
-        listed = read_json(folder / NUMBERS)["files"]
-        ours = [n for n in listed if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
+        listed_names = read_json(folder / NUMBERS)["files"]
+        earlier = [
+            n for n in listed_names if Path(n).name == n and Path(n).suffix in (".png", ".csv")
+        ]
     except (FolderError, KeyError, TypeError):
-        ours = []
-    for name in set(ours) - set(files):
+        earlier = []
+    for name in set(earlier) - set(files):
         (folder / name).unlink(missing_ok=True)
     for name, content in files.items():
         write_result(folder, folder / name, content)
@@ -31,7 +42,7 @@ def write_report(folder: Path, files: Mapping[str, bytes], numbers: dict[str, An
 
 
 def csv_text(header: Sequence[object], rows: Iterable[Iterable[object]]) -> str:
-    """A table as CSV; names are quoted where they need it."""
+    """Text of a table as CSV; cells are quoted where they need it."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)

@@ -53,7 +53,7 @@ class RunError(RadharError):
 
 
 class LearnedFrom(TypedDict):
-    """A data set: path, content hash, images of the training and the validation set."""
+    """Data set of a run: path, content hash, numbers of images that train and validate."""
 
     path: str
     hash: str
@@ -62,7 +62,7 @@ class LearnedFrom(TypedDict):
 
 
 class RunMetadata(Section):
-    """What a model was trained for and on; stored with its weights."""
+    """Description of a trained model, stored with its weights: task, inputs, data, settings."""
 
     model: Name
     classes: Annotated[
@@ -106,23 +106,27 @@ class RunMetadata(Section):
 
     @property
     def finds_joints(self) -> bool:
-        """Whether it was trained on skeletons, not on classes."""
+        """Whether the network finds joints, not classes."""
         return self.settings.target == "skeleton"
 
     @property
     def answers(self) -> str:
-        """What the network answers, in words."""
+        """Outputs of the network, in words."""
         if self.finds_joints:
             return f"{len(self.joints)} joints"
         return f"{len(self.classes)} {'labels' if self.settings.target == 'labels' else 'classes'}"
 
     @property
     def shape(self) -> str:
-        """Size of an image or a sequence that it takes, in words."""
+        """Size of an image or a sequence that the network takes, in words."""
         return shape_in_words(self.input, self.size, self.channels)
 
     def network(self) -> nn.Module:
-        """The network with fresh weights."""
+        """Network with fresh weights.
+
+        Raises:
+            ModelError: it cannot be built.
+        """
         return build_model(self.model, self._outputs, self.size, self.finds_joints)
 
     @property
@@ -136,7 +140,7 @@ class RunMetadata(Section):
 
     @property
     def normalisation(self) -> Normalisation:
-        """Levels to network input."""
+        """Normalisation from levels to the network's input."""
         return Normalisation(self.mean, self.sd)
 
 
@@ -155,7 +159,7 @@ def refuse_other_targets(run: Path, metadata: RunMetadata) -> None:
 
 @dataclass(frozen=True)
 class Epoch:
-    """A row of history.csv."""
+    """Result of an epoch, a row of history.csv; accuracies are scores of the target."""
 
     epoch: int
     learning_rate: float
@@ -172,15 +176,24 @@ def best_epoch(history: Sequence[Epoch]) -> Epoch:
 
 
 def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
-    """Take a locked folder for this run, or refuse it."""
-    ours = (folder / ABOUT).exists()
-    if ours and (overwrite or not ((folder / LAST).exists() or (folder / BEST).exists())):
+    """Take a locked folder for a run, which is new or the one that the folder holds.
+
+    Args:
+        folder: folder of the run; the caller holds its lock.
+        metadata: description of the run.
+        overwrite: remove another run's files.
+
+    Raises:
+        RunError: the folder holds another run, or something else.
+    """
+    holds_run = (folder / ABOUT).exists()
+    if holds_run and (overwrite or not ((folder / LAST).exists() or (folder / BEST).exists())):
         for name in reversed(ALL):
             (folder / name).unlink(missing_ok=True)
         for path in (folder / TENSORBOARD).glob(EVENTS):
             path.unlink()
     if not (folder / ABOUT).exists():
-        if not ours:
+        if not holds_run:
             refuse_foreign_files(folder, "training run", error=RunError)
         write_whole(folder, folder / ABOUT, (metadata.model_dump_json(indent=2) + "\n").encode())
         return
@@ -188,23 +201,27 @@ def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
 
 
 def differences(old: RunMetadata, new: RunMetadata) -> list[str]:
-    """One line for each setting, version or hash in which two runs differ."""
+    """Lines, one for each setting, version or hash in which two runs differ."""
     pairs = {key: (old.config.get(key), value) for key, value in new.config.items()}
     if old.data["hash"] != new.data["hash"]:
-        there, here = ([data["path"], data["hash"]] for data in (old.data, new.data))
-        pairs["data"] = (there, here)
+        old_value, new_value = ([data["path"], data["hash"]] for data in (old.data, new.data))
+        pairs["data"] = (old_value, new_value)
     pairs |= {"classes": (list(old.classes), list(new.classes)), "map": (old.map, new.map)}
     pairs |= {k: (old.work.get(k), new.work.get(k)) for k in old.work | new.work}
     pairs |= {f"versions.{k}": (old.versions.get(k), v) for k, v in new.versions.items()}
     return [
-        f"{key}: {json.dumps(there)} there, {json.dumps(here)} here"
-        for key, (there, here) in pairs.items()
-        if there != here
+        f"{key}: {json.dumps(old_value)} there, {json.dumps(new_value)} here"
+        for key, (old_value, new_value) in pairs.items()
+        if old_value != new_value
     ]
 
 
 def read_metadata(folder: Path) -> RunMetadata:
-    """Metadata of the run in a folder."""
+    """Metadata of the run in a folder.
+
+    Raises:
+        RunError: the folder holds no run, or its description is damaged.
+    """
     path = folder / ABOUT
     try:
         return RunMetadata.model_validate_json(read_bytes(path))
@@ -221,14 +238,18 @@ def _first_problem(error: ValidationError) -> str:
     return f"{'.'.join(map(str, item['loc']))}: {item['msg']}"
 
 
-def write_trained_on(folder: Path, learned: Sequence[tuple[str, str, str]]) -> None:
-    """Write (name, fingerprint, fingerprint of the scene) of every image that a run learns from."""
-    text = csv_text(("image", "pixels", "scene"), learned)
+def write_trained_on(folder: Path, images: Sequence[tuple[str, str, str]]) -> None:
+    """Write (name, fingerprint, scene's fingerprint) of every image that a run learns from."""
+    text = csv_text(("image", "pixels", "scene"), images)
     write_whole(folder, folder / TRAINED_ON, text.encode("utf-8", "surrogateescape"))
 
 
 def read_trained_on(folder: Path) -> tuple[set[str], set[str]]:
-    """Fingerprints of the (images, scenes) that a run learned from; empty if it does not say."""
+    """Fingerprints of the (images, scenes) that a run learned from; empty sets without the file.
+
+    Raises:
+        RunError: the file is damaged.
+    """
     path = folder / TRAINED_ON
     if not path.exists():
         return set(), set()
@@ -247,13 +268,17 @@ def _text(path: Path) -> str:
 
 
 def write_history(folder: Path, history: Sequence[Epoch]) -> None:
-    """Write history.csv, a row an epoch."""
+    """Write history.csv, a row for each epoch."""
     text = csv_text(list(Epoch.__dataclass_fields__), (vars(row).values() for row in history))
     write_whole(folder, folder / HISTORY, text.encode())
 
 
 def read_history(folder: Path) -> list[Epoch]:
-    """The epochs of a run."""
+    """Epochs of a run, from history.csv.
+
+    Raises:
+        RunError: no epoch is finished, or the file is damaged.
+    """
     path = folder / HISTORY
     try:
         rows = csv.DictReader(io.StringIO(_text(path), newline=""))
@@ -281,18 +306,30 @@ def checked_history(history: list[Epoch]) -> list[Epoch]:
 def write_best(
     folder: Path, metadata: RunMetadata, epoch: Epoch, weights: Mapping[str, Tensor]
 ) -> None:
-    """Write best.safetensors: weights and, as metadata, all that is needed to use them."""
-    about = metadata.model_copy(update={"epoch": epoch.epoch})
-    header = {"radhar": about.model_dump_json()}  # one key: safetensors writes several in any order
+    """Write best.safetensors: weights and, as metadata, all that is needed to use them.
+
+    Args:
+        folder: folder of the run.
+        metadata: description of the run.
+        epoch: epoch after which the weights were kept.
+        weights: {name: tensor} of the network.
+    """
+    with_epoch = metadata.model_copy(update={"epoch": epoch.epoch})
+    header = {
+        "radhar": with_epoch.model_dump_json()
+    }  # one key: safetensors writes several in any order
     tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()}
     write_whole(folder, folder / BEST, safetensors_bytes(tensors, header))
 
 
 def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
-    """The best epoch's model, in evaluation mode on the CPU.
+    """Metadata of a run and the network of its best epoch, in evaluation mode on the CPU.
 
     Args:
-        folder: of the run, or a .safetensors file; it is not trusted.
+        folder: folder of the run, or a .safetensors file; it is not trusted.
+
+    Raises:
+        RunError: there are no weights, or they are damaged or do not fit their description.
     """
     path = folder / BEST if folder.is_dir() else folder
     if not path.exists():
@@ -304,8 +341,8 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
         raise RunError(f"{folder}: holds no {BEST}; {hint}")
     try:
         size = regular_size(path)
-        with path.open("rb") as start:
-            header = int.from_bytes(start.read(8), "little")
+        with path.open("rb") as stream:
+            header = int.from_bytes(stream.read(8), "little")
         if header > min(MAX_HEADER, size):
             raise ValueError(f"it claims a header of {header} bytes")
         with safe_open(path, framework="pt") as file:
@@ -317,19 +354,19 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
 
 
 def _load_network(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
-    """Take weights whose names, types and shapes are those of the network described."""
+    """Network with weights whose names, types and shapes are those of its description."""
     header = file.metadata() or {}
     if "radhar" not in header:
         raise RunError(f"{path}: was not written by `radhar train`")
     try:
         metadata = RunMetadata.model_validate_json(header["radhar"])
         with torch.device("meta"):
-            wanted = metadata.network().state_dict()
+            expected_tensors = metadata.network().state_dict()
         weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
-        for name in wanted.keys() | weights.keys():
+        for name in expected_tensors.keys() | weights.keys():
             actual, expected = (
-                (tuple(each[name].shape), each[name].dtype) if name in each else "missing"
-                for each in (weights, wanted)
+                (tuple(tensors[name].shape), tensors[name].dtype) if name in tensors else "missing"
+                for tensors in (weights, expected_tensors)
             )
             if actual != expected:
                 raise RuntimeError(f"{name} is {actual}, should be {expected}")
@@ -357,7 +394,11 @@ def write_last(folder: Path, checkpoint: dict[str, Any]) -> None:
 
 
 def read_last(folder: Path) -> dict[str, Any] | None:
-    """The last epoch's checkpoint, None before the first one; tensors and plain values only."""
+    """Checkpoint of the last epoch, None before the first; tensors and plain values only.
+
+    Raises:
+        RunError: the file is damaged.
+    """
     path = folder / LAST
     if not path.exists():
         return None
@@ -379,20 +420,20 @@ def read_last(folder: Path) -> dict[str, Any] | None:
 
 
 def _refuse_inflation(path: Path) -> None:
-    """PyTorch saves without compression; a compressed entry could inflate to any size.
+    """Refuse a compressed checkpoint, which could inflate to any size; PyTorch does not compress.
 
     Raises:
         ValueError, BadZipFile: it is compressed, or not a file of PyTorch.
     """
     size = regular_size(path)
     with zipfile.ZipFile(path) as file:
-        parts = file.infolist()
-    packed = any(part.compress_type != zipfile.ZIP_STORED for part in parts)
-    if packed or sum(part.file_size for part in parts) > size:
+        entries = file.infolist()
+    is_compressed = any(entry.compress_type != zipfile.ZIP_STORED for entry in entries)
+    if is_compressed or sum(entry.file_size for entry in entries) > size:
         raise ValueError("it holds more than its own size")
 
 
 def first_line(error: Exception) -> str:
-    """The first line of an error, or its type where it has no text."""
+    """First line of an error's text, or its type where it has none."""
     lines = str(error).strip().splitlines()
     return lines[0].split(". ")[0] if lines else type(error).__name__

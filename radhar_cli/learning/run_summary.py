@@ -18,7 +18,7 @@ from radhar_cli.learning.targets import LOSSES, SCORES
 def _score(
     target: Target, value: float, interval: tuple[float, float] | None
 ) -> dict[str, float | tuple[float, float] | None]:
-    """The validation score by its right name; only where it is an accuracy it has an interval."""
+    """Validation score under its name in metrics.json; only an accuracy has an interval."""
     match target:
         case "skeleton":
             return {"val_within_15_cm": value}
@@ -33,7 +33,7 @@ def write_run_summary(
     """Write metrics.json and curves.png of a finished run."""
     best, count = best_epoch(history), int(metadata.data["val"])
     settings, series = metadata.settings, {folder.name or str(folder): history}
-    score, price = SCORES[settings.target], metadata.cost
+    score, cost = SCORES[settings.target], metadata.cost
     interval = wilson(round(best.val_accuracy * count), count) if score == "accuracy" else None
     metrics = {
         "model": metadata.model,
@@ -42,8 +42,8 @@ def write_run_summary(
         **_score(settings.target, best.val_accuracy, interval),
         "val_loss": best.val_loss,
         "epochs": len(history),
-        "parameters": price.parameters,
-        "multiply_adds": price.multiply_adds,
+        "parameters": cost.parameters,
+        "multiply_adds": cost.multiply_adds,
         "seconds": round(sum(epoch.seconds for epoch in history), 1),
         "classes": list(metadata.classes),
         "size_px": list(metadata.size),

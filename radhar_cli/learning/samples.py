@@ -24,7 +24,7 @@ class Samples(Dataset[dict[str, Any]]):
     process makes it; a DataLoader may shuffle them or share them out with DistributedSampler.
 
     Attributes:
-        config: of the data set.
+        config: config of the data set.
         label: [N] place in `classes`, as in the dataset.h5.
         classes: name of every label, in the order of the config's `activities`.
         identity: hash of everything that determines the samples: config, seed, versions.
@@ -33,12 +33,12 @@ class Samples(Dataset[dict[str, Any]]):
     def __init__(
         self, config: Config | str | Path, seed: int | None = None, *, split: str = "all"
     ) -> None:
-        """The samples of a config.
+        """Prepare the samples of a config.
 
         Args:
-            config: of the data set, or its path.
-            seed: instead of the config's.
-            split: train, val or test for only those rows.
+            config: config of the data set, or its path.
+            seed: seed instead of the config's.
+            split: train, val or test; all takes every row.
 
         Raises:
             ConfigError: a config of measured data, or a split without samples.

@@ -32,7 +32,7 @@ class Sequences(Dataset[dict[str, Any]]):
     Attributes:
         label: [N] place in `classes`, as in the dataset.h5.
         classes: name of every label, in the order of the config's `activities`.
-        frames: number per item.
+        frames: number of frames of an item.
     """
 
     def __init__(
@@ -44,18 +44,19 @@ class Sequences(Dataset[dict[str, Any]]):
         frames: int | None = None,
         points: int = POINTS,
     ) -> None:
-        """The sequences of a data set.
+        """Open the sequences of a data set.
 
         Args:
             path: folder that `radhar generate` wrote, or dataset.h5.
             of: points, range_doppler, range_azimuth or range_elevation.
             split: train, val, test or all.
-            frames: number per item, the middle ones of longer samples; None for all of the longest.
-            points: number per frame, those of the highest SNR.
+            frames: number of frames of an item, the middle ones of a longer sample; None takes that
+                of the longest sample.
+            points: number of points of a frame, those of the highest SNR.
 
         Raises:
             ConfigError: frames or points below 1.
-            FolderError: it is no data set, or has no such product.
+            FolderError: it is no data set, or has no such product or split.
         """
         for key, value in (("frames", frames), ("points", points)):
             if value is not None and value < 1:
@@ -63,9 +64,9 @@ class Sequences(Dataset[dict[str, Any]]):
         with open_dataset(path) as data:
             product = sequence_product(data, "clouds" if of == CLOUDS else "frames", of)
             self.frames = frames or longest_sequence(data, product)
-            wanted = check_split_name(split)
-            some = wanted == "all" or data.split == SPLIT_NAMES.get(wanted)
-            self._rows = np.flatnonzero(np.broadcast_to(some, data.split.shape))
+            split_name = check_split_name(split)
+            in_split = split_name == "all" or data.split == SPLIT_NAMES.get(split_name)
+            self._rows = np.flatnonzero(np.broadcast_to(in_split, data.split.shape))
             self.label: Index = data.label[self._rows].astype(np.intp)
             self.classes = data.classes
             self._reader = SequenceReader(data.path, product, self.frames, points)
@@ -75,12 +76,14 @@ class Sequences(Dataset[dict[str, Any]]):
 
     def __repr__(self) -> str:
         classes = ", ".join(self.classes[n] for n in np.unique(self.label))
-        of = f"{self.frames} frames of {self._reader.product}"
-        return f"<Sequences {self._reader.path}: {len(self)} x {of}; classes {classes}>"
+        contents = f"{self.frames} frames of {self._reader.product}"
+        return f"<Sequences {self._reader.path}: {len(self)} x {contents}; classes {classes}>"
 
     def __getitem__(self, row: int) -> dict[str, Any]:
-        place, reader = int(self._rows[row]), self._reader
-        read: Tensor = torch.from_numpy(np.ascontiguousarray(reader.read(place)))
-        of = {"clouds": read} if reader.product == CLOUDS else {"frames": read.permute(2, 0, 1)}
-        skeleton = torch.from_numpy(reader.joints(place))
-        return {**of, "skeleton": skeleton, "label": int(self.label[row])}
+        stored_row, reader = int(self._rows[row]), self._reader
+        values: Tensor = torch.from_numpy(np.ascontiguousarray(reader.read(stored_row)))
+        inputs = (
+            {"clouds": values} if reader.product == CLOUDS else {"frames": values.permute(2, 0, 1)}
+        )
+        skeleton = torch.from_numpy(reader.joints(stored_row))
+        return {**inputs, "skeleton": skeleton, "label": int(self.label[row])}

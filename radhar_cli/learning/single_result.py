@@ -47,14 +47,15 @@ GROUPS = ("in place", "moving")
 class EvalOptions:
     """Options of `radhar eval`."""
 
-    split: str = "val"
-    map: str | None = None
-    tsne: bool = False
-    in_place_vs_moving: bool = False
-    batch: int = 32
-    resize: bool = False
+    split: str = "val"  # train, val, test or all
+    map: str | None = None  # of a data set; None is the one of the training
+    tsne: bool = False  # draw t-SNE of maps and features
+    in_place_vs_moving: bool = False  # confusion matrix of the paper's two groups
+    batch: int = 32  # images at a time
+    resize: bool = False  # bring images to the model's size
+    # {class of the data: class of the model, or None to leave it out}
     names: Mapping[str, str | None] = field(default_factory=dict)
-    filters: bool = False
+    filters: bool = False  # draw the weights of global filters
 
 
 @dataclass(frozen=True)
@@ -70,15 +71,19 @@ class Run:
 
 @dataclass(frozen=True)
 class EvalSet:
-    """The images of a data set that a run is evaluated on: rows, and the name of the split."""
+    """Images of a data set on which a run is evaluated."""
 
     images: ImageSet
-    rows: Index
-    split: str
+    rows: Index  # rows of `images` that count
+    split: str  # their split, or all
 
 
 def open_eval_set(run: Run, path: Path, options: EvalOptions) -> EvalSet:
-    """Open a data set for a run."""
+    """Open the images of a data set on which a run is evaluated.
+
+    Raises:
+        FolderError: data do not fit the network.
+    """
     images = open_for_model(
         run.metadata, path, options.map, resize=options.resize, names=options.names
     )
@@ -86,16 +91,20 @@ def open_eval_set(run: Run, path: Path, options: EvalOptions) -> EvalSet:
 
 
 def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
-    """Refuse figures that cannot be drawn, before anything is computed."""
-    ours = {activity.slug for activity in ACTIVITIES}
+    """Refuse figures that cannot be drawn, before anything is computed.
+
+    Raises:
+        RunError: a figure that an option asks for is not of such a network.
+    """
+    activity_names = {activity.slug for activity in ACTIVITIES}
     for run in runs:
         if options.tsne and run.metadata.input not in ("rgb", "gray"):
             raise RunError(f"--tsne: {run.name} reads {run.metadata.input}; it is of images")
-        several = run.metadata.settings.target == "labels"
-        if several and (options.tsne or options.in_place_vs_moving):
+        finds_labels = run.metadata.settings.target == "labels"
+        if finds_labels and (options.tsne or options.in_place_vs_moving):
             raise RunError(f"{run.name} finds several labels at a time; that figure is of classes")
         for name in run.metadata.classes:
-            if options.in_place_vs_moving and name not in ours:
+            if options.in_place_vs_moving and name not in activity_names:
                 raise RunError(
                     f"--in-place-vs-moving: {name!r} is none of the twelve activities; its group "
                     "is unknown"
@@ -134,12 +143,26 @@ def evaluate_one(
     device: torch.device,
     progress: Progress,
 ) -> dict[str, Any]:
-    """Numbers of a run on a data set; its figures and tables, named with `stem`, go to `report`."""
+    """Evaluate one run on one data set.
+
+    Args:
+        report: report that receives figures and tables.
+        run: network.
+        data_name: name of the data set, in titles.
+        eval_set: images, whose classes the network knows.
+        stem: end of the names of files.
+        options: which figures are drawn.
+        device: where the network is.
+        progress: receives the images done.
+
+    Returns:
+        Plain numbers by their keys in report.json.
+    """
     images, rows, split = eval_set.images, eval_set.rows, eval_set.split
     title = f"{run.name} on {data_name}, {split}"
-    asked = (run.model, run.metadata, images, rows, device, options.batch, progress)
+    prediction_inputs = (run.model, run.metadata, images, rows, device, options.batch, progress)
     progress.stage(title, len(rows), 0, "image" if images.kind in ("rgb", "gray") else "sequence")
-    about = {
+    common_numbers = {
         "seen_in_training": seen_in_training(run, images, rows),
         "split": split,
         "map": images.map,
@@ -147,31 +170,33 @@ def evaluate_one(
         "left_out": dict(images.left_out),
     }
     if run.metadata.finds_joints:
-        joints = predict_skeletons(*asked)
-        return evaluate_skeletons(report, *joints, images, rows, stem, title) | about
-    predictions = predict(*asked)
+        joints = predict_skeletons(*prediction_inputs)
+        return evaluate_skeletons(report, *joints, images, rows, stem, title) | common_numbers
+    predictions = predict(*prediction_inputs)
     names = run.metadata.classes
     if run.metadata.settings.target == "labels":
-        return evaluate_labels(report, predictions, names, stem, title) | about
-    numbers = metrics.summarise(predictions.truth, predictions.probabilities, names) | about
-    shown = _ClassFigures(report, predictions, names, stem, title)
-    counts, right = np.array(numbers["confusion"]), 100 * numbers["accuracy"]
-    caption = f"Confusion matrix of {shown.title}: counts, and shares of the true class."
-    title = f"{shown.title}: {right:.2f} % of {rows.size}"
-    shown.confusion("confusion", caption, counts, names, title)
-    shown.tables(numbers["classes"])
-    numbers["calibration"] = shown.reliability(run.metadata.settings.label_smoothing)
+        return evaluate_labels(report, predictions, names, stem, title) | common_numbers
+    numbers = (
+        metrics.summarise(predictions.truth, predictions.probabilities, names) | common_numbers
+    )
+    figures = _ClassFigures(report, predictions, names, stem, title)
+    counts, accuracy_percent = np.array(numbers["confusion"]), 100 * numbers["accuracy"]
+    caption = f"Confusion matrix of {figures.title}: counts, and shares of the true class."
+    title = f"{figures.title}: {accuracy_percent:.2f} % of {rows.size}"
+    figures.confusion("confusion", caption, counts, names, title)
+    figures.tables(numbers["classes"])
+    numbers["calibration"] = figures.reliability(run.metadata.settings.label_smoothing)
     if images.kind in ("rgb", "gray"):
-        shown.hardest()
+        figures.hardest()
     if options.in_place_vs_moving:
-        numbers["in_place_vs_moving"] = shown.in_place_vs_moving()
+        numbers["in_place_vs_moving"] = figures.in_place_vs_moving()
     if options.tsne:
-        numbers["silhouette"] = shown.tsne()
+        numbers["silhouette"] = figures.tsne()
     return numbers
 
 
 def seen_in_training(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
-    """How many of the evaluated images, and of the scenes behind them, were trained on."""
+    """Numbers of the evaluated images, and of the scenes behind them, that were trained on."""
     folder = run.folder if run.folder.is_dir() else run.folder.parent
     pixels, scenes = read_trained_on(folder)
     digests = scan(images, rows).digests if pixels else ()
@@ -183,7 +208,7 @@ def seen_in_training(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
 
 @dataclass(frozen=True)
 class _ClassFigures:
-    """Predictions of classes `names`, and the report that shows them under a title."""
+    """Figures and tables of predictions of classes, which go to a report under a title."""
 
     report: Report
     predictions: Predictions
@@ -192,41 +217,53 @@ class _ClassFigures:
     title: str
 
     def figure(self, name: str, caption: str, png: bytes) -> None:
+        """Add a figure to the report, its file named with `stem`."""
         self.report.figure(f"{name}{self.stem}.png", caption, png)
 
     def confusion(
         self, name: str, caption: str, counts: NDArray[np.int64], classes: Sequence[str], title: str
     ) -> None:
-        """Counts [true class, predicted class] as a figure and a table, true classes down."""
+        """Add counts [true class, predicted class] as a figure and a table, true classes down."""
         self.figure(name, caption, confusion_png(counts, classes, title))
-        rows = ([one, *row] for one, row in zip(classes, counts.tolist(), strict=True))
+        rows = (
+            [class_name, *row] for class_name, row in zip(classes, counts.tolist(), strict=True)
+        )
         # Beside its figure the page has no use for the table.
         self.report.table(f"{name}{self.stem}.csv", ["true \\ predicted", *classes], rows)
 
     def tables(self, classes: Mapping[str, Mapping[str, float]]) -> None:
-        """Numbers of each class, and what was predicted of each image."""
-        each = [[name, *(float(f"{n:.4g}") for n in one.values())] for name, one in classes.items()]
-        head = ("class", "precision", "recall", "f1", "images")
-        self.report.table(f"classes{self.stem}.csv", head, each, "Class by class")
-        found, names = self.predictions, self.names
-        columns = (found.rows, found.truth, found.predicted, found.probabilities.max(1))
-        rows = (
-            (found.images.names[row], names[true], names[guess], f"{probability:.6f}")
-            for row, true, guess, probability in zip(*columns, strict=True)
+        """Add the tables of the numbers of each class, and of the prediction of each image."""
+        class_rows = [
+            [name, *(float(f"{n:.4g}") for n in class_numbers.values())]
+            for name, class_numbers in classes.items()
+        ]
+        header = ("class", "precision", "recall", "f1", "images")
+        self.report.table(f"classes{self.stem}.csv", header, class_rows, "Class by class")
+        predictions, names = self.predictions, self.names
+        columns = (
+            predictions.rows,
+            predictions.truth,
+            predictions.predicted,
+            predictions.probabilities.max(1),
         )
-        of_image = ("image", "true", "predicted", "probability")
-        self.report.table(f"predictions{self.stem}.csv", of_image, rows)
+        rows = (
+            (predictions.images.names[row], names[true], names[predicted], f"{probability:.6f}")
+            for row, true, predicted, probability in zip(*columns, strict=True)
+        )
+        prediction_header = ("image", "true", "predicted", "probability")
+        self.report.table(f"predictions{self.stem}.csv", prediction_header, rows)
 
     def reliability(self, smoothing: float) -> dict[str, list[float | None] | list[int]]:
-        """The reliability diagram, and its bins: mean probability, share that is right, images."""
+        """Add the reliability diagram; return its bins: mean probability, accuracy, images."""
         bins = metrics.calibration(self.predictions.truth, self.predictions.probabilities)
         comment = ""
         if smoothing:
-            sure = 1 - smoothing + smoothing / len(self.names)
+            target_probability = 1 - smoothing + smoothing / len(self.names)
             comment = (
-                f" Label smoothing of {smoothing:g} asks for a probability of {sure:.2f} where the "
-                "network is sure, so points above the line, and an error of up to "
-                f"{1 - sure:.2f} with every prediction right, are what it was trained for."
+                f" Label smoothing of {smoothing:g} asks for a probability of "
+                f"{target_probability:.2f} where the network is sure, so points above the line, "
+                f"and an error of up to {1 - target_probability:.2f} with every prediction right, "
+                "are what it was trained for."
             )
         error = f"calibration error {100 * bins.error:.1f} %"
         caption = (
@@ -242,34 +279,45 @@ class _ClassFigures:
         return {"confidence": confidence, "accuracy": accuracy, "images": bins.count.tolist()}
 
     def hardest(self) -> None:
-        """The most confident mistakes; where there are none, the least confident predictions."""
-        found = self.predictions
-        confidence, wrong = found.probabilities.max(1), found.predicted != found.truth
+        """Add the most confident mistakes; without mistakes, the least confident predictions."""
+        predictions = self.predictions
+        confidence, wrong = (
+            predictions.probabilities.max(1),
+            predictions.predicted != predictions.truth,
+        )
         order = np.argsort(-confidence, kind="stable")
-        chosen, what = order[wrong[order]][:MAX_MISTAKES], "Most confident mistakes"
-        if not chosen.size:
-            chosen, what = order[::-1][:FEW], "No mistakes; the least confident predictions"
-        plain = [name.replace("_", " ") for name in self.names]
-        rows = found.rows[chosen].tolist()
-        paths = [found.images.path_of(row) for row in rows]
+        selected, heading = order[wrong[order]][:MAX_MISTAKES], "Most confident mistakes"
+        if not selected.size:
+            selected, heading = order[::-1][:FEW], "No mistakes; the least confident predictions"
+        class_words = [name.replace("_", " ") for name in self.names]
+        rows = predictions.rows[selected].tolist()
+        paths = [predictions.images.path_of(row) for row in rows]
         lines = [
-            (plain[found.truth[i]], plain[found.predicted[i]], f"{100 * confidence[i]:.1f} %")
-            for i in chosen
+            (
+                class_words[predictions.truth[i]],
+                class_words[predictions.predicted[i]],
+                f"{100 * confidence[i]:.1f} %",
+            )
+            for i in selected
         ]
-        names = [found.images.names[row] for row in rows]
+        names = [predictions.images.names[row] for row in rows]
         captions = [
-            f"{escaped(name)}\ntrue: {true}\nfound: {guess}, {sure}"
-            for name, (true, guess, sure) in zip(names, lines, strict=True)
+            f"{escaped(name)}\ntrue: {true}\nfound: {predicted}, {probability}"
+            for name, (true, predicted, probability) in zip(names, lines, strict=True)
         ]
-        pictures = [found.images.pixels.read(row) for row in rows]
-        png = captioned_png(pictures, captions, f"{what}: {self.title}")
-        self.figure("hardest", f"{what}, {self.title}.", png)
+        pictures = [predictions.images.pixels.read(row) for row in rows]
+        png = captioned_png(pictures, captions, f"{heading}: {self.title}")
+        self.figure("hardest", f"{heading}, {self.title}.", png)
         table = ((path, *line) for path, line in zip(paths, lines, strict=True))
-        head = ("image", "true", "predicted", "probability")
-        self.report.table(f"hardest{self.stem}.csv", head, table, what)
+        header = ("image", "true", "predicted", "probability")
+        self.report.table(f"hardest{self.stem}.csv", header, table, heading)
 
     def in_place_vs_moving(self) -> list[list[int]]:
-        """The paper's two groups: S1 to S7 against S8 to S12; counts [true, predicted]."""
+        """Add the confusion matrix of the paper's groups, S1 to S7 against S8 to S12; return it.
+
+        Returns:
+            Counts [true group, predicted group].
+        """
         moving = {activity.slug: activity.walks for activity in ACTIVITIES}
         group = np.array([int(moving[name]) for name in self.names])
         truth, predicted = group[self.predictions.truth], group[self.predictions.predicted]
@@ -278,26 +326,34 @@ class _ClassFigures:
         caption = f"Standing activities (S1 to S7) against moving ones (S8 to S12), {self.title}."
         title = self.title.replace(" on ", "\non ", 1) + f"\n{share:.2f} %"
         self.confusion("in_place_vs_moving", caption, counts, GROUPS, title)
-        found: list[list[int]] = counts.tolist()
-        return found
+        group_counts: list[list[int]] = counts.tolist()
+        return group_counts
 
     def tsne(self) -> dict[str, float | None]:
-        """Silhouettes of maps and of features."""
+        """Add t-SNE of maps and of features; return the silhouettes of the classes in both.
+
+        Raises:
+            RunError: there are fewer than two images.
+        """
         from radhar_cli.learning.embedding import embed, select_rows, separation, shrink
 
-        found = self.predictions
-        if found.rows.size < MIN_EMBEDDED:
+        predictions = self.predictions
+        if predictions.rows.size < MIN_EMBEDDED:
             raise RunError(f"--tsne: needs at least {MIN_EMBEDDED} images; there is one")
-        picked = select_rows(found.rows.size)
-        maps = np.stack([shrink(found.images.pixels.read(int(row))) for row in found.rows[picked]])
-        features, label = found.features[picked], found.truth[picked]
-        before, after = separation(maps, label), separation(features, label)
+        selected = select_rows(predictions.rows.size)
+        maps = np.stack(
+            [shrink(predictions.images.pixels.read(int(row))) for row in predictions.rows[selected]]
+        )
+        features, label = predictions.features[selected], predictions.truth[selected]
+        map_silhouette, feature_silhouette = separation(maps, label), separation(features, label)
         panels = {"input maps": embed(maps), "features before the last layer": embed(features)}
-        silhouettes = " and ".join("unknown" if s is None else f"{s:.2f}" for s in (before, after))
+        silhouettes = " and ".join(
+            "unknown" if s is None else f"{s:.2f}" for s in (map_silhouette, feature_silhouette)
+        )
         self.figure(
             "tsne",
-            f"t-SNE of {len(picked)} maps and of their features, {self.title}; silhouettes "
+            f"t-SNE of {len(selected)} maps and of their features, {self.title}; silhouettes "
             f"{silhouettes}.",
             embeddings_png(panels, label, self.names, self.title),
         )
-        return {"maps": before, "features": after}
+        return {"maps": map_silhouette, "features": feature_silhouette}

@@ -30,60 +30,94 @@ def predict_skeletons(
     batch: int,
     progress: Progress = NO_PROGRESS,
 ) -> tuple[Float, Float]:
-    """Joints that a network finds, and those that are there, [N, T, joint, 3] in m."""
-    found = list[Float]()
+    """Predicted and true joints of sequences.
+
+    Args:
+        model: network in evaluation mode, on the device.
+        metadata: description of the model.
+        images: sequences with joints.
+        rows: N rows of `images`.
+        device: where the network is.
+        batch: rows at a time.
+        progress: receives the number of rows done.
+
+    Returns:
+        Predicted joints, true joints; each [N, T, joint, 3], m, radar's axes. True ones are NaN
+        after the end of a sample.
+    """
+    predicted = list[Float]()
     for joints in joint_batches(model, metadata, images.pixels, rows, device, batch):
-        found.append(joints)
+        predicted.append(joints)
         progress.advance(len(joints))
     true = [images.skeletons[int(row)] for row in rows]
-    return np.concatenate(found), np.stack(true)
+    return np.concatenate(predicted), np.stack(true)
 
 
 def evaluate_skeletons(
-    report: Report, found: Float, true: Float, images: ImageSet, rows: Index, stem: str, title: str
+    report: Report,
+    predicted: Float,
+    true: Float,
+    images: ImageSet,
+    rows: Index,
+    stem: str,
+    title: str,
 ) -> dict[str, Any]:
-    """Errors in cm of joints [N, T, joint, 3]; figures and tables go to `report`.
+    """Numbers of a network that finds joints: errors in cm, by joint, axis and class.
 
     Beside them the error of the mean pose at its true place: the mean skeleton of these frames
     moved to the mean of the true joints, which asks for no movement of the limbs.
+
+    Args:
+        report: report that receives figures and tables.
+        predicted: [N, T, joint, 3] predicted joints, m.
+        true: [N, T, joint, 3] true joints, m; NaN in frames that do not count.
+        images: sequences with joints.
+        rows: N rows of `images`.
+        stem: end of the names of files.
+        title: title of the figures.
+
+    Returns:
+        Plain numbers by their keys in report.json.
     """
-    there = np.isfinite(true).all((2, 3))  # [N, T]
-    off, joints = (found - true)[there], true[there]  # [frame, joint, 3]
-    middle = joints.mean(1, keepdims=True)
-    still = (joints - middle).mean(0) + middle - joints
-    by_joint = 100 * np.linalg.norm(off, axis=2).mean(0)
-    by_axis = 100 * np.abs(off).mean(0)  # [joint, 3]
-    label = np.repeat(images.label[rows], there.sum(1))
+    is_known = np.isfinite(true).all((2, 3))  # [N, T]
+    deviation, joints = (predicted - true)[is_known], true[is_known]  # [frame, joint, 3]
+    centre = joints.mean(1, keepdims=True)
+    mean_pose_deviation = (joints - centre).mean(0) + centre - joints
+    by_joint = 100 * np.linalg.norm(deviation, axis=2).mean(0)
+    by_axis = 100 * np.abs(deviation).mean(0)  # [joint, 3]
+    label = np.repeat(images.label[rows], is_known.sum(1))
     names = images.joints
     table = [
         (name, *map("{:.2f}".format, (*axes, error)))
         for name, axes, error in zip(names, by_axis.tolist(), by_joint.tolist(), strict=True)
     ]
-    head = ("joint", *(f"{axis}_cm" for axis in AXES), "mpjpe_cm")
-    report.table(f"joints{stem}.csv", head, table, "Joint by joint, mean errors")
-    errors = np.linalg.norm(off, axis=2).mean(1)
+    header = ("joint", *(f"{axis}_cm" for axis in AXES), "mpjpe_cm")
+    report.table(f"joints{stem}.csv", header, table, "Joint by joint, mean errors")
+    errors = np.linalg.norm(deviation, axis=2).mean(1)
     numbers = {
         "images": int(rows.size),
-        "frames": int(there.sum()),
-        "mean_absolute_error_cm": float(100 * np.abs(off).mean()),
+        "frames": int(is_known.sum()),
+        "mean_absolute_error_cm": float(100 * np.abs(deviation).mean()),
         "mpjpe_cm": float(by_joint.mean()),
-        "mpjpe_of_the_mean_pose_in_place_cm": float(100 * np.linalg.norm(still, axis=2).mean()),
-        "within_15_cm": float((np.linalg.norm(off, axis=2) < NEAR_M).mean()),
+        "mpjpe_of_the_mean_pose_in_place_cm": float(
+            100 * np.linalg.norm(mean_pose_deviation, axis=2).mean()
+        ),
+        "within_15_cm": float((np.linalg.norm(deviation, axis=2) < NEAR_M).mean()),
         "joints": {
-            name: {"mpjpe_cm": error, **dict(zip(head[1:4], axes, strict=True))}
+            name: {"mpjpe_cm": error, **dict(zip(header[1:4], axes, strict=True))}
             for name, axes, error in zip(names, by_axis.tolist(), by_joint.tolist(), strict=True)
         },
         "classes": {
-            name: {"frames": int(mine.sum()), "mpjpe_cm": float(100 * errors[mine].mean())}
+            name: {"frames": int(in_class.sum()), "mpjpe_cm": float(100 * errors[in_class].mean())}
             for n, name in enumerate(images.classes)
-            if (mine := label == n).any()
+            if (in_class := label == n).any()
         },
     }
     caption = f"Error of each joint, mean distance, {title}."
     report.figure(f"joints{stem}.png", caption, bars_png(names, by_joint.tolist(), DISTANCE, title))
-    places = np.argwhere(there)[np.linspace(0, there.sum() - 1, SHOWN).astype(int)]
+    places = np.argwhere(is_known)[np.linspace(0, is_known.sum() - 1, SHOWN).astype(int)]
     pairs = [
-        (true[row, frame], found[row, frame], f"{images.names[rows[row]]}, frame {frame}")
+        (true[row, frame], predicted[row, frame], f"{images.names[rows[row]]}, frame {frame}")
         for row, frame in places.tolist()
     ]
     parents = PARENTS if names == JOINTS else ()

@@ -11,18 +11,25 @@ from radhar_cli.learning.run_folder import Epoch, RunMetadata
 
 
 class TensorBoardCurves:
-    """The event file of a run: its settings, and the epochs as they are done.
+    """Event file of a run: its settings, and the epochs as they are done.
 
     A run that resumes writes the epochs before anew, so that none is there twice.
     """
 
     def __init__(self, folder: Path, metadata: RunMetadata, score: str) -> None:
+        """Begin the event file in place of earlier ones.
+
+        Args:
+            folder: folder of the run.
+            metadata: description of the run.
+            score: name of what its accuracies are.
+        """
         self.score = score
         remove_events(folder)
         self._writer = SummaryWriter(folder / TENSORBOARD)
         settings = json.dumps(metadata.config, indent=2)
-        about = f"{metadata.model} on {metadata.data['path']}\n\n```json\n{settings}\n```\n"
-        self._writer.add_text("settings", about)
+        text = f"{metadata.model} on {metadata.data['path']}\n\n```json\n{settings}\n```\n"
+        self._writer.add_text("settings", text)
 
     def write(self, rows: Sequence[Epoch]) -> None:
         """Write epochs that are done."""
@@ -39,7 +46,7 @@ class TensorBoardCurves:
         self._writer.flush()
 
     def close(self) -> None:
-        """Finish the file."""
+        """Close the event file."""
         self._writer.close()
 
 

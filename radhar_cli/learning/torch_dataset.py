@@ -26,7 +26,7 @@ class LabelledImages(Dataset[tuple[Any, int]]):
 
     @property
     def classes(self) -> tuple[str, ...]:
-        """Name of every label; the same in every split."""
+        """Names of the labels, the same in every split."""
         return self.images.classes
 
     def __len__(self) -> int:
@@ -36,15 +36,15 @@ class LabelledImages(Dataset[tuple[Any, int]]):
         row = range(len(self))[row]  # of a negative number, and an IndexError beyond the end
         levels = self.images.pixels.read(row)[..., : self.channels]
         image = torch.from_numpy(np.ascontiguousarray(levels.transpose(2, 0, 1))).float() / 255
-        shown = image if self.transform is None else self.transform(image)
-        return shown, int(self.images.label[row])
+        transformed = image if self.transform is None else self.transform(image)
+        return transformed, int(self.images.label[row])
 
     def __repr__(self) -> str:
-        some = self.images
-        shape = f"float32 {[self.channels, *some.size]}"
-        of_map = "" if some.map is None else f" of map {some.map}"
+        images = self.images
+        shape = f"float32 {[self.channels, *images.size]}"
+        of_map = "" if images.map is None else f" of map {images.map}"
         classes = ", ".join(self.classes)
-        return f"<LabelledImages {some.where}: {len(self)} x {shape}{of_map}; classes {classes}>"
+        return f"<LabelledImages {images.where}: {len(self)} x {shape}{of_map}; classes {classes}>"
 
 
 def torch_dataset(
@@ -55,15 +55,15 @@ def torch_dataset(
     *,
     input: Kind = "rgb",
 ) -> LabelledImages:
-    """The labelled images of a data set, for a DataLoader with any number of workers.
+    """Labelled images of a data set, for a DataLoader with any number of workers.
 
     Every worker opens the file for itself.
 
     Args:
         path: folder that `radhar generate` wrote, dataset.h5, or a tree of class folders.
-        map: which map; None is the first one.
+        map: map to read; None is the first one.
         split: train, val, test or all.
-        transform: called with each image, float32 [C, H, W] from 0 to 1.
+        transform: function of each image, float32 [C, H, W] from 0 to 1.
         input: rgb, 3 channels as the PNGs are coloured; or gray, the levels as 1 channel.
 
     Raises:

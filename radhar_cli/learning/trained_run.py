@@ -17,7 +17,7 @@ from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
 
 @dataclass(frozen=True)
 class FoundClasses:
-    """Probabilities of every class, image by image."""
+    """Probabilities of every class, image by image; N is the number of images."""
 
     samples: tuple[str, ...]  # [N] names
     classes: tuple[str, ...]
@@ -25,18 +25,18 @@ class FoundClasses:
 
     @property
     def likeliest(self) -> list[str]:
-        """Most likely class of each image [N]."""
+        """Likeliest class of each image [N]."""
         return [self.classes[number] for number in self.probabilities.argmax(1)]
 
 
 @dataclass(frozen=True)
 class TrainedRun:
-    """The best weights of a training run, and what they were trained for.
+    """Network with the best weights of a training run, and its description.
 
     Attributes:
         metadata: classes, size, map, normalisation and settings, as best.safetensors has them.
-        network: in evaluation mode; takes normalised inputs.
-        device: where the network is.
+        network: network in evaluation mode, which takes normalised inputs.
+        device: device of the network.
     """
 
     metadata: RunMetadata
@@ -54,7 +54,7 @@ class TrainedRun:
         return self.metadata.joints if self.metadata.finds_joints else ()
 
     def __call__(self, inputs: Tensor) -> Tensor:
-        """Probabilities [B, classes], or joints [B, T, joint, 3] in m, of a batch.
+        """Probabilities [B, classes], or joints [B, T, joint, 3] in m, of a batch of inputs.
 
         Args:
             inputs: as they are stored: images uint8 [B, 3, H, W], frames uint8 [B, T, H, W], clouds
@@ -64,8 +64,8 @@ class TrainedRun:
             outputs: Tensor = self.network(self.metadata.normalisation(inputs.to(self.device)))
         if self.metadata.finds_joints:
             return outputs
-        several = self.metadata.settings.target == "labels"
-        return outputs.sigmoid() if several else outputs.softmax(1)
+        finds_labels = self.metadata.settings.target == "labels"
+        return outputs.sigmoid() if finds_labels else outputs.softmax(1)
 
     def predict(
         self,
@@ -74,12 +74,12 @@ class TrainedRun:
         split: str = "all",
         resize: bool = False,
     ) -> FoundClasses | FoundJoints:
-        """What the network finds in an image, a folder of images, or a data set.
+        """Classes or joints that the network finds in an image, a folder of images, or a data set.
 
         Args:
-            path: what to read.
-            map: which map of a data set; None is the one that the run was trained on.
-            split: train, val, test or all, of a data set.
+            path: image, folder of images, or data set.
+            map: map of a data set; None is the one that the run was trained on.
+            split: split of a data set: train, val, test or all.
             resize: bring images to the size of those in training.
 
         Raises:
@@ -89,9 +89,9 @@ class TrainedRun:
         if self.metadata.finds_joints:
             return find_joints(self.metadata, self.network, [where], self.device, map, part)
         inputs = open_unlabelled(self.metadata, where, map, part, resize)
-        asked = (inputs.pixels, inputs.rows, self.device, PREDICT_BATCH)
-        batches = predict_batches(self.network, self.metadata, *asked)
-        probabilities = np.concatenate([found for found, _ in batches])
+        reading = (inputs.pixels, inputs.rows, self.device, PREDICT_BATCH)
+        batches = predict_batches(self.network, self.metadata, *reading)
+        probabilities = np.concatenate([batch for batch, _ in batches])
         return FoundClasses(inputs.names, self.classes, probabilities)
 
     def __repr__(self) -> str:
@@ -113,9 +113,9 @@ def load_run(path: str | Path, device: str = "auto") -> TrainedRun:
         RunError: it is no run, or is damaged.
         MachineError: a device that is not available.
     """
-    where = Path(path)
-    if not where.exists():
-        raise RunError(f"{where}: no such file or folder")
-    chosen = choose_device(device)
-    metadata, network = load_best(where)
-    return TrainedRun(metadata, network.to(chosen), chosen)
+    run = Path(path)
+    if not run.exists():
+        raise RunError(f"{run}: no such file or folder")
+    torch_device = choose_device(device)
+    metadata, network = load_best(run)
+    return TrainedRun(metadata, network.to(torch_device), torch_device)

@@ -49,30 +49,30 @@ class TrainingError(RadharError):
 
 
 class TrainingProgress(Messages, Protocol):
-    """Receives messages, and how far a training run is."""
+    """Receiver of messages, and of how far a training run is."""
 
     def epoch(self, number: int, epochs: int, steps: int) -> None:
-        """An epoch begins."""
+        """Begin an epoch (from 1) of so many steps."""
 
     def step(self, loss: float, accuracy: float) -> None:
-        """A step is done: its loss, and the accuracy (or other score) of the epoch so far."""
+        """Finish a step: its loss, and the accuracy (or other score) of the epoch so far."""
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
-        """An epoch is done and on disk."""
+        """Finish an epoch, which is on disk; `best` where its weights are the best so far."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run left."""
+    """Result of a training run."""
 
-    folder: Path  # of the run
+    folder: Path  # folder of the run
     history: list[Epoch]
     resumed: int  # epochs that were finished before
-    score: str  # what its accuracies are
+    score: str  # name of what its accuracies are
 
     @property
     def best(self) -> Epoch:
-        """The epoch whose weights are kept."""
+        """Epoch whose weights are kept."""
         return best_epoch(self.history)
 
 
@@ -87,16 +87,19 @@ def train(
     resize: bool = False,
     tensorboard: bool = False,
 ) -> Outcome:
-    """Train `config` on `data` in `folder`, or resume; nothing to do where it is complete.
+    """Train a network, or resume its training; a complete run stays as it is.
 
     Args:
+        config: model and settings.
         data: a data set, several that are combined, or images that are open already.
+        folder: folder of the run.
+        progress: receives messages, steps and epochs.
         overwrite: start over in a folder that holds a run.
         names: {class of the data: class here, or None to leave it out}.
         start: a run whose best weights and normalisation are the initial ones; those of the last
             layer too if the classes are the same. Pictures are brought to its colours.
         resize: bring images to the size of those that `start` learned from.
-        tensorboard: also write the curves as TensorBoard reads them.
+        tensorboard: write the curves for TensorBoard, too.
 
     Raises:
         FolderError: data that cannot be used.
@@ -106,15 +109,17 @@ def train(
         TrainingError: a step too large for memory, or a loss that is not finite; earlier
             checkpoints are kept.
     """
-    earlier = None if start is None else run.load_best(start)[0]
-    if resize and earlier is None:
+    initial_run = None if start is None else run.load_best(start)[0]
+    if resize and initial_run is None:
         raise ConfigError("--resize: needs --init, a run whose image size is taken")
     if isinstance(data, ImageSet):
         images = data
     else:
-        images = checked_images(config, data, names, earlier.size if earlier and resize else None)
-    if earlier is not None:
-        images = recolour(images, earlier.colours)
+        images = checked_images(
+            config, data, names, initial_run.size if initial_run and resize else None
+        )
+    if initial_run is not None:
+        images = recolour(images, initial_run.colours)
     config = config.with_batch_size_for(images.rows("train").size, images.frames)
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
@@ -124,8 +129,8 @@ def train(
         keep_memory()
     with folder_lock(folder):
         try:
-            run_here = _Training(config, images, folder, progress, device, overwrite, start)
-            return run_here.run(tensorboard)
+            training = _Training(config, images, folder, progress, device, overwrite, start)
+            return training.run(tensorboard)
         except RuntimeError as error:
             # On the CPU only the message says that memory was short.
             if not isinstance(error, torch.OutOfMemoryError) and "CPUAllocator" not in str(error):
@@ -147,8 +152,14 @@ def checked_images(
     """Open a data set, or several as one, and make sure that it can be learned from.
 
     Args:
+        config: model, target and settings.
+        data: one or several data sets, or trees of images.
         names: {class of the data: class here, or None to leave it out}.
         resize: (H, W) to bring images to; None refuses those of several sizes.
+
+    Raises:
+        FolderError: data that cannot be used together, or a class without training images.
+        ConfigError: `data_weights` does not have a weight for each data set.
     """
     paths = [data] if isinstance(data, Path) else list(data)
     if config.data_weights is not None and len(config.data_weights) != len(paths):
@@ -169,16 +180,16 @@ def checked_images(
     if len(images.classes) < 2:
         raise FolderError(f"{path}: has the class {images.classes[0]!r} alone; should have two")
     rows = images.rows("train")
-    learned = _occurring_classes(config, images, rows)
+    occurring = _occurring_classes(config, images, rows)
     for index, name in enumerate(images.classes):
-        if index not in learned:
+        if index not in occurring:
             raise FolderError(f"{path}: the class {name!r} has no training image")
     images.rows("val")
     return images
 
 
 class _Training:
-    """A run: its network, and the epochs so far."""
+    """Training run: its network, and the epochs so far."""
 
     def __init__(
         self,
@@ -198,16 +209,16 @@ class _Training:
         joints = config.target == "skeleton"
         outputs = 3 * len(images.joints) if joints else len(images.classes)
         self.model = build_model(config.model, outputs, images.size, joints)
-        started = None if start is None else start_from(start, self.model, config, images)
-        what = "images" if images.kind in ("rgb", "gray") else "sequences"
-        many = f"{len(images)} {what} of {len(images.classes)} classes"
-        progress.say(f"reading {many}, {images.shape}")
-        notes = started.notes if started else ()
+        starting_point = None if start is None else start_from(start, self.model, config, images)
+        kind_in_words = "images" if images.kind in ("rgb", "gray") else "sequences"
+        images_in_words = f"{len(images)} {kind_in_words} of {len(images.classes)} classes"
+        progress.say(f"reading {images_in_words}, {images.shape}")
+        notes = starting_point.notes if starting_point else ()
         for message in (*images.notes, *_warnings(config, images), *notes):
             progress.say(message)
-        self.metadata, learned = _describe(config, images, self.precision, started)
+        self.metadata, training_images = _describe(config, images, self.precision, starting_point)
         run.reserve_run(folder, self.metadata, overwrite)
-        run.write_trained_on(folder, learned)
+        run.write_trained_on(folder, training_images)
         self.model.to(device)
         self.average = AveragedModel(self.model) if config.average_last else None
         self.optimiser = optimiser_for(config, self.model)
@@ -224,19 +235,19 @@ class _Training:
             curves.write(self.history)
         if resumed:
             self.progress.say(f"resuming: {resumed} of {config.epochs} epochs are done")
-        how = f"{self.metadata.work['precision']}, {torch.get_num_threads()} threads"
-        self.progress.say(f"on {device.type}, {how}")
+        precision_in_words = f"{self.metadata.work['precision']}, {torch.get_num_threads()} threads"
+        self.progress.say(f"on {device.type}, {precision_in_words}")
         augmentation = None
         if config.augment != AugmentConfig():
             augmentation = Augmentation(config.augment, config.seed)
-        wanted, workers = (
+        targets, workers = (
             _training_targets(config, images),
             machine.reading_workers(config.workers, device),
         )
         pin = device.type == "cuda"
-        reader = Reader(images.pixels, wanted, augmentation, workers, pin)
+        reader = Reader(images.pixels, targets, augmentation, workers, pin)
         for epoch in range(resumed, config.epochs):
-            began = time.perf_counter()
+            start_s = time.perf_counter()
             # Of dropout and the like, for this epoch alone, so that a run can resume.
             layers = stream(config.seed, TRAINING, epoch, name="layers")
             torch.manual_seed(int(layers.integers(2**63)))
@@ -244,9 +255,9 @@ class _Training:
             self._statistics_of_average(reader, epoch)
             validation = self._validate(reader, epoch)
             learning_rate = self.optimiser.param_groups[0]["lr"]
-            seconds = round(time.perf_counter() - began, 3)
+            seconds = round(time.perf_counter() - start_s, 3)
             self.history.append(Epoch(epoch + 1, learning_rate, *training, *validation, seconds))
-            self._keep()
+            self._save_epoch()
             if curves is not None:
                 curves.write(self.history[-1:])
         if curves is not None:
@@ -262,11 +273,11 @@ class _Training:
             return 0
         path = self.folder / run_files.LAST
         try:
-            other = run.differences(
+            differing = run.differences(
                 RunMetadata.model_validate_json(checkpoint["metadata"]), self.metadata
             )
-            if other:
-                raise run.RunError(f"{path}: is another run's; it differs in {other[0]}")
+            if differing:
+                raise run.RunError(f"{path}: is another run's; it differs in {differing[0]}")
             self.history = run.checked_history([Epoch(**row) for row in checkpoint["history"]])
             if not self.history:
                 raise ValueError("it holds no epoch")
@@ -295,11 +306,11 @@ class _Training:
                     f"{error}; the weights of epoch {best.epoch} cannot be recovered; --overwrite "
                     "starts the run over"
                 ) from None
-            run.write_best(self.folder, self.metadata, best, self._kept.state_dict())
+            run.write_best(self.folder, self.metadata, best, self._kept_network.state_dict())
 
     @property
-    def _kept(self) -> nn.Module:
-        """The network that is validated and kept: the average, as soon as there is one."""
+    def _kept_network(self) -> nn.Module:
+        """Network that is validated and kept: the average, as soon as there is one."""
         if self.average is None or not self.average.n_averaged:
             return self.model
         return self.average.module
@@ -312,91 +323,91 @@ class _Training:
         return rows[epoch_order(weights, config.seed, epoch)]
 
     def _train_epoch(self, reader: Reader, epoch: int) -> tuple[float, float]:
-        """One epoch of steps; returns mean loss and accuracy of its batches."""
+        """Train one epoch; return the mean loss and score of its images."""
         config = self.config
         batches = epoch_batches(self._epoch_rows(epoch), config.images_a_step)
         self.progress.epoch(epoch + 1, config.epochs, len(batches))
         self.model.train()
-        loss_sum, right, count = 0.0, 0.0, 0
+        loss_sum, score_sum, count = 0.0, 0.0, 0
         for step, (levels, labels) in enumerate(reader(batches, epoch)):
             learning_rate = learning_rate_of_step(config, epoch, step, len(batches))
             for parameters in self.optimiser.param_groups:
                 parameters["lr"] = learning_rate
-            loss, right_here = self._step(levels, labels)
-            done = (epoch + (step + 1) / len(batches)) / config.epochs
-            if self.average is not None and done > 1 - config.average_last:
+            loss, score = self._step(levels, labels)
+            share_done = (epoch + (step + 1) / len(batches)) / config.epochs
+            if self.average is not None and share_done > 1 - config.average_last:
                 self.average.update_parameters(self.model)
             if not math.isfinite(loss):
                 raise TrainingError(self._not_finite(f"epoch {epoch + 1}, step {step + 1}", loss))
             loss_sum += loss * len(labels)
-            right += right_here
+            score_sum += score
             count += len(labels)
-            self.progress.step(loss, right / count)
-        return loss_sum / count, right / count
+            self.progress.step(loss, score_sum / count)
+        return loss_sum / count, score_sum / count
 
     def _step(self, levels: Tensor, labels: Tensor) -> tuple[float, float]:
-        """One update from a batch [B, C, H, W]: its mean loss, and how much of it was right."""
+        """Update the network by a batch [B, C, H, W]; return its mean loss and sum of scores."""
         self.optimiser.zero_grad(set_to_none=True)
-        loss_sum, right = self._loss(self.model, levels, labels)
-        loss = loss_sum / len(labels)
-        torch.autograd.backward(loss)
+        loss_sum, score_sum = self._loss(self.model, levels, labels)
+        mean_loss = loss_sum / len(labels)
+        torch.autograd.backward(mean_loss)
         if self.config.gradient_clip_norm is not None:
             nn.utils.clip_grad_norm_(self.model.parameters(), self.config.gradient_clip_norm)
         self.optimiser.step()
-        return float(loss.detach()), right
+        return float(mean_loss.detach()), score_sum
 
     def _loss(self, network: nn.Module, levels: Tensor, labels: Tensor) -> tuple[Tensor, float]:
-        """Sums over a batch of the loss, and of what is right: classes, or shares of the joints."""
-        x = self.metadata.normalisation(levels.to(self.device, non_blocking=True))
+        """Sums over a batch of the loss, and of the score: right classes, or shares of joints."""
+        inputs = self.metadata.normalisation(levels.to(self.device, non_blocking=True))
         with machine.autocast(self.device, self.precision):
-            outputs: Tensor = network(x)
-        wanted, smoothing = labels.to(self.device), self.config.label_smoothing
-        return loss_and_score(self.config.target, outputs.float(), wanted, smoothing)
+            outputs: Tensor = network(inputs)
+        targets, smoothing = labels.to(self.device), self.config.label_smoothing
+        return loss_and_score(self.config.target, outputs.float(), targets, smoothing)
 
     def _statistics_of_average(self, reader: Reader, epoch: int) -> None:
         """Take the batch-norm statistics of averaged weights from images as they are stored.
 
         Those met in training are of other weights, and of augmented images.
         """
-        if self._kept is self.model:
+        if self._kept_network is self.model:
             return
         rows = self._epoch_rows(epoch)[:STATISTICS_IMAGES]
         batches = reader(epoch_batches(rows, self.config.images_a_step))
         device, normalise = self.device, self.metadata.normalisation
-        update_bn((normalise(levels.to(device)) for levels, _ in batches), self._kept)
+        update_bn((normalise(levels.to(device)) for levels, _ in batches), self._kept_network)
 
     def _validate(self, reader: Reader, epoch: int) -> tuple[float, float]:
-        """Mean loss and accuracy over the validation images."""
-        model, rows = self._kept, self.images.rows("val")
+        """Mean loss and score of the validation images."""
+        model, rows = self._kept_network, self.images.rows("val")
         model.eval()
-        loss_sum, right = 0.0, 0.0
+        loss_sum, score_sum = 0.0, 0.0
         with torch.no_grad():
             for levels, labels in reader(batches_in_order(rows, self.config.images_a_step)):
-                loss, right_here = self._loss(model, levels, labels)
+                loss, score = self._loss(model, levels, labels)
                 loss_sum += float(loss)
-                right += right_here
+                score_sum += score
         if not math.isfinite(loss_sum):
             raise TrainingError(self._not_finite(f"validation of epoch {epoch + 1}", loss_sum))
-        return loss_sum / rows.size, right / rows.size
+        return loss_sum / rows.size, score_sum / rows.size
 
     def _not_finite(self, where: str, loss: float) -> str:
         rate_now = self.config.learning_rate
-        kept = (
+        epochs_in_words = (
             f"{run_files.LAST} and {run_files.BEST} hold the epochs up to {len(self.history)}"
             if self.history
             else "no epoch was finished"
         )
         return (
             f"{where}: the loss is {loss}; a lower learning_rate (now {rate_now:g}), "
-            f"gradient_clip_norm or warmup_epochs may help; {kept}"
+            f"gradient_clip_norm or warmup_epochs may help; {epochs_in_words}"
         )
 
-    def _keep(self) -> None:
-        """Put an epoch on disk: the best weights first, then what the next epoch starts from."""
+    def _save_epoch(self) -> None:
+        """Write the last epoch: the best weights first, then what the next epoch starts from."""
         row = self.history[-1]
         best = best_epoch(self.history) is row
         if best:
-            run.write_best(self.folder, self.metadata, row, self._kept.state_dict())
+            run.write_best(self.folder, self.metadata, row, self._kept_network.state_dict())
         run.write_last(
             self.folder,
             {
@@ -412,14 +423,14 @@ class _Training:
 
 
 def _occurring_classes(config: TrainConfig, images: ImageSet, rows: Index) -> set[int]:
-    """Numbers of the classes that some rows show: of labels, whoever does them."""
+    """Numbers of the classes that occur in some rows; of labels, whoever does them."""
     if config.target == "labels":
         return set(np.flatnonzero(images.multi_hot(images.classes)[rows].any(0)).tolist())
     return set(images.label[rows].tolist())
 
 
 def _training_targets(config: TrainConfig, images: ImageSet) -> Labels:
-    """What is to be learned of each row."""
+    """Target of each row: joints, multi-hot labels, or the number of the class."""
     match config.target:
         case "skeleton":
             return images.skeletons
@@ -429,13 +440,16 @@ def _training_targets(config: TrainConfig, images: ImageSet) -> Labels:
 
 
 def _describe(
-    config: TrainConfig, images: ImageSet, precision: torch.dtype, started: StartingPoint | None
+    config: TrainConfig,
+    images: ImageSet,
+    precision: torch.dtype,
+    starting_point: StartingPoint | None,
 ) -> tuple[RunMetadata, list[tuple[str, str, str]]]:
-    """Metadata of the run, and (name, fingerprint, that of the scene) of every training image."""
-    rows, validating = images.rows("train"), images.rows("val")
-    learned, checked = scan(images, rows), scan(images, validating)
-    seen = np.concatenate([rows, validating])
-    statistics = learned if started is None else started.normalisation
+    """Metadata of the run, and (name, fingerprint, scene's fingerprint) of its training images."""
+    rows, validation_rows = images.rows("train"), images.rows("val")
+    training_scan, validation_scan = scan(images, rows), scan(images, validation_rows)
+    all_rows = np.concatenate([rows, validation_rows])
+    statistics = training_scan if starting_point is None else starting_point.normalisation
     metadata = RunMetadata(
         model=config.model,
         classes=images.classes,
@@ -450,19 +464,21 @@ def _describe(
         config={k: v for k, v in resolved(config).items() if k not in NOT_IDENTITY},
         data={
             "path": str(images.where),
-            "hash": content_hash(images, seen, (*learned.digests, *checked.digests)),
+            "hash": content_hash(
+                images, all_rows, (*training_scan.digests, *validation_scan.digests)
+            ),
             "train": rows.size,
-            "val": validating.size,
+            "val": validation_rows.size,
         },
         work={
             "precision": str(precision).removeprefix("torch."),
-            **({"start": started.sha256} if started else {}),
+            **({"start": starting_point.sha256} if starting_point else {}),
         },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},
     )
     scenes = images.scenes or ("",) * len(images)
-    pairs = zip(rows.tolist(), learned.digests, strict=True)
-    return metadata, [(images.names[row], pixels, scenes[row]) for row, pixels in pairs]
+    row_digests = zip(rows.tolist(), training_scan.digests, strict=True)
+    return metadata, [(images.names[row], pixels, scenes[row]) for row, pixels in row_digests]
 
 
 def _warnings(config: TrainConfig, images: ImageSet) -> list[str]:

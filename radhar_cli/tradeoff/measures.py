@@ -20,7 +20,7 @@ SSIM_WINDOW = 7
 
 
 class Errors(NamedTuple):
-    """How far a setting's data of a scene are from the exact ones, None where that says nothing."""
+    """Errors of a setting's data of a scene against exact ones, None where they say nothing."""
 
     measured_error_db: float | None  # what the direct engine measured itself; None of the cube
     signal_error_db: float | None
@@ -29,7 +29,11 @@ class Errors(NamedTuple):
 
 
 def relative_db(compared: Complex, exact: Complex) -> float | None:
-    """Relative L2 error in dB; -inf where the two are the same, None where there is no signal."""
+    """Relative L2 error of two signals in dB.
+
+    Returns:
+        -inf where the two are the same, None where the exact one is 0 or of another length.
+    """
     size = float(np.linalg.norm(exact))
     if compared.shape != exact.shape or size == 0:
         return None
@@ -38,7 +42,7 @@ def relative_db(compared: Complex, exact: Complex) -> float | None:
 
 
 def image_scores(compared: Levels, exact: Levels) -> tuple[float | None, float]:
-    """SSIM and share of pixels whose level differs, of images of one size.
+    """SSIM of two images of one size, and share of pixels whose level differs.
 
     SSIM has a window of 7 pixels, of 3 or 5 in smaller images, and is None below 3.
     """
@@ -55,7 +59,7 @@ def image_scores(compared: Levels, exact: Levels) -> tuple[float | None, float]:
 
 
 class SettingData(NamedTuple):
-    """One scene under one setting."""
+    """Signal and image of one scene under one setting."""
 
     signal: Complex  # x [M] after the canceller
     levels: Levels  # of the first map of the config
@@ -64,28 +68,28 @@ class SettingData(NamedTuple):
 
 
 class SceneErrors:
-    """All settings in one scene; what several of them refer to is made once."""
+    """Errors of settings in one scene; data that several of them refer to are made once."""
 
     def __init__(self, scenes: Scenes, slug: str) -> None:
         self._sample = cache(partial(_simulate_sample, scenes, slug))
 
-    def of(self, setting: Setting) -> Errors:
-        """How far the setting's data are from its reference, without noise."""
+    def measure_errors(self, setting: Setting) -> Errors:
+        """Errors of a setting's data against its exact data, without noise unless it is noisy."""
         quiet = () if setting.noisy else QUIET
         compared = self._sample((*setting.compared, *quiet))
-        right = self._sample((*setting.exact, *quiet))
+        exact = self._sample((*setting.exact, *quiet))
         return Errors(
             compared.engine_db,
-            relative_db(compared.signal, right.signal),
-            *image_scores(compared.levels, right.levels),
+            relative_db(compared.signal, exact.signal),
+            *image_scores(compared.levels, exact.levels),
         )
 
 
 def _simulate_sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> SettingData:
     config = scenes.config(overrides)
     name = config.maps[0]
-    asked = ["signal", f"image:{name}"] + ["accuracy"] * (config.engine.kind == "direct")
-    products = record(scenes.draw(slug, config), asked).products
+    wanted_products = ["signal", f"image:{name}"] + ["accuracy"] * (config.engine.kind == "direct")
+    products = record(scenes.draw(slug, config), wanted_products).products
     accuracy = products.get("accuracy")
     return SettingData(
         products["signal"].x[0, 0],
@@ -95,26 +99,32 @@ def _simulate_sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> S
 
 
 class Times(NamedTuple):
-    """One round of one setting."""
+    """Times of one round of one setting."""
 
     sample_ms: float  # from scene to levels and entropy, a sample
     ratio: float  # over that of the baseline
 
 
 def time_setting(scenes: Scenes, setting: Setting, turn: int) -> Times:
-    """Time a setting and its baseline in turns, scene by scene, for a fraction of a second."""
+    """Time a setting and its baseline in turns, scene by scene, for a fraction of a second.
+
+    Args:
+        scenes: scenes of the sweep.
+        setting: setting with its baseline.
+        turn: number of the round, which decides with which scene it begins.
+    """
     names = scenes.names()
-    own = usual = 0.0
+    setting_s = baseline_s = 0.0
     for step in range(turn, turn + len(names)):
         slug = names[step % len(names)]
         if step % 2:
-            usual += _cpu_seconds(scenes, slug, setting.baseline)
-        own += _cpu_seconds(scenes, slug, setting.overrides)
+            baseline_s += _cpu_seconds(scenes, slug, setting.baseline)
+        setting_s += _cpu_seconds(scenes, slug, setting.overrides)
         if not step % 2:
-            usual += _cpu_seconds(scenes, slug, setting.baseline)
-        if own + usual > SECONDS:
+            baseline_s += _cpu_seconds(scenes, slug, setting.baseline)
+        if setting_s + baseline_s > SECONDS:
             break
-    return Times(1e3 * own / (step - turn + 1), own / usual)
+    return Times(1e3 * setting_s / (step - turn + 1), setting_s / baseline_s)
 
 
 def _cpu_seconds(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> float:

@@ -28,7 +28,18 @@ COLUMNS = {
 def write_report(
     folder: Path, title: str, command: str, rows: Sequence[Record], conditions: Mapping[str, Any]
 ) -> list[Path]:
-    """Write the three files; return their paths. JSON has null for the error of what is exact."""
+    """Write tradeoff.csv, .json and .md; return their paths.
+
+    Args:
+        folder: folder of the files.
+        title: title of the page.
+        command: command line that made the rows.
+        rows: rows of `run_sweep`; their error of -inf, of exact data, is null in JSON.
+        conditions: numbers of scenes and rounds, versions and machine.
+
+    Raises:
+        FolderError: a file cannot be written.
+    """
     finite = [{key: None if value == -inf else value for key, value in row.items()} for row in rows]
     numbers = {"command": command, **conditions, "settings": finite}
     files = {
@@ -44,7 +55,7 @@ def write_report(
 def markdown(
     title: str, command: str, rows: Sequence[Record], conditions: Mapping[str, Any]
 ) -> str:
-    """The whole report."""
+    """Text of tradeoff.md."""
     count, rounds = conditions["scenes"], conditions["rounds"]
     return f"""\
 # What accuracy costs: {title}
@@ -77,9 +88,9 @@ def _table(rows: Sequence[Record], groups: Sequence[str]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def _cell(form: str, row: Record) -> str:
+def _cell(template: str, row: Record) -> str:
     try:
         marked = " (default)" * row["default"]
-        return form.format(**row, marked=marked).replace("-inf", "exact")
+        return template.format(**row, marked=marked).replace("-inf", "exact")
     except TypeError:  # there is no such number
-        return "refused" if row["refused"] and "time" in form else ""
+        return "refused" if row["refused"] and "time" in template else ""

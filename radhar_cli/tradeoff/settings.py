@@ -21,24 +21,28 @@ DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_
 
 @dataclass(frozen=True)
 class Scenes:
-    """Samples 0 of the activities of a config file."""
+    """Scenes of the sweep: samples 0 of the activities of a config file."""
 
-    path: Path  # of the config file
-    overrides: tuple[str, ...]  # of the command line; a setting's come after them
+    path: Path  # config file
+    overrides: tuple[str, ...]  # of the command line; those of a setting come after them
     quick: bool  # whether three activities are enough
 
-    def config(self, more: Sequence[str] = ()) -> Config:
-        """The config under further overrides."""
-        return _config(self.path, (*self.overrides, *more))
+    def config(self, further: Sequence[str] = ()) -> Config:
+        """Config under further overrides.
+
+        Raises:
+            ConfigError: the overrides do not fit it.
+        """
+        return _config(self.path, (*self.overrides, *further))
 
     def names(self) -> list[str]:
-        """The activities, by slug."""
-        chosen = [activity.slug for activity in self.config().chosen_activities]
-        few = [slug for slug in chosen if slug in QUICK] or chosen[: len(QUICK)]
-        return few if self.quick else chosen
+        """Slugs of the activities; of three where `quick`."""
+        slugs = [activity.slug for activity in self.config().chosen_activities]
+        quick_slugs = [slug for slug in slugs if slug in QUICK] or slugs[: len(QUICK)]
+        return quick_slugs if self.quick else slugs
 
     def draw(self, slug: str, config: Config) -> Scene:
-        """Sample 0 of an activity; settings of engine, maps and image leave it as it is."""
+        """Scene of sample 0 of an activity; settings of engine, maps and image do not change it."""
         activity = next(a for a in config.chosen_activities if a.slug == slug)
         return draw_valid_scene(config, activity, 0)[0]
 
@@ -50,7 +54,7 @@ def _config(path: Path, overrides: tuple[str, ...]) -> Config:
 
 @dataclass(frozen=True)
 class Setting:
-    """One row of the sweep. All overrides are dotted `key=value` pairs."""
+    """One row of the sweep; all overrides are dotted `key=value` pairs."""
 
     group: str  # budget, precision, engine or switch
     name: str  # as printed
@@ -70,19 +74,22 @@ class Setting:
 
 
 def sweep(config: Config) -> list[Setting]:
-    """The settings that make sense for a config."""
+    """Settings of the sweep that make sense for a config."""
     return [*_engine_settings(), *_switch_settings(config)]
 
 
 def _engine_settings() -> list[Setting]:
     budgets = sorted({*BUDGETS, round(EngineConfig().tolerance_db)}, reverse=True)
-    rows: dict[tuple[str, str], tuple[str, ...]] = {
+    overrides: dict[tuple[str, str], tuple[str, ...]] = {
         ("budget", f"{db} dB"): ("engine.kind=direct", f"engine.tolerance_db={db:g}")
         for db in budgets
     }
-    rows["precision", "double"] = (*DIRECT, "engine.precision=double")
-    rows["engine", "cube"] = CUBE
-    return [Setting(*named, on, on, CUBE) for named, on in rows.items()]
+    overrides["precision", "double"] = (*DIRECT, "engine.precision=double")
+    overrides["engine", "cube"] = CUBE
+    return [
+        Setting(*group_and_name, setting, setting, CUBE)
+        for group_and_name, setting in overrides.items()
+    ]
 
 
 CORRIDOR = (
@@ -93,10 +100,10 @@ BEAM = "radar.beam={azimuth_deg: 70, elevation_deg: 30}"
 
 
 def _switch_settings(config: Config) -> list[Setting]:
-    """Physics and transforms that a config may leave out; clutter changes the length."""
-    own, clutter = config.body.scatterers, config.processing.clutter
-    other = "points" if own == "segments" else "segments"
-    dense, turning = "processing.fsst_hop_pulses=1", (*CUBE, "engine.motion_in_chirp=true")
+    """Settings of physics and transforms that a config may leave out."""
+    body_kind, clutter = config.body.scatterers, config.processing.clutter
+    other_body_kind = "points" if body_kind == "segments" else "segments"
+    dense, in_chirp = "processing.fsst_hop_pulses=1", (*CUBE, "engine.motion_in_chirp=true")
     bodies = [f"body.scatterers=segments body.shadowing={on}".split() for on in ("true", "false")]
     gates = [("maps=[stft]", f"processing.range_sum={kind}") for kind in ("gated", "coherent")]
     prf = nominal(config.radar.prf_hz)
@@ -105,7 +112,10 @@ def _switch_settings(config: Config) -> list[Setting]:
         "interference line at PRF/8": (*DIRECT, f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"),
     }
     switches = [
-        switch_off_by_default(f"scatterers: {other} instead of {own}", f"body.scatterers={other}"),
+        switch_off_by_default(
+            f"scatterers: {other_body_kind} instead of {body_kind}",
+            f"body.scatterers={other_body_kind}",
+        ),
         switch_with_baseline("shadowing", bodies, "segments without shadowing"),
         switch_with_baseline("range_sum: gated instead of coherent", gates, "the coherent STFT"),
         *(
@@ -120,7 +130,7 @@ def _switch_settings(config: Config) -> list[Setting]:
         switch_off_by_default("room: 3 reflectors", "room.reflectors=[{}, {}, {}]"),
         *(Setting("switch", name, on, DIRECT, on, noisy=True) for name, on in noises.items()),
         switch_off_by_default("residual video phase", "radar.residual_video_phase=true"),
-        Setting("switch", "motion within the chirp", turning, CUBE, turning, CUBE, "the cube"),
+        Setting("switch", "motion within the chirp", in_chirp, CUBE, in_chirp, CUBE, "the cube"),
         switch_with_baseline(
             "FSST at every sample",
             [("maps=[fsst]", dense), ("maps=[fsst]",)],
@@ -156,12 +166,18 @@ def _switch_settings(config: Config) -> list[Setting]:
 
 
 def switch_with_baseline(name: str, on_off: Sequence[Sequence[str]], off_name: str) -> Setting:
-    """A switch that is compared with something other than the default."""
+    """Switch that is compared with something other than the default.
+
+    Args:
+        name: name of the setting.
+        on_off: overrides with the switch on, and without it.
+        off_name: name of the baseline.
+    """
     on, off = on_off
     without, exact = (*DIRECT, *off), (*CUBE, *on)
     return Setting("switch", name, (*DIRECT, *on), without, exact, without, off_name)
 
 
 def switch_off_by_default(name: str, *on: str) -> Setting:
-    """Physics that is off by default: what it costs, and what is missed without it."""
+    """Switch of physics that is off by default: its cost, and the error of leaving it out."""
     return Setting("switch", name, (*DIRECT, *on), DIRECT, (*CUBE, *on))

@@ -16,34 +16,39 @@ Record: TypeAlias = dict[str, Any]  # a setting in plain numbers, None where the
 
 
 def run_sweep(scenes: Scenes, progress: Progress) -> list[Record]:
-    """Measure; return a row for every setting."""
+    """Measure errors and times; return a row for every setting.
+
+    Args:
+        scenes: scenes of the sweep.
+        progress: receives the measurements done, and the settings that are left out.
+    """
     settings, names, rounds = (
         allowed_settings(scenes, progress),
         scenes.names(),
         ROUNDS[scenes.quick],
     )
-    found: dict[Setting, list[Errors | None]] = {setting: [] for setting in settings}
+    errors_of: dict[Setting, list[Errors | None]] = {setting: [] for setting in settings}
     progress.stage("errors", len(names) * len(settings), 0)
     for slug in names:
         scene = SceneErrors(scenes, slug)
         for setting in settings:
             errors = None  # of a scene that is refused
             with suppress(RadharError):
-                errors = scene.of(setting)
-            found[setting].append(errors)
+                errors = scene.measure_errors(setting)
+            errors_of[setting].append(errors)
             progress.advance(1)
     times: dict[Setting, list[Times]] = {setting: [] for setting in settings}
-    timed = [setting for setting in settings if None not in found[setting]]
-    progress.stage("times", rounds * len(timed), 0)
+    possible = [setting for setting in settings if None not in errors_of[setting]]
+    progress.stage("times", rounds * len(possible), 0)
     for turn in range(rounds):
-        for setting in timed:
+        for setting in possible:
             times[setting].append(time_setting(scenes, setting, turn))
             progress.advance(1)
-    return [_row(setting, times[setting], found[setting]) for setting in settings]
+    return [_row(setting, times[setting], errors_of[setting]) for setting in settings]
 
 
 def allowed_settings(scenes: Scenes, progress: Progress) -> list[Setting]:
-    """The settings that the config allows; the others are named, with the reason."""
+    """Settings that the config allows; the others are named on `progress`, with the reason."""
     settings = []
     for setting in sweep(scenes.config()):
         try:
@@ -56,17 +61,17 @@ def allowed_settings(scenes: Scenes, progress: Progress) -> list[Setting]:
     return settings
 
 
-def _row(setting: Setting, times: Sequence[Times], found: Sequence[Errors | None]) -> Record:
-    """Medians and quartiles over the rounds, worst or median errors over the scenes."""
+def _row(setting: Setting, times: Sequence[Times], errors: Sequence[Errors | None]) -> Record:
+    """Row of a setting: medians and quartiles over rounds, worst or median errors over scenes."""
 
-    def every(name: str) -> list[float]:
-        values = (getattr(one, name) for one in found if one is not None)
+    def known_values(name: str) -> list[float]:
+        values = (getattr(one, name) for one in errors if one is not None)
         return [value for value in values if value is not None]
 
     def worst(name: str) -> float | None:
-        return max(every(name), default=None)
+        return max(known_values(name), default=None)
 
-    signal = every("signal_error_db")
+    signal = known_values("signal_error_db")
     quartiles = quantiles([one.ratio for one in times], n=4, method="inclusive") if times else None
     low, ratio, high = quartiles or (None, None, None)
     return {
@@ -82,9 +87,9 @@ def _row(setting: Setting, times: Sequence[Times], found: Sequence[Errors | None
         "exact": worst("signal_error_db") == -inf,
         "signal_error_db": worst("signal_error_db"),
         "signal_error_median_db": median(signal) if signal else None,
-        "ssim": min(every("ssim"), default=None),
+        "ssim": min(known_values("ssim"), default=None),
         "pixels_changed": worst("pixels_changed"),
         "measured_error_db": worst("measured_error_db"),
-        "scenes": len(found),
-        "refused": found.count(None),
+        "scenes": len(errors),
+        "refused": errors.count(None),
     }

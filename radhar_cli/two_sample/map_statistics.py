@@ -15,11 +15,11 @@ EIGHT = np.ones((3, 3), bool)  # neighbours of a cell
 
 
 class Statistic(NamedTuple):
-    """What a statistic is called in tables."""
+    """Name and unit of a statistic."""
 
-    words: str  # for people
+    words: str  # name for people
     unit: str  # "%", "dB", "" of a number, "rows" (the unit of rows), "columns" (of columns)
-    of_power: bool = False  # whether it needs power, not occupied cells alone
+    of_power: bool = False  # whether it needs power, not a mask of the signal alone
 
 
 STATISTICS = {
@@ -52,129 +52,138 @@ class DopplerMap(NamedTuple):
     power: Float
     doppler: Float
 
-    def noise(self, beyond: float) -> Float:
-        """Cells [some rows, columns] faster than `beyond`, where nobody is taken to be."""
-        return self.power[np.abs(self.doppler) > beyond]
+    def noise(self, noise_above: float) -> Float:
+        """Power [rows above `noise_above`, columns], where nobody is taken to be."""
+        return self.power[np.abs(self.doppler) > noise_above]
 
-    def threshold(self, beyond: float) -> float:
-        """Power above the noise: its mean and 5 deviations."""
-        noise = self.noise(beyond)
+    def threshold(self, noise_above: float) -> float:
+        """Power above which a cell is no noise: its mean and 5 standard deviations."""
+        noise = self.noise(noise_above)
         return float(max(2 * np.median(noise), noise.mean() + 5 * noise.std()))
 
-    def occupied(self, beyond: float) -> Bool:
-        """Cells [rows, columns] above the noise, in the mean of 3 x 3."""
-        return np.asarray(uniform_filter(self.power, 3) > self.threshold(beyond))
+    def signal_mask(self, noise_above: float) -> Bool:
+        """Mask [rows, columns] of cells above the noise, in the mean of 3 x 3.
+
+        Args:
+            noise_above: magnitude of Doppler above which there is noise alone.
+        """
+        return np.asarray(uniform_filter(self.power, 3) > self.threshold(noise_above))
 
 
 def power_statistics(
-    one: DopplerMap, zero: float, beyond: float, near: float, body: bool = True
+    doppler_map: DopplerMap, zero: float, noise_above: float, near: float, body: bool = True
 ) -> dict[str, float]:
     """Statistics of power, under the names of `STATISTICS`.
 
-    Of energy above the noise, the line at zero left out. The torso is where the mean of five rows
-    is largest, smoothed, a limb the 75th percentile of the largest power of each column beyond 1.8
-    times its Doppler; ripple is 5 to 95 % of the torso's line. What noise leaves undefined is
-    NaN: shares of an energy of which more than 2 % is missing in rows below the floor (after a
-    canceller noise is weaker near zero), a limb that does not stand out.
+    They are those of the energy above the noise, the line at zero left out. The torso is where the
+    mean of five rows is largest, smoothed, a limb the 75th percentile of the largest power of each
+    column beyond 1.8 times its Doppler; ripple is 5 to 95 % of the torso's line. What noise leaves
+    undefined is NaN: shares of an energy of which more than 2 % is missing in rows below the floor
+    (after a canceller noise is weaker near zero), a limb that does not stand out.
 
     Args:
-        zero: half the width of the line of zero Doppler.
-        beyond: above that Doppler there is noise alone.
+        doppler_map: power over Doppler.
+        zero: half the width of the line of zero Doppler, in the unit of Doppler.
+        noise_above: magnitude of Doppler above which there is noise alone.
         near: half the width of the torso's line.
-        body: whether anybody moves; else what is said of torso and limbs is NaN, not noise's.
+        body: whether anybody moves; else the statistics of torso and limbs are NaN, not noise's.
     """
-    doppler, noise = one.doppler[:, None], one.noise(beyond)
-    floor, still = float(noise.mean()), np.abs(doppler) <= zero
-    clean = np.where(still, 0, one.power - floor)  # noise adds up to 0
-    moving = uniform_filter(np.where(still, 0, one.power), (5, 1))
-    torso = median_filter(one.doppler[moving.argmax(axis=0)], 9)
-    fast = doppler * np.sign(torso) > SLOW * np.abs(torso)
-    total, below = clean.sum(), -np.minimum(clean.sum(axis=1), 0).sum()
-    known = total > 0 and below <= SHORT * total
+    doppler, noise = doppler_map.doppler[:, None], doppler_map.noise(noise_above)
+    floor, at_zero = float(noise.mean()), np.abs(doppler) <= zero
+    denoised = np.where(at_zero, 0, doppler_map.power - floor)  # noise adds up to 0
+    moving = uniform_filter(np.where(at_zero, 0, doppler_map.power), (5, 1))
+    torso = median_filter(doppler_map.doppler[moving.argmax(axis=0)], 9)
+    is_limb = doppler * np.sign(torso) > SLOW * np.abs(torso)
+    total, missing = denoised.sum(), -np.minimum(denoised.sum(axis=1), 0).sum()
+    is_measurable = total > 0 and missing <= SHORT * total
 
     def share(cells: Float) -> float:
-        return float(np.clip(100 * cells.sum() / total, 0, 100)) if known else np.nan
+        return float(np.clip(100 * cells.sum() / total, 0, 100)) if is_measurable else np.nan
 
-    limb = float(np.percentile(np.where(fast, clean, 0).max(axis=0), 75))
-    limb = limb if limb + floor > one.threshold(beyond) else np.nan
+    limb = float(np.percentile(np.where(is_limb, denoised, 0).max(axis=0), 75))
+    limb = limb if limb + floor > doppler_map.threshold(noise_above) else np.nan
     low, high = np.percentile(torso, [5, 95])
     values = {
-        "limb_below_torso": decibel(float(np.median(clean.max(axis=0))), limb),
-        "fast_energy": share(clean[fast]),
-        "receding_energy": share(clean[one.doppler < -zero]),
-        "torso_energy": share(clean[np.abs(doppler - torso) <= near]),
+        "limb_below_torso": decibel(float(np.median(denoised.max(axis=0))), limb),
+        "fast_energy": share(denoised[is_limb]),
+        "receding_energy": share(denoised[doppler_map.doppler < -zero]),
+        "torso_energy": share(denoised[np.abs(doppler - torso) <= near]),
         "torso_ripple": float(high - low),
         "torso_median": float(np.median(torso)),
     }
     return (values if body else dict.fromkeys(values, np.nan)) | {
-        "peak_over_floor": decibel(float(clean.max()), floor),
+        "peak_over_floor": decibel(float(denoised.max()), floor),
         "noise_sd": float(np.std(10 * np.log10(np.maximum(noise, 1e-30)))),
     }
 
 
 def decibel(above: float, below: float) -> float:
-    """10 lg of a ratio of powers, NaN where one is not above 0."""
+    """Ratio of two powers in dB, NaN where one is not above 0."""
     return 10 * float(np.log10(above / below)) if min(above, below) > 0 else np.nan
 
 
-def select_body_cells(occupied: Bool, at_zero: Bool) -> Bool:
-    """Cells [rows, columns] of who moves: pieces that touch the rows `at_zero` or are tall.
+def select_body_cells(is_signal: Bool, at_zero: Bool) -> Bool:
+    """Mask [rows, columns] of the body: pieces of signal that touch zero Doppler or are tall.
 
-    The others are stray: lines of interference, single cells of noise.
+    The other pieces are stray: lines of interference, single cells of noise.
+
+    Args:
+        is_signal: [rows, columns].
+        at_zero: [rows] whether a row lies on the line at zero.
     """
-    pieces, _ = label(binary_dilation(occupied, EIGHT, iterations=JOINED), EIGHT)
-    kept = np.zeros(pieces.max(initial=0) + 1, bool)
-    kept[pieces[at_zero]] = True
-    for number, place in enumerate(find_objects(pieces), 1):
-        kept[number] |= place[0].stop - place[0].start - 2 * JOINED >= TALL * len(occupied)
-    kept[0] = False
-    return np.asarray(kept[pieces] & occupied)
+    pieces, _ = label(binary_dilation(is_signal, EIGHT, iterations=JOINED), EIGHT)
+    is_body = np.zeros(pieces.max(initial=0) + 1, bool)
+    is_body[pieces[at_zero]] = True
+    for number, extent in enumerate(find_objects(pieces), 1):
+        is_body[number] |= extent[0].stop - extent[0].start - 2 * JOINED >= TALL * len(is_signal)
+    is_body[0] = False
+    return np.asarray(is_body[pieces] & is_signal)
 
 
 def mask_statistics(
-    occupied: Bool, doppler: Float, seconds: float, zero: float
+    is_signal: Bool, doppler: Float, seconds: float, zero: float
 ) -> dict[str, float]:
-    """Statistics of which cells of a map are occupied, under the names of `STATISTICS`.
+    """Statistics of the mask of a map's signal, under the names of `STATISTICS`.
 
-    Of the body (`body_of`) beyond `zero` of zero Doppler; NaN where there is nothing to measure.
-    A column is active where it has any such cell.
+    They are those of the body (`select_body_cells`) beyond `zero` of zero Doppler; NaN where there
+    is nothing to measure. A column is active where it has any such cell.
 
     Args:
-        occupied: [rows, columns].
-        doppler: of the rows, descending, Hz; or range, m; or in rows.
-        seconds: that the columns last; or their number.
+        is_signal: [rows, columns].
+        doppler: [rows] Doppler, descending, Hz; or range, m; or numbers of rows.
+        seconds: duration of the columns; or their number.
         zero: half the width of the line at zero, in the unit of `doppler`; below 0 for none.
     """
-    rows, columns = occupied.shape
-    row, column = abs(doppler[0] - doppler[-1]) / max(1, rows - 1), seconds / columns
+    rows, columns = is_signal.shape
+    row_height, column_width = abs(doppler[0] - doppler[-1]) / max(1, rows - 1), seconds / columns
     at_zero = np.abs(doppler) <= zero
-    body = select_body_cells(occupied, at_zero)
-    beyond = body & ~at_zero[:, None]
-    cells, counts = max(1, (~at_zero).sum() * columns), beyond.sum(axis=0)
-    active = counts > 0
-    line: Bool = np.asarray(body[np.abs(doppler) <= zero / 2].any(axis=0))
-    quiet = body[:, line & ~active]
-    values = {key: np.nan for key, one in STATISTICS.items() if not one.of_power} | {
-        "occupied": 100 * float(beyond.sum() / cells),
-        "stray": 100 * float((occupied & ~body).sum() / cells),
-        "active": float(active.sum() * column),
-        "start_height": float(body[:, 0].sum() * row),
-        "zero_line": 100 * float(line.mean()),
+    body = select_body_cells(is_signal, at_zero)
+    moving = body & ~at_zero[:, None]
+    moving_cells, counts = max(1, (~at_zero).sum() * columns), moving.sum(axis=0)
+    is_active = counts > 0
+    has_zero_line: Bool = np.asarray(body[np.abs(doppler) <= zero / 2].any(axis=0))
+    quiet_columns = body[:, has_zero_line & ~is_active]
+    values = {key: np.nan for key, statistic in STATISTICS.items() if not statistic.of_power} | {
+        "occupied": 100 * float(moving.sum() / moving_cells),
+        "stray": 100 * float((is_signal & ~body).sum() / moving_cells),
+        "active": float(is_active.sum() * column_width),
+        "start_height": float(body[:, 0].sum() * row_height),
+        "zero_line": 100 * float(has_zero_line.mean()),
     }
-    if quiet.size:
-        values["zero_line_offset"] = float((doppler @ quiet).sum() / quiet.sum())
-    if not active.any():
+    if quiet_columns.size:
+        values["zero_line_offset"] = float((doppler @ quiet_columns).sum() / quiet_columns.sum())
+    if not is_active.any():
         return values
-    whole = np.repeat(doppler, beyond.sum(axis=1))
-    low, high = np.percentile(whole, [2.5, 97.5])
-    shown = body[:, active]
-    top, bottom = shown.argmax(axis=0), rows - 1 - shown[::-1].argmax(axis=0)
-    sign = np.sign((doppler @ beyond)[active])
+    cell_doppler = np.repeat(doppler, moving.sum(axis=1))
+    low, high = np.percentile(cell_doppler, [2.5, 97.5])
+    active_columns = body[:, is_active]
+    top, bottom = active_columns.argmax(axis=0), rows - 1 - active_columns[::-1].argmax(axis=0)
+    sign = np.sign((doppler @ moving)[is_active])
     return values | {
-        "receding": 100 * float((whole < 0).mean()),
+        "receding": 100 * float((cell_doppler < 0).mean()),
         "width": float(high - low),
         "upper_envelope": float(np.percentile(doppler[top], 95)),
         "lower_envelope": float(np.percentile(doppler[bottom], 5)),
-        "first": float(active.argmax() * column),
+        "first": float(is_active.argmax() * column_width),
         "swings": float((np.diff(sign[sign != 0]) != 0).sum()),
     }

@@ -15,6 +15,9 @@ def write(comparison: Comparison, folder: Path) -> list[Path]:
     """Write report.json, statistics.csv and pictures.png into a folder; return their paths.
 
     Files of an earlier comparison there are replaced or removed.
+
+    Raises:
+        FolderError: a file cannot be written.
     """
     files = {"statistics.csv": _table(comparison).encode(), "pictures.png": _pictures(comparison)}
     write_report(folder, files, comparison.numbers())
@@ -24,28 +27,40 @@ def write(comparison: Comparison, folder: Path) -> list[Path]:
 def _table(comparison: Comparison) -> str:
     kinds = [f"{side}_{name}" for side in ("simulated", "measured") for name in ("mean", "sd", "n")]
     rows = (
-        (one.name, name, comparison.unit(name), *d.simulated, *d.measured, d.distance, d.p)
-        for one in comparison.classes
-        for name, d in one.differences.items()
+        (
+            class_comparison.name,
+            name,
+            comparison.unit(name),
+            *d.simulated,
+            *d.measured,
+            d.distance,
+            d.p,
+        )
+        for class_comparison in comparison.classes
+        for name, d in class_comparison.differences.items()
     )
     return csv_text(["class", "statistic", "unit", *kinds, "distance", "p"], rows)
 
 
 def _pictures(comparison: Comparison) -> bytes:
-    """A row of each class: some simulated maps, and as many measured ones."""
+    """Figure with a row for each class: some simulated maps, and as many measured ones."""
     pair = comparison.pair
     rows = dict[str, list[Picture]]()
-    for one in comparison.classes:
-        told = "no test"
-        if one.tested is not None:
-            told = f"{100 * one.tested[0] / one.tested[1]:.0f} % told apart"
-        some = np.linspace(0, one.rows[0].size - 1, min(PICTURES, one.rows[0].size)).astype(int)
-        rows[f"{one.name}\n{told}"] = [
-            Picture(side.levels(row), pair.edges(side, row), words)
-            for words, side, mine in zip(
-                ("simulated", "measured"), pair.sides, one.rows, strict=True
+    for class_comparison in comparison.classes:
+        accuracy_in_words = "no test"
+        if class_comparison.tested is not None:
+            accuracy_in_words = (
+                f"{100 * class_comparison.tested[0] / class_comparison.tested[1]:.0f} % told apart"
             )
-            for row in mine[some]
+        selected = np.linspace(
+            0, class_comparison.rows[0].size - 1, min(PICTURES, class_comparison.rows[0].size)
+        ).astype(int)
+        rows[f"{class_comparison.name}\n{accuracy_in_words}"] = [
+            Picture(side.levels(row), pair.edges(side, row), words)
+            for words, side, side_rows in zip(
+                ("simulated", "measured"), pair.sides, class_comparison.rows, strict=True
+            )
+            for row in side_rows[selected]
         ]
     units = pair.units
     upwards = f"{'range' if pair.ranges else 'Doppler'} ({units['rows']})"

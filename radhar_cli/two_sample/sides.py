@@ -21,7 +21,7 @@ TWO_VALUED = 8  # images looked at to tell masks from grey
 
 @dataclass(frozen=True)
 class Side:
-    """One of two data sets."""
+    """One of two data sets that are compared, its N images."""
 
     images: ImageSet
     classes: dict[str, Index]  # {class, by the common name: rows}
@@ -39,13 +39,13 @@ class Side:
         return self.images.pixels.read(row)[..., 0]
 
     def power(self, levels: Levels) -> Float:
-        """Power of levels, over the largest."""
+        """Power [...] of levels [...], over the power of the brightest level."""
         return 10 ** ((self.dynamic_range_db or ASSUMED_DB) / 10 * (levels / 255.0 - 1))
 
 
 @dataclass(frozen=True)
 class Pair:
-    """Both data sets: simulated, measured."""
+    """Two data sets that are compared: simulated, measured."""
 
     sides: tuple[Side, Side]
 
@@ -66,13 +66,13 @@ class Pair:
 
     @property
     def units(self) -> dict[str, str]:
-        """{"rows", "columns": unit}."""
+        """Units of the axes of the maps: {"rows": unit, "columns": unit}."""
         if not self.axes:
             return {"rows": "px", "columns": "px"}
         return {"rows": "m" if self.ranges else "Hz", "columns": "s"}
 
     def edges(self, side: Side, row: int) -> tuple[float, float, float, float]:
-        """Left, right, bottom, top of an image."""
+        """Edges of an image, left, right, bottom and top, in `units`."""
         if self.axes:
             assert side.extent is not None
             left, right, bottom, top = map(float, side.extent[row])
@@ -85,41 +85,46 @@ class Pair:
 def open_sides(
     simulated: Path, measured: Path, map_name: str | None, names: Mapping[str, str | None]
 ) -> Pair:
-    """Open both, classes matched by name, images at the size of the measured ones.
+    """Open two data sets, classes matched by name, images at the size of the measured ones.
 
     Args:
-        map_name: which map; the first of each if None.
+        simulated: data set, or tree of images.
+        measured: data set, or tree of images.
+        map_name: map that is compared; None is the first of each.
         names: {class in one of them: common name, or None to leave it out}.
+
+    Raises:
+        FolderError: data that cannot be used, of other maps, or without a common class.
     """
     paths = (simulated, measured)
-    given = [_open(path, map_name) for path in paths]
-    maps = [one.map for one in given]
+    image_sets = [_open(path, map_name) for path in paths]
+    maps = [images.map for images in image_sets]
     if None not in maps and maps[0] != maps[1]:
         raise FolderError(
             f"{simulated}: shows {maps[0]}, {measured} {maps[1]}; --map names one for both"
         )
-    known = sorted({name for one in given for name in one.classes})
+    known = sorted({name for images in image_sets for name in images.classes})
     for name in names:
         if name not in known:
             hint = did_you_mean(name, known, f"they have {', '.join(known)}")
             raise FolderError(f"{simulated}, {measured}: no class {name!r} (--classes); {hint}")
-    rows = [_class_rows(one, names) for one in given]
-    both = [name for name in rows[0] if name in rows[1]]
-    if not both:
+    rows = [_class_rows(images, names) for images in image_sets]
+    common = [name for name in rows[0] if name in rows[1]]
+    if not common:
         raise FolderError(
             f"{simulated}: its classes ({', '.join(rows[0])}) are none of those of {measured} "
             f"({', '.join(rows[1])}); --classes FILE maps names"
         )
-    height, width = (min(side, MAX_SIDE) for side in given[1].size)
+    height, width = (min(side, MAX_SIDE) for side in image_sets[1].size)
     first, second = (
-        _side(path, one, {name: mine[name] for name in both}, (height, width))
-        for path, one, mine in zip(paths, given, rows, strict=True)
+        _side(path, images, {name: rows_of[name] for name in common}, (height, width))
+        for path, images, rows_of in zip(paths, image_sets, rows, strict=True)
     )
     return Pair((first, second))
 
 
 def _open(path: Path, map_name: str | None) -> ImageSet:
-    """A foreign tree names no map: it has what it has."""
+    """Open a data set; a foreign tree, which names no map, has the one that it has."""
     foreign = path.is_dir() and not is_h5(path) and map_of_folder(path) is None
     if foreign and map_name is not None and not (path / map_name).is_dir():
         map_name = None
@@ -127,21 +132,26 @@ def _open(path: Path, map_name: str | None) -> ImageSet:
 
 
 def _class_rows(images: ImageSet, names: Mapping[str, str | None]) -> dict[str, Index]:
-    """{common name: rows}, in the order of the images' own classes."""
+    """Rows of each class {common name: rows}, in the order of the images' own classes."""
     numbers: dict[str, list[int]] = {}
     for number, name in enumerate(images.classes):
         common = names.get(name, name)
         if common is not None:
             numbers.setdefault(common, []).append(number)
-    return {name: np.flatnonzero(np.isin(images.label, own)) for name, own in numbers.items()}
+    return {
+        name: np.flatnonzero(np.isin(images.label, own_numbers))
+        for name, own_numbers in numbers.items()
+    }
 
 
 def _side(path: Path, images: ImageSet, classes: dict[str, Index], size: tuple[int, int]) -> Side:
-    used = np.concatenate(list(classes.values()))
-    lost = np.bincount(np.delete(images.label, used), minlength=len(images.classes)).tolist()
-    left_out = {name: n for name, n in zip(images.classes, lost, strict=True) if n}
-    some = used[:: max(1, used.size // TWO_VALUED)]
-    masks = all(_two_valued(images.pixels.read(int(row))) for row in some)
+    compared_rows = np.concatenate(list(classes.values()))
+    counts = np.bincount(
+        np.delete(images.label, compared_rows), minlength=len(images.classes)
+    ).tolist()
+    left_out = {name: n for name, n in zip(images.classes, counts, strict=True) if n}
+    looked_at = compared_rows[:: max(1, compared_rows.size // TWO_VALUED)]
+    masks = all(_two_valued(images.pixels.read(int(row))) for row in looked_at)
     group, extent, decibels = np.arange(len(images)), None, None
     if images.persons is not None:
         group = np.unique(images.persons, return_inverse=True)[1]

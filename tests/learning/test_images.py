@@ -257,6 +257,25 @@ def test_unusable_data_is_named(tmp_path, what):
         look_at_all(root)
 
 
+@pytest.mark.parametrize(
+    ("with_images", "advice"),
+    [
+        (["images"], "'images' alone has images, so this may be no data set; should be dataset.h5"),
+        (["images", "logos"], "every folder beside those of the classes should hold images"),
+    ],
+)
+def test_a_folder_of_documents_is_told_from_a_data_set(tmp_path, with_images, advice):
+    """As `radhar train docs/`, whose folders of text would be classes without images."""
+    (tmp_path / "guide").mkdir()
+    (tmp_path / "guide/index.md").write_text("# Guide")
+    for name in with_images:
+        (tmp_path / name).mkdir()
+        Image.new("RGB", (32, 32)).save(tmp_path / name / "picture.png")
+    with pytest.raises(FolderError) as error:
+        checked_images(settings(), tmp_path)
+    assert "the class 'guide' has no image; " + advice in str(error.value)
+
+
 def test_gray_and_other_formats_are_read_as_rgb(tmp_path):
     rng = np.random.default_rng(0)
     picture = Image.fromarray(stripes(0, rng))

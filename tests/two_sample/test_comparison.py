@@ -91,10 +91,10 @@ def test_images_are_brought_to_the_measured_size(tmp_path):
 
 def test_maps_are_subsampled_by_seed(tmp_path):
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
-    first, again = (compared(one, other, most=12).numbers() for _ in range(2))
+    first, again = (compared(one, other, max_maps=12).numbers() for _ in range(2))
     assert first == again
     assert first["classes"]["a"]["maps"] == 12
-    assert compared(one, other, most=12, seed=2).numbers() != first
+    assert compared(one, other, max_maps=12, seed=2).numbers() != first
 
 
 def test_one_map_a_class_is_described_but_not_tested(tmp_path):

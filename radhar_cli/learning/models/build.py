@@ -14,7 +14,7 @@ from radhar_cli.learning.models.zoo import zoo_model
 
 @dataclass(frozen=True)
 class Cost:
-    """Size and work of a network."""
+    """Parameters and multiply-adds of a network."""
 
     parameters: int  # trainable ones
     # of one image: convolutions, matrix products, and FFTs at 5/4 N log2 N a real transform of N
@@ -30,9 +30,12 @@ def build_model(
     Args:
         name: fftnet, smallnet, smallnet_bn, or any name that timm knows (needs the extra `zoo`); of
             sequences cloudnet, framenet.
-        outputs: as many as classes, or as coordinates of all joints.
-        size: of an image, (frames, points) of clouds.
+        outputs: number of classes, or of coordinates of all joints.
+        size: (H, W) of an image or a frame, (frames, points) of clouds.
         per_frame: every frame of a sequence has outputs.
+
+    Raises:
+        ModelError: no such network, or it cannot take inputs of that size.
     """
     height, width = size
     if name == cloudnet.NAME:
@@ -62,7 +65,12 @@ def build_model(
 
 
 def features_and_logits(model: nn.Module, x: Tensor) -> tuple[Tensor, Tensor]:
-    """What the last layer sees, [B, F], and what it makes of it, [B, classes]."""
+    """Input [B, F] of a network's last layer, and its logits [B, classes].
+
+    Args:
+        model: network with `forward_features` and `forward_head`, as timm has them.
+        x: normalised inputs.
+    """
     network: Any = model
     maps = network.forward_features(x)
     features: Tensor = network.forward_head(maps, pre_logits=True)
@@ -73,13 +81,21 @@ def features_and_logits(model: nn.Module, x: Tensor) -> tuple[Tensor, Tensor]:
 def cost(
     name: str, outputs: int, size: tuple[int, int], per_frame: bool = False, channels: int = 3
 ) -> Cost:
-    """Parameters and multiply-adds of a network, without computing or allocating anything."""
+    """Parameters and multiply-adds of a network, without computing or allocating anything.
+
+    Args:
+        name: name of the network, as for `build_model`.
+        outputs: number of outputs.
+        size: (H, W) of an image or a frame, (frames, points) of clouds.
+        per_frame: every frame of a sequence has outputs.
+        channels: channels of the input: colours, frames, or columns of a cloud.
+    """
     from torch.utils.flop_counter import FlopCounterMode
 
     def fft_operations(shape: Any, *_: Any, out_shape: Any = None, **__: Any) -> int:
         rows, columns = max(shape[-2], out_shape[-2]), max(shape[-1], out_shape[-1])
-        others = torch.Size(shape[:-2]).numel()
-        return int(2.5 * others * rows * columns * torch.tensor(rows * columns).log2().item())
+        transforms = torch.Size(shape[:-2]).numel()
+        return int(2.5 * transforms * rows * columns * torch.tensor(rows * columns).log2().item())
 
     aten = torch.ops.aten
     real_ffts: dict[Any, Any] = {aten._fft_r2c: fft_operations, aten._fft_c2r: fft_operations}
@@ -93,5 +109,5 @@ def cost(
 
 
 def parameter_count(model: nn.Module) -> int:
-    """Trainable parameters."""
+    """Number of trainable parameters."""
     return sum(p.numel() for p in model.parameters() if p.requires_grad)

@@ -17,7 +17,7 @@ NEAR = 5  # frames whose points make the centre of one
 
 
 def temporal_convolutions(channels: int) -> nn.Sequential:
-    """Two convolutions over five frames of [B, C, T]."""
+    """Two convolutions over five frames each, from [B, C, T] to the same shape."""
     layers: list[nn.Module] = []
     for _ in range(2):
         layers += [nn.Conv1d(channels, channels, NEAR, padding=NEAR // 2)]
@@ -25,20 +25,29 @@ def temporal_convolutions(channels: int) -> nn.Sequential:
     return nn.Sequential(*layers)
 
 
-def moving_centroid(x: Tensor) -> Tensor:
-    """Mean place [B, 3, T] of the points of five frames; of all frames where those are empty."""
-    present = x[:, -1:]
-    sums, counts = (x[:, :3] * present).sum(3), present.sum(3)
-    whole, number = sums.mean(2, keepdim=True), counts.mean(2, keepdim=True)
+def moving_centroid(clouds: Tensor) -> Tensor:
+    """Mean place of the points of five frames, or of all frames where those are empty.
 
-    def near(values: Tensor) -> Tensor:
+    Args:
+        clouds: [B, 6, T, K].
+
+    Returns:
+        [B, 3, T] centre for each frame, m.
+    """
+    present = clouds[:, -1:]
+    sums, counts = (clouds[:, :3] * present).sum(3), present.sum(3)
+    overall_sum, overall_count = sums.mean(2, keepdim=True), counts.mean(2, keepdim=True)
+
+    def mean_of_five_frames(values: Tensor) -> Tensor:
         return avg_pool1d(values, NEAR, 1, NEAR // 2)
 
-    return (near(sums) + 1e-3 * whole) / (near(counts) + 1e-3 * number).clamp_min(1e-6)
+    return (mean_of_five_frames(sums) + 1e-3 * overall_sum) / (
+        mean_of_five_frames(counts) + 1e-3 * overall_count
+    ).clamp_min(1e-6)
 
 
 class OverTime(nn.Module):
-    """A network whose features [B, 128, T] become outputs of a sequence, or of its frames."""
+    """Network whose features [B, 128, T] become outputs of a sequence, or of its frames."""
 
     head: nn.Linear
 
@@ -47,16 +56,19 @@ class OverTime(nn.Module):
         self.per_frame = per_frame
 
     def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
-        """Features to their means over time [B, 128], or to outputs [B, (T,) outputs]."""
+        """Outputs [B, outputs] of features [B, 128, T], or [B, T, outputs] for each frame.
+
+        With `pre_logits` the features before the last layer: their mean over time, or all frames'.
+        """
         pooled = features.transpose(1, 2) if self.per_frame else features.mean(2)
         return pooled if pre_logits else self.head(pooled)
 
 
 class CloudNet(OverTime):
-    """The network, for clouds [B, 6, T, K]: COLUMNS of K points in T frames.
+    """Network of clouds [B, 6, T, K]: COLUMNS of K points in T frames.
 
     Args:
-        outputs: of a sequence; or of a frame.
+        outputs: number of outputs of a sequence; with `per_frame`, of a frame.
         per_frame: every frame has outputs, places relative to the centre of its points.
     """
 
@@ -73,14 +85,14 @@ class CloudNet(OverTime):
         self.head = nn.Linear(second, outputs)
 
     def forward_features(self, x: Tensor) -> Tensor:
-        """[B, 6, T, K] to features [B, 128, T]."""
+        """Features [B, 128, T] of clouds [B, 6, T, K]."""
         present = x[:, -1:]
-        each = torch.cat([x[:, :3] - moving_centroid(x)[..., None], x[:, :-1]], 1)
-        features: Tensor = self.time((self.points(each * present) * present).amax(3))
+        point_features = torch.cat([x[:, :3] - moving_centroid(x)[..., None], x[:, :-1]], 1)
+        features: Tensor = self.time((self.points(point_features * present) * present).amax(3))
         return features
 
     def forward(self, x: Tensor) -> Tensor:
-        """[B, 6, T, K] to [B, outputs], or to places [B, T, outputs/3, 3]."""
+        """Outputs [B, outputs] of clouds [B, 6, T, K], or places [B, T, outputs/3, 3] in m."""
         outputs = self.forward_head(self.forward_features(x))
         if not self.per_frame:
             return outputs

@@ -16,7 +16,7 @@ STRIDE = 32
 
 
 class GlobalFilter(nn.Module):
-    """Multiply the two-dimensional spectrum of every channel by a learned complex weight.
+    """Layer that multiplies the spectrum of every channel by a learned complex weight.
 
     ``g(x) = Re IFFT2(K FFT2(x))``. The input is real and only the real part is kept, so K acts as
     its Hermitian part ``H(k) = (K(k) + conj K(-k))/2``, and half a spectrum is enough: ``g(x) =
@@ -31,7 +31,7 @@ class GlobalFilter(nn.Module):
         self.weight = nn.Parameter(torch.randn(channels, height, width, 2) * FILTER_SD)
 
     def hermitian_half(self) -> Tensor:
-        """H at the frequencies that RFFT2 keeps, complex [C, H, W//2 + 1]."""
+        """Effective weight H at the frequencies of RFFT2, complex [C, H, W//2 + 1]."""
         k = torch.view_as_complex(self.weight)
         mirrored = torch.roll(torch.flip(k, (1, 2)), (1, 1), (1, 2))  # K(-k)
         hermitian: Tensor = (k + mirrored.conj()) / 2
@@ -47,7 +47,7 @@ class GlobalFilter(nn.Module):
 
 
 def convolution(inputs: int, outputs: int, stride: int = 1) -> nn.Sequential:
-    """3 x 3 convolution with a bias, batch norm, ReLU."""
+    """Layers of a 3 x 3 convolution with a bias, batch norm and ReLU, in channels last."""
     layers = nn.Sequential(
         nn.Conv2d(inputs, outputs, 3, stride, padding=1),
         nn.BatchNorm2d(outputs),
@@ -67,12 +67,12 @@ class Block(nn.Module):
         self.g = GlobalFilter(channels, height, width)
 
     def forward(self, x: Tensor) -> Tensor:
-        """[B, C, H, W] to the same."""
+        """Output [B, C, H, W] of an input of that shape."""
         return torch.relu(self.a(x) * self.b(x) + self.g(x) + x)
 
 
 class FFTNet(Pooled):
-    """The network for images of one size, whose sides are multiples of 32.
+    """The paper's network, for images of one size, whose sides are multiples of 32.
 
     6,496,012 parameters at 256 x 256 and 12 classes, six global filters; the last feature maps are
     [B, 512, H/32, W/32].

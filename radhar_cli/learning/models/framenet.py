@@ -12,13 +12,13 @@ MIN_SIDE = 2 ** len(WIDTHS)
 
 
 class FrameNet(OverTime):
-    """The network, for frames [B, T, H, W] whose sides have at least 8 cells.
+    """Network of frames [B, T, H, W] whose sides have at least 8 cells.
 
-    Where in a frame an echo lies is kept, on a grid of 4 x 4.
+    The place of an echo in its frame is kept, on a grid of 4 x 4.
 
     Args:
-        outputs: of a sequence; or of a frame.
-        per_frame: every frame has outputs, places.
+        outputs: number of outputs of a sequence; with `per_frame`, of a frame.
+        per_frame: every frame has outputs, which are places.
     """
 
     def __init__(self, outputs: int, per_frame: bool = False) -> None:
@@ -34,12 +34,12 @@ class FrameNet(OverTime):
         self.head = nn.Linear(FEATURES, outputs)
 
     def forward_features(self, x: Tensor) -> Tensor:
-        """[B, T, H, W] to features [B, 128, T]."""
+        """Features [B, 128, T] of frames [B, T, H, W]."""
         frames: Tensor = self.frame(x.flatten(0, 1)[:, None]).view(*x.shape[:2], -1)
         features: Tensor = self.time(frames.transpose(1, 2))
         return features
 
     def forward(self, x: Tensor) -> Tensor:
-        """[B, T, H, W] to [B, outputs], or to places [B, T, outputs/3, 3]."""
+        """Outputs [B, outputs] of frames [B, T, H, W], or places [B, T, outputs/3, 3] in m."""
         outputs = self.forward_head(self.forward_features(x))
         return outputs.view(*outputs.shape[:2], -1, 3) if self.per_frame else outputs

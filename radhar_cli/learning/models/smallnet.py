@@ -15,17 +15,17 @@ MIN_SIDE = 2 ** len(WIDTHS)
 
 
 class GroupNorm(nn.GroupNorm):
-    """In float32, as on CUDA: processors are slow at it in bfloat16 with channels last."""
+    """Group norm in float32, as on CUDA: processors are slow in bfloat16 with channels last."""
 
     def forward(self, x: Tensor) -> Tensor:
-        """[B, C, H, W] to the same."""
+        """Normalised values [B, C, H, W], float32."""
         return super().forward(x.float())
 
 
 def block(inputs: int, outputs: int, batch_norm: bool = False) -> nn.Sequential:
-    """3 x 3 convolution, group or batch norm, ReLU, and the largest of every 2 x 2.
+    """Layers of a 3 x 3 convolution, group or batch norm, max-pool of 2 x 2, and ReLU.
 
-    ReLU and the largest of four may change places, and after the pool a quarter is left to do. With
+    ReLU and max-pool may change places, and after the pool a quarter is left to do. With
     channels last in memory a step takes three quarters of the time.
     """
     layers = nn.Sequential(
@@ -39,28 +39,28 @@ def block(inputs: int, outputs: int, batch_norm: bool = False) -> nn.Sequential:
 
 
 class Pooled(nn.Module):
-    """Layers from images to feature maps, whose means one layer makes logits of."""
+    """Network of layers from images to feature maps, of whose means one layer makes logits."""
 
     layers: nn.Sequential
     head: nn.Linear
 
     def forward_features(self, x: Tensor) -> Tensor:
-        """[B, 3, H, W] to the last feature maps."""
+        """Last feature maps of normalised images [B, 3, H, W]."""
         features: Tensor = self.layers(x)
         return features
 
     def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
-        """Feature maps to their means [B, F] or, from there, to logits [B, classes]."""
+        """Logits [B, classes] of feature maps; with `pre_logits` the maps' means [B, F]."""
         pooled = features.mean((2, 3))
         return pooled if pre_logits else self.head(pooled)
 
     def forward(self, x: Tensor) -> Tensor:
-        """Normalised images [B, 3, H, W] to logits [B, classes]."""
+        """Logits [B, classes] of normalised images [B, 3, H, W]."""
         return self.forward_head(self.forward_features(x))
 
 
 class SmallNet(Pooled):
-    """The network, for images of any size whose sides have at least 16 px.
+    """Network of images of any size whose sides have at least 16 px.
 
     99,228 parameters at 12 classes; the last feature maps are [B, 128, H//16, W//16].
     """

@@ -16,10 +16,19 @@ OURS = (fftnet.NAME, smallnet.NAME, smallnet.WITH_BATCH_NORM)
 
 
 def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
-    """Build a network of timm with fresh weights for images of that size."""
-    ours = did_you_mean(name, OURS, "")
-    if ours:
-        raise ModelError(f"model {name!r}: is unknown; {ours}")
+    """Build a network of timm with fresh weights.
+
+    Args:
+        name: name of the network in timm.
+        classes: number of outputs.
+        size: (H, W) of the images.
+
+    Raises:
+        ModelError: no such network, timm is not installed, or it cannot take images of that size.
+    """
+    suggestion = did_you_mean(name, OURS, "")
+    if suggestion:
+        raise ModelError(f"model {name!r}: is unknown; {suggestion}")
     try:
         timm = load_timm()
     except ImportError as error:
@@ -53,9 +62,9 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
 
 
 def load_timm() -> Any:
-    """timm, which imports torchvision.
+    """Module timm, which imports torchvision.
 
-    That refuses to load where its compiled operators were built for another PyTorch (there is no
+    torchvision refuses to load where its operators were compiled for another PyTorch (there is no
     CPU build beside ours). No classifier calls them, so they are declared and it is loaded again.
     """
     try:

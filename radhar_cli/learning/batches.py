@@ -1,4 +1,4 @@
-"""Which images make a step."""
+"""Batches: which images make a step of training, and how they are read."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -21,7 +21,7 @@ INPUTS = {"rgb": "pixels", "gray": "pixels", "frames": "frames", "clouds": "clou
 
 
 class _FromInputs(nn.Module):
-    """The network with its normalisation in front: pixels as in a PNG, frames, or clouds."""
+    """Network with its normalisation in front: pixels as in a PNG, frames, or clouds."""
 
     def __init__(self, model: nn.Module, normalisation: Normalisation) -> None:
         super().__init__()

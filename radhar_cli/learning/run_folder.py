@@ -171,7 +171,7 @@ class Epoch:
 
 
 def best_epoch(history: Sequence[Epoch]) -> Epoch:
-    """The epoch whose weights are kept: highest accuracy, then lowest loss, then earliest."""
+    """Epoch whose weights are kept: highest accuracy, then lowest loss, then earliest."""
     return min(history, key=lambda row: (-row.val_accuracy, row.val_loss, row.epoch))
 
 

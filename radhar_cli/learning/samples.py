@@ -18,7 +18,7 @@ from radhar_cli.worker_process import prepare_process
 
 
 class Samples(Dataset[dict[str, Any]]):
-    """The rows of a data set without building it: each is synthesised when it is indexed.
+    """Rows of a data set without building it: each is synthesised when it is indexed.
 
     Row i is row i of the dataset.h5 that `radhar generate` would write, bit for bit, whichever
     process makes it; a DataLoader may shuffle them or share them out with DistributedSampler.

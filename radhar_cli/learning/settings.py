@@ -34,14 +34,14 @@ Share = Annotated[float, Field(gt=0, lt=1, strict=True)]
 
 
 class ScheduleConfig(Section):
-    """How the learning rate falls from its initial value after the warm-up.
+    """Fall of the learning rate from its initial value after the warm-up.
 
     `step` multiplies it by `factor` every `every_epochs` epochs, `cosine` brings it smoothly to
     zero at the last step, `constant` leaves it.
     """
 
     kind: Literal["step", "cosine", "constant"] = "cosine"
-    """How the learning rate falls."""
+    """Law by which the learning rate falls."""
     every_epochs: Count = 10
     """Epochs between two falls of a schedule of kind step."""
     factor: Annotated[float, Field(gt=0, le=1, strict=True)] = 0.1
@@ -52,7 +52,7 @@ Fraction = Annotated[float, Field(ge=0, le=1, strict=True)]
 
 
 class AugmentConfig(Section):
-    """How far training images are changed, anew in every epoch; all 0 changes nothing."""
+    """Largest changes of training images, drawn anew in every epoch; all 0 changes nothing."""
 
     time_shift: Fraction = 0.0
     """Largest shift in time either way, a fraction of the width."""
@@ -83,10 +83,10 @@ class TrainConfig(Section):
     """
 
     model: Annotated[str, Field(min_length=1)] = "smallnet"
-    """smallnet, the paper's network fftnet, any name of timm's; of sequences framenet, cloudnet."""
+    """Network: smallnet, the paper's fftnet, any of timm's; of sequences framenet, cloudnet."""
     target: Target = "classes"
-    """The main person's class; labels: what anybody does; count: how many people; skeleton, of
-    sequences: the joints in every frame."""
+    """Target of learning. classes: the main person's class; labels: what anybody does; count: the
+    number of people; skeleton, of sequences: the joints in every frame."""
     map: str | None = None
     """Map that is learned from; null is the first one of the data set."""
     input: Literal["rgb", "gray"] = "rgb"
@@ -102,13 +102,13 @@ class TrainConfig(Section):
     batch_size: Annotated[Auto, _auto_or(2)] = "auto"
     """Images a step; auto makes some 24 steps an epoch, of 4 to 128 images."""
     optimiser: Literal["adam", "adamw", "sgd"] = "adamw"
-    """adamw has decoupled decay, sgd a momentum of 0.9."""
+    """Rule of the steps; adamw has decoupled decay, sgd a momentum of 0.9."""
     learning_rate: Rate = 0.003
     """Learning rate after the warm-up, from which the schedule falls."""
     weight_decay: Annotated[float, Field(ge=0, le=1e3, strict=True)] = 0.01
     """Decay of weights, as L2 penalty or, with adamw, decoupled; biases and norms have none."""
     label_smoothing: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.1
-    """zeta: a label is y (1 - zeta) + zeta/K."""
+    """Label smoothing zeta: the target of a class is y (1 - zeta) + zeta/K."""
     schedule: ScheduleConfig = ScheduleConfig()
     warmup_epochs: Annotated[float, Field(ge=0, le=1e6, strict=True)] = 1.0
     """Epochs of the linear rise of the rate, step by step; may be a fraction."""

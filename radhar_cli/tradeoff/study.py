@@ -65,7 +65,7 @@ def _row(setting: Setting, times: Sequence[Times], errors: Sequence[Errors | Non
     """Row of a setting: medians and quartiles over rounds, worst or median errors over scenes."""
 
     def known_values(name: str) -> list[float]:
-        values = (getattr(one, name) for one in errors if one is not None)
+        values = (getattr(scene, name) for scene in errors if scene is not None)
         return [value for value in values if value is not None]
 
     def worst(name: str) -> float | None:

@@ -83,7 +83,11 @@ class Comparison:
     def numbers(self) -> dict[str, Any]:
         """Plain numbers by their keys in report.json."""
         simulated, measured = (side.images for side in self.pair.sides)
-        tests = [one.tested for one in self.classes if one.tested is not None]
+        tests = [
+            class_comparison.tested
+            for class_comparison in self.classes
+            if class_comparison.tested is not None
+        ]
         return {
             "simulated": str(simulated.where),
             "measured": str(measured.where),
@@ -91,13 +95,16 @@ class Comparison:
             "units": self.pair.units,
             "warnings": list(self.warnings),
             "test": interval(tests),
-            "classes": {one.name: self._of_class(one) for one in self.classes},
+            "classes": {
+                class_comparison.name: self._of_class(class_comparison)
+                for class_comparison in self.classes
+            },
         }
 
-    def _of_class(self, one: ClassComparison) -> dict[str, Any]:
+    def _of_class(self, comparison: ClassComparison) -> dict[str, Any]:
         return {
-            "maps": one.rows[0].size,
-            "test": interval([] if one.tested is None else [one.tested]),
+            "maps": comparison.rows[0].size,
+            "test": interval([] if comparison.tested is None else [comparison.tested]),
             "statistics": {
                 name: {
                     "words": STATISTICS[name].words,
@@ -106,7 +113,7 @@ class Comparison:
                     "simulated": difference.simulated._asdict(),
                     "measured": difference.measured._asdict(),
                 }
-                for name, difference in one.differences.items()
+                for name, difference in comparison.differences.items()
             },
         }
 

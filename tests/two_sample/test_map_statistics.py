@@ -140,7 +140,7 @@ def test_a_receding_walker_has_the_same_limbs():
 def test_a_map_without_power():
     found = power_statistics(DopplerMap(np.zeros((ROWS, COLUMNS)), DOPPLER), ZERO, 430, 20)
     assert np.isnan(found["fast_energy"])
-    assert not DopplerMap(np.zeros((ROWS, COLUMNS)), DOPPLER).occupied(430).any()
+    assert not DopplerMap(np.zeros((ROWS, COLUMNS)), DOPPLER).signal_mask(430).any()
 
 
 @pytest.mark.parametrize("limb_db", [10, 30])
@@ -167,7 +167,7 @@ def test_shares_of_an_energy_that_noise_hides_are_left_out(limb_db):
 def test_where_nobody_is_seen_noise_is_no_torso():
     rng = np.random.default_rng(1)
     one = DopplerMap(rng.exponential(size=(ROWS, COLUMNS)), DOPPLER)
-    cells = mask_statistics(one.occupied(430), DOPPLER, SECONDS, ZERO)
+    cells = mask_statistics(one.signal_mask(430), DOPPLER, SECONDS, ZERO)
     assert cells["active"] == 0
     found = power_statistics(one, ZERO, 430, 15, cells["active"] > 0)
     finite = {name for name, value in found.items() if np.isfinite(value)}

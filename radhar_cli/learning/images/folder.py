@@ -196,7 +196,7 @@ def _names(images: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
 
 
 def map_of_folder(folder: Path) -> str | None:
-    """The map whose images lie in a folder that `radhar generate` wrote, None elsewhere."""
+    """Map whose images lie in a folder that `radhar generate` wrote, None elsewhere."""
     resolved = folder.resolve()
     for parent, child in zip(resolved.parents, (resolved, *resolved.parents), strict=False):
         if parent.name == PNG and (parent.parent / CONFIG).is_file():

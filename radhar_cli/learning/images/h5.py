@@ -141,8 +141,8 @@ def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
     ]
     fingerprints = []
     for row, slug in enumerate(slugs):
-        others = () if data.person_label is None else tuple(data.person_label[row, 1:])
-        activities = [slug, *(data.class_slugs[n] for n in others if n >= 0)]
+        further_persons = () if data.person_label is None else tuple(data.person_label[row, 1:])
+        activities = [slug, *(data.class_slugs[n] for n in further_persons if n >= 0)]
         text = f"{' '.join(activities)}\n{names[pattern.flat[row]]}\n"
         content = text.encode() + table[row, known[row]].tobytes()
         fingerprints.append(hashlib.blake2b(content, digest_size=8).hexdigest())

@@ -152,8 +152,8 @@ class ImageSet:
         """
         if target == "labels":
             activities = {name for names in self.activities for name in names}
-            others = sorted(activities.difference(self.classes))
-            return replace(self, classes=(*self.classes, *others))
+            further_classes = sorted(activities.difference(self.classes))
+            return replace(self, classes=(*self.classes, *further_classes))
         if target != "count":
             return self
         counts = np.array([len(names) for names in self.activities])

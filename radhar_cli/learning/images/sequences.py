@@ -68,7 +68,7 @@ class Opened:
 
     @property
     def data(self) -> Dataset:
-        """The data set, opened in this process."""
+        """Data set, opened in this process."""
         dataset = self._open.get(os.getpid())
         if dataset is None:
             self._open.clear()

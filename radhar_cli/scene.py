@@ -324,15 +324,15 @@ def numbers(config: Config) -> list[tuple[str, Any]]:
     They are in the order of the schema. Vectors come as `radar.tx_m.0` and so on; keys that are
     null are left out.
     """
-    found: list[tuple[str, Any]] = []
+    drawable: list[tuple[str, Any]] = []
 
-    def note(key: str, number: Any) -> Any:
-        found.append((key, number))
+    def add(key: str, number: Any) -> Any:
+        drawable.append((key, number))
         return number
 
     for key in SCENE_KEYS:
-        each_number(at(config, key), key, note)
-    return found
+        each_number(at(config, key), key, add)
+    return drawable
 
 
 def number_at(scene: Scene, key: str) -> float:
@@ -355,17 +355,17 @@ def number_at(scene: Scene, key: str) -> float:
 
 def keys_of_people(config: Config) -> list[str]:
     """Dotted keys of the numbers of all of `people`, such as `people.0.motion.range_m`."""
-    found = []
+    keys_found = []
     for number in range(1, len(config.people) + 1):
-        theirs, activities = config.of_person(number), config.activities_of(number)
-        keys = [*(key for key, _ in numbers(theirs)), FALL]
-        found += [
+        person_config, activities = config.of_person(number), config.activities_of(number)
+        keys = [*(key for key, _ in numbers(person_config)), FALL]
+        keys_found += [
             f"people.{number - 1}.{key}"
             for key in keys
             if key.startswith(("subject.", "motion.", "timing."))
-            and any(theirs.depends_on(activity, key) for activity in activities)
+            and any(person_config.depends_on(activity, key) for activity in activities)
         ]
-    return found
+    return keys_found
 
 
 def file_keys(config: Config) -> tuple[str, ...]:
@@ -382,8 +382,8 @@ def scene_numbers(scene: Scene) -> dict[str, float]:
     """
     keys = (*(key for key, _ in numbers(scene.config)), FALL, *file_keys(scene.config))
     used = (key for key in keys if scene.config.depends_on(scene.activity, key))
-    found = {key: number_at(scene, key) for key in (*used, *keys_of_people(scene.config))}
-    return {key: number for key, number in found.items() if number == number}
+    values = {key: number_at(scene, key) for key in (*used, *keys_of_people(scene.config))}
+    return {key: number for key, number in values.items() if number == number}
 
 
 class ByIdentity:
@@ -432,16 +432,18 @@ class Redrawn(Enum):
 def redrawn(config: Config, activity: Activity) -> Redrawn:
     """Kind of numbers that another attempt at a scene of an activity may change."""
     drawn = _fixed_and_drawn(ByIdentity(config), activity)[1]
-    again = [one for key, one in drawn.items() if key.startswith(REDRAWN) and key not in PERSONAL]
+    drawn_again = [
+        one for key, one in drawn.items() if key.startswith(REDRAWN) and key not in PERSONAL
+    ]
     personal = [one for key, one in drawn.items() if key.startswith(REDRAWN) and key in PERSONAL]
-    again += personal if config.split.subjects is None else []
+    drawn_again += personal if config.split.subjects is None else []
     files = config.files_of(activity)
     listed = files is not None and files.file is None and len(files.files) > 1
     if listed or isinstance(config.motion.fall, Falls):
         return Redrawn.CHOICES
-    if not again:
+    if not drawn_again:
         return Redrawn.NOTHING
-    chosen = any(isinstance(one, Choice) for one in again)
+    chosen = any(isinstance(one, Choice) for one in drawn_again)
     return Redrawn.CHOICES if chosen else Redrawn.NUMBERS
 
 

@@ -55,14 +55,18 @@ def problems(c: Config) -> Iterator[Problem]:
             `ProcessedConfig` those of the processing.
     """
     if isinstance(c, ConfigOfRecordings):
-        found = _board_problems(c) if c.radar.cfg else _impulse_problems(c)
-        kept = MeasuredConfig.model_fields
-        yield from (one for one in found if one.key.partition(".")[0] in kept)
+        radar_problems = _board_problems(c) if c.radar.cfg else _impulse_problems(c)
+        measured_sections = MeasuredConfig.model_fields
+        yield from (
+            problem
+            for problem in radar_problems
+            if problem.key.partition(".")[0] in measured_sections
+        )
         return
     if isinstance(c, ProcessedConfig):  # windows are shortened, or refused, where gaps are known
         lengths = ("duration_s", "processing.window_s", "processing.savgol.frame")
         mistakes = (*_profile_problems(c), *_processing_problems(c))
-        yield from (one for one in mistakes if one.key not in lengths)
+        yield from (problem for problem in mistakes if problem.key not in lengths)
         return
     if not c.chosen_activities:
         yield Problem("classes", {}, "should have files of each class with motion.model: file")
@@ -364,10 +368,10 @@ def _waveform(c: AnyConfig, *largest: str) -> Waveform:
     )
     processing = c.processing
     length, centred = processing.range_fft_length, processing.range_reference == "centre"
-    given = fc, bandwidth, chirp, rate, prf, duration, length, centred
+    parameters = fc, bandwidth, chirp, rate, prf, duration, length, centred
     if c.radar.waveform == "impulse" and c.radar.profile_m is not None:
-        return Impulse(*given, profile=c.radar.profile_m, samples=c.radar.profile_samples)
-    return Waveform(*given)
+        return Impulse(*parameters, profile=c.radar.profile_m, samples=c.radar.profile_samples)
+    return Waveform(*parameters)
 
 
 def _waveform_problems(c: AnyConfig) -> Iterator[Problem]:
@@ -415,29 +419,34 @@ HIGHEST_F0 = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz")
 def _signal_problems(c: AnyConfig) -> Iterator[Problem]:
     processing, padding, board = c.processing, c.processing.stft_fft_length, c.radar.cfg is not None
     shortest, longest = _waveform(c, *HIGHEST_F0), _waveform(c, "duration_s", "prf_hz")
-    pulses, most = shortest.n_pulses, longest.n_pulses
+    pulses, most_pulses = shortest.n_pulses, longest.n_pulses
     window, longest_window = _window(c, shortest), _window(c, longest)
-    kept = pulses - 1 if processing.clutter == "difference" else pulses
-    there = "pulses there are"
+    usable_pulses = pulses - 1 if processing.clutter == "difference" else pulses
+    pulses_meant = "pulses there are"
     if board:  # frames are cancelled, filtered and windowed one by one
-        kept, there = c.radar.header.loops, "pulses of a frame, the loops of radar.cfg"
+        usable_pulses = c.radar.header.loops
+        pulses_meant = "pulses of a frame, the loops of radar.cfg"
     doppler = [name for name in c.maps if name != "rtm" and name not in FRAME_MAPS]
-    duration: tuple[str, object] = ("duration_s", c.duration_s)
-    given = "window_s" in processing.model_fields_set and processing.window_s is not None
-    of_window = ("processing.window_s", processing.window_s) if given else duration
-    if most > MAX_PULSES and not board:
-        right = f"at most {MAX_PULSES} pulses (duration_s * prf_hz is {most})"
-        yield Problem(*duration, f"should give {right}: radar.prf_hz may be {longest.prf:g}")
+    duration_entry: tuple[str, object] = ("duration_s", c.duration_s)
+    window_is_given = "window_s" in processing.model_fields_set and processing.window_s is not None
+    window_entry = (
+        ("processing.window_s", processing.window_s) if window_is_given else duration_entry
+    )
+    if most_pulses > MAX_PULSES and not board:
+        right = f"at most {MAX_PULSES} pulses (duration_s * prf_hz is {most_pulses})"
+        yield Problem(*duration_entry, f"should give {right}: radar.prf_hz may be {longest.prf:g}")
     if pulses < 2 and not board:
-        yield Problem(*duration, f"should hold at least 2 pulses (it holds {pulses})")
-    if doppler and window < min(MIN_WINDOW, kept if board else MIN_WINDOW):
+        yield Problem(*duration_entry, f"should hold at least 2 pulses (it holds {pulses})")
+    if doppler and window < min(MIN_WINDOW, usable_pulses if board else MIN_WINDOW):
         right = f"the window of window_s * prf_hz at least {MIN_WINDOW} pulses (it has {window})"
-        yield Problem(*of_window, f"should make {right}: radar.prf_hz may be {shortest.prf:g}")
-    if doppler and window > kept:
-        right = f"should make the window at most the {kept} {there} (it has {window})"
-        yield Problem(*of_window, right)
-    if any("denoised" in name for name in doppler) and processing.savgol.frame > kept:
-        right = f"should be at most the {kept} {there}"
+        yield Problem(*window_entry, f"should make {right}: radar.prf_hz may be {shortest.prf:g}")
+    if doppler and window > usable_pulses:
+        right = (
+            f"should make the window at most the {usable_pulses} {pulses_meant} (it has {window})"
+        )
+        yield Problem(*window_entry, right)
+    if any("denoised" in name for name in doppler) and processing.savgol.frame > usable_pulses:
+        right = f"should be at most the {usable_pulses} {pulses_meant}"
         yield Problem("processing.savgol.frame", processing.savgol.frame, right)
     if padding is not None and padding < longest_window:
         right = f"should be null or at least the window of {longest_window} pulses"
@@ -449,17 +458,17 @@ def _signal_problems(c: AnyConfig) -> Iterator[Problem]:
 
 def _clutter_problems(c: AnyConfig) -> Iterator[Problem]:
     processing, prf = c.processing, support(c.radar.prf_hz)
-    given = processing.highpass.cutoff_hz
-    if processing.clutter == "highpass" and given is not None:
-        least, most = 2 * given / prf[1], 2 * given / prf[0]
+    cutoff_hz = processing.highpass.cutoff_hz
+    if processing.clutter == "highpass" and cutoff_hz is not None:
+        least, most = 2 * cutoff_hz / prf[1], 2 * cutoff_hz / prf[0]
         if most >= 1 or least < MIN_CUTOFF:
             right = (
                 f"should be from {MIN_CUTOFF:g} times PRF/2 to below PRF/2 in every scene "
                 f"(it is {least:g} to {most:g} times PRF/2)"
             )
-            yield Problem("processing.highpass.cutoff_hz", given, right)
+            yield Problem("processing.highpass.cutoff_hz", cutoff_hz, right)
     if "rtm" in c.maps and processing.clutter in ("mean", "highpass"):
-        yield from _too_many(c, "processing.clutter", processing.clutter, "the rtm")
+        yield from _bin_problems(c, "processing.clutter", processing.clutter, "the rtm")
 
 
 def _gate_problems(c: AnyConfig) -> Iterator[Problem]:
@@ -478,10 +487,10 @@ def _gate_problems(c: AnyConfig) -> Iterator[Problem]:
         right = f"should be less than half the range half-band of {half_band:.4g} m"
         yield Problem("processing.gate_m", within, right)
     if c.radar.cfg is None:
-        yield from _too_many(c, "processing.range_sum", "gated", "the gate")
+        yield from _bin_problems(c, "processing.range_sum", "gated", "the gate")
 
 
-def _too_many(c: AnyConfig, key: str, value: object, what: str) -> Iterator[Problem]:
+def _bin_problems(c: AnyConfig, key: str, value: object, what: str) -> Iterator[Problem]:
     """A request for which more range bins of all pulses than memory allows have to be held.
 
     Args:
@@ -552,14 +561,14 @@ def _back_wall_problems(c: Config) -> Iterator[Problem]:
     if c.wall is not None:
         right = "should be null with a wall in front: one of the two is simulated"
         yield Problem(key, wall, right)
-    for at_range, _, ends in _places(c, "range_m"):
+    for at_range, _, ends in _coordinates(c, "range_m"):
         farthest = max([0.0, *(end for _, end in ends)])
         if support(wall)[0] <= farthest:
             where = f"at up to {farthest:g} m ({at_range})"
             yield Problem(key, wall, f"should be beyond the people, who stand {where}")
 
 
-def _places(c: Config, name: str) -> Iterator[tuple[str, Any, list[tuple[float, float]]]]:
+def _coordinates(c: Config, name: str) -> Iterator[tuple[str, Any, list[tuple[float, float]]]]:
     """Find the coordinates of everybody under one name, `range_m` or `cross_range_m`.
 
     Yields:
@@ -570,10 +579,10 @@ def _places(c: Config, name: str) -> Iterator[tuple[str, Any, list[tuple[float, 
         everybody += [
             (f"people.{n}.", one.motion, c.activities_of(n + 1)) for n, one in enumerate(c.people)
         ]
-    for whose, motion, activities in everybody:
+    for prefix, motion, activities in everybody:
         value = getattr(motion, name)
         numbers = [for_activity(value, one) for one in activities]
-        yield f"{whose}motion.{name}", value, [support(one) for one in numbers if one is not None]
+        yield f"{prefix}motion.{name}", value, [support(one) for one in numbers if one is not None]
 
 
 def _room_problems(c: Config) -> Iterator[Problem]:
@@ -620,7 +629,7 @@ def _room_problems(c: Config) -> Iterator[Problem]:
             yield Problem(f"radar.{name}", list(antenna), right)
     for key, name, ends_of_box in (("x", "range_m", box.x), ("y", "cross_range_m", box.y)):
         low, high = support(ends_of_box[0])[0], support(ends_of_box[1])[1]
-        for where, value, ends in _places(c, name):
+        for where, value, ends in _coordinates(c, name):
             if any(most <= low or least >= high for least, most in ends):
                 right = f"should be inside room.box_m.{key}, {low:g} to {high:g} m"
                 yield Problem(where, value, right)
@@ -628,7 +637,7 @@ def _room_problems(c: Config) -> Iterator[Problem]:
 
 def _tone_problems(c: Config) -> Iterator[Problem]:
     extra = {"tones": c.receiver.tones, "noise_corner_hz": support(c.receiver.noise_corner_hz)[1]}
-    for key in [key for key, there in extra.items() if there and not c.has_noise]:
+    for key in [key for key, is_used in extra.items() if is_used and not c.has_noise]:
         right = (
             f"should be a number, or receiver.noise_figure_db be given: receiver.{key} is relative "
             "to the noise"

@@ -160,14 +160,18 @@ def simulate(
     activity = activity_of(activity, config)
     fitting = _fitting_maps(config)
     maps = config.maps if maps is None else fitting if maps == ALL else maps
-    if wrong := problems_of_maps(config, maps):
-        lines = (f"{one.key} = {json.dumps(one.value, default=str)}: {one.right}" for one in wrong)
+    if mistakes := problems_of_maps(config, maps):
+        lines = (
+            f"{one.key} = {json.dumps(one.value, default=str)}: {one.right}" for one in mistakes
+        )
         raise ConfigError("\n".join(dict.fromkeys(lines)))
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
     scene = scene_of(config, activity, index, nominal)
     warnings = scene_warnings(scene)
     motion, *others = map(motion_of, scene.people)
-    kept = motion if joint is None else ScattererSubset(motion, (_joint(joint, motion.names),))
+    echoing_motion = (
+        motion if joint is None else ScattererSubset(motion, (_joint_index(joint, motion.names),))
+    )
     board = config.radar.cfg is not None
     frames = [product for name in maps for product in FRAMES.get(name, ())]
     frames += ["points_kind"] if "points" in maps and config.room.faces else []
@@ -175,24 +179,26 @@ def simulate(
     of_maps = {"signal", *(signal_of(name) for name in fitting if name in MAP_NAMES)}
     signals = [name for name in SIGNALS if name in of_maps] if not board else SIGNALS[:1]
     frames += ["cube"] if board and raw and "cube" not in frames else []
-    asked = [*signals, *maps, *frames, "waveform", "antennas", "wall"] + ["board"] * board
-    asked += ["accuracy"] if config.engine.kind == "direct" else []
-    asked += ["raw_echo"] if raw and not board else []
-    more = [RAW_PROFILES if config.radar.waveform == "impulse" else RAW_ECHO]
-    motions = (kept, *(others if joint is None else ()))
-    recorded = record(scene, asked, more, progress, motions=motions)
+    product_names = [*signals, *maps, *frames, "waveform", "antennas", "wall"] + ["board"] * board
+    product_names += ["accuracy"] if config.engine.kind == "direct" else []
+    product_names += ["raw_echo"] if raw and not board else []
+    raw_rows = [RAW_PROFILES if config.radar.waveform == "impulse" else RAW_ECHO]
+    motions = (echoing_motion, *(others if joint is None else ()))
+    recorded = record(scene, product_names, raw_rows, progress, motions=motions)
     radar = {name: recorded[name] for name in ("antennas", "wall", "waveform")}
     accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):
         warnings.append(f"computed by the cube (engine.fallback): {accuracy.reason}")
-    black = [name for name in maps if not recorded[name].power.any()]
-    black += [{"cloud": "points"}.get(name, name) for name in frames if _is_empty(recorded[name])]
-    warnings += [f"{', '.join(black)}: {BLACK}"] if black else []
+    black_maps = [name for name in maps if not recorded[name].power.any()]
+    black_maps += [
+        {"cloud": "points"}.get(name, name) for name in frames if _is_empty(recorded[name])
+    ]
+    warnings += [f"{', '.join(black_maps)}: {BLACK}"] if black_maps else []
     return Simulation(
         scene=scene,
         **radar,
         motion=motion,
-        joint=None if joint is None else kept.names[0],
+        joint=None if joint is None else echoing_motion.names[0],
         maps={name: recorded[name] for name in maps},
         signals={
             name.removeprefix("signal").lstrip("_") or "raw": recorded[name] for name in signals
@@ -357,8 +363,10 @@ def _refuse_near_face(scene: Scene, antennas: Antennas, wall: Wall) -> None:
         )
 
 
-def _steady_beat(one: StaticReturn, waveform: Waveform) -> Complex:
-    return beat_matrix(np.array([[one.delay]]), np.array([[one.amplitude]]), waveform)
+def _steady_beat(static_return: StaticReturn, waveform: Waveform) -> Complex:
+    return beat_matrix(
+        np.array([[static_return.delay]]), np.array([[static_return.amplitude]]), waveform
+    )
 
 
 RAW_ECHO = Product(
@@ -401,7 +409,7 @@ def activity_of(asked: str | Activity | None, config: Config) -> Activity:
     return own.get(activity.slug, activity)
 
 
-def _joint(name: str, joints: tuple[str, ...]) -> int:
+def _joint_index(name: str, joints: tuple[str, ...]) -> int:
     key = name.strip().lower().replace("-", "_").replace(" ", "_")
     if key in joints:
         return joints.index(key)

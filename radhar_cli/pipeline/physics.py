@@ -34,7 +34,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.flicker import FlickerNoise
 from radhar_cli.receiver.impairment import Impairment
-from radhar_cli.receiver.interference import Line
+from radhar_cli.receiver.interference import InterferenceLine
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.rounding import half_up
 from radhar_cli.scene import Numbers, Person, Scene, nominal_scene
@@ -266,7 +266,9 @@ def impairments_of(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impair
     for number, tone in enumerate(receiver.tones):
         line = noise.sigma * 10 ** (tone.level_db / 20), tone.doppler_hz, w
         times = tone.on_s, tone.off_s
-        impairments.append(Line(*line, of_scene, f"line {number}", *times, tone.both_sides))
+        impairments.append(
+            InterferenceLine(*line, of_scene, f"line {number}", *times, tone.both_sides)
+        )
     return tuple(impairments)
 
 

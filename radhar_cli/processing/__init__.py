@@ -1,1 +1,1 @@
-"""From a simulated or recorded beat matrix or slow-time signal to maps and images."""
+"""Maps and images of a beat matrix or slow-time signal, simulated or recorded."""

@@ -16,9 +16,9 @@ from radhar_cli.processing.points import COLUMNS, Cloud, elevation_pair
 from radhar_cli.radar.board import Board, sidelobe
 
 GUARD, TRAINING = (3, 2), (8, 4)  # cells on each side: range, Doppler
-BEAMS, ANGLES = 32, 256  # of azimuth FFTs, to find targets and to place them
+BEAMS, ANGLES = 32, 256  # lengths of the azimuth FFTs that find targets and that place them
 BESIDE = 0.1  # least power of a further target of a cell over its strongest
-BEYOND = 1.5  # by how many times it exceeds the sidelobes of the row
+BEYOND = 1.5  # least power of a further target over the sidelobes of the row
 TINY = np.finfo(float).tiny
 INTERVALS = np.array([-1, 0, 1])
 
@@ -31,37 +31,43 @@ def best_points(
     carrier: float | None = None,
     bias: float = 0.0,
 ) -> Cloud:
-    """The points of every frame of a cube [frame, loop, virtual, sample].
+    """Points of every frame of a cube; intensity is a cell's power for unit transmit power.
 
-    Intensity is the power of a cell's echo, for unit transmit power; `pfa` the rate of false alarms
-    of a cell; `carrier` (Hz) that of the Doppler axis, None the centre's; `bias` of ranges, m.
+    Args:
+        cube: Samples [frame, loop, virtual, sample].
+        board: The board that took them.
+        remove_mean: Whether the mean over the loops of a frame is taken out.
+        pfa: Rate of false alarms of a cell.
+        carrier: Frequency of the Doppler axis, Hz; None for the centre frequency.
+        bias: Bias of ranges, which is subtracted, m.
     """
-    step, found, angles = board.doppler_step(carrier), list[Float](), Angles.of(board)
+    step = board.doppler_step(carrier)
+    angles = Angles.of(board)
+    frames = list[Float]()
     for _, x in spectra(cube, board, remove_mean):
         for frame in x:  # [Doppler, virtual, range]
-            found.append(_frame_points(frame, board, angles, pfa, step, bias))
-    return Cloud.of(found)
+            frames.append(_frame_points(frame, board, angles, pfa, step, bias))
+    return Cloud.of(frames)
 
 
 @dataclass(frozen=True)
 class Angles:
-    """How a board tells directions: by its longest row, and by the row nearest to that.
+    """Rows and weights by which a board measures directions.
 
-    Of a row of one element the azimuth is 0, of a board without another row the elevation.
+    With a longest row of one element azimuth is 0, without another row elevation.
     """
 
     row: list[int]  # elements of the longest row
     upper: list[int]  # elements of the nearest other row, none without one
-    # aside, above: how far to the left and up the other row begins, half wavelengths
-    aside: float
-    above: float
+    aside: float  # offset of the other row to the left, half wavelengths
+    above: float  # offset of the other row upwards, half wavelengths
     beams: Complex  # weights [element, beam] that targets are found with
     fine: Complex  # weights [element, angle] that they are placed with
     beside: float  # power of a further target of a cell over its strongest, beyond sidelobes
 
     @classmethod
     def of(cls, board: Board) -> "Angles":
-        """What follows from the elements of a board."""
+        """Rows and weights that follow from the elements of a board."""
         row, upper, aside, above = elevation_pair(board)
         places = board.places[row, 0] - board.places[row[0], 0]
         single = len(row) == 1
@@ -123,7 +129,7 @@ def _frame_points(
 
 
 def _noise(power: Float) -> tuple[Float, int]:
-    """Mean of the reference cells around each cell, and how many they are."""
+    """Mean [range, Doppler] of the reference cells around each cell, and their number."""
     from scipy.ndimage import uniform_filter  # slow to import
 
     inner = [min(2 * g + 1, n) for g, n in zip(GUARD, power.shape, strict=True)]
@@ -135,20 +141,20 @@ def _noise(power: Float) -> tuple[Float, int]:
     return np.maximum(noise, TINY), max(area[0] - area[1], 1)
 
 
-def _offset(level: Float, at: int, cyclic: bool) -> float:
-    """Where a parabola through three logarithms of power has its top, in bins, -1/2 to 1/2."""
-    if level.size < 3 or (not cyclic and not 0 < at < level.size - 1):
+def _offset(level: Float, bin_: int, cyclic: bool) -> float:
+    """Offset (bins, -1/2 to 1/2) of a peak by a parabola through three logarithms of power."""
+    if level.size < 3 or (not cyclic and not 0 < bin_ < level.size - 1):
         return 0.0
-    before, here, after = level[(at + INTERVALS) % level.size]
+    before, here, after = level[(bin_ + INTERVALS) % level.size]
     curve = before - 2 * here + after
     return float(np.clip((before - after) / (2 * curve), -0.5, 0.5)) if curve < 0 else 0.0
 
 
 def _direction(element: Complex, board: Board, angles: Angles, near: float) -> tuple[float, float]:
-    """Sines (left, up) of a target near a phase step (rad) from element to element of a row.
+    """Direction sines (left, up) of the target near a phase step (rad) between elements.
 
-    left is the peak of the row's spectrum there; with the other peaks of the spectrum taken out by
-    least squares, up follows from the phase between two rows.
+    The first is the peak of the row's spectrum there; with the other peaks of the spectrum taken
+    out by least squares, the second follows from the phase between two rows.
     """
     row, upper = angles.row, angles.upper
     if len(row) == 1:
@@ -172,7 +178,7 @@ def _direction(element: Complex, board: Board, angles: Angles, near: float) -> t
 
 
 def _targets(element: Complex, board: Board, row: list[int], left: Float) -> Complex:
-    """Echoes of the targets of these directions [J] at the first element of a row."""
+    """Echoes [J] of targets of direction sines [J] at the first element of a row."""
     places = board.places[row, 0] - board.places[row[0], 0]
     steering = np.exp(1j * np.pi * np.outer(places, left))
     return np.linalg.lstsq(steering, element[row])[0].astype(complex)

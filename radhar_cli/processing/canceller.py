@@ -1,4 +1,4 @@
-"""Cancellers of what stands still: moving target indication (paper, first equation of "RTM").
+"""Cancellers of static echoes: moving target indication (paper, first equation of "RTM").
 
 A canceller is anything linear along slow time. It commutes with range compression and with the sum
 over bins, so that it may be applied to whichever of them is at hand.
@@ -17,7 +17,7 @@ MIN_SAMPLES = 2**19  # with fewer, numba takes longer to load than it saves
 
 
 class Canceller(ABC):
-    """Takes a signal [..., M] to one [..., M - lost], the last axis being the pulses.
+    """Linear filter of a signal [..., M] to one [..., M - lost], the last axis being the pulses.
 
     Where it is not a `Fir`, an output depends on the whole recording, no pulse is lost, and its
     gain is at most 1: sum |y|^2 <= sum |s|^2. An error before it then bounds the error after it.
@@ -25,27 +25,27 @@ class Canceller(ABC):
 
     @property
     def lost(self) -> int:
-        """Pulses by which the output is shorter than the input."""
+        """Number of pulses by which the output is shorter than the input."""
         return 0
 
     @property
     def delay(self) -> float:
-        """Pulse intervals by which an output lies after its first pulse."""
+        """Number of pulse intervals by which an output lies after its first pulse."""
         return self.lost / 2
 
     @property
     @abstractmethod
     def removes_static(self) -> bool:
-        """Whether nothing at all is left of a constant."""
+        """Whether a constant becomes exactly 0."""
 
     @abstractmethod
     def __call__(self, s: Complex) -> Complex:
-        """[..., M] -> [..., M - lost]."""
+        """Filter a signal [..., M]; the result is [..., M - lost]."""
 
 
 @dataclass(frozen=True)
 class Fir(Canceller):
-    """y[..., m] = sum_k taps[k] s[..., m + k]."""
+    """Filter of few taps: y[..., m] = sum_k taps[k] s[..., m + k]."""
 
     # earliest pulse first; (-1, 1) is the first difference, (1, -2, 1) the three-pulse canceller,
     # (1,) none
@@ -64,10 +64,10 @@ class Fir(Canceller):
             return s
         if self.taps == (-1, 1):
             return np.diff(s, axis=-1)
-        kept = s.shape[-1] - self.lost
-        y: Complex = self.taps[0] * s[..., :kept]
+        length = s.shape[-1] - self.lost
+        y: Complex = self.taps[0] * s[..., :length]
         for k, tap in enumerate(self.taps[1:], 1):
-            y += tap * s[..., k : k + kept]
+            y += tap * s[..., k : k + length]
         return y
 
 
@@ -77,7 +77,7 @@ NO_CANCELLER = Fir((1,))
 
 @dataclass(frozen=True)
 class MeanRemoval(Canceller):
-    """y = s less its mean over the recording: the background."""
+    """Subtraction of the background: y = s less its mean over the recording."""
 
     @property
     def removes_static(self) -> bool:
@@ -93,8 +93,8 @@ class MeanRemoval(Canceller):
 class HighPass(Canceller):
     """A Butterworth high-pass that starts from rest."""
 
-    order: int  # of the filter; both ways it has the effect of twice that
-    cutoff: float  # where |H|^2 = 1/2, as a fraction of PRF/2
+    order: int  # order of the filter; both ways it has the effect of twice that
+    cutoff: float  # frequency where |H|^2 = 1/2, as a fraction of PRF/2
     # filter forwards and then backwards: the response is |H|^2, without delay
     zero_phase: bool = False
     # first take out the mean of the recording. Without it what stands still is switched on at the
@@ -107,14 +107,14 @@ class HighPass(Canceller):
 
     def __call__(self, s: Complex) -> Complex:
         sections = _butterworth(self.order, self.cutoff)
-        y = _filtered(sections, MeanRemoval()(s) if self.remove_mean else s)
+        y = _apply_sections(sections, MeanRemoval()(s) if self.remove_mean else s)
         if self.zero_phase:
-            y = _filtered(sections, y[..., ::-1])[..., ::-1]
+            y = _apply_sections(sections, y[..., ::-1])[..., ::-1]
         return y
 
 
-def _filtered(sections: Float, x: Complex) -> Complex:
-    """Second-order sections from rest, along the pulses."""
+def _apply_sections(sections: Float, x: Complex) -> Complex:
+    """Filter x [..., M] by second-order sections from rest, along the pulses."""
     if x.size < MIN_SAMPLES or installed("numba") is None:
         from scipy.signal import sosfilt  # slow to import
 
@@ -125,7 +125,7 @@ def _filtered(sections: Float, x: Complex) -> Complex:
 
 
 def _filter_rows(y: Complex, sections: Float) -> None:
-    """Filter y [pulses, rows] in place, pulse by pulse, as each needs the one before."""
+    """Filter y [pulses, rows] in place, pulse by pulse, as each needs the previous one."""
     state = np.zeros((len(sections), 2, y.shape[1]), y.dtype)
     for m in range(len(y)):
         for s in range(len(sections)):
@@ -140,6 +140,7 @@ def _filter_rows(y: Complex, sections: Float) -> None:
 
 @lru_cache(maxsize=8)
 def _butterworth(order: int, cutoff: float) -> Float:
+    """Second-order sections [S, 6] of a high-pass; cutoff as a fraction of PRF/2."""
     from scipy.signal import butter
 
     sections: Float = butter(order, cutoff, "highpass", output="sos")

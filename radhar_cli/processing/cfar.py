@@ -17,7 +17,7 @@ FLOOR_DB = -300.0  # lowest level of a map scaled near 1
 
 @dataclass(frozen=True)
 class CellAveraging:
-    """Which cells of a map are set."""
+    """Detector of the cells of a map that exceed the mean around them."""
 
     guard: tuple[int, int]  # cells on each side that are left out, (rows, columns)
     training: tuple[int, int]  # cells on each side beyond those, whose mean is the background
@@ -30,7 +30,7 @@ class CellAveraging:
     wrap: bool = False
 
     def levels(self, cells: Float) -> Levels:
-        """0 and 255 [rows, columns] of a map in power, or in `decibels` where that is compared."""
+        """Levels 0 and 255 [rows, columns] of a map in power, or in decibels with `decibel`."""
         if self.decibel:
             cells = cells - np.median(cells) + self.floor_db
         return np.where(self.is_set(cells), SET, 0).astype(np.uint8)
@@ -43,7 +43,7 @@ class CellAveraging:
         return (cells > level) & (count > 0)
 
     def training_cells(self, shape: tuple[int, ...]) -> Float:
-        """How many training cells each cell has [rows, columns]."""
+        """Number of training cells of each cell [rows, columns]."""
         return _training_cells(shape, self.guard, self.training, self.wrap)
 
     def _training_sum(self, cells: Float) -> Float:
@@ -56,7 +56,7 @@ class CellAveraging:
 
 
 def false_alarm_factor(pfa: float, count: Float) -> Float:
-    """N (P_fa^(-1/N) - 1): threshold over the mean of N cells of exponentially distributed power.
+    """Threshold N (P_fa^(-1/N) - 1) over the mean of N cells of exponentially distributed power.
 
     Richards, equation for cell averaging; `phased.CFARDetector2D` of MATLAB has the same.
     """
@@ -65,7 +65,7 @@ def false_alarm_factor(pfa: float, count: Float) -> Float:
 
 
 def decibels_of(power: Float) -> Float:
-    """10 log10 P of a power of a scale near 1, at least FLOOR_DB."""
+    """Decibels 10 log10 P of a power P [...] of a scale near 1, at least FLOOR_DB."""
     level: Float = np.maximum(power, power.dtype.type(10 ** (FLOOR_DB / 10)), dtype=power.dtype)
     np.log10(level, out=level)
     level *= 10
@@ -76,6 +76,7 @@ def decibels_of(power: Float) -> Float:
 def _training_cells(
     shape: tuple[int, ...], guard: tuple[int, int], training: tuple[int, int], wrap: bool
 ) -> Float:
+    """Number of training cells of each cell [rows, columns]."""
     both = tuple(g + t for g, t in zip(guard, training, strict=True))
     ones = np.ones(shape)
     count: Float = np.rint(_box_sum(ones, both, wrap) - _box_sum(ones, guard, wrap))

@@ -8,10 +8,15 @@ from radhar_cli.arrays import Complex, Float
 
 
 def savgol(x: Complex, order: int, frame: int) -> Complex:
-    """Every sample of x [M] becomes the value there of the polynomial fitted to its frame.
+    """Smooth x [M]: every sample becomes the value of the polynomial fitted to its frame.
 
     The first and last half frame are read off the first and the last fit (SciPy's edge mode
     `interp`). Order 5, frame 11 is a low-pass at 0.32 of PRF/2.
+
+    Args:
+        x: Signal [M], M at least `frame`.
+        order: Degree of the polynomials.
+        frame: Odd number of samples of a frame.
     """
     basis, half = _polynomials(order, frame), frame // 2
     smooth = np.empty_like(x)

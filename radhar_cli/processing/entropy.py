@@ -9,7 +9,7 @@ from radhar_cli.errors import RadharError
 
 
 class EntropySum:
-    """H = log2(S) - sum(P log2 P)/S, S = sum P: -sum p log2 p with p = P/S, for P in blocks.
+    """Entropy H = log2(S) - sum(P log2 P)/S, S = sum P, of a power map P that comes in blocks.
 
     P may have any scale at which it and its sums are normal numbers; a map of zeros has entropy 0.
     """
@@ -18,7 +18,7 @@ class EntropySum:
         self.total = self._dot = 0.0
 
     def add(self, power: Float) -> None:
-        """Take in a block of any shape; contiguous ones are not copied."""
+        """Add a block of any shape; contiguous ones are not copied."""
         p = power.ravel(order="K")
         self.total += float(p.sum())
         nats = np.maximum(p, np.finfo(p.dtype).tiny)
@@ -28,14 +28,18 @@ class EntropySum:
 
     @property
     def bits(self) -> float:
-        """H of all blocks together."""
+        """Entropy H of all blocks together, bits."""
         if self.total == 0:
             return 0.0
         return max(0.0, float(np.log2(self.total)) - self._dot / self.total)
 
 
 def entropy_bits(power: Float) -> float:
-    """H = -sum p log2 p of a finite map, p = power/sum(power); 0 for a map of zeros."""
+    """Entropy H = -sum p log2 p (bits) of a power map, p = power/sum(power); 0 for a map of zeros.
+
+    Raises:
+        RadharError: The map has an infinity or a NaN.
+    """
     entropy, largest = EntropySum(), largest_power(power)
     if largest > 0:
         entropy.add(power / largest)
@@ -43,7 +47,11 @@ def entropy_bits(power: Float) -> float:
 
 
 def largest_power(power: Float) -> float:
-    """The largest power of a map, 0 of none; a RadharError of an infinity or a NaN."""
+    """Largest power of a map, 0 for an empty one.
+
+    Raises:
+        RadharError: The map has an infinity or a NaN.
+    """
     largest = float(power.max(initial=0.0))
     if not np.isfinite(largest):
         raise RadharError(f"the power map should be finite; its largest value is {largest}")

@@ -18,19 +18,23 @@ BLOCK_FRAMES = 16
 
 @dataclass(frozen=True)
 class FrameMaps:
-    """Power of every frame for unit transmit power."""
+    """Maps of every frame, as power for unit transmit power."""
 
-    power: Float  # [frame, rows, columns], lowest first
-    # rows, columns: the axes
+    power: Float  # power [frame, rows, columns], lowest first
     rows: Axis
     columns: Axis
-    times: Float  # middles of the frames, s
+    times: Float  # middles of the frames [frame], s
 
 
 def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
-    """X [frame, loop, virtual, range] of a cube, signs of the feeds taken out.
+    """Range spectrum X [frame, loop, virtual, range] of a cube, signs of the feeds taken out.
 
     Beats have the sign exp(-j 2 pi K tau t), so the kernel is the conjugate one.
+
+    Args:
+        cube: Samples [frame, loop, virtual, sample].
+        board: The board that took them.
+        window: Window over the samples of a chirp [sample].
     """
     import scipy.fft  # slow to import
 
@@ -41,20 +45,23 @@ def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
 
 
 def without_mean(cube: Complex) -> Complex:
-    """A cube [frame, loop, ..] less the mean over the loops of each frame.
+    """Subtract from a cube [frame, loop, ..] the mean over the loops of each frame.
 
-    Of a frame whose loops are equal exactly nothing is left, which rounding in an FFT before would
+    A frame whose loops are equal becomes exactly 0, which the rounding of an earlier FFT would
     spoil.
     """
-    left: Complex = cube - cube[:, :1]
-    left -= left.mean(axis=1, keepdims=True)
-    return left
+    moving: Complex = cube - cube[:, :1]
+    moving -= moving.mean(axis=1, keepdims=True)
+    return moving
 
 
 def doppler_spectrum(x: Complex, board: Board, window: Float) -> Complex:
-    """X [frame, Doppler, virtual, range] of x [frame, loop, virtual, range], windowed over loops.
+    """Doppler spectrum [frame, Doppler, virtual, range]: 0 first, approaching positive.
 
-    Doppler is as FFTs have it: 0 first, approaching positive.
+    Args:
+        x: Range spectrum [frame, loop, virtual, range].
+        board: The board.
+        window: Window over the loops [loop].
     """
     import scipy.fft  # slow to import
 
@@ -63,7 +70,7 @@ def doppler_spectrum(x: Complex, board: Board, window: Float) -> Complex:
 
 
 def without_turns(x: Complex, board: Board) -> Complex:
-    """X [.., Doppler, virtual, range] as if all transmitters had sent at once.
+    """Compensate spectra [.., Doppler, virtual, range] for the transmitters' taking turns.
 
     A chirp that comes k/n_TX of a loop later has turned by 2 pi d k/(N_D n_TX) in Doppler bin d.
     """
@@ -74,7 +81,7 @@ def without_turns(x: Complex, board: Board) -> Complex:
 
 
 def hann(count: int) -> Float:
-    """Periodic Hann window [count]; 1 of a single sample."""
+    """Periodic Hann window [count]; 1 for a single sample."""
     return np.hanning(count + 1)[:-1] if count > 1 else np.ones(count)
 
 
@@ -84,38 +91,47 @@ def ascending(count: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
 
 
 def doppler_axis(board: Board) -> Axis:
-    """Radial speeds, positive approaching."""
+    """Axis of radial speeds, positive approaching."""
     highest = board.n_doppler // 2
     bins = np.arange(highest - board.n_doppler + 1, highest + 1)
     return Axis("radial speed", "m/s", bins * board.doppler_step())
 
 
 def range_axis(board: Board) -> Axis:
-    """Ranges of all bins."""
+    """Axis of the ranges of all bins."""
     return Axis("range", "m", np.arange(board.n_fft) * board.range_step)
 
 
 def spectra(cube: Complex, board: Board, remove_mean: bool) -> Iterator[tuple[slice, Complex]]:
-    """(frames, X [frame, Doppler, virtual, range]) of some frames at a time, with Hann windows."""
+    """Yield slices of frames and their spectra with Hann windows.
+
+    Args:
+        cube: Samples [frame, loop, virtual, sample].
+        board: The board that took them.
+        remove_mean: Whether the mean over the loops of a frame is taken out.
+
+    Yields:
+        Frames, and X [frame, Doppler, virtual, range].
+    """
     fast, slow = hann(board.samples), hann(board.loops)
     for first in range(0, len(cube), BLOCK_FRAMES):
-        some = slice(first, min(first + BLOCK_FRAMES, len(cube)))
-        samples = without_mean(cube[some]) if remove_mean else cube[some]
-        yield some, doppler_spectrum(range_spectrum(samples, board, fast), board, slow)
+        frames = slice(first, min(first + BLOCK_FRAMES, len(cube)))
+        samples = without_mean(cube[frames]) if remove_mean else cube[frames]
+        yield frames, doppler_spectrum(range_spectrum(samples, board, fast), board, slow)
 
 
 def range_doppler(cube: Complex, board: Board, remove_mean: bool) -> FrameMaps:
-    """Power [frame, range, Doppler], the mean over the virtual channels."""
+    """Range-Doppler maps [frame, range, Doppler], the mean power of the virtual channels."""
     power = np.empty((len(cube), board.n_fft, board.n_doppler), np.float32)
     order = ascending(board.n_doppler)
-    for some, x in spectra(cube, board, remove_mean):
+    for frames, x in spectra(cube, board, remove_mean):
         mean = (x.real**2 + x.imag**2).mean(axis=2)
-        power[some] = mean[:, order].transpose(0, 2, 1)
+        power[frames] = mean[:, order].transpose(0, 2, 1)
     return FrameMaps(power, range_axis(board), doppler_axis(board), board.middles)
 
 
 def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> FrameMaps:
-    """Power [frame, range, angle] of a Bartlett beamformer over the longest rows or columns.
+    """Range-angle maps [frame, range, angle] of a Bartlett beamformer over the longest rows.
 
     Doppler bins are compensated for the transmitters' turns and summed: sum_d |w^H x_d|^2 =
     w^H R w with the covariance R = sum_d x_d x_d^H. The taper of n elements is
@@ -129,7 +145,7 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     window = hann(board.loops)
     level = board.n_doppler * float((window**2).sum() / window.sum() ** 2)
     power = np.zeros((len(cube), board.n_fft, angles.size), np.float32)
-    for some, x in spectra(cube, board, remove_mean):
+    for frames, x in spectra(cube, board, remove_mean):
         x = without_turns(x, board)
         for row in rows:
             element = np.ascontiguousarray(x[:, :, row].transpose(0, 3, 2, 1))  # Doppler last
@@ -137,7 +153,7 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
             steering = np.exp(-1j * np.pi * sines * board.places[row, axis]) * taper / taper.sum()
             pairs = (steering[:, :, None] * steering[:, None].conj()).reshape(len(angles), -1)
             flat = covariance.reshape(*covariance.shape[:2], -1)
-            power[some] += (flat @ pairs.T.astype(flat.dtype)).real
+            power[frames] += (flat @ pairs.T.astype(flat.dtype)).real
     np.maximum(power, 0, out=power)  # of rounding
     power /= level * len(rows)
     name = "azimuth" if axis == 0 else "elevation"

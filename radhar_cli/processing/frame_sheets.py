@@ -17,26 +17,26 @@ from radhar_cli.processing.power_map import MapImage
 
 MOST_TILES = 16
 BONE, LEAST, GAP = 70, 120, 1  # grey of bones, of the weakest point; pixels between tiles
-FRONT_M = ((-1.25, 1.25), (-1.25, 1.25))  # what is shown to the left and up of the radar
+FRONT_M = ((-1.25, 1.25), (-1.25, 1.25))  # limits of a front view to the left and up, m
 Size: TypeAlias = tuple[int, int]
 
 
 def _tiles(frames: int, size: Size) -> tuple[Index, list[tuple[slice, slice]]]:
-    """Frames to show, spread evenly, and their places row by row."""
+    """Numbers of the frames to show, spread evenly, and their tiles row by row."""
     across = ceil(sqrt(min(frames, MOST_TILES)))
-    shown = np.unique(np.linspace(0, frames - 1, min(frames, across * across)).round().astype(int))
+    chosen = np.unique(np.linspace(0, frames - 1, min(frames, across * across)).round().astype(int))
     rows = np.linspace(0, size[0], across + 1).astype(int).tolist()
     columns = np.linspace(0, size[1], across + 1).astype(int).tolist()
     high = [slice(start, stop - GAP) for start, stop in pairwise(rows)]
     wide = [slice(start, stop - GAP) for start, stop in pairwise(columns)]
-    return shown, list(product(high, wide))[: shown.size]
+    return chosen, list(product(high, wide))[: chosen.size]
 
 
 def maps_sheet(maps: FrameMaps, size: Size, dynamic_range_db: float) -> MapImage:
-    """Frames side by side, in decibels below the peak of all of them; row 0 is the farthest."""
-    shown, places = _tiles(len(maps.power), size)
+    """Sheet of frames side by side, in decibels below their common peak; row 0 is the farthest."""
+    chosen, places = _tiles(len(maps.power), size)
     cells = np.zeros(size, np.float32)
-    scaled = np.ldexp(maps.power[shown].astype(float), -binary_exponent(maps.power))
+    scaled = np.ldexp(maps.power[chosen].astype(float), -binary_exponent(maps.power))
     for power, (rows, columns) in zip(scaled, places, strict=True):
         shape = rows.stop - rows.start, columns.stop - columns.start
         if min(shape) > 0:
@@ -46,7 +46,7 @@ def maps_sheet(maps: FrameMaps, size: Size, dynamic_range_db: float) -> MapImage
 
 
 def cloud_sheet(cloud: Cloud, size: Size) -> MapImage:
-    """Front views of the points of frames side by side, as the radar sees them."""
+    """Sheet of front views of the points of frames, as the radar sees them."""
     sheet, strongest = np.zeros(size, np.uint8), cloud.points[:, 4].max(initial=1e-30)
     for frame, draw, shape in _drawings(sheet, len(cloud.start) - 1):
         points = cloud.points[cloud.start[frame] : cloud.start[frame + 1]]
@@ -57,7 +57,7 @@ def cloud_sheet(cloud: Cloud, size: Size) -> MapImage:
 
 
 def bones_sheet(skeletons: Float, parents: tuple[int | None, ...], size: Size) -> Levels:
-    """The skeletons [frame, person, joint, 3] (m) of the frames that `cloud_sheet` shows.
+    """Sheet of the skeletons [frame, person, joint, 3] (m) of the frames of `cloud_sheet`.
 
     They are the truth: to look at beneath the points, never in the images of data sets.
     """
@@ -71,9 +71,9 @@ def bones_sheet(skeletons: Float, parents: tuple[int | None, ...], size: Size) -
 
 
 def _drawings(sheet: Levels, frames: int) -> Iterator[tuple[int, ImageDraw.ImageDraw, Size]]:
-    """(frame, what draws on its tile, size of that) of the frames that a sheet shows."""
-    shown, places = _tiles(frames, sheet.shape)
-    for frame, (rows, columns) in zip(shown.tolist(), places, strict=True):
+    """Yield the frames of a sheet, with what draws on their tiles and the sizes of these."""
+    chosen, places = _tiles(frames, sheet.shape)
+    for frame, (rows, columns) in zip(chosen.tolist(), places, strict=True):
         shape = rows.stop - rows.start, columns.stop - columns.start
         if min(shape) > 0:
             image = Image.fromarray(np.zeros(shape, np.uint8))
@@ -82,7 +82,7 @@ def _drawings(sheet: Levels, frames: int) -> Iterator[tuple[int, ImageDraw.Image
 
 
 def _pixels(p: Float, shape: Size) -> Float:
-    """Places (x, y) [..., 2] of points [..., 3] in a front view; left of the radar is left."""
+    """Pixels (x, y) [..., 2] of points [..., 3] (m) in a front view; left of the radar is left."""
     (right, left), (low, high) = FRONT_M
     x = (left - p[..., 1]) / (left - right) * (shape[1] - 1)
     y = (high - p[..., 2]) / (high - low) * (shape[0] - 1)

@@ -19,28 +19,29 @@ class Frames:
 
     @classmethod
     def of(cls, length: int, overlap_fraction: float) -> "Frames":
-        """Frames of L samples, hop = round((1 - overlap_fraction) L), at least 1."""
+        """Frames of L samples with a hop of round((1 - overlap_fraction) L), at least 1."""
         return _frames(length, overlap_fraction)
 
     def starts(self, stretches: Sequence[slice]) -> Index:
-        """First sample of every whole frame in stretches of samples without a gap."""
+        """Numbers of the first samples of the whole frames in stretches without a gap [frames]."""
         return np.concatenate(
-            [np.arange(one.start, one.stop - self.length + 1, self.hop) for one in stretches]
+            [np.arange(part.start, part.stop - self.length + 1, self.hop) for part in stretches]
         )
 
     @cached_property
     def window(self) -> Float:
-        """g[n] = (1 - cos(2 pi (n + 1/2)/L))/2."""
+        """Window g[n] = (1 - cos(2 pi (n + 1/2)/L))/2 [L]."""
         return 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(self.length) + 0.5) / self.length)
 
     @cached_property
     def window_slope(self) -> Float:
-        """g'[n] per sample."""
+        """Slope g'[n] of the window [L], per sample."""
         n = np.arange(self.length) + 0.5
         return np.pi / self.length * np.sin(2 * np.pi * n / self.length)
 
 
 @lru_cache(maxsize=4)  # with their windows, for all recordings of a data set
 def _frames(length: int, overlap_fraction: float) -> Frames:
+    """Frames of a length and overlap, in exact arithmetic of the fraction as it is written."""
     hop = int((1 - exact(overlap_fraction)) * length + exact(0.5))
     return Frames(length, max(hop, 1))

@@ -10,11 +10,18 @@ from radhar_cli.processing.stft import Stft
 
 
 def synchrosqueeze(v: Complex, slope: Complex, least: float) -> Complex:
-    """T[l, k]: V[l, k] added up at bin k + round(Im(-V'/V) L/(2 pi)) modulo L; overwrites V.
+    """Synchrosqueezed transform T: V[l, k] added up at bin k + round(Im(-V'/V) L/(2 pi)) modulo L.
 
-    V, and V' with the window's slope, are [frames, L]. Both have their phase referenced to sample
-    L//2 of the frame, so that sum_k T = L g[L//2] x[l hop + L//2] where nothing is dropped, as are
-    coefficients below `least`, and those whose square is zero.
+    Both transforms have their phase referenced to sample L//2 of the frame, so that
+    sum_k T = L g[L//2] x[l hop + L//2] where nothing is dropped.
+
+    Args:
+        v: Transform V [frames, L], which is overwritten.
+        slope: Transform V' with the slope of the window [frames, L].
+        least: Magnitude below which coefficients are dropped, as are those whose square is 0.
+
+    Returns:
+        T [frames, L].
     """
     frames, length = v.shape
     power = v.real**2
@@ -28,23 +35,27 @@ def synchrosqueeze(v: Complex, slope: Complex, least: float) -> Complex:
     k += 0.5
     np.floor(k, out=k)
     np.clip(k, -(2.0**52), 2.0**52, out=k)  # shifts beyond the digits of a double
-    to = k.astype(np.intp)
-    to += np.arange(length)
-    beyond = to.view(np.uintp) >= length  # or less than 0
-    to[beyond] %= length
-    to += length * np.arange(frames)[:, None]
+    target = k.astype(np.intp)
+    target += np.arange(length)
+    outside = target.view(np.uintp) >= length  # or less than 0
+    target[outside] %= length
+    target += length * np.arange(frames)[:, None]
     v[dropped] = 0
     squeezed = np.zeros(v.size, v.dtype)
-    np.add.at(squeezed, to.ravel(), v.ravel())
+    np.add.at(squeezed, target.ravel(), v.ravel())
     return squeezed.reshape(v.shape)
 
 
 def power_blocks(stft: Stft, threshold: float, single: bool = False) -> Iterator[Float]:
-    """|T|^2 summed over the channels of a signal of one row [some frames, frequency].
+    """Yield |T|^2, summed over the channels, of blocks of frames [frames, frequency].
 
-    Coefficients below `threshold` times the largest |V| of the map are dropped. Powers may be
-    float32; the coefficients are not, as one within float32's rounding of the border between two
-    bins would move its power to another pixel.
+    Powers may be float32 (`single`); the coefficients are not, as one within float32's rounding of
+    the border between two bins would move its power to another pixel.
+
+    Args:
+        stft: Transform of a signal of one row.
+        threshold: Magnitude over the largest |V| of the map below which coefficients are dropped.
+        single: Whether powers are float32.
     """
     rows, frames = stft.signal.x[:, 0], stft.frames
 

@@ -16,12 +16,16 @@ BAND = 64  # rows or columns per matrix product, besides the overlap
 
 
 class Reduced(NamedTuple):
-    """What a data set needs of a power map."""
+    """A resized power map and its entropy.
 
-    # the map, or a function of it, resized [height, width] in float32, row 0 the highest frequency
-    # or the farthest range, in the scale of the map
+    Attributes:
+        cells: The map, or a function of it, [height, width] in float32, in the scale of the map;
+            row 0 is the highest frequency or the farthest range.
+        entropy: Entropy of the map, bits; NaN where it was not asked for.
+    """
+
     cells: Float
-    entropy: float  # of the map, bits; NaN where it was not asked for
+    entropy: float
 
 
 def reduced(
@@ -33,29 +37,35 @@ def reduced(
 ) -> Reduced:
     """Resize a power map that comes in blocks of columns, and sum up its entropy.
 
-    Blocks [some columns, rows] are of a scale near 1, the lowest row first, in the order of time.
-    Resizing is Pillow's BILINEAR with antialiasing, a weighted sum over rows and then columns; of a
-    function `of` the power instead if there is one, such as its decibels.
+    Resizing is Pillow's BILINEAR with antialiasing, a weighted sum over rows and then columns.
+
+    Args:
+        blocks: Blocks [columns, rows] of a scale near 1, the lowest row first, in the order of
+            time.
+        columns: Number of columns of all blocks.
+        size: (height, width) of the result.
+        of: Function of the power that is resized instead of it, such as its decibels.
+        entropy: Whether the entropy is computed.
 
     Raises:
-        RadharError: the map has an infinity or a NaN.
+        RadharError: The map has an infinity or a NaN.
     """
     height, width = size
-    cells, summed, first = np.zeros(size, np.float32), EntropySum(), 0
+    cells, entropy_sum, first = np.zeros(size, np.float32), EntropySum(), 0
     for block in blocks:
         if entropy:
-            summed.add(block)
+            entropy_sum.add(block)
         block = block if of is None else of(block)
         low = np.zeros((len(block), height), block.dtype)
         for rows, pixels, weights in _bands(0, block.shape[1], block.shape[1], height, low.dtype):
             low[:, pixels] += block[:, rows] @ weights
-        for some, pixels, weights in _bands(first, len(block), columns, width, low.dtype):
-            cells[:, pixels] += low[some].T @ weights
+        for band, pixels, weights in _bands(first, len(block), columns, width, low.dtype):
+            cells[:, pixels] += low[band].T @ weights
         first += len(block)
-    total = summed.total if entropy else float(cells.sum())
+    total = entropy_sum.total if entropy else float(cells.sum())
     if not np.isfinite(total):
         raise RadharError(f"the power map should be finite; it adds up to {total}")
-    return Reduced(cells[::-1], summed.bits if entropy else nan)
+    return Reduced(cells[::-1], entropy_sum.bits if entropy else nan)
 
 
 def reduced_map(
@@ -64,25 +74,30 @@ def reduced_map(
     of: Callable[[Float], Float] | None = None,
     entropy: bool = True,
 ) -> Reduced:
-    """`reduced` of a whole map [frequency or range, time] of any scale."""
+    """Resize a whole map [frequency or range, time] of any scale, as `reduced` does."""
     scaled = np.ldexp(power.T, -binary_exponent(power))
     return reduced([scaled], power.shape[1], size, of, entropy)
 
 
 def binary_exponent(power: Float) -> int:
-    """Of the power of two that brings a map near 1, into the range of float32."""
+    """Exponent of the power of two by which a map has a scale of 1/2 to 1."""
     return int(np.frexp(largest_power(power))[1])
 
 
 def unclipped(power: Float, exponent: int) -> tuple[Half, float]:
-    """Decibels [height, width] below the largest of power in units of 2^exponent, and that (dB)."""
+    """Decibels [height, width] of a power below its largest value, and that value in dB.
+
+    Args:
+        power: Power [height, width] in units of 2^exponent.
+        exponent: Binary exponent of the unit.
+    """
     level = decibels(power.astype(float), -FLOOR_DB)
     largest = max(largest_power(power), 10 ** (FLOOR_DB / 10))
     return level.astype(np.float16), 10 * (log10(largest) + exponent * log10(2))
 
 
 def levels(power: Float, dynamic_range_db: float) -> Levels:
-    """Levels 0 to 255 of resized power: from -dynamic_range_db below the largest, rounded.
+    """Grey levels 0 to 255 of resized power: from dynamic_range_db below the largest, rounded.
 
     A map of zeros is level 0 everywhere.
     """
@@ -95,9 +110,12 @@ def levels(power: Float, dynamic_range_db: float) -> Levels:
 
 
 def signed_levels(x: Float, size: tuple[int, int], clipped: float) -> Levels:
-    """Levels round(127.5 (1 + clip(x/q, -1, 1))) of resized real samples [range, time].
+    """Grey levels round(127.5 (1 + clip(x/q, -1, 1))) of resized real samples.
 
-    q is the quantile 1 - clipped of |x|. Of zeros all are in the middle, 128.
+    Args:
+        x: Samples [range, time]; zeros have the level 128.
+        size: (height, width) of the result.
+        clipped: Share of the samples that is clipped: q is the quantile 1 - clipped of |x|.
     """
     scaled = np.ldexp(x.T, -binary_exponent(np.abs(x)))
     cells = reduced([scaled], x.shape[1], size, entropy=False).cells.astype(float)
@@ -106,7 +124,7 @@ def signed_levels(x: Float, size: tuple[int, int], clipped: float) -> Levels:
 
 
 def decibels(power: Float, dynamic_range_db: float) -> Float:
-    """10 log10(P/max P), at least -dynamic_range_db, and that everywhere for a map of zeros."""
+    """Decibels 10 log10(P/max P), at least -dynamic_range_db, as everywhere in a map of zeros."""
     largest = largest_power(power)
     if largest == 0:
         return np.full_like(power, -dynamic_range_db)
@@ -122,7 +140,7 @@ def decibels(power: Float, dynamic_range_db: float) -> Float:
 def _bands(
     first: int, count: int, inputs: int, outputs: int, dtype: np.dtype[Any]
 ) -> Iterator[tuple[slice, slice, Float]]:
-    """Resizing `inputs` to `outputs`, for inputs from `first` on: y[pixels] += x[some] @ weights.
+    """Yield the weights that resize `count` inputs from `first` on: y[pixels] += x[band] @ weights.
 
     Every weight reaches but a few outputs: in bands there is little to multiply with zero.
     """
@@ -137,7 +155,7 @@ def _bands(
 def _triangles(
     start: int, stop: int, inputs: int, outputs: int, dtype: np.dtype[Any]
 ) -> tuple[slice, Float]:
-    """(outputs that inputs start .. stop - 1 reach, weights [stop - start, those outputs]).
+    """Outputs that inputs start .. stop - 1 reach, and weights [stop - start, those outputs].
 
     Output j is the mean of the inputs under a triangle around (j + 1/2) s, s = inputs/outputs,
     whose half width is s or 1, the larger.

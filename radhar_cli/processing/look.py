@@ -1,4 +1,4 @@
-"""What is looked at of an echo: a functional W of fast time, at some pulses of slow time.
+"""Looks at an echo: a functional W of fast time, at some pulses of slow time.
 
     x[k, m] = sum_n W[k, n] sum_j taps[j] s[n, p_m + j]
 
@@ -31,30 +31,35 @@ class FastTime(ABC):
     @property
     @abstractmethod
     def rows(self) -> int:
-        """K."""
+        """Number K of rows of x."""
 
     @property
     def white(self) -> bool:
-        """Whether rows of W are orthogonal: white noise is independent from row to row of x."""
+        """Whether rows of W are orthogonal, so that white noise is independent from row to row."""
         return True
 
     @property
     def rank(self) -> int:
-        """Independent processes that white noise is made of in x."""
+        """Number of independent processes that white noise consists of in x."""
         return self.rows
 
     @abstractmethod
     def __call__(self, s: Complex) -> Complex:
-        """W s [K, M] of a beat matrix s [N_ADC, M]."""
+        """Product W s [K, M] with a beat matrix s [N_ADC, M]."""
 
     @abstractmethod
     def colour(self, v: Complex, scale: float = 1.0) -> Complex:
-        """scale L v [K, M] of v [rank, M], L L^H = W W^H; v is lost."""
+        """Colour white noise as W does: scale L v [K, M], L L^H = W W^H.
+
+        Args:
+            v: White noise [rank, M] of variance 1, which may be overwritten.
+            scale: Factor.
+        """
 
 
 @dataclass(frozen=True)
 class RawSamples(FastTime):
-    """The samples themselves."""
+    """Raw samples: W is the identity."""
 
     waveform: Waveform
 
@@ -93,7 +98,7 @@ class RangeBins(FastTime):
     """Range bins, all that are kept or some consecutive ones, referred to as the waveform is."""
 
     waveform: Waveform  # the radar
-    bins: slice | None = None  # of the N_FFT/2; None is all
+    bins: slice | None = None  # some of the N_FFT/2 bins; None for all
 
     @property
     def rows(self) -> int:
@@ -101,7 +106,7 @@ class RangeBins(FastTime):
 
     @property
     def white(self) -> bool:
-        """A transform is orthogonal unless it is padded."""
+        """Whether the transform is orthogonal, as it is unless it is padded."""
         return self.waveform.orthogonal
 
     @property
@@ -132,7 +137,7 @@ class RangeBins(FastTime):
 
 @dataclass(frozen=True)
 class ProfileSamples(RangeBins):
-    """Real samples over range, as an impulse radar takes them: its own W, the identity."""
+    """Real samples over range, as an impulse radar takes them: W is the identity."""
 
     @property
     def white(self) -> bool:
@@ -142,7 +147,7 @@ class ProfileSamples(RangeBins):
         return s
 
     def colour(self, v: Complex, scale: float = 1.0) -> Complex:
-        """As real noise of variance scale^2."""
+        """Make real noise of variance scale^2 of v."""
         v.real *= scale * np.sqrt(2)
         v.imag = 0
         return v
@@ -150,7 +155,7 @@ class ProfileSamples(RangeBins):
 
 @lru_cache(maxsize=4)
 def _colour(waveform: Waveform, first: int, stop: int) -> Complex:
-    """W W^H [k, k'] = sum_n exp(j 2 pi (k - k')(n - n0)/N_FFT); with W^H = Q R it is R^H R."""
+    """Factor R^H of W W^H = sum_n exp(j 2 pi (k - k')(n - n0)/N_FFT) for bins first .. stop - 1."""
     n = np.arange(waveform.n_adc) - waveform.n0
     w = np.exp(2j * np.pi * np.mod(np.outer(np.arange(first, stop), n) / waveform.n_fft, 1))
     return np.linalg.qr(w.conj().T).R.conj().T
@@ -158,7 +163,7 @@ def _colour(waveform: Waveform, first: int, stop: int) -> Complex:
 
 @lru_cache(maxsize=4)
 def weights(waveform: Waveform) -> Complex:
-    """D[n] = sum_k exp(+j 2 pi k (n - n0)/N_FFT) [N_ADC], k over the kept bins."""
+    """Weights D[n] = sum_k exp(+j 2 pi k (n - n0)/N_FFT) [N_ADC], k over the kept bins."""
     n = np.arange(waveform.n_adc) - waveform.n0
     # A geometric series; its ratio is 1 where n - n0 = 0 mod N_FFT.
     angle = np.pi * n / waveform.n_fft
@@ -177,15 +182,15 @@ def noise_gain(waveform: Waveform) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """x[k, m], as the module has it."""
+    """Samples x[k, m] of an echo after a canceller: which of fast time, and at which pulses."""
 
-    name: str  # of the look, and of its random streams
+    name: str  # name of the look, and of its random streams
     fast: FastTime  # W
     pulses: Index | range  # p_m [M], rising
-    taps: tuple[float, ...] = (1.0,)  # of a canceller that x is seen after
+    taps: tuple[float, ...] = (1.0,)  # taps of the canceller
     # where rows are drawn one after the other, the pulses of each that count
     spans: Sequence[slice] | None = None
-    # what each impairment keeps from one block of pulses to the next, by its id
+    # state of each impairment from one block of pulses to the next, by its id
     _states: dict[int, tuple[object, Any]] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -196,46 +201,54 @@ class Look:
         taps: tuple[float, ...] = (1.0,),
         spans: Sequence[slice] | None = None,
     ) -> "Look":
-        """At all pulses of the waveform."""
+        """Look at all pulses of the waveform."""
         return cls(name, fast, range(fast.waveform.n_pulses - len(taps) + 1), taps, spans)
 
     @property
     def count(self) -> int:
-        """M."""
+        """Number M of pulses."""
         return len(self.pulses)
 
     def state_of(self, impairment: object, start: Callable[[str], State]) -> State:
-        """What an impairment keeps from one block of pulses to the next, of its own.
+        """State of an impairment from one block of pulses to the next.
 
         Args:
-            impairment: the one that asks.
-            start: makes the first state, of a name for random streams: that of the look, for the
+            impairment: The impairment that asks.
+            start: Makes the first state from a name for random streams: that of the look, for the
                 second and later impairments of the same class with their number.
 
         Returns:
             What `start` made, the same for all parts of a look.
         """
         if id(impairment) not in self._states:
-            earlier = sum(type(one) is type(impairment) for one, _ in self._states.values())
+            earlier = sum(type(other) is type(impairment) for other, _ in self._states.values())
             name = f"{self.name} {earlier + 1}" if earlier else self.name
             self._states[id(impairment)] = impairment, start(name)
         state: State = self._states[id(impairment)][1]
         return state
 
     def part(self, first: int, stop: int) -> "Look":
-        """Some consecutive columns, with the same states of impairments."""
+        """Look at the pulses first .. stop - 1 of this one, with the same states of impairments."""
         return replace(self, pulses=self.pulses[first:stop])
 
-    def taken(self, process: Callable[[Index], Complex]) -> Complex:
-        """sum_j taps[j] v[..., p_m + j] of a process v that any pulses may be asked of."""
-        pulses = np.asarray(self.pulses)
-        taken: Complex = self.taps[0] * process(pulses)
-        for lag, tap in enumerate(self.taps[1:], 1):
-            taken += tap * process(pulses + lag)
-        return taken
+    def after_taps(self, process: Callable[[Index], Complex]) -> Complex:
+        """Process v after the canceller: sum_j taps[j] v[..., p_m + j] [..., M].
 
-    def in_order(self, following: Callable[[int], Complex]) -> Complex:
-        """`taken` of a process [rank, pulses] of which `following` makes the next few pulses."""
+        Args:
+            process: Makes v [..., pulses] at any numbers of pulses.
+        """
+        pulses = np.asarray(self.pulses)
+        cancelled: Complex = self.taps[0] * process(pulses)
+        for lag, tap in enumerate(self.taps[1:], 1):
+            cancelled += tap * process(pulses + lag)
+        return cancelled
+
+    def after_taps_streamed(self, following: Callable[[int], Complex]) -> Complex:
+        """Process v after the canceller [rank, M], where v is made pulse by pulse.
+
+        Args:
+            following: Makes the next few pulses of v [rank, pulses], of a given number.
+        """
         pulses, reach = np.asarray(self.pulses), len(self.taps) - 1
         if reach == 0 and self.count == pulses[-1] - pulses[0] + 1:
             return following(self.count)

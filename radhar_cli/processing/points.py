@@ -1,4 +1,4 @@
-"""Point clouds as the firmware of TI's xWR14xx demo makes them (out of its source).
+"""Point clouds as the firmware of TI's xWR14xx demo makes them, by its source.
 
 Spectra here have TI's sign, the conjugate of radhar's; clouds have radhar's axes: x ahead, y left,
 z up of the radar, Doppler positive approaching.
@@ -18,11 +18,11 @@ from radhar_cli.radar.board import Board, longest_rows
 from radhar_cli.radar.detection import Cfar, Detection
 
 COLUMNS = ("x", "y", "z", "doppler", "intensity", "snr_db", "range_index", "doppler_index")
-BINS = 64  # of the angle FFT
-MAX_POINTS = 64  # of a frame
+BINS = 64  # bins of the angle FFT
+MAX_POINTS = 64  # most points of a frame
 NOISE_LSB = 1.5  # rms of a Doppler cell's noise in units of the fixed-point numbers
 XYZ_STEP = 2.0**-10  # m
-NOISE_FRAMES = 8  # that noise is estimated from
+NOISE_FRAMES = 8  # frames from which the noise is estimated
 
 
 class Cloud(NamedTuple):
@@ -33,7 +33,7 @@ class Cloud(NamedTuple):
 
     @classmethod
     def of(cls, frames: list[Float]) -> "Cloud":
-        """Of the points of each frame [n, 8]."""
+        """Cloud of the points of each frame [n, 8]."""
         start = np.cumsum([0, *map(len, frames)])
         points = np.concatenate([np.empty((0, len(COLUMNS))), *frames])
         return cls(points.astype(np.float32), start.astype(np.int64))
@@ -42,15 +42,20 @@ class Cloud(NamedTuple):
 def board_points(
     cube: Complex, board: Board, detection: Detection, quantise: bool, carrier: float | None = None
 ) -> Cloud:
-    """The points of every frame of a cube [frame, loop, virtual, sample].
+    """Points of every frame of a cube.
 
-    `quantise` rounds as fixed-point numbers do, whose unit follows from the noise; `carrier` (Hz)
-    is that of the Doppler axis, None the centre frequency.
+    Args:
+        cube: Samples [frame, loop, virtual, sample].
+        board: The board that took them.
+        detection: Detection settings of its .cfg.
+        quantise: Whether to round as fixed-point numbers do, whose unit follows from the noise.
+        carrier: Frequency of the Doppler axis, Hz; None for the centre frequency.
     """
     fast, slow = np.blackman(board.samples), np.hanning(board.loops)
     fast, slow = fast / fast.sum(), slow / slow.sum()
     lsb = noise_rms(cube, board, fast, slow) / NOISE_LSB if quantise else 0.0
-    step, found = board.doppler_step(carrier), list[Float]()
+    step = board.doppler_step(carrier)
+    frames = list[Float]()
     # Bins in TI's order: the conjugate of a signal has the opposite frequency.
     negated = -np.arange(board.n_doppler) % board.n_doppler
     for frame in range(len(cube)):
@@ -58,17 +63,21 @@ def board_points(
         samples = without_mean(samples) if detection.remove_mean else samples
         x = range_spectrum(samples, board, fast)
         spectrum = doppler_spectrum(x, board, slow)[0].conj()
-        found.append(_frame_points(spectrum[negated], board, detection, lsb, step))
-    return Cloud.of(found)
+        frames.append(_frame_points(spectrum[negated], board, detection, lsb, step))
+    return Cloud.of(frames)
 
 
 def noise_rms(cube: Complex, board: Board, fast: Float, slow: Float) -> float:
     """Rms of the noise of a range-Doppler cell: people fill less than half of the cells.
 
-    The sums of the windows are 1.
+    Args:
+        cube: Samples [frame, loop, virtual, sample].
+        board: The board that took them.
+        fast: Window over the samples of a chirp, of sum 1.
+        slow: Window over the loops, of sum 1.
     """
-    some = np.unique(np.linspace(0, len(cube) - 1, min(len(cube), NOISE_FRAMES)).astype(int))
-    x = doppler_spectrum(range_spectrum(cube[some], board, fast), board, slow)
+    frames = np.unique(np.linspace(0, len(cube) - 1, min(len(cube), NOISE_FRAMES)).astype(int))
+    x = doppler_spectrum(range_spectrum(cube[frames], board, fast), board, slow)
     moving = x[:, 2:-1] if board.n_doppler > 4 else x  # what stands still fills three bins
     return float(np.sqrt(np.median(moving.real**2 + moving.imag**2) / np.log(2)))
 
@@ -86,7 +95,7 @@ def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, st
     hit[:, : detection.first_bin] = False
     if detection.last_bin is not None:
         hit[:, detection.last_bin + 1 :] = False
-    doppler, ranges = (found[:MAX_POINTS] for found in np.nonzero(hit))
+    doppler, ranges = (bins[:MAX_POINTS] for bins in np.nonzero(hit))
     symbols = x[doppler, :, ranges]  # [n, virtual]
     if lsb > 0:
         symbols = np.round(symbols.real / lsb) + 1j * np.round(symbols.imag / lsb)
@@ -112,9 +121,9 @@ def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, st
 
 
 def _above(d: Float, cfar: Cfar, axis: int) -> Float:
-    """Cells over the noise that their neighbours along an axis show, dB; -inf without any.
+    """Excess (dB) of cells d [Doppler, range] (dB) over the noise of neighbours along an axis.
 
-    A side that lacks cells is left out.
+    It is -inf without neighbours; a side that lacks cells is left out.
     """
     d = np.moveaxis(d, axis, -1)
     reach, count = cfar.guard + cfar.window, d.shape[-1]
@@ -135,23 +144,32 @@ def _above(d: Float, cfar: Cfar, axis: int) -> Float:
 
 
 def _peaks(d: Float, grouping: tuple[bool, bool]) -> Bool:
-    """Cells [Doppler, range] not below their neighbours; Doppler closes on itself."""
-    kept = np.ones(d.shape, bool)
+    """Whether cells [Doppler, range] are not below their neighbours; Doppler closes on itself."""
+    is_peak = np.ones(d.shape, bool)
     wide = np.pad(d, ((0, 0), (1, 1)), constant_values=-np.inf)
     wide = np.concatenate([wide[-1:], wide, wide[:1]])
     rows = (-1, 0, 1) if grouping[1] else (0,)
     columns = (-1, 0, 1) if grouping[0] else (0,)
     for i in rows:
         for j in columns:
-            kept &= d >= wide[1 + i : 1 + i + len(d), 1 + j : 1 + j + d.shape[1]]
-    return kept
+            is_peak &= d >= wide[1 + i : 1 + i + len(d), 1 + j : 1 + j + d.shape[1]]
+    return is_peak
 
 
 def _angles(
     symbols: Complex, board: Board, second: float | None, whole: bool
 ) -> tuple[Index, Float, Float, Float]:
-    """Symbol, intensity, right and up [n] of the first peak over angle of symbols [n, virtual], and
-    of second ones."""
+    """Directions of the first peak over angle of each symbol, and of second peaks.
+
+    Args:
+        symbols: Samples [n, virtual] of the detected cells.
+        board: The board.
+        second: Least height of a second peak over the first; None for no second peaks.
+        whole: Whether heights are whole numbers.
+
+    Returns:
+        Number of the symbol, intensity, and direction sines to the right and up [points].
+    """
     import scipy.fft  # slow to import
 
     row, upper, aside, above = elevation_pair(board)
@@ -161,11 +179,13 @@ def _angles(
     n = np.arange(len(symbols))
     bins = heights.argmax(axis=1)
     if second is not None:
-        rest = np.where(_flanks(heights, bins), -1, heights)
-        least, other = second * heights[n, bins], rest.argmax(axis=1)
-        more = np.flatnonzero(rest[n, other] > (np.floor(least) if whole else least))
-        more = more[: MAX_POINTS - n.size]
-        n, bins = np.concatenate([n, more]), np.concatenate([bins, other[more]])
+        other_heights = np.where(_flanks(heights, bins), -1, heights)
+        least, second_bins = second * heights[n, bins], other_heights.argmax(axis=1)
+        with_second = np.flatnonzero(
+            other_heights[n, second_bins] > (np.floor(least) if whole else least)
+        )
+        with_second = with_second[: MAX_POINTS - n.size]
+        n, bins = np.concatenate([n, with_second]), np.concatenate([bins, second_bins[with_second]])
     right = 2 * np.where(bins < BINS // 2, bins, bins - BINS) / BINS
     up = np.zeros(n.size)
     if upper:
@@ -175,9 +195,11 @@ def _angles(
 
 
 def elevation_pair(board: Board) -> tuple[list[int], list[int], float, float]:
-    """The longest row, the elements of the row nearest to it, and how far left and up these begin.
+    """Rows of elements from which elevation follows.
 
-    Offsets are in half wavelengths; without another row its elements are none.
+    Returns:
+        Elements of the longest row; those of the row nearest to it, none without another row; and
+        how far to the left and up the latter begins, half wavelengths.
     """
     row = longest_rows(board.places, 0)[0]
     places = board.places
@@ -192,21 +214,22 @@ def elevation_pair(board: Board) -> tuple[list[int], list[int], float, float]:
 
 
 def _flanks(m: Float, peak: Index) -> Bool:
-    """Bins [n, angle] of the peak of each row [n] and of what falls off beside it; angles close."""
-    kept: Bool = np.arange(m.shape[1]) == peak[:, None]
-    for way in (-1, 1):
-        at = (peak[:, None] + way * np.arange(m.shape[1])) % m.shape[1]
-        heights = np.take_along_axis(m, at, axis=1)
+    """Whether bins [n, angle] belong to the peak [n] or to its flanks; angles close."""
+    is_flank: Bool = np.arange(m.shape[1]) == peak[:, None]
+    for direction in (-1, 1):
+        bins = (peak[:, None] + direction * np.arange(m.shape[1])) % m.shape[1]
+        heights = np.take_along_axis(m, bins, axis=1)
         falls = np.logical_and.accumulate(heights[:, 1:] <= heights[:, :-1], axis=1)
         n, after = np.nonzero(falls)
-        kept[n, at[n, after + 1]] = True
-    return kept
+        is_flank[n, bins[n, after + 1]] = True
+    return is_flank
 
 
 def _in_view(points: Float, detection: Detection) -> Bool:
+    """Whether points [n, 8] lie in the fields of view [n]."""
     x, y, z, doppler = points[:, :4].T
     angles = np.degrees(np.arctan2(-y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
-    seen = np.ones(len(points), bool)
+    inside = np.ones(len(points), bool)
     for value, limits in (
         (angles[0], detection.azimuth_deg),
         (angles[1], detection.elevation_deg),
@@ -214,5 +237,5 @@ def _in_view(points: Float, detection: Detection) -> Bool:
         (-doppler, detection.doppler_mps),
     ):
         if limits is not None:
-            seen &= (value >= limits[0]) & (value <= limits[1])
-    return seen
+            inside &= (value >= limits[0]) & (value <= limits[1])
+    return inside

@@ -10,16 +10,16 @@ from radhar_cli.processing.entropy import entropy_bits
 
 @dataclass(frozen=True)
 class Axis:
-    """What the rows or the columns of a map mean."""
+    """Quantity, unit and values of the rows or the columns of a map."""
 
     name: str  # frequency, range, time, ...
     unit: str  # Hz, m, s, ...
-    values: Float = field(repr=False)  # of every row or column, evenly spaced, lowest first
+    values: Float = field(repr=False)  # value of every row or column, even, lowest first
     cell: float = 0.0  # width of the cell of a single value; several have their spacing
 
     @property
     def edges(self) -> tuple[float, float]:
-        """Outer edges of the first and the last cell."""
+        """Outer edges of the first and the last cell, in the unit of the axis."""
         several = self.values.size > 1
         half = 0.5 * (float(self.values[1] - self.values[0]) if several else self.cell)
         return float(self.values[0] - half), float(self.values[-1] + half)
@@ -27,10 +27,12 @@ class Axis:
 
 @dataclass(frozen=True)
 class PowerMap:
-    """Power for unit transmit power."""
+    """A map of power for unit transmit power.
+
+    Time runs along the columns of every map of a data set.
+    """
 
     power: Float = field(repr=False)  # [rows, columns], lowest first
-    # rows, columns: the axes; time runs along the columns of every map of a data set
     rows: Axis
     columns: Axis
     # the samples with their sign [rows, columns], where those are shown
@@ -38,12 +40,12 @@ class PowerMap:
 
     @property
     def shown(self) -> Float:
-        """The samples with their sign where those are shown, else the power."""
+        """Values [rows, columns] of the image: samples with their sign if known, else power."""
         return self.power if self.real is None else self.real
 
     @property
     def entropy(self) -> float:
-        """Of the power, bits."""
+        """Entropy of the power, bits."""
         return entropy_bits(self.power)
 
     @property
@@ -54,16 +56,16 @@ class PowerMap:
 
 @dataclass(frozen=True)
 class MapImage:
-    """The image of a map."""
+    """Image of a map."""
 
     levels: Levels = field(repr=False)  # grey levels [height, width], row 0 at the top
     entropy: float  # of the power map, bits; NaN where it is not requested
     # outer edges of the map (columns from, columns to, rows from, rows to)
     extent: tuple[float, float, float, float]
-    # of the resized power below its largest, float16 [height, width], or None where they are not
-    # requested
+    # decibels of the resized power below its largest, float16 [height, width], or None where they
+    # are not requested
     decibels: Half | None = field(default=None, repr=False)
-    largest_db: float = nan  # that largest power, dB for unit transmit power
+    largest_db: float = nan  # largest resized power, dB for unit transmit power
 
     @property
     def sha256(self) -> str:

@@ -9,18 +9,26 @@ from radhar_cli.radar.waveform import Waveform
 
 
 def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None)) -> Complex:
-    """S[k, m] [K, M] = sum_n s[n, m] exp(+j 2 pi k (n - n0)/N_FFT), k < N_FFT/2, of s [N_ADC, M].
+    """Range bins S[k, m] = sum_n s[n, m] exp(+j 2 pi k (n - n0)/N_FFT), k < N_FFT/2.
 
     The conjugate kernel puts a target at range bin k = R/range_step; n0 = N_ADC/2 refers the bins
     to mid-chirp (docs/physics/model.md, "Where in the chirp the Doppler is read").
+
+    Args:
+        s: Beat matrix [N_ADC, M].
+        waveform: The radar.
+        bins: Range bins that are wanted, among those that are kept.
+
+    Returns:
+        S [K, M] of those bins.
     """
     ifft: Any = np.fft.ifft
     if s.dtype == np.complex64:  # which scipy transforms faster, but it is slow to import
         from scipy.fft import ifft
     # The transform runs along contiguous memory where s is the transpose of [M, N_ADC].
-    kept: Complex = ifft(s.T, waveform.n_fft, axis=1, norm="forward").T
-    kept = kept[: waveform.n_bins][bins]
+    profile: Complex = ifft(s.T, waveform.n_fft, axis=1, norm="forward").T
+    profile = profile[: waveform.n_bins][bins]
     if waveform.n0:
         k = np.arange(waveform.n_bins)[bins, None]
-        kept = kept * np.exp(-2j * np.pi * np.mod(k * waveform.n0 / waveform.n_fft, 1))
-    return kept
+        profile = profile * np.exp(-2j * np.pi * np.mod(k * waveform.n0 / waveform.n_fft, 1))
+    return profile

@@ -21,7 +21,7 @@ BLOCK_COEFFICIENTS = 2**20
 
 @dataclass(frozen=True, eq=False)
 class Stft:
-    """X[l, k] = sum_n x[l hop + n] g[n] exp(-j 2 pi k (n - L//2)/N) of a signal, and its axes.
+    """Transform X[l, k] = sum_n x[l hop + n] g[n] exp(-j 2 pi k (n - L//2)/N), and its axes.
 
     Frames come in blocks that bound the memory. Coefficients are those of 2^-exponent x, whose
     largest part is 1/2 to 1, so that no power of them overflows or vanishes, in float32 either.
@@ -36,24 +36,24 @@ class Stft:
 
     @property
     def size(self) -> int:
-        """N."""
+        """Number N of frequencies."""
         return self.bins or self.frames.length
 
     @cached_property
     def starts(self) -> Index:
-        """First sample of every frame."""
+        """Number of the first sample of every frame [frames]."""
         return self.frames.starts(self.signal.times.slices)
 
     @cached_property
     def frequency(self) -> Axis:
-        """Doppler frequency of the rows of a map, Hz, rising."""
+        """Axis of Doppler frequencies of the rows of a map, Hz, rising."""
         return Axis(
             "frequency", "Hz", np.fft.fftshift(np.fft.fftfreq(self.size, 1 / self.signal.prf))
         )
 
     @cached_property
     def time(self) -> Axis:
-        """Middle of every frame, s."""
+        """Axis of the middles of the frames, s."""
         length, prf = self.frames.length, self.signal.prf
         middles = self.signal.times.times(self.starts) + (length - 1) / 2 / prf
         return Axis("time", "s", middles, length / prf)
@@ -70,55 +70,65 @@ class Stft:
 
     @cached_property
     def blocks(self) -> list[slice]:
-        """Frames of every block: BLOCK_COEFFICIENTS of them, or one frame."""
+        """Frames of every block: of BLOCK_COEFFICIENTS coefficients, or one frame."""
         count, most = self.starts.size, max(1, BLOCK_COEFFICIENTS // self.size)
         return [slice(first, min(first + most, count)) for first in range(0, count, most)]
 
     def transform(
         self, row: Complex, frames: slice, window: Float, magnitudes: bool = False
     ) -> Any:
-        """X [some frames, N], or |X|, of a row [M] of the signal, with a window [L]."""
+        """Transform X [frames, N], or |X|, of a row of the signal.
+
+        Args:
+            row: Samples [M].
+            frames: Consecutive frames.
+            window: Window g, or its slope [L].
+            magnitudes: Whether |X| is made.
+        """
         starts, length = self.starts[frames], self.frames.length
         dtype: Any = np.complex64 if self.single else np.complex128
         x = (row[starts[0] : starts[-1] + length] * 2.0**-self.exponent).astype(dtype)
-        cut = np.lib.stride_tricks.sliding_window_view(x, length)
+        segments = np.lib.stride_tricks.sliding_window_view(x, length)
         gapless = starts[-1] - starts[0] == (starts.size - 1) * self.frames.hop
-        cut = cut[:: self.frames.hop] if gapless else cut[starts - starts[0]]
-        found = np.empty((len(cut), self.size), x.real.dtype if magnitudes else dtype)
-        fill_in_spectra(found, cut, window)
-        return found
+        segments = segments[:: self.frames.hop] if gapless else segments[starts - starts[0]]
+        spectra = np.empty((len(segments), self.size), x.real.dtype if magnitudes else dtype)
+        fill_in_spectra(spectra, segments, window)
+        return spectra
 
     def power_blocks(self) -> Iterator[Float]:
-        """sum |X|^2 over channels and rows, or (sum |X|)^2 [some frames, N], rising frequency."""
+        """Yield sum |X|^2 over channels and rows, or (sum |X|)^2, of blocks [frames, N].
+
+        Frequencies rise. Each frame adds up the rows that the gate shows.
+        """
         for block in self.blocks:
-            each = self._shown(block)
+            is_shown = self._shown(block)
             total: Float | None = None
             for channel in self.signal.x:
-                for x, shown in zip(channel, each, strict=True):
-                    some = np.flatnonzero(shown)
-                    if not some.size:
+                for x, shown in zip(channel, is_shown, strict=True):
+                    shown_frames = np.flatnonzero(shown)
+                    if not shown_frames.size:
                         continue
-                    first, last = int(some[0]), int(some[-1]) + 1
+                    first, last = int(shown_frames[0]), int(shown_frames[-1]) + 1
                     frames = slice(block.start + first, block.start + last)
-                    size = self.transform(x, frames, self.frames.window, magnitudes=True)
+                    magnitude = self.transform(x, frames, self.frames.window, magnitudes=True)
                     if not self.magnitudes:
-                        size *= size
-                    if total is None and some.size == shown.size:
-                        total = size
+                        magnitude *= magnitude
+                    if total is None and shown_frames.size == shown.size:
+                        total = magnitude
                         continue
                     if total is None:
-                        total = np.zeros((shown.size, self.size), size.dtype)
-                    if some.size == len(size):  # the usual case: frames without a gap
-                        total[first:last] += size
+                        total = np.zeros((shown.size, self.size), magnitude.dtype)
+                    if shown_frames.size == len(magnitude):  # the usual case: frames without a gap
+                        total[first:last] += magnitude
                     else:
-                        total[some] += size[some - first]
+                        total[shown_frames] += magnitude[shown_frames - first]
             assert total is not None, "a gate shows at least one row of every frame"
             if self.magnitudes:
                 total *= total
             yield np.fft.fftshift(total, axes=1)
 
     def _shown(self, block: slice) -> Bool:
-        """Which rows [rows, some frames] each frame shows."""
+        """Whether a row is shown by a frame [rows, frames]."""
         rows = np.arange(self.signal.x.shape[1])[:, None]
         if self.gate is None:
             return np.ones((rows.size, block.stop - block.start), bool)

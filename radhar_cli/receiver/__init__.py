@@ -1,1 +1,1 @@
-"""What a receiver does to an echo: noise and other impairments."""
+"""Noise and other impairments by which a receiver changes an echo."""

@@ -25,23 +25,25 @@ class FlickerNoise(Impairment):
 
     sigma: float  # standard deviation of the white noise per complex raw sample
     stream: Callable[[str], np.random.Generator]  # makes the random stream of a name
-    corner: float  # where both are equally strong, Hz
+    corner: float  # frequency where both are equally strong, Hz
     slope: float  # dB per decade
 
     def apply(self, x: Complex, look: Look) -> Complex:
-        """x + sigma v, v as white noise over fast time: W W^H."""
+        """Add sigma v to x [K, M]; over fast time v is white: its covariance is W W^H."""
 
-        def started(name: str) -> _Processes:
+        def start_processes(name: str) -> _Processes:
             poles = self.processes(look.fast.waveform)
             rngs = [self.stream(f"flicker {name} {k}") for k in range(len(poles[0]))]
             return _Processes(rngs, *poles, look.fast.rank)
 
-        noisy = look.fast.colour(look.in_order(look.state_of(self, started)), self.sigma)
+        noisy = look.fast.colour(
+            look.after_taps_streamed(look.state_of(self, start_processes)), self.sigma
+        )
         noisy += x
         return noisy
 
     def processes(self, waveform: Waveform) -> tuple[Float, Float]:
-        """Pole and standard deviation of each process, for white noise of variance 1."""
+        """Poles and standard deviations [processes], for white noise of variance 1."""
         return _processes(self.corner / waveform.prf, self.slope / 10, 1 / waveform.n_pulses)
 
 
@@ -51,15 +53,15 @@ class _Processes:
     def __init__(
         self, rngs: list[np.random.Generator], poles: Float, deviations: Float, rows: int
     ) -> None:
-        self.each = list(zip(rngs, poles, deviations, strict=True))
-        self.state = [pole * circular_gaussian(rng, (1, rows)).T for rng, pole, _ in self.each]
+        self._parts = list(zip(rngs, poles, deviations, strict=True))
+        self.state = [pole * circular_gaussian(rng, (1, rows)).T for rng, pole, _ in self._parts]
 
     def __call__(self, count: int) -> Complex:
         """The next pulses [rows, count]."""
         from scipy.signal import lfilter  # slow to import
 
         total = np.zeros((len(self.state[0]), count), complex)
-        for k, (rng, pole, sd) in enumerate(self.each):
+        for k, (rng, pole, sd) in enumerate(self._parts):
             v = np.sqrt(1 - pole**2) * circular_gaussian(rng, (count, len(total))).T
             v, self.state[k] = lfilter([1.0], [1.0, -pole], v, axis=1, zi=self.state[k])
             total += sd * v
@@ -68,7 +70,13 @@ class _Processes:
 
 @lru_cache(maxsize=8)
 def _processes(corner: float, power: float, lowest: float) -> tuple[Float, Float]:
-    """Poles and standard deviations; frequencies over the PRF. Least squares of the ratio to 1."""
+    """Poles and standard deviations [processes] whose spectrum has the least relative error.
+
+    Args:
+        corner: Frequency where both noises are equally strong, over the PRF.
+        power: Exponent a of the spectrum.
+        lowest: Lowest frequency, over the PRF.
+    """
     from scipy.optimize import nnls  # slow to import
 
     below = 0.1 * lowest  # where the steepest have their knee: they still rise at 1/T

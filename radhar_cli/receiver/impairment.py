@@ -1,4 +1,4 @@
-"""The interface of what happens to an echo between the antenna and the processing."""
+"""Interface of impairments, which act on an echo between the antenna and the processing."""
 
 from radhar_cli.arrays import Complex
 from radhar_cli.errors import RadharError
@@ -14,9 +14,17 @@ class Impairment:
     additive: bool = True
 
     def apply(self, x: Complex, look: Look) -> Complex:
-        """What becomes of an echo [K, M] as `look` shows it: of `RawSamples` unless it is additive.
+        """Impair an echo.
 
-        A recording may come in consecutive blocks: `look.state_of(self, start)` is what it keeps
+        A recording may come in consecutive blocks: `look.state_of(self, start)` holds what is kept
         from one to the next.
+
+        Args:
+            x: The echo [K, M] as `look` shows it, which may be overwritten; raw samples unless the
+                impairment is additive.
+            look: The look.
+
+        Returns:
+            The impaired echo [K, M].
         """
         raise RadharError(f"{type(self).__name__}: has no method apply; should have it")

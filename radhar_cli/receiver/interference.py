@@ -16,36 +16,35 @@ BATCH = 256  # switching times drawn at once
 
 
 @dataclass(frozen=True)
-class Line(Impairment):
-    """i[n, m] = a c[n] exp(j 2 pi f m/PRF), |c[n]| = 1 of random phase, the same in all pulses.
+class InterferenceLine(Impairment):
+    """Tone i[n, m] = a c[n] exp(j 2 pi f m/PRF), |c[n]| = 1 of random phase, the same each pulse.
 
     So a line, such as a power supply's, lies at all ranges, in each bin with another strength. A
     real one, 2 a c[n] cos(2 pi f m/PRF), is as strong at -f.
     """
 
-    amplitude: float  # a, of a raw sample
+    amplitude: float  # a in a raw sample
     frequency: float  # f, Hz; beyond PRF/2 it aliases
     waveform: Waveform  # the radar
     stream: Callable[[str], np.random.Generator]  # makes the random stream of a name
-    name: str  # of the line
-    # on, off: mean times for which it is there and is not, s; always there where off is 0
-    on: float = 1.0
-    off: float = 0.0
+    name: str  # name of the line
+    mean_on_s: float = 1.0  # mean time for which it is on, s
+    mean_off_s: float = 0.0  # mean time for which it is off, s; 0 if it is always on
     real: bool = False  # whether it is on both sides of zero
 
     @cached_property
     def code(self) -> Complex:
-        """a c[n] [N_ADC]."""
+        """Amplitude and phase a c[n] [N_ADC] of a pulse."""
         turns: Float = self.stream(self.name).random(self.waveform.n_adc)
         code: Complex = self.amplitude * np.exp(2j * np.pi * turns)
         return code
 
     def tone(self, pulses: Index) -> Complex:
-        """exp(j 2 pi f m/PRF) of pulse numbers, or twice its real part."""
+        """Tone exp(j 2 pi f m/PRF), or twice its real part, at pulses m; 0 while it is off."""
         tone: Complex = unit_phasor(-np.mod(pulses * (self.frequency / self.waveform.prf), 1))
         if self.real:
             tone += tone.conj()
-        if self.off == 0:
+        if self.mean_off_s == 0:
             return tone
         passed = np.searchsorted(self.switches, pulses / self.waveform.prf, side="right")
         tone *= passed % 2
@@ -53,16 +52,20 @@ class Line(Impairment):
 
     @cached_property
     def switches(self) -> Float:
-        """When the line goes on, off, on and so on, s: exponential times, from the stationary
-        state at 0 s. The first is -inf of a line that is there then."""
-        rng, at, times = self.stream(f"{self.name} times"), 0.0, [np.empty(0)]
-        already = rng.random() * (self.on + self.off) < self.on
-        means = np.tile([self.off, self.on], BATCH)[already:][: 2 * BATCH - 2]
-        while at <= self.waveform.n_pulses / self.waveform.prf:
-            times.append(at + np.cumsum(rng.exponential(means)))
-            at = float(times[-1][-1])
-        return np.concatenate([[-np.inf] if already else [], *times])
+        """Times (s) at which the line goes on, off, on and so on.
+
+        Intervals are exponential, the state at 0 s is the stationary one. The first time is -inf
+        for a line that is on then.
+        """
+        rng, last = self.stream(f"{self.name} times"), 0.0
+        times = [np.empty(0)]
+        starts_on = rng.random() * (self.mean_on_s + self.mean_off_s) < self.mean_on_s
+        means = np.tile([self.mean_off_s, self.mean_on_s], BATCH)[starts_on:][: 2 * BATCH - 2]
+        while last <= self.waveform.n_pulses / self.waveform.prf:
+            times.append(last + np.cumsum(rng.exponential(means)))
+            last = float(times[-1][-1])
+        return np.concatenate([[-np.inf] if starts_on else [], *times])
 
     def apply(self, x: Complex, look: Look) -> Complex:
-        """x + W c[n] times the tone, seen after the canceller."""
-        return x + look.fast(self.code[:, None]) * look.taken(self.tone)
+        """Add the line to x [K, M]: W c[n] times the tone, after the canceller."""
+        return x + look.fast(self.code[:, None]) * look.after_taps(self.tone)

@@ -11,7 +11,7 @@ from radhar_cli.receiver.impairment import Impairment
 
 
 def noise_variance(signal_power: float, snr_db: float) -> float:
-    """sigma_n^2 = P_s/10^(SNR/10) per complex raw sample."""
+    """Variance of the noise of a complex raw sample, sigma_n^2 = P_s/10^(SNR/10)."""
     return signal_power / 10 ** (snr_db / 10)
 
 
@@ -49,28 +49,33 @@ def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Com
             v *= np.sqrt(np.sum(np.square(look.taps)))
     else:
         needed = np.unique(np.asarray(look.pulses) + np.arange(reach + 1)[:, None])
-        drawn = circular_gaussian(rng, (needed.size, rank)).T
-        v = look.taken(lambda pulses: drawn[:, np.searchsorted(needed, pulses)])
+        samples = circular_gaussian(rng, (needed.size, rank)).T
+        v = look.after_taps(lambda pulses: samples[:, np.searchsorted(needed, pulses)])
     return fast.colour(v, sigma)
 
 
 @dataclass(frozen=True)
 class WhiteNoise(Impairment):
-    """White noise of one receive channel."""
+    """White noise of a receive channel."""
 
     sigma: float  # standard deviation per complex raw sample
     stream: Callable[[str], np.random.Generator]  # makes the random stream of a name
 
     def apply(self, x: Complex, look: Look) -> Complex:
-        """x + sigma v, v of covariance W W^H: of raw samples blocks of any length give the same."""
+        """Add sigma v to x [K, M], v of covariance W W^H.
+
+        Blocks of any length have the same raw samples.
+        """
         noisy = white_noise(look, look.state_of(self, self.stream), self.sigma)
         noisy += x
         return noisy
 
     def added_to(self, cube: Complex, name: str) -> Complex:
-        """Raw samples [frame, ...] with noise from the stream of a name, drawn frame by frame.
+        """Raw samples with noise: that of `apply`, in the precision of the cube.
 
-        The same as `apply` of raw samples, in the precision of the cube.
+        Args:
+            cube: Raw samples [frame, ...] without noise.
+            name: Name of the random stream, from which noise is drawn frame by frame.
         """
         rng, noisy = self.stream(name), np.empty_like(cube)
         for frame, samples in enumerate(cube):

@@ -1,4 +1,4 @@
-"""How strong the white noise of a receiver is: by an SNR, thermal, or none at all."""
+"""Laws for the strength of a receiver's white noise: by an SNR, thermal, or none at all."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ SMALLEST_POWER = float(np.finfo(float).tiny)  # below it squares lose their digi
 
 
 class NoiseLaw(ABC):
-    """The standard deviation of the noise of a complex raw sample, for unit transmit power."""
+    """Law for the noise of a complex raw sample, for unit transmit power."""
 
     by_signal = False  # whether it follows from the power of the echo
 
@@ -22,12 +22,12 @@ class NoiseLaw(ABC):
         """Standard deviation of a raw sample's noise.
 
         Args:
-            signal_power: P_s, mean power of the echo of people in a raw sample, for unit transmit
-                power; only a law that is `by_signal` reads it.
-            bandwidth: that the receiver takes noise from, Hz: samples per second.
+            signal_power: Mean power P_s of the echo of people in a raw sample, for unit
+                transmit power; only a law that is `by_signal` reads it.
+            bandwidth: Bandwidth from which the receiver takes noise, samples per second, Hz.
 
         Raises:
-            ValueError: the power is one to which no noise can be related.
+            ValueError: The power is one to which no noise can be related.
         """
 
 
@@ -61,7 +61,7 @@ class Thermal(NoiseLaw):
 
 @dataclass(frozen=True)
 class Silent(NoiseLaw):
-    """No noise."""
+    """Law of a receiver without noise."""
 
     def sigma(self, signal_power: float, bandwidth: float) -> float:
         return 0.0

@@ -214,7 +214,7 @@ class DcOffset(Impairment):
 
     def apply(self, x: Complex, look: Look) -> Complex:
         ones = look.fast(np.ones((look.fast.waveform.n_adc, 1), complex))
-        return x + ones * look.taken(lambda pulses: np.ones(pulses.shape, complex))
+        return x + ones * look.after_taps(lambda pulses: np.ones(pulses.shape, complex))
 
 
 class Saturation(Impairment):

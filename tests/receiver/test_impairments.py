@@ -17,7 +17,7 @@ from radhar_cli.radar.waveform import Waveform
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.flicker import FlickerNoise
 from radhar_cli.receiver.impairment import Impairment
-from radhar_cli.receiver.interference import Line
+from radhar_cli.receiver.interference import InterferenceLine
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Scene, draw_scene, scene_numbers
 
@@ -108,8 +108,10 @@ def test_blocks_of_any_length_give_the_same(lengths):
     total = sum(lengths)
     for impairment in (
         flicker(30.0),
-        Line(0.3, 123.0, waveform(total), named, "line 0"),
-        Line(0.3, 123.0, waveform(total), named, "line 0", on=0.01, off=0.01),
+        InterferenceLine(0.3, 123.0, waveform(total), named, "line 0"),
+        InterferenceLine(
+            0.3, 123.0, waveform(total), named, "line 0", mean_on_s=0.01, mean_off_s=0.01
+        ),
     ):
         raw = RawSamples(waveform(total))
         whole, look = alone(impairment, raw), Look.of_all("any", raw)
@@ -136,7 +138,7 @@ def test_coloured_noise_at_some_pulses_is_that_of_all(taps, monkeypatch):
 @pytest.mark.parametrize("off", [0.0, 0.02])
 def test_a_line_is_the_same_in_every_form(taps, fft_length, off):
     w = waveform(120, fft_length)
-    line = Line(0.3, 123.0, w, named, "line 0", on=0.02, off=off)
+    line = InterferenceLine(0.3, 123.0, w, named, "line 0", mean_on_s=0.02, mean_off_s=off)
     beat = alone(line, RawSamples(w))
     there = np.abs(line.tone(np.arange(120)))
     assert np.abs(beat) == pytest.approx(np.tile(0.3 * there, (SAMPLES, 1)))
@@ -152,7 +154,10 @@ def test_a_line_is_the_same_in_every_form(taps, fft_length, off):
 def test_a_real_line_is_on_both_sides_at_the_same_times():
     w, pulses = waveform(4000), np.arange(4000)
     given = (1.0, 50.0, w, named, "line 0", 0.3, 0.3)
-    one, both = Line(*given).tone(pulses), Line(*given, real=True).tone(pulses)
+    one, both = (
+        InterferenceLine(*given).tone(pulses),
+        InterferenceLine(*given, real=True).tone(pulses),
+    )
     assert both == pytest.approx(2 * one.real)
     spectrum = np.abs(np.fft.fft(both))
     at = round(50 * pulses.size / w.prf)
@@ -163,7 +168,7 @@ def test_a_real_line_is_on_both_sides_at_the_same_times():
 def test_a_line_comes_and_goes_as_often_as_it_should():
     """Exponential times: on for on/(on + off) of the time, also at the first pulse."""
     w = waveform(200_000)
-    line = Line(1.0, 0.0, w, named, "line 0", on=0.02, off=0.06)
+    line = InterferenceLine(1.0, 0.0, w, named, "line 0", mean_on_s=0.02, mean_off_s=0.06)
     there = np.abs(line.tone(np.arange(w.n_pulses))) > 0.5
     edges = np.flatnonzero(np.diff(there))
     spells = np.diff(edges)[~there[edges[:-1]]] / w.prf  # from off to on: of being there
@@ -171,9 +176,9 @@ def test_a_line_comes_and_goes_as_often_as_it_should():
     assert spells.mean() == pytest.approx(0.02, rel=0.15)
     assert np.std(spells) == pytest.approx(0.02, rel=0.25)
     first = [
-        Line(1.0, 0.0, w, lambda name, k=k: np.random.default_rng([k, 1]), "l", 1.0, 3.0).tone(
-            np.arange(1)
-        )[0]
+        InterferenceLine(
+            1.0, 0.0, w, lambda name, k=k: np.random.default_rng([k, 1]), "l", 1.0, 3.0
+        ).tone(np.arange(1))[0]
         for k in range(400)
     ]
     assert np.count_nonzero(first) == pytest.approx(100, abs=40)

@@ -35,7 +35,7 @@ from PIL import Image
 from scipy import ndimage
 
 from radhar_cli.arrays import Bool, Float, Index, Levels
-from radhar_cli.capture.images import listed, read_image
+from radhar_cli.capture.images import list_images, read_image
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.two_samples import Picture, pictures_png
@@ -122,7 +122,7 @@ def read_masks(path: Path) -> tuple[Bool, list[str]]:
     Raises:
         CaptureError: names the file and what is wrong with it.
     """
-    images = listed(path, packed=True)
+    images = list_images(path, packed=True)
     if not SIDE <= min(images.size) <= max(images.size) <= MAX_SIDE:
         raise CaptureError(
             f"{path}: masks have {images.size[0]} x {images.size[1]} px; should have {SIDE} to "

@@ -34,10 +34,18 @@ _ORDER: tuple[AxisName, ...] = ("transmitter", "receiver", "sample", "frame", "p
 
 
 class StoredArray:
-    """An array that `load` maps or returns, read in blocks like `NumberColumn`."""
+    """Array of a capture, read in blocks like `NumberColumn`.
+
+    Args:
+        where: file and array, for messages.
+        load: function that maps the array, or returns it.
+
+    Raises:
+        CaptureError: it cannot be read, or does not hold numbers.
+    """
 
     def __init__(self, where: str, load: Callable[[], NDArray[Any]]) -> None:
-        with refusing(where):
+        with parser_errors_as_capture_errors(where):
             values = load()
         self.where, self.load, self.shape = where, load, values.shape
         self.number = values.real.dtype.newbyteorder("=")
@@ -48,7 +56,7 @@ class StoredArray:
             raise CaptureError(f"{where}: has the shape {values.shape}; should hold numbers")
 
     def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
-        """A block [..., part]; files are mapped anew for each, which releases memory."""
+        """Read a block [..., part]; files are mapped again for each, which releases memory."""
         block = np.ascontiguousarray(self.load()[key])
         native = block.astype(block.dtype.newbyteorder("="), copy=False)
         return native.view(self.number).reshape(*block.shape, self.parts)
@@ -58,8 +66,12 @@ def open_arrays(path: Path, settings: CaptureSettings, scratch: Path) -> Source:
     """Open a capture that is an array.
 
     Args:
-        path: of the file, whose first bytes tell the format.
+        path: the file, whose first bytes tell the format.
+        settings: header of the capture.
         scratch: folder for unpacked arrays.
+
+    Raises:
+        CaptureError: the format is unknown, or the arrays do not fit the header.
     """
     try:
         regular_size(path)
@@ -86,11 +98,12 @@ def open_arrays(path: Path, settings: CaptureSettings, scratch: Path) -> Source:
 
 
 def _npy(path: Path, where: str) -> StoredArray | NumberColumn:
+    """Map the array of a .npy file."""
     return StoredArray(where, partial(np.load, path, mmap_mode="r", allow_pickle=False))
 
 
 def _npz(path: Path, settings: CaptureSettings, scratch: Path) -> list[StoredArray | NumberColumn]:
-    with refusing(str(path)), zipfile.ZipFile(path) as archive:
+    with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
         shapes = {n: shape for n, (shape, kind) in check_npz(archive).items() if kind in "iufc"}
         files = {name.removesuffix(".npy"): name for name in archive.namelist()}
         return [
@@ -100,25 +113,25 @@ def _npz(path: Path, settings: CaptureSettings, scratch: Path) -> list[StoredArr
 
 
 def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]]:
-    """{name: (shape, kind of its type)} of the arrays of an .npz, read from their headers.
+    """Check the arrays of an .npz by their headers: {name: (shape, kind of its type)}.
 
     Raises:
-        ValueError: one is compressed in another way than by NumPy, too much, or is too short.
+        ValueError: an array is compressed too much or otherwise than by NumPy, or is too short.
     """
     arrays: dict[str, tuple[tuple[int, ...], str]] = {}
-    for one in archive.infolist():
-        if one.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-            raise ValueError(f"{one.filename} is compressed in a way that NumPy does not use")
-        if one.file_size > MAX_PACKING * max(one.compress_size, 1024):
-            raise ValueError(f"{one.filename} is compressed {MAX_PACKING}-fold or more")
-        with archive.open(one) as file:
+    for member in archive.infolist():
+        if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise ValueError(f"{member.filename} is compressed in a way that NumPy does not use")
+        if member.file_size > MAX_PACKING * max(member.compress_size, 1024):
+            raise ValueError(f"{member.filename} is compressed {MAX_PACKING}-fold or more")
+        with archive.open(member) as file:
             form = np.lib.format
             old = form.read_magic(file) == (1, 0)
             read = form.read_array_header_1_0 if old else form.read_array_header_2_0
             shape, _, dtype = read(file)
-        if not dtype.hasobject and prod(shape) * dtype.itemsize > one.file_size:
-            raise ValueError(f"{one.filename} has the shape {shape}, but too few bytes")
-        arrays[one.filename.removesuffix(".npy")] = shape, dtype.kind
+        if not dtype.hasobject and prod(shape) * dtype.itemsize > member.file_size:
+            raise ValueError(f"{member.filename} has the shape {shape}, but too few bytes")
+        arrays[member.filename.removesuffix(".npy")] = shape, dtype.kind
     return arrays
 
 
@@ -132,7 +145,7 @@ def _hdf5(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberCol
 def _mat5(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberColumn]:
     from scipy.io import loadmat, whosmat
 
-    with refusing(str(path)):
+    with parser_errors_as_capture_errors(str(path)):
         _check_mat5(path)
         kinds = whosmat(str(path), appendmat=False)
         shapes = {name: shape for name, shape, kind in kinds if kind in MATLAB_NUMBERS}
@@ -170,23 +183,30 @@ def _check_mat5(path: Path) -> None:
 
 
 def _chosen(path: Path, shapes: dict[str, tuple[int, ...]], settings: CaptureSettings) -> list[str]:
-    """Names of the samples (asked for, or the only array they can be) and, if given, the times."""
-    asked = [name for name in (settings.dataset, settings.times) if name is not None]
-    for name in asked:
+    """Choose the array of the samples (named, or the only one it can be), and that of the times."""
+    named_arrays = [name for name in (settings.dataset, settings.times) if name is not None]
+    for name in named_arrays:
         if name not in shapes:
             hint = did_you_mean(name, shapes, f"there are {', '.join(shapes) or 'none'}")
             raise CaptureError(f"{path}: {name}: no such array of numbers; {hint}")
     if settings.dataset is not None:
-        return asked
-    large = [name for name, shape in shapes.items() if len(shape) > 1 and prod(shape) > max(shape)]
-    large = large or [name for name, shape in shapes.items() if prod(shape) > 1]
-    if len(large) != 1:
-        known = ", ".join(f"{name} {list(shape)}" for name, shape in shapes.items()) or "none"
-        raise CaptureError(f"{path}: --set dataset=NAME should name the samples; there are {known}")
-    return [*large, *asked]
+        return named_arrays
+    candidates = [
+        name for name, shape in shapes.items() if len(shape) > 1 and prod(shape) > max(shape)
+    ]
+    candidates = candidates or [name for name, shape in shapes.items() if prod(shape) > 1]
+    if len(candidates) != 1:
+        known_arrays = (
+            ", ".join(f"{name} {list(shape)}" for name, shape in shapes.items()) or "none"
+        )
+        raise CaptureError(
+            f"{path}: --set dataset=NAME should name the samples; there are {known_arrays}"
+        )
+    return [*candidates, *named_arrays]
 
 
 def _times(array: StoredArray | NumberColumn) -> Float:
+    """Read the times of the pulses [pulse], s."""
     if prod(array.shape) > MAX_TIMES or array.parts != 1:
         raise CaptureError(f"{array.where}: should be times, a real number for every pulse")
     return array.read(tuple(slice(0, n) for n in array.shape)).astype(float).ravel()
@@ -199,107 +219,123 @@ def as_source(
     times: Float | None = None,
     of_matlab: bool = False,
 ) -> Source:
-    """An array as a source, its axes put in order.
+    """Make a source of an array, whose axes are put in order.
 
     Args:
-        settings: the names of its axes, and its header.
-        of_matlab: its axes are reversed, as MATLAB stores them in HDF5.
+        path: the file.
+        array: samples; a last axis `iq` or complex numbers have two parts.
+        settings: header of the capture, and the names of the axes.
+        times: times of the pulses [pulse], s, if the capture contains them.
+        of_matlab: whether the axes are reversed, as MATLAB stores them in HDF5.
+
+    Raises:
+        CaptureError: the axes do not fit the header.
     """
     axes = _axes(array, settings, of_matlab)
     sizes = dict(zip(axes, array.shape, strict=True))
     parts = sizes.get("iq", array.parts)
     if "iq" in sizes and (parts != 2 or array.parts == 2):
         raise CaptureError(f"{array.where}: the axis iq has {parts}; should have 2, real numbers")
-    turns = sizes.get("transmitter", settings.transmitters)
-    alternate = 1 if "transmitter" in sizes else turns
+    transmitters = sizes.get("transmitter", settings.transmitters)
+    interleaved_transmitters = 1 if "transmitter" in sizes else transmitters
     per_frame = sizes["pulse"]
-    pulses, rest = divmod(per_frame * sizes.get("frame", 1), alternate)
-    if pulses == 0 or ("frame" in sizes and per_frame % alternate):
+    pulses, incomplete = divmod(per_frame * sizes.get("frame", 1), interleaved_transmitters)
+    if pulses == 0 or ("frame" in sizes and per_frame % interleaved_transmitters):
         raise CaptureError(
             f"{array.where}: the axis pulse has {per_frame} chirps; should have a multiple of "
-            f"transmitters = {turns}"
+            f"transmitters = {transmitters}"
         )
     present = [axes.index(name) for name in _ORDER if name in axes]
     full = [sizes.get(name, 1) for name in _ORDER[:3]]
 
     def chirps_of(frames: slice, pulses: slice) -> Parts:
-        """[transmitter, receiver, sample, chirp, part] of some frames, of those pulses of each."""
+        """Read chirps [transmitter, receiver, sample, chirp, part]: of frames, some pulses each."""
         chosen = {"frame": frames, "pulse": pulses}
         block = array.read(tuple(chosen.get(name, slice(0, sizes[name])) for name in axes))
         block = block[..., 0] if "iq" in sizes else block
         return block.transpose(*present, *range(len(axes), block.ndim)).reshape(*full, -1, parts)
 
     def read(first: int, stop: int) -> Parts:
-        pieces = _by_frame(first * alternate, stop * alternate, per_frame)
+        pieces = _by_frame(
+            first * interleaved_transmitters, stop * interleaved_transmitters, per_frame
+        )
         chunks = [chirps_of(*where) for where in pieces]
         block = chunks[0] if len(chunks) == 1 else np.concatenate(chunks, axis=3)
-        block = np.moveaxis(block.reshape(*full, -1, alternate, parts), 4, 0)
+        block = np.moveaxis(block.reshape(*full, -1, interleaved_transmitters, parts), 4, 0)
         return block.reshape(-1, full[2], stop - first, parts)
 
-    left_out = f"the last {rest} chirps (an incomplete transmitter cycle) are left out"
+    note = f"the last {incomplete} chirps (an incomplete transmitter cycle) are left out"
     chunk = array.chunk[axes.index("frame" if "frame" in axes else "pulse")]
     return Source(
         (path,),
-        turns * sizes.get("receiver", 1),
+        transmitters * sizes.get("receiver", 1),
         sizes.get("sample"),
         pulses,
         array.number,
         parts,
         read,
         times=times,
-        step=max(chunk * (per_frame if "frame" in axes else 1) // alternate, 1),
-        settings={"frame_pulses": per_frame // alternate} if "frame" in sizes else {},
-        notes=(left_out,) if rest else (),
+        step=max(chunk * (per_frame if "frame" in axes else 1) // interleaved_transmitters, 1),
+        settings={"frame_pulses": per_frame // interleaved_transmitters}
+        if "frame" in sizes
+        else {},
+        notes=(note,) if incomplete else (),
     )
 
 
 def _by_frame(low: int, high: int, per_frame: int) -> Iterator[tuple[slice, slice]]:
-    """(frames, pulses of each) that together are chirps low .. high - 1, and no others."""
+    """Yield (frames, pulses of each) that together are chirps low .. high - 1, and no others."""
     while low < high:
-        frame, at = divmod(low, per_frame)
-        whole = (high - low) // per_frame if at == 0 else 0
-        stop = per_frame if whole else min(per_frame, at + high - low)
-        yield slice(frame, frame + max(whole, 1)), slice(at, stop)
-        low += whole * per_frame or stop - at
+        frame, pulse = divmod(low, per_frame)
+        whole_frames = (high - low) // per_frame if pulse == 0 else 0
+        stop = per_frame if whole_frames else min(per_frame, pulse + high - low)
+        yield slice(frame, frame + max(whole_frames, 1)), slice(pulse, stop)
+        low += whole_frames * per_frame or stop - pulse
 
 
 def _axes(
     array: StoredArray | NumberColumn, s: CaptureSettings, of_matlab: bool
 ) -> tuple[AxisName, ...]:
-    """Names of the axes as they lie in the file."""
+    """Names of the axes of an array, in the order of the file."""
     shape = array.shape[::-1] if of_matlab else array.shape
     axes = s.axes or USUAL_AXES.get(len(shape), ())
     if of_matlab and s.axes is None and len(shape) == 2 and 1 in shape:  # a vector of MATLAB's
         axes = ("receiver", "pulse") if shape[0] == 1 else ("pulse", "receiver")
     sizes = dict(zip(axes, shape, strict=False))
-    wanted: dict[AxisName, int | None] = {
+    expected_sizes: dict[AxisName, int | None] = {
         "sample": s.samples,
         "receiver": s.receivers,
         "transmitter": s.transmitters if s.transmitters > 1 else None,
         "pulse": s.frame_pulses if "frame" in axes else None,
     }
-    wrong = [f"{n} should have {v}" for n, v in wanted.items() if v and sizes.get(n, v) != v]
+    problems = [
+        f"{n} should have {v}" for n, v in expected_sizes.items() if v and sizes.get(n, v) != v
+    ]
     if sizes.get("sample") == 1:
-        wrong.append("sample should have 2 or more")
+        problems.append("sample should have 2 or more")
     if sizes.get("receiver", 1) > MAX_RECEIVERS:
-        wrong.append(f"receiver should have at most {MAX_RECEIVERS}")
-    if wrong or len(axes) != len(shape):
-        told = f"; {wrong[0]}" if wrong else ""
+        problems.append(f"receiver should have at most {MAX_RECEIVERS}")
+    if problems or len(axes) != len(shape):
+        problem = f"; {problems[0]}" if problems else ""
         raise CaptureError(
-            f"{array.where}: has {len(shape)} axes, {list(shape)}, read as axes = {[*axes]}{told}; "
-            "--set axes=[...] should name each, outermost first"
+            f"{array.where}: has {len(shape)} axes, {list(shape)}, read as axes = {[*axes]}"
+            f"{problem}; --set axes=[...] should name each, outermost first"
         )
     return axes[::-1] if of_matlab else axes
 
 
 @contextmanager
-def refusing(where: str) -> Iterator[None]:
-    """Turn errors of the parsers of NumPy, SciPy and zipfile into a CaptureError."""
+def parser_errors_as_capture_errors(source: str) -> Iterator[None]:
+    """Turn errors of the parsers of NumPy, SciPy and zipfile into a CaptureError.
+
+    Args:
+        source: file, or file and array, for the message.
+    """
     try:
         with np.errstate(over="raise"):
             yield
     except (CaptureError, FolderError):
         raise
     except Exception as error:  # they raise whatever they meet
-        told = getattr(error, "strerror", None) or str(error).partition("\n")[0]
-        raise CaptureError(f"{where}: cannot be read ({told or type(error).__name__})") from None
+        reason = getattr(error, "strerror", None) or str(error).partition("\n")[0]
+        raise CaptureError(f"{source}: cannot be read ({reason or type(error).__name__})") from None

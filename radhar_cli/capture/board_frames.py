@@ -29,33 +29,44 @@ def frames_of_recording(
     start: float | None = None,
     stop: float | None = None,
 ) -> tuple[dict[str, Any], Board]:
-    """{product: what its frames gave} of a recording, and the board with so many frames.
+    """Make the products of a board's frames in a recording.
 
     Args:
-        config: with the board's `radar.cfg`.
+        recording: recording of the board.
+        config: config with the board's `radar.cfg`.
         asked: products of a cube, such as range_doppler or cloud.
-        start, stop: which part, s; frames that are whole within it are used.
+        start, stop: part of the recording, s; frames that are whole within it are used.
+
+    Returns:
+        {product: result}, and the board with the number of these frames.
+
+    Raises:
+        CaptureError: the config is not that of the board, or there is no whole frame.
     """
     board = _board(recording, config)
     first, _, segments = pulses_between(recording, start, stop)
-    whole = segments.lengths == board.loops
-    if not whole.any():
+    is_whole = segments.lengths == board.loops
+    if not is_whole.any():
         raise CaptureError(f"{recording.path}: holds no whole frame of {board.loops} loops there")
-    board = replace(board, frames=int(whole.sum()))
+    board = replace(board, frames=int(is_whole.sum()))
     cube = np.empty((board.frames, board.loops, board.channels, board.samples), np.complex64)
-    starts = first + segments.first[whole]
+    starts = first + segments.first[is_whole]
     for frame, pulse in enumerate(starts.tolist()):
         cube[frame] = recording.beat(pulse, pulse + board.loops).transpose(2, 0, 1)
-    given = {"cube": cube, "board": board}
-    return run(plan(products(config), asked, given), given).products, board
+    inputs = {"cube": cube, "board": board}
+    return run(plan(products(config), asked, inputs), inputs).products, board
 
 
 def _board(recording: Recording, config: Config) -> Board:
-    """The board of a config, which must be the recording's."""
+    """Board of a config, which must be that of the recording.
+
+    Raises:
+        CaptureError: the config has no board, or another.
+    """
     if config.radar.cfg is None:
         raise CaptureError(f"{recording.path}: frames need the board's .cfg: radar.cfg")
     board, info = board_of(Numbers(config.radar)), recording.info
-    ours = {
+    expected = {
         "receivers": board.channels,
         "samples": board.samples,
         "carrier_hz": board.fc,
@@ -63,10 +74,10 @@ def _board(recording: Recording, config: Config) -> Board:
         "adc_rate_hz": board.adc_rate,
         "prf_hz": 1 / board.loop,
     }
-    for key, value in ours.items():
-        there = getattr(info, key)
-        if there is None or abs(there - value) > SAME * abs(value):
+    for key, value in expected.items():
+        recorded = getattr(info, key)
+        if recorded is None or abs(recorded - value) > SAME * abs(value):
             raise CaptureError(
-                f"{recording.path}: {key} = {there}: should be {value:.10g}, as radar.cfg has it"
+                f"{recording.path}: {key} = {recorded}: should be {value:.10g}, as radar.cfg has it"
             )
     return board

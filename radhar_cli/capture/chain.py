@@ -1,4 +1,4 @@
-"""From a recording to its maps, through the chain of simulated signals.
+"""Maps of a recording, made by the chain that processes simulated signals.
 
 No difference and no window crosses a gap. The columns of a map are then put on an even grid of
 times. Powers of several receivers are added up.
@@ -36,7 +36,7 @@ MIN_FRAME_PULSES = 8  # pulses of a window
 
 @dataclass
 class Maps:
-    """What was made of a recording, or of a stretch of it."""
+    """Maps of a recording, or of a part of it, and the track of the torso."""
 
     maps: dict[str, PowerMap]  # {map name: PowerMap}; times are those of the recording
     track: TorsoTrack | None  # of the torso; None of slow time, and where nothing moves
@@ -58,9 +58,14 @@ def maps_of(
     """Make maps of a recording.
 
     Args:
-        config: its `processing` and `image` are used.
-        start, stop: which part, s; None is from the start, to the end.
-        receiver: one of them, or None for the sum of all maps' powers.
+        recording: the recording.
+        config: config whose `processing` and `image` are used.
+        names: maps to make.
+        start, stop: part of the recording, s; None is the start, or the end.
+        receiver: number of the only receiver to use; None for the sum of the powers of all.
+
+    Raises:
+        CaptureError: the part is too short or too large, or its samples do not suffice for a map.
     """
     receivers = recording.info.receivers
     if receiver is not None and not 0 <= receiver < receivers:
@@ -85,7 +90,7 @@ def maps_of(
     if recording.info.samples is None:
         _refuse_without_ranges(recording, config, names)
         _refuse_too_much(recording, 1, len(chosen), first, last)
-        x = filled(slow_time_of_part(recording, chosen, first, last), lost)
+        x = fill_lost_pulses(slow_time_of_part(recording, chosen, first, last), lost)
         signal = Signal(x, segments, recording.info.carrier_hz)
     else:
         processing = config.processing
@@ -94,10 +99,10 @@ def maps_of(
         waveform = replace(waveform, duration=segments.pulses / prf)
         if config.radar.cfg is not None:  # whose samples have no half band
             waveform = replace(board_of(Numbers(config.radar)).waveform, centred=centred)
-        x = filled(bins_of_part(recording, waveform, chosen, first, last), lost)
+        x = fill_lost_pulses(bins_of_part(recording, waveform, chosen, first, last), lost)
         profiles = recording.info.holds == "profiles"
-        seen = analytic(x) if profiles and recording.samples.parts == 1 else x
-        track = track_torso(without_static(seen), segments, waveform)
+        moving_bins = analytic(x) if profiles and recording.samples.parts == 1 else x
+        track = track_torso(without_static(moving_bins), segments, waveform)
         notes += [] if track else ["nothing moves: no torso was found"]
         if not profiles:
             x *= unit_phasor(np.arange(waveform.n_bins)[:, None] * (waveform.n0 / waveform.n_fft))
@@ -106,9 +111,9 @@ def maps_of(
     # What is global to a recording is done here; difference and windows cross no gap.
     canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, prf)
     signal = signal.with_samples(without_static(signal.x)) if clutter == "mean" else signal
-    made: dict[str, PowerMap] = {}
+    maps_by_name: dict[str, PowerMap] = {}
     if "rtm" in names:
-        made["rtm"] = process(signal, config, ["rtm"], canceller=canceller)["rtm"]
+        maps_by_name["rtm"] = process(signal, config, ["rtm"], canceller=canceller)["rtm"]
     doppler = [name for name in names if name != "rtm"]
     if doppler:
         signal, (frames, fine) = _windows(signal, canceller, config, doppler, recording, notes)
@@ -118,16 +123,29 @@ def maps_of(
         else:
             far = np.full(signal.pulses, signal.ranges.mean() * 2 / SPEED_OF_LIGHT)
             tau = track.delays(signal.t) if track else far
-        given: dict[str, Any] = {"torso_track": tau, "frames": frames, "fsst_frames": fine}
-        maps = process(signal, config, doppler, canceller=canceller, **given)
-        made |= {name: _even(maps[name]) for name in doppler}
-    return Maps({name: made[name] for name in names}, track, signal.f0, list(dict.fromkeys(notes)))
+        inputs: dict[str, Any] = {"torso_track": tau, "frames": frames, "fsst_frames": fine}
+        maps = process(signal, config, doppler, canceller=canceller, **inputs)
+        maps_by_name |= {name: _even(maps[name]) for name in doppler}
+    return Maps(
+        {name: maps_by_name[name] for name in names}, track, signal.f0, list(dict.fromkeys(notes))
+    )
 
 
 def pulses_between(
     recording: Recording, start: float | None, stop: float | None
 ) -> tuple[int, int, PulseTimes]:
-    """(first, last + 1) of the pulses from start to stop, s, and their segments."""
+    """Find the pulses of a recording from start to stop.
+
+    Args:
+        recording: the recording.
+        start, stop: times since the first pulse, s; None is the start, or the end.
+
+    Returns:
+        Number of the first pulse, number after the last, and the segments of these pulses.
+
+    Raises:
+        CaptureError: there are fewer than MIN_FRAME_PULSES.
+    """
     segments = recording.segments
     times = segments.times(np.arange(segments.pulses))
     origin = float(times[0])
@@ -144,20 +162,30 @@ def pulses_between(
 
 
 def _within(segments: PulseTimes, first: int, last: int) -> PulseTimes:
-    """The segments of pulses first .. last - 1, counted anew; times stay those of the recording."""
+    """Segments of pulses first .. last - 1, numbered from 0; times stay those of the recording."""
     inside = (segments.first > first) & (segments.first < last)
     numbers = np.concatenate([[first], segments.first[inside]])
     return PulseTimes(segments.times(numbers), numbers - first, last - first, segments.prf)
 
 
-def filled(x: Complex, lost: Bool) -> Complex:
-    """Samples [..., pulse] whose lost pulses lie on straight lines between their neighbours."""
+def fill_lost_pulses(x: Complex, lost: Bool) -> Complex:
+    """Interpolate lost pulses linearly between their neighbours.
+
+    Args:
+        x: samples [..., pulse]; they are overwritten.
+        lost: whether a pulse is lost [pulse]; not all may be.
+
+    Returns:
+        The samples [..., pulse].
+    """
     if not lost.any():
         return x
-    flat, kept, at = x.reshape(-1, lost.size), np.flatnonzero(~lost), np.flatnonzero(lost)
-    for row in flat:
-        row[at] = np.interp(at, kept, row[kept])
-    return flat.reshape(x.shape)
+    rows = x.reshape(-1, lost.size)
+    good = np.flatnonzero(~lost)
+    lost_at = np.flatnonzero(lost)
+    for row in rows:
+        row[lost_at] = np.interp(lost_at, good, row[good])
+    return rows.reshape(x.shape)
 
 
 def _refuse_too_much(
@@ -170,19 +198,19 @@ def _refuse_too_much(
     size, seconds = 16 * receivers * bins * (last - first), (last - first) / recording.info.prf_hz
     if size <= MAX_BYTES:
         return
-    cure = f"--start and --stop should choose at most {MAX_BYTES / size * seconds:.3g} s"
+    remedy = f"--start and --stop should choose at most {MAX_BYTES / size * seconds:.3g} s"
     if receivers > 1:
-        cure += ", or --receiver 0 one receiver"
-    held = f"{receivers} receivers" if receivers > 1 else "a receiver"
+        remedy += ", or --receiver 0 one receiver"
+    holder = f"{receivers} receivers" if receivers > 1 else "a receiver"
     raise CaptureError(
-        f"{recording.path}: {seconds:.4g} s of {held} take {size / 2**30:.1f} GiB; {cure}"
+        f"{recording.path}: {seconds:.4g} s of {holder} take {size / 2**30:.1f} GiB; {remedy}"
     )
 
 
 def slow_time_of_part(
     recording: Recording, chosen: Sequence[int], first: int, last: int
 ) -> Complex:
-    """Slow time [receiver, 1, M] of pulses first .. last - 1, read piece by piece."""
+    """Read the slow time [receiver, 1, M] of pulses first .. last - 1 of some receivers."""
     x = np.empty((len(chosen), 1, last - first), dtype=complex)
     step = max(PIECE_SAMPLES // recording.info.receivers, 1)
     for start in range(first, last, step):
@@ -192,22 +220,31 @@ def slow_time_of_part(
 
 
 def analytic(profiles: Complex) -> Complex:
-    """Real range profiles [receiver, K, M] as analytic ones, whose Doppler has a sign.
+    """Analytic range profiles [receiver, K, M] of real ones; their Doppler has a sign.
 
     cos(2 pi fm (2 R/c - tau)) along the range R becomes exp(+j 2 pi fm (2 R/c - tau)).
     """
     from scipy.signal import hilbert
 
-    found: Complex = hilbert(profiles.real, axis=1)
-    return found
+    signal: Complex = hilbert(profiles.real, axis=1)
+    return signal
 
 
 def bins_of_part(
     recording: Recording, w: Waveform, chosen: Sequence[int], first: int, last: int
 ) -> Complex:
-    """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start.
+    """Compute range bins [receiver, K, M] of a recording, referred to the chirp's start.
 
     Range profiles are their own bins.
+
+    Args:
+        recording: recording of chirps, or of range profiles.
+        w: waveform, which says how long the transform over a chirp is.
+        chosen: numbers of the receivers.
+        first, last: first pulse, and the one after the last.
+
+    Raises:
+        CaptureError: the bins take more than MAX_BYTES.
     """
     _refuse_too_much(recording, w.n_bins, len(chosen), first, last)
     w = replace(w, centred=False)
@@ -230,56 +267,60 @@ def _windows(
     recording: Recording,
     notes: list[str],
 ) -> tuple[Signal, tuple[Frames, ...]]:
-    """The stretches that hold a window, and the windows."""
+    """Choose the stretches that hold a window, and the windows of STFT and FSST.
+
+    What is shortened or left out is added to `notes`.
+    """
     duration = signal.pulses / signal.prf
-    wanted = frames_of(config, duration, signal.prf, signal.f0)
+    configured = frames_of(config, duration, signal.prf, signal.f0)
     lengths = signal.times.lengths - canceller.lost
     usual = int(np.median(lengths))
-    length = min(wanted.length, usual)
-    needed = config.processing.savgol.frame if any("denoised" in n for n in names) else 0
+    length = min(configured.length, usual)
+    filter_pulses = config.processing.savgol.frame if any("denoised" in n for n in names) else 0
     if length < MIN_FRAME_PULSES:
         raise CaptureError(
             f"{recording.path}: stretches of {usual + canceller.lost} pulses without a gap are too "
             f"short for a Doppler map; should have {MIN_FRAME_PULSES + canceller.lost}"
         )
-    if usual < needed:
+    if usual < filter_pulses:
         raise CaptureError(
-            f"{recording.path}: processing.savgol.frame = {needed}: should be at most {usual}, the "
-            "pulses of a stretch without a gap after the clutter filter"
+            f"{recording.path}: processing.savgol.frame = {filter_pulses}: should be at most "
+            f"{usual}, the pulses of a stretch without a gap after the clutter filter"
         )
-    if length < wanted.length:
+    if length < configured.length:
         notes.append(
-            f"windows have the {length} pulses of a frame, not {wanted.length} "
+            f"windows have the {length} pulses of a frame, not {configured.length} "
             "(processing.window_s)"
         )
-    least = max(length, needed)
-    short = np.count_nonzero(lengths < least)
-    if short:
-        what = "a window" if length == least else "the filter of the denoised maps"
-        notes.append(f"{short} stretches are shorter than {what} and are left out")
-        signal = signal.stretches(least + canceller.lost)
+    least_pulses = max(length, filter_pulses)
+    short_stretches = np.count_nonzero(lengths < least_pulses)
+    if short_stretches:
+        what = "a window" if length == least_pulses else "the filter of the denoised maps"
+        notes.append(f"{short_stretches} stretches are shorter than {what} and are left out")
+        signal = signal.stretches(least_pulses + canceller.lost)
     fine = fsst_frames_of(config, duration, signal.prf, signal.f0)
-    return signal, tuple(Frames(length, min(one.hop, length)) for one in (wanted, fine))
+    return signal, tuple(Frames(length, min(one.hop, length)) for one in (configured, fine))
 
 
 def _even(power_map: PowerMap) -> PowerMap:
-    """A map of stretches on even times; where no column is near, the power is 0."""
+    """Put a map of stretches on an even grid of times; where no column is near, the power is 0."""
     t = power_map.columns.values
     step = float(np.median(np.diff(t))) if t.size > 1 else 1.0
     grid = t[0] + step * np.arange(round((t[-1] - t[0]) / step) + 1)
     if grid.size == t.size:
         return power_map
     columns = nearest(t, grid)
-    there = np.abs(t[columns] - grid) <= step
-    even = replace(power_map.columns, values=grid)
-    return PowerMap(power_map.power[:, columns] * there, power_map.rows, even)
+    has_column = np.abs(t[columns] - grid) <= step
+    even_axis = replace(power_map.columns, values=grid)
+    return PowerMap(power_map.power[:, columns] * has_column, power_map.rows, even_axis)
 
 
 def _refuse_without_ranges(recording: Recording, config: AnyConfig, names: Sequence[str]) -> None:
-    wrong = [name for name in names if name == "rtm" or "compensated" in name]
-    if wrong or config.processing.range_sum == "gated":
+    """Refuse maps that need ranges, as slow time has none."""
+    refused = [name for name in names if name == "rtm" or "compensated" in name]
+    if refused or config.processing.range_sum == "gated":
         raise CaptureError(
-            f"{recording.path}: is slow time without ranges; {wrong[0] if wrong else 'a gate'} "
+            f"{recording.path}: is slow time without ranges; {refused[0] if refused else 'a gate'} "
             "cannot be made of it (maps: stft, fsst, stft_denoised, fsst_denoised; "
             "processing.range_sum: coherent)"
         )

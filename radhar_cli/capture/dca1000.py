@@ -35,7 +35,11 @@ _NUMBERED = re.compile(r"(.*_)(\d+)(\.bin)", re.IGNORECASE)
 
 
 class Words:
-    """Files of words as one stream, cut anywhere."""
+    """Files of 16-bit words as one stream, cut anywhere.
+
+    Raises:
+        CaptureError: a file is missing, empty or cannot be read.
+    """
 
     def __init__(self, files: Sequence[Path]) -> None:
         self.files, self._ends = files, [0]
@@ -51,7 +55,7 @@ class Words:
         self.count = self.bytes // WORD.itemsize
 
     def __getitem__(self, key: slice) -> NDArray[np.uint16]:
-        """Words from key.start to key.stop."""
+        """Read words from key.start to key.stop - 1."""
         start, stop = key.start * WORD.itemsize, key.stop * WORD.itemsize
         blocks = [
             np.fromfile(path, np.uint8, min(stop, high) - first, offset=first - low)
@@ -65,7 +69,11 @@ class Words:
 
 
 def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
-    """All files of a capture: `..._Raw_0.bin` is followed by `..._Raw_1.bin` and so on."""
+    """List all files of a capture: `..._Raw_0.bin` is followed by `..._Raw_1.bin` and so on.
+
+    Raises:
+        CaptureError: one in between is missing.
+    """
     numbered = _NUMBERED.fullmatch(paths[0].name)
     if len(paths) > 1 or numbered is None or int(numbered[2]) != 0:
         return tuple(paths)
@@ -86,11 +94,15 @@ def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
 
 
 def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) -> Source:
-    """Open a capture.
+    """Open a capture of the card.
 
     Args:
         paths: its files, or the first of those that are numbered.
+        settings: header of the capture.
         header: file of the header, for messages.
+
+    Raises:
+        CaptureError: the header lacks samples or receivers, or the samples do not fit it.
     """
     files = whole_capture(paths)
     for key in ("samples", "receivers"):
@@ -103,7 +115,7 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
     settings = settings.model_copy(update=stream)
     words = Words(files)
     unit, notes = settings.words_of_a_pulse, list[str]()
-    pulses, rest = divmod(words.count, unit)
+    pulses, incomplete_words = divmod(words.count, unit)
     if pulses == 0:
         raise CaptureError(
             f"{files[0]}: holds {words.bytes} bytes; a pulse by {header} takes {unit * 2}"
@@ -111,8 +123,8 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
     _check_length(words, settings, header)
     if len(files) > 1:
         notes.append(f"{len(files)} files: {files[0].name} to {files[-1].name}")
-    if rest:
-        notes.append(f"the last {rest * 2} bytes (an incomplete pulse) are left out")
+    if incomplete_words:
+        notes.append(f"the last {incomplete_words * 2} bytes (an incomplete pulse) are left out")
 
     def read(first: int, stop: int) -> Parts:
         return decode(words[first * unit : stop * unit], settings)
@@ -130,7 +142,7 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
 
 
 def decode(words: NDArray[np.uint16], s: CaptureSettings) -> Parts:
-    """Samples int16 [transmitter and receiver, sample, pulse, part] of whole pulses of words."""
+    """Decode the words of whole pulses to samples int16 [virtual receiver, sample, pulse, part]."""
     parts, lanes = 1 + s.complex, s.lanes or 2
     assert s.samples is not None
     assert s.receivers is not None
@@ -156,28 +168,31 @@ def _check_length(words: Words, s: CaptureSettings, header: str) -> None:
     assert s.samples is not None
     start = max((words.count - PROBED_WORDS) // 2, 0)
     probe = words[start : min(start + PROBED_WORDS, words.count)]
-    correlation = repetition(probe)
-    own = s.words_of_a_pulse
-    if own >= correlation.size:
+    correlation = autocorrelation(probe)
+    pulse_words = s.words_of_a_pulse
+    if pulse_words >= correlation.size:
         return
     best = float(correlation.max())
-    if best < REPEATS or correlation[own] >= ALIKE * best:
+    if best < REPEATS or correlation[pulse_words] >= ALIKE * best:
         return
     # One receiver's chirp may repeat, a chirp of all, or a cycle of the transmitters.
     lag = int(np.flatnonzero(correlation >= 0.95 * best)[0])
-    per_sample = (1 + s.complex, (1 + s.complex) * s.stored_receivers, own // s.samples)
+    per_sample = (1 + s.complex, (1 + s.complex) * s.stored_receivers, pulse_words // s.samples)
     fitting = {lag // words_each for words_each in per_sample if lag % words_each == 0}
     nearest = min(fitting or {0}, key=lambda n: abs(np.log(max(n, 1e-3) / (s.samples or 1))))
     fits = f"samples: {nearest}" if fitting else f"chirps of {lag} words"
     raise CaptureError(
         f"{header}: samples = {s.samples}, receivers = {s.receivers}, transmitters = "
-        f"{s.transmitters}: {words.files[0]} does not repeat after a pulse of {own} words; "
+        f"{s.transmitters}: {words.files[0]} does not repeat after a pulse of {pulse_words} words; "
         f"{fits} would fit"
     )
 
 
-def repetition(words: NDArray[np.uint16]) -> NDArray[np.float64]:
-    """Correlation of words, as signed numbers, with those a lag later [lags]; 0 below 32."""
+def autocorrelation(words: NDArray[np.uint16]) -> NDArray[np.float64]:
+    """Normalised autocorrelation of words, as signed numbers, over the lag in words [lag].
+
+    It is set to 0 below the lag SHORTEST_CHIRP, and empty for a constant or short signal.
+    """
     x = words.view("<i2").astype(float)
     x -= x.mean()
     length = 2 ** ceil(np.log2(max(2 * x.size, 2)))
@@ -186,6 +201,6 @@ def repetition(words: NDArray[np.uint16]) -> NDArray[np.float64]:
     correlation = np.fft.irfft(spectrum, length)[:lags]
     if lags <= SHORTEST_CHIRP or correlation[0] <= 0:
         return np.zeros(0)
-    found = correlation / correlation[0] * x.size / (x.size - np.arange(lags))
-    found[:SHORTEST_CHIRP] = 0
-    return np.asarray(found)
+    normalised = correlation / correlation[0] * x.size / (x.size - np.arange(lags))
+    normalised[:SHORTEST_CHIRP] = 0
+    return np.asarray(normalised)

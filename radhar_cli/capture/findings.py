@@ -20,7 +20,7 @@ LARGEST = 1e15  # sample whose squares and sums remain finite
 
 
 def probe(source: Source) -> list[Parts]:
-    """Consecutive pulses from places all over a capture, each [receiver, sample, pulse, part]."""
+    """Read pulses from places all over a capture, each [receiver, sample, pulse, part]."""
     length = min(PROBED, source.pulses)
     starts = np.unique(np.linspace(0, source.pulses - length, PROBES).astype(int))
     return [checked(source.read(at, at + length), at, source.name)[0] for at in map(int, starts)]
@@ -40,10 +40,15 @@ HALVES, SHARE_OF_HALF = (2**9, 2**11, 2**13), 0.25  # of ADCs of 10 to 14 bits
 
 
 def coding_of(pieces: list[Parts], asked: str | None = None, bits: int = 16) -> Coding:
-    """The coding in which the samples are smallest, or the one that is asked for.
+    """Find the coding in which the samples are smallest, or check the one that is asked for.
 
     Words in another coding jump between the ends of the scale. Other unsigned numbers lie around
     half their scale.
+
+    Args:
+        pieces: numbers as stored, each [receiver, sample, pulse, part].
+        asked: `signed` or `offset`; None finds the coding.
+        bits: resolution of the converter.
 
     Raises:
         ValueError: the numbers cannot have the coding that is asked for.
@@ -56,25 +61,30 @@ def coding_of(pieces: list[Parts], asked: str | None = None, bits: int = 16) -> 
     if asked and not words and dtype.kind != {"signed": "i", "offset": "u"}[asked]:
         raise ValueError(f"numbers from {low:g} to {high:g}; should be whole numbers of 16 bits")
     native = dtype in (np.int16, np.uint16)
-    seen = values[values != 0]  # lost packets are zeros whatever the coding
-    if unsigned and asked != "signed" and seen.size and not (words and high >= 2**15):
-        middle = float(np.median(seen))
+    nonzero = values[values != 0]  # lost packets are zeros whatever the coding
+    if unsigned and asked != "signed" and nonzero.size and not (words and high >= 2**15):
+        middle = float(np.median(nonzero))
         halves = (2 ** (b - 1) for b in (8, 10, 12, 14, 16, 24, 32) if b <= 8 * dtype.itemsize)
         return Coding(False, min(halves, key=lambda half: abs(np.log2(middle / half))))
     if asked == "offset":
         return Coding(bits == 16, 1 << (bits - 1))
-    if not asked and words and seen.size:
-        signed, offset = (float(np.abs(decoded(seen, Coding(True, n))).mean()) for n in (0, 2**15))
+    if not asked and words and nonzero.size:
+        signed, offset = (
+            float(np.abs(decoded(nonzero, Coding(True, n))).mean()) for n in (0, 2**15)
+        )
         if (not signed < 0.5 * offset) if unsigned else offset < 0.5 * signed:
             return Coding(True, 2**15)
         half = next((h for h in HALVES if low >= 0 and high < 2 * h), None)
-        if half and abs(float(np.median(seen)) - half) < SHARE_OF_HALF * half:
+        if half and abs(float(np.median(nonzero)) - half) < SHARE_OF_HALF * half:
             return Coding(False, half)  # words of an ADC that were stored as other numbers
     return Coding(words and (native or high >= 2**15))
 
 
 def decoded(values: Parts, coding: Coding, bits: int = 16) -> Parts:
-    """Signed numbers; bits above the ADC's resolution are replaced by its sign."""
+    """Decode stored numbers to signed ones, in the same shape.
+
+    Bits above the resolution of the converter are replaced by its sign.
+    """
     dtype, (words, offset) = values.dtype, coding
     if words and dtype in (np.int16, np.uint16):
         signed = (values.view(np.uint16) ^ np.uint16(offset)).view(np.int16)
@@ -97,8 +107,9 @@ def decoded(values: Parts, coding: Coding, bits: int = 16) -> Parts:
 def positive_share(pieces: list[Parts]) -> tuple[float, float]:
     """Share of the energy of complex chirps at positive beat frequencies, 0 to 1.
 
-    Of the differences from pulse to pulse, and of everything. The noise floor, the median over the
-    bins, is subtracted. Hann's window keeps the direct echo in the lowest bins, which are left out.
+    The first number is that of the differences from pulse to pulse, the second of everything. The
+    noise floor, the median over the bins, is subtracted. Hann's window keeps the direct echo in the
+    lowest bins, which are left out.
     """
     moving = still = np.zeros(pieces[0].shape[1])
     for piece in pieces:
@@ -111,6 +122,7 @@ def positive_share(pieces: list[Parts]) -> tuple[float, float]:
 
 
 def _share(power: NDArray[np.float64]) -> float:
+    """Share of a spectrum [bin] above its floor that lies at positive frequencies."""
     count = power.size
     above = np.maximum(power - np.median(power), 0)
     lowest = max(2, count // 64)
@@ -131,9 +143,12 @@ class Damage:
     flags: list[NDArray[np.uint8]] = field(default_factory=list)
 
     def add(self, raw: Parts, values: Parts, gone: Bool) -> None:
-        """Count damage in numbers [receiver, sample, pulse, part], as stored and as signed.
+        """Count the damage of a piece.
 
-        Pulses that are `gone` [pulse] are known to be lost.
+        Args:
+            raw: numbers as stored [receiver, sample, pulse, part].
+            values: the same as signed numbers.
+            gone: whether a pulse is known to be lost [pulse].
         """
         flags = np.zeros(values.shape[2], np.uint8)
         if self.full_scale is not None:
@@ -145,7 +160,7 @@ class Damage:
         self.flags.append(flags)
 
     def findings(self) -> list[str]:
-        """What was counted, in words."""
+        """Describe in words what was counted, a line each."""
         flags, words = np.concatenate(self.flags), []
         if lost := int(np.count_nonzero(flags & LOST)):
             words.append(
@@ -162,7 +177,7 @@ class Damage:
 
 
 def lost(values: Parts) -> Bool:
-    """Pulses [pulse] with LOST_RUN consecutive zero samples, or all of a shorter chirp.
+    """Whether a pulse has LOST_RUN consecutive zero samples, or only zeros [pulse].
 
     Single zeros of slow time are not taken for losses.
     """
@@ -191,18 +206,29 @@ def full_scale(dtype: np.dtype[Any], coding: Coding, bits: int) -> tuple[int, in
 
 
 def checked(raw: Parts, first: int, where: str, coding: Coding = PLAIN) -> tuple[Parts, Bool]:
-    """Numbers [receiver, sample, pulse, part] with 0 for NaN, and which pulses [pulse] have some.
+    """Check numbers, and replace NaN by 0.
 
     Args:
+        raw: numbers as stored [receiver, sample, pulse, part].
         first: number of the first pulse, for messages.
-        coding: in which they will be decoded.
+        where: file, for messages.
+        coding: coding in which they will be decoded.
+
+    Returns:
+        The numbers, and whether a pulse held NaN [pulse].
+
+    Raises:
+        CaptureError: a number is too large, or does not fit the coding.
     """
     raw = raw.astype(np.float32) if raw.dtype == np.float16 else raw
     low, high = (-(2**15), 2**16 - 1) if coding.words else (-LARGEST, LARGEST)
     if raw.dtype.itemsize <= 2 or (not coding.words and raw.min() >= low and raw.max() <= high):
         return raw, np.zeros(raw.shape[2], bool)
     nan = np.isnan(raw)
-    wrong = ~((raw >= low) & (raw <= high) & (not coding.words or raw == np.floor(raw)) | nan)
+    fits = (raw >= low) & (raw <= high)
+    if coding.words:
+        fits &= raw == np.floor(raw)
+    wrong = ~(fits | nan)
     if wrong.any():
         receiver, sample, pulse, part = np.argwhere(wrong)[0]
         raise CaptureError(

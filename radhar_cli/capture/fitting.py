@@ -16,7 +16,7 @@ import numpy as np
 import scipy.fft
 
 from radhar_cli.arrays import Bool, Complex, Float, Index
-from radhar_cli.capture.chain import bins_of_part, filled, pulses_between
+from radhar_cli.capture.chain import bins_of_part, fill_lost_pulses, pulses_between
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import WINDOW_S, hann_in_range, track_torso, without_static
@@ -57,7 +57,7 @@ class Estimates(NamedTuple):
 
     @property
     def noise(self) -> float:
-        """Variance of a raw sample."""
+        """Variance of the noise of a raw sample: the lower quartile over the range bins."""
         return float(np.quantile(self.floor, QUARTILE))
 
 
@@ -99,8 +99,8 @@ class Fit:
 
     @cached_property
     def document(self) -> dict[str, Any]:
-        """Keys of a config."""
-        w, snr, usual = self.waveform, self.snr_db, Config().radar
+        """Config of the estimates, as plain values by key."""
+        w, snr, defaults = self.waveform, self.snr_db, Config().radar
         middle = round(float(snr.mean()), 2)
         spread = round(float(snr.std()), 2) if snr.size >= MIN_SNRS else 0
         document: dict[str, Any] = {
@@ -110,14 +110,18 @@ class Fit:
         }
         ranges = np.concatenate([part.ranges for part in self.parts])
         if ranges.size:
-            antennas = (nominal(usual.tx_m[0]) + nominal(usual.rx_m[0])) / 2
+            antennas = (nominal(defaults.tx_m[0]) + nominal(defaults.rx_m[0])) / 2
             low, high = (np.percentile(ranges, [5, 95]) + antennas).round(2).tolist()
             document["motion"] = {"range_m": {"uniform": [low, high]} if high > low else low}
         return document
 
 
 def fit(paths: Sequence[Path]) -> Fit:
-    """Estimate waveform, SNR, ranges and noise floor from recordings of one radar."""
+    """Estimate waveform, SNR, ranges and noise floor from recordings of one radar.
+
+    Raises:
+        CaptureError: radars differ, recordings are too short, or nobody moves in them.
+    """
     waveform, seconds = _waveform(paths)
     parts = [part for path in paths for part in parts_of(path)]
     if not any(np.isfinite(part.snr_db) for part in parts):
@@ -128,17 +132,20 @@ def fit(paths: Sequence[Path]) -> Fit:
 
 
 def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float]:
-    """The common waveform of all recordings, and their median duration (s)."""
+    """Common waveform of all recordings, and their median duration, s."""
     waveform, seconds = None, []
     for path in paths:
         with Recording(path) as recording:
             if recording.info.holds == "profiles":
                 raise CaptureError(f"{path}: holds range profiles; should be samples of chirps")
-            one = recording.info.waveform()
-            pairs = ((getattr(one, n), getattr(waveform or one, n)) for n in RADAR.values())
-            if any(abs(here / there - 1) > 1e-3 for here, there in pairs):
+            own_waveform = recording.info.waveform()
+            pairs = (
+                (getattr(own_waveform, n), getattr(waveform or own_waveform, n))
+                for n in RADAR.values()
+            )
+            if any(abs(value / common_value - 1) > 1e-3 for value, common_value in pairs):
                 raise CaptureError(f"{path}: differs in radar from {paths[0]}")
-            waveform = waveform or one
+            waveform = waveform or own_waveform
             seconds.append(recording.segments.duration)
     if max(seconds) < MIN_S:
         raise CaptureError(
@@ -150,7 +157,7 @@ def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float]:
 
 
 def parts_of(path: Path) -> Iterator[Estimates]:
-    """Estimates from parts of about PART_S, at most MAX_PARTS, spread over a recording.
+    """Yield estimates from parts of about PART_S, at most MAX_PARTS, spread over a recording.
 
     Parts without noise, or without a complete pulse, are left out.
     """
@@ -162,14 +169,14 @@ def parts_of(path: Path) -> Iterator[Estimates]:
             lost = (recording.flags[first:last] & LOST).astype(bool)
             if lost.all():
                 continue
-            bins = filled(bins_of_part(recording, w, [0], first, last), lost)[0]
+            bins = fill_lost_pulses(bins_of_part(recording, w, [0], first, last), lost)[0]
             part = _part(without_static(bins), segments, w)
             if part.noise > 0:
                 yield part
 
 
 def _part(moving: Complex, segments: PulseTimes, w: Waveform) -> Estimates:
-    """Estimates from range bins [K, M] with static echoes removed."""
+    """Estimate SNR, ranges and floor from range bins [K, M] with static echoes removed."""
     maps, middle, white = _range_doppler(moving, segments, w)
     length = maps.shape[2]
     # |.|^2 of noise is exponential; the lower quartile of a frame contains little of the person,
@@ -179,19 +186,21 @@ def _part(moving: Complex, segments: PulseTimes, w: Waveform) -> Estimates:
     track = track_torso(moving[None], segments, w)
     if track is None or not nobody.noise > 0:
         return nobody
-    at = track.ranges(segments.times(middle))
-    near = np.abs(w.range_axis() - at[:, None]) <= REACH_M + 2 * w.range_step
+    range_of_frame = track.ranges(segments.times(middle))
+    near = np.abs(w.range_axis() - range_of_frame[:, None]) <= REACH_M + 2 * w.range_step
     # Curtains and fans move slowly, and would be mistaken for a person.
-    least = SLOW_MPS * 2 * w.f0 / SPEED_OF_LIGHT + 2 * w.prf / length  # beside Hann's main lobe
-    fast = np.abs(np.fft.fftfreq(length, 1 / w.prf)) > least
+    slowest_hz = (
+        SLOW_MPS * 2 * w.f0 / SPEED_OF_LIGHT + 2 * w.prf / length
+    )  # beside Hann's main lobe
+    fast = np.abs(np.fft.fftfreq(length, 1 / w.prf)) > slowest_hz
     cell = nobody.noise * white
     signal = _power_near(maps.sum(axis=2), near, cell * length)
-    quick = _power_near(maps[:, :, fast].sum(axis=2), near, cell * np.count_nonzero(fast))
-    if not (signal > 0 and quick > FAST_SHARE * signal):
+    fast_signal = _power_near(maps[:, :, fast].sum(axis=2), near, cell * np.count_nonzero(fast))
+    if not (signal > 0 and fast_signal > FAST_SHARE * signal):
         return nobody
     snr = signal / (length * white * w.n_adc) / nobody.noise
-    sure = track.range[track.confidence >= SURE]
-    return nobody._replace(snr_db=10 * float(np.log10(snr)), ranges=sure)
+    reliable_ranges = track.range[track.confidence >= SURE]
+    return nobody._replace(snr_db=10 * float(np.log10(snr)), ranges=reliable_ranges)
 
 
 def _range_doppler(
@@ -213,9 +222,9 @@ def _power_near(power: Float, near: Bool, noise: float) -> float:
     """Mean power of a frame in the bins near the torso, less the median of its other bins.
 
     Args:
-        power: of the moving echo [frame, bin].
+        power: power of the moving echo [frame, bin].
         near: whether a bin is near the torso [frame, bin].
-        noise: white noise in a bin, for frames in which all bins are near.
+        noise: power of white noise in a bin, for frames in which all bins are near.
     """
     signal = 0.0
     for bins, inside in zip(power, near, strict=True):
@@ -225,7 +234,7 @@ def _power_near(power: Float, near: Bool, noise: float) -> float:
 
 
 def draw(fit: Fit, path: Path) -> None:
-    """Write a figure of the noise floor over range and of the SNRs."""
+    """Write a figure of the noise floor over range, and of the SNRs of the parts."""
     figure = page(10.0, 3.5)
     floor, snrs = figure.subplots(1, 2)
     floor.plot(fit.waveform.range_axis(), fit.floor_db, label="measured")

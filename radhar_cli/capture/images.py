@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.arrays import Levels
-from radhar_cli.capture.array_files import check_npz, refusing
+from radhar_cli.capture.array_files import check_npz, parser_errors_as_capture_errors
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, read_gray
 from radhar_cli.errors import CaptureError
 from radhar_cli.untrusted import refuse_outside, regular_size
@@ -22,11 +22,11 @@ from radhar_cli.untrusted import refuse_outside, regular_size
 MAX_NPZ = 2**29  # bytes of its images, which are held
 
 
-class Listed(NamedTuple):
-    """Images of a tree or an .npz."""
+class ImageListing(NamedTuple):
+    """Images of a tree or an .npz, with their checksum and size."""
 
     parts: list[dict[str, Any]]  # {file, label, person} of each
-    sha256: dict[str, str]  # {name: of all of them}
+    sha256: dict[str, str]  # {name of the tree or .npz: checksum of all of them}
     size: tuple[int, int]  # (H, W) of the first
 
 
@@ -41,13 +41,21 @@ def is_image(file: str) -> bool:
     return place.suffix.lower() in SUFFIXES or place.parent.suffix.lower() == ".npz"
 
 
-def listed(path: Path, packed: bool) -> Listed:
-    """The images of a tree of class folders, or of an .npz."""
+def list_images(path: Path, packed: bool) -> ImageListing:
+    """List the images of a tree of class folders, or of an .npz.
+
+    Args:
+        path: the tree, or the .npz.
+        packed: whether each byte holds eight columns as bits.
+
+    Raises:
+        CaptureError: there are no images, or they are damaged.
+    """
     if path.is_dir():
-        return _of_tree(path)
-    with refusing(str(path)):
+        return _list_tree(path)
+    with parser_errors_as_capture_errors(str(path)):
         regular_size(path)
-    images, label, person = _loaded(path, packed, path.stat().st_mtime_ns)
+    images, label, person = _load_npz(path, packed, path.stat().st_mtime_ns)
     with path.open("rb") as file:
         total = hashlib.file_digest(file, "sha256").hexdigest()
     parts = [
@@ -58,11 +66,12 @@ def listed(path: Path, packed: bool) -> Listed:
         }
         for number in range(len(images))
     ]
-    return Listed(parts, {path.name: total}, (images.shape[1], images.shape[2]))
+    return ImageListing(parts, {path.name: total}, (images.shape[1], images.shape[2]))
 
 
-def _of_tree(path: Path) -> Listed:
-    files = sorted(one for one in path.glob("*/*") if one.suffix.lower() in SUFFIXES)
+def _list_tree(path: Path) -> ImageListing:
+    """List the images of a tree of class folders."""
+    files = sorted(file for file in path.glob("*/*") if file.suffix.lower() in SUFFIXES)
     if not files:
         raise CaptureError(f"{path}: should hold a folder of images for each class")
     total = hashlib.sha256()
@@ -73,16 +82,16 @@ def _of_tree(path: Path) -> Listed:
             total.update(hashlib.file_digest(data, "sha256").digest())
         label = file.parent.name
         parts.append({"file": f"{label}/{file.name}", "label": label, "person": None})
-    return Listed(parts, {path.name: total.hexdigest()}, image_size(files[0]))
+    return ImageListing(parts, {path.name: total.hexdigest()}, image_size(files[0]))
 
 
 @lru_cache(maxsize=2)
-def _loaded(
+def _load_npz(
     path: Path, packed: bool, changed: int
 ) -> tuple[Levels, NDArray[Any], NDArray[Any] | None]:
-    """(images [N, H, W], label [N], person [N] or None) of an .npz; packed columns are unpacked."""
+    """Read (images [N, H, W], label [N], person [N] or None) of an .npz, unpacking packed bits."""
     del changed
-    with refusing(str(path)), zipfile.ZipFile(path) as archive:
+    with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
         shapes = check_npz(archive)
         wide = [name for name, (shape, kind) in shapes.items() if len(shape) == 3 and kind in "ub"]
         wide = [name for name in wide if name in ("masks", "images")] or wide
@@ -114,19 +123,30 @@ def _loaded(
 
 
 def _as_text(values: NDArray[Any]) -> NDArray[Any]:
-    """Bytes as text, anything else as it is."""
+    """Decode bytes as text; leave anything else as it is."""
     return np.char.decode(values, "ascii", "replace") if values.dtype.kind == "S" else values
 
 
 def read_image(folder: Path, file: str, size: tuple[int, int], packed: bool) -> Levels:
-    """Levels [H, W] of a part's image."""
+    """Read the levels [H, W] of an image.
+
+    Args:
+        folder: folder of the manifest.
+        file: image file, or image of an .npz (`masks.npz/12`), below the folder.
+        size: (H, W) that it should have.
+        packed: whether each byte of an .npz holds eight columns as bits.
+
+    Raises:
+        CaptureError: it is missing, or has another size.
+        FolderError: the same, of an image file.
+    """
     place = PurePosixPath(file)
     if place.parent.suffix.lower() != ".npz":
         return read_gray(folder / file, size)
     path = folder / place.parent
-    images = _loaded(path, packed, path.stat().st_mtime_ns)[0]
+    images = _load_npz(path, packed, path.stat().st_mtime_ns)[0]
     number = int(place.name) if place.name.isdecimal() else len(images)
     if number >= len(images) or images.shape[1:] != size:
         raise CaptureError(f"{path}: image {place.name}: is missing, or not {size[0]} x {size[1]}")
-    one: Levels = images[number]
-    return one
+    levels: Levels = images[number]
+    return levels

@@ -35,7 +35,15 @@ JITTER = 0.1  # in pulse intervals, above which it is reported
 
 
 def read_settings(header: Path | None, overrides: Sequence[str]) -> CaptureSettings:
-    """Settings from a header (TI's JSON or .cfg, or YAML with our keys) and `--set`."""
+    """Read the settings of a capture from its header and from overrides.
+
+    Args:
+        header: TI's JSON or .cfg, or YAML with radhar's keys; None for overrides alone.
+        overrides: KEY=VALUE of each.
+
+    Raises:
+        RadharError: the header or an override cannot be used.
+    """
     document: dict[str, Any] = {}
     if header is not None:
         ti = header.suffix.lower() in TI_HEADERS
@@ -55,18 +63,26 @@ def import_capture(
 
     Args:
         paths: its files, or the first of those that are numbered.
+        out: recording to write.
+        settings: header of the capture.
         header: file of the header, for messages.
-        overwrite: replace a recording that is there.
+        overwrite: replace an existing recording.
+
+    Raises:
+        CaptureError: the capture is damaged, or does not fit its header.
+        FolderError: another process wrote the recording meanwhile.
+        UnfinishedError: it cannot be written.
     """
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as scratch:
-        source, settings = _opened(paths, settings, header, Path(scratch))
-        return _written(source, out, settings, header, exclusive=not overwrite)
+        source, settings = _open_capture(paths, settings, header, Path(scratch))
+        return _write_capture(source, out, settings, header, exclusive=not overwrite)
 
 
-def _opened(
+def _open_capture(
     paths: Sequence[Path], settings: CaptureSettings, header: str, scratch: Path
 ) -> tuple[Source, CaptureSettings]:
+    """Open a capture of any format; return it, and the settings with what it says itself."""
     suffix = paths[0].suffix.lower()
     if suffix == ".bin":
         source = open_dca1000(paths, settings, header)
@@ -84,9 +100,10 @@ def _opened(
     return source, validated(CaptureSettings, document, source.name, {})
 
 
-def _written(
+def _write_capture(
     source: Source, out: Path, s: CaptureSettings, header: str, exclusive: bool
 ) -> RecordingInfo:
+    """Write an open capture as a recording, with radhar's coding and sign of the beat."""
     notes = [*source.notes]
     probed = findings.probe(source)
     coding = _coding(probed, s, source.name, notes)
@@ -120,14 +137,15 @@ def _written(
 def _coding(
     probed: list[Parts], s: CaptureSettings, name: str, notes: list[str]
 ) -> findings.Coding:
+    """Find the coding of the samples, or check the one in the header; add a note."""
     try:
         coding = findings.coding_of(probed, s.coding, s.adc_bits)
     except ValueError as error:
         raise CaptureError(f"{name}: coding = {s.coding}: {error}") from None
     if s.coding is not None:
-        if (found := findings.coding_of(probed)) != coding:
-            told = "offset" if found.offset else "signed"
-            notes.append(f"samples look {told}; read as {s.coding}, as asked")
+        if (detected := findings.coding_of(probed)) != coding:
+            detected_name = "offset" if detected.offset else "signed"
+            notes.append(f"samples look {detected_name}; read as {s.coding}, as asked")
     elif coding.offset:
         notes.append(
             f"offset binary: {coding.offset} is subtracted from samples (coding=signed to keep)"
@@ -140,29 +158,36 @@ def _coding(
 
 
 def _conjugated(probed: list[Parts], source: Source, s: CaptureSettings, notes: list[str]) -> bool:
-    """Whether samples have to be conjugated for radhar's sign of the beat."""
+    """Whether samples have to be conjugated for radhar's sign of the beat; add a note."""
     if source.parts == 1 or source.samples is None:
         return source.parts == 2 and s.beat == "positive"
     shares = findings.positive_share(probed)
     moving, still = (f"{100 * share:.0f} %" for share in shares)
-    told = f"{moving} of what moves, {still} of all lies at positive beat frequencies"
-    clear = [share > 0.5 for share in shares if abs(share - 0.5) >= findings.SURE - 0.5]
-    sign: str | None = s.beat or (("negative", "positive")[clear[0]] if clear else None)
+    shares_text = f"{moving} of what moves, {still} of all lies at positive beat frequencies"
+    signs_are_negative = [
+        share > 0.5 for share in shares if abs(share - 0.5) >= findings.SURE - 0.5
+    ]
+    sign: str | None = s.beat or (
+        ("negative", "positive")[signs_are_negative[0]] if signs_are_negative else None
+    )
     if s.beat is not None:
-        notes.append(f"beat {s.beat}, as asked ({told})")
+        notes.append(f"beat {s.beat}, as asked ({shares_text})")
     elif sign is None:
         sign = "positive" if source.files[0].suffix.lower() == ".bin" else "negative"
-        notes.append(f"{told}: the sign of the beat is unclear; {sign} assumed (set beat=...)")
+        notes.append(
+            f"{shares_text}: the sign of the beat is unclear; {sign} assumed (set beat=...)"
+        )
     else:
-        notes.append(f"beat {sign}: {told}")
+        notes.append(f"beat {sign}: {shares_text}")
     if sign == "positive":
         notes.append("samples are conjugated, as radhar's beat is negative")
     return sign == "positive"
 
 
 def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str]) -> PulseTimes:
+    """Times of the pulses, from their times or the frames of the header; add a note."""
     if source.times is not None:
-        return _timed(source, source.times, s, notes)
+        return _segments_of_times(source, source.times, s, notes)
     if s.prf_hz is None:
         raise CaptureError(f"{header}: prf_hz is missing; --set prf_hz=..., or times=NAME")
     whole = PulseTimes(np.zeros(1), np.zeros(1, np.int64), source.pulses, s.prf_hz)
@@ -189,8 +214,10 @@ def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str])
     return PulseTimes(np.arange(first.size) * s.frame_s, first, source.pulses, s.prf_hz)
 
 
-def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -> PulseTimes:
-    """Stretches from the times of the pulses (s)."""
+def _segments_of_times(
+    source: Source, times: Float, s: CaptureSettings, notes: list[str]
+) -> PulseTimes:
+    """Find the stretches without gaps in the times of the pulses [pulse], s; add notes."""
     if times.size != source.pulses:
         raise CaptureError(
             f"{source.name}: {times.size} times; should be {source.pulses}, one per pulse"
@@ -223,6 +250,7 @@ def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -
 def _info(
     source: Source, s: CaptureSettings, segments: PulseTimes, header: str, notes: list[str]
 ) -> RecordingInfo:
+    """Describe the recording that is made of a capture."""
     needed = ["carrier_hz"] + (["bandwidth_hz", "adc_rate_hz"] if source.samples else [])
     for key in needed:
         if getattr(s, key) is None:
@@ -263,10 +291,16 @@ def write_simulated(
     """Write simulated samples as a recording: of chirps, of range profiles, or of slow time.
 
     Args:
-        beat: [receiver, N_ADC, M]; real numbers are stored as such.
-        waveform: of one sample a pulse the recording is slow time, of an impulse radar profiles.
-        segments: of the pulses; None has no gap.
-        delays: of each receiver's pulses, s.
+        out: recording to write.
+        beat: samples [receiver, N_ADC, M]; real numbers are stored as such. One sample a pulse
+            makes a recording of slow time.
+        waveform: waveform; that of an impulse radar makes a recording of range profiles.
+        label: activity and person.
+        segments: times of the pulses; None is without gaps.
+        delays: delay of the pulses of each receiver, s.
+
+    Raises:
+        UnfinishedError: it cannot be written.
     """
     receivers, samples, pulses = beat.shape
     segments = segments or PulseTimes.even(pulses, waveform.prf)

@@ -30,7 +30,17 @@ TRACK_UNITS = {
 
 
 def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) -> list[Path]:
-    """Write maps.h5 into a folder; return its path."""
+    """Write maps.h5 into a folder; return its path, in a list.
+
+    Args:
+        maps: maps of the recording.
+        config: config by which they were made.
+        info: description of the recording.
+        folder: output folder.
+
+    Raises:
+        UnfinishedError: it cannot be written.
+    """
     path = folder / MAPS_FILE
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -53,7 +63,11 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
 
 
 def draw(maps: Maps, config: Config, title: str, folder: Path) -> list[Path]:
-    """Write maps.png, every map with the torso's track over the range-time map, and frames.png."""
+    """Write maps.png, with the torso's track over the range-time map, and a board's frames.png.
+
+    Returns:
+        The paths that were written.
+    """
     drawn = []
     if maps.maps:
         _draw_maps(maps, config, title, folder / FIGURE)
@@ -65,6 +79,7 @@ def draw(maps: Maps, config: Config, title: str, folder: Path) -> list[Path]:
 
 
 def _draw_maps(maps: Maps, config: Config, title: str, path: Path) -> None:
+    """Write maps.png."""
     track = maps.track
     last = max((one.rows.values[-1] for name, one in maps.maps.items() if name == "rtm"), default=1)
     far = last if track is None else 1.3 * float(track.range.max()) + 0.5

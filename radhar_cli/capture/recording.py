@@ -37,11 +37,13 @@ Whole = Annotated[int, Field(ge=1, le=2**40)]
 
 
 class _Part(BaseModel):
+    """Frozen part of the description of a recording."""
+
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class Label(_Part):
-    """Activity and person from start to stop, s; None is the whole recording."""
+    """Activity and person from start to stop, s; without these, in the whole recording."""
 
     label: Text
     person: Text | None = None
@@ -58,7 +60,7 @@ class SourceNote(_Part):
 
 
 class RecordingInfo(_Part):
-    """The attribute `recording` of a recording file."""
+    """Description of a recording, stored as the attribute `recording` of its file."""
 
     # at the first sample of a chirp; of profiles and slow time, the frequency of their Doppler
     carrier_hz: Hertz
@@ -81,13 +83,17 @@ class RecordingInfo(_Part):
 
     @property
     def holds(self) -> Literal["beat", "profiles", "slow_time"]:
-        """What the samples are, and the name of their dataset."""
+        """Kind of the samples, which is the name of their dataset."""
         if self.samples is None:
             return "slow_time"
         return "beat" if self.range_step_m is None else "profiles"
 
     def waveform(self, fft_length: int | None = None, centred: bool = True) -> Waveform:
-        """The waveform; `duration` leaves out the gaps.
+        """Waveform of the recording; `duration` leaves out the gaps.
+
+        Args:
+            fft_length: length of the transform over a chirp; None is the number of samples.
+            centred: whether ranges refer to the middle of the chirp.
 
         Raises:
             CaptureError: the recording is slow time, which has no ranges.
@@ -130,17 +136,28 @@ def write_recording(
     """Write a recording under another name, then rename it into place.
 
     Args:
+        path: file to write.
+        info: description of the recording, without findings of the damage.
         number: type of the numbers, one of NUMBERS.
-        parts: 2 of complex numbers, 1 of real ones.
-        pieces: (first pulse, numbers [receiver, sample, pulse, part]).
-        damage: filled while the pieces are made; None: no flags.
+        parts: 2 for complex numbers, 1 for real ones.
+        pieces: (first pulse, numbers [receiver, sample, pulse, part]) of each piece.
+        segments: times of the pulses.
+        damage: damage, counted while the pieces are made; None for none.
         exclusive: leave a file alone that another process made meanwhile.
+
+    Returns:
+        The description that was written, with findings.
+
+    Raises:
+        CaptureError: every pulse lacks samples.
+        FolderError: another process made the file meanwhile.
+        UnfinishedError: it cannot be written.
     """
     dtype = number
     if parts == 2:
         pair = [("r", "<i2"), ("i", "<i2")]
         dtype = np.dtype({"f4": "c8", "f8": "c16"}.get(number.str[1:], pair))
-    samples, kept = info.samples or 1, slice(None, None, 1 if info.samples else 2)
+    samples, axes_of_samples = info.samples or 1, slice(None, None, 1 if info.samples else 2)
     shape = (info.receivers, samples, info.pulses)
     length = max(CHUNK_BYTES // (samples * dtype.itemsize), 1)
     chunks = (1, samples, min(length, info.pulses))
@@ -150,9 +167,11 @@ def write_recording(
             replacing(path, exclusive=exclusive) as unfinished,
             new_hdf5(unfinished, path) as (file, check),
         ):
-            data = file.create_dataset(info.holds, shape[kept], dtype, chunks=chunks[kept])
+            data = file.create_dataset(
+                info.holds, shape[axes_of_samples], dtype, chunks=chunks[axes_of_samples]
+            )
             across = "range" if info.holds == "profiles" else "fast time"
-            data.attrs["axes"] = ["receiver", across, "pulse"][kept]
+            data.attrs["axes"] = ["receiver", across, "pulse"][axes_of_samples]
             for first, values in pieces:
                 block = np.ascontiguousarray(values, dtype=number).view(dtype)[..., 0]
                 stop = first + block.shape[2]
@@ -199,10 +218,13 @@ class Recording(Closing):
     """A recording file opened for reading; it is not trusted.
 
     Attributes:
-        info: its description.
-        samples: [receiver, sample, pulse], of slow time [receiver, pulse].
-        segments: of the pulses.
+        info: description of the recording.
+        samples: numbers [receiver, sample, pulse], of slow time [receiver, pulse].
+        segments: times of the pulses.
         flags: uint8 [pulse]: 1 samples lost, 2 clipped.
+
+    Raises:
+        FolderError: the file is no recording, or is damaged.
     """
 
     def __init__(self, path: Path) -> None:
@@ -231,6 +253,7 @@ class Recording(Closing):
             raise
 
     def _read_segments(self) -> PulseTimes:
+        """Read and check the times of the pulses."""
         shape = (self.info.segments,)
         start = self._file.column("segment_start", "f8", shape)[:]
         first = self._file.column("segment_first", "i8", shape)[:]
@@ -241,7 +264,11 @@ class Recording(Closing):
         return PulseTimes(start, first, self.info.pulses, self.info.prf_hz)
 
     def parts(self, first: int, stop: int) -> Parts:
-        """Numbers [receiver, sample, stop - first, part] as stored; one sample of slow time."""
+        """Read numbers [receiver, sample, stop - first, part] as stored; slow time has one sample.
+
+        Raises:
+            CaptureError: a number is too large, or NaN in a pulse that is not flagged as lost.
+        """
         receivers, samples = slice(0, self.info.receivers), self.info.samples
         if samples is None:
             values = self.samples.read((receivers, slice(first, stop)))[:, None]
@@ -257,7 +284,7 @@ class Recording(Closing):
         return values
 
     def beat(self, first: int, stop: int) -> Complex:
-        """Complex samples [receiver, sample, stop - first]."""
+        """Read complex samples [receiver, sample, stop - first]; errors are those of `parts`."""
         values = self.parts(first, stop)
         out = np.zeros(values.shape[:3], dtype=complex)
         out.real = values[..., 0]
@@ -271,6 +298,7 @@ class Recording(Closing):
 
 
 def _info(document: Any, path: Path) -> RecordingInfo:
+    """Check the description of a recording, read from its file."""
     try:
         info = RecordingInfo.model_validate(document)
     except ValidationError as error:
@@ -279,12 +307,12 @@ def _info(document: Any, path: Path) -> RecordingInfo:
         raise FolderError(f"{path}: attribute recording: {key}: {first['msg']}") from None
     of_chirps, of_profiles = (info.adc_rate_hz,), (info.first_range_m, info.range_step_m)
     of_both = (info.samples, info.bandwidth_hz)
-    there, absent = {
+    required, absent = {
         "slow_time": ((), (*of_both, *of_chirps, *of_profiles)),
         "beat": ((*of_both, *of_chirps), of_profiles),
         "profiles": ((*of_both, *of_profiles), of_chirps),
     }[info.holds]
-    fits = None not in there and all(one is None for one in absent)
+    fits = None not in required and all(value is None for value in absent)
     if len(info.receiver_delay_s) != info.receivers or not fits:
         raise FolderError(
             f"{path}: attribute recording: should have samples and bandwidth_hz together, with "
@@ -300,16 +328,20 @@ def _info(document: Any, path: Path) -> RecordingInfo:
 
 
 def summarise_recording(path: Path) -> dict[str, Any]:
-    """Summarise a recording for `radhar inspect`."""
-    with Recording(path) as one:
-        info, flags = one.info, one.flags
+    """Summarise a recording, as plain values, for `radhar inspect`.
+
+    Raises:
+        FolderError: the file is no recording, or is damaged.
+    """
+    with Recording(path) as recording:
+        info, flags = recording.info, recording.flags
         summary: dict[str, Any] = {
             "kind": "recording",
             "path": str(path),
             "bytes": path.stat().st_size,
             **info.model_dump(exclude={"receiver_delay_s"}),
-            "duration_s": one.segments.duration,
-            "complex": one.samples.parts == 2,
+            "duration_s": recording.segments.duration,
+            "complex": recording.samples.parts == 2,
             "lost_pulses": int(np.count_nonzero(flags & LOST)),
             "clipped_pulses": int(np.count_nonzero(flags & CLIPPED)),
         }

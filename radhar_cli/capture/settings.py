@@ -1,4 +1,4 @@
-"""Settings needed to read a capture, from its header or given by hand."""
+"""Settings that are needed to read a capture, from its header or from the command line."""
 
 from math import prod
 from typing import Annotated, Literal, TypeAlias
@@ -62,11 +62,11 @@ class CaptureSettings(Section):
 
     @property
     def words_of_a_pulse(self) -> int:
-        """Words of 16 bits for one pulse of every transmitter in TI's stream."""
+        """Number of 16-bit words for one pulse of every transmitter in TI's stream."""
         sizes = self.transmitters, self.stored_receivers, self.samples or 1, 1 + self.complex
         return prod(sizes)
 
     @property
     def stored_receivers(self) -> int:
-        """Receivers in TI's stream: with four interleaved lanes all of them, used or not."""
+        """Number of receivers in TI's stream: four with four interleaved lanes, used or not."""
         return 4 if self.interleaved and self.lanes == 4 else self.receivers or 1

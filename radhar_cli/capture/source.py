@@ -35,16 +35,16 @@ class Source:
 
     @property
     def name(self) -> str:
-        """The first file, for messages."""
+        """Name of the first file, for messages."""
         return str(self.files[0])
 
     @property
     def pulse_bytes(self) -> int:
-        """Bytes of one pulse."""
+        """Number of bytes of one pulse of all receivers."""
         return self.receivers * (self.samples or 1) * self.parts * self.dtype.itemsize
 
     def pieces(self) -> Iterator[tuple[int, int]]:
-        """Consecutive (first, stop) of about PIECE_BYTES."""
+        """Yield (first pulse, past-last pulse) of consecutive pieces of about PIECE_BYTES."""
         length = max(PIECE_BYTES // self.pulse_bytes, 1)
         if length > self.step or self.step * self.pulse_bytes <= 4 * PIECE_BYTES:
             length = max(length // self.step, 1) * self.step

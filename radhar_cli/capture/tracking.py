@@ -37,7 +37,7 @@ MAX_DB = 60.0
 
 
 class Peaks(NamedTuple):
-    """Candidates of a frame, strongest first, each [C]."""
+    """Candidates of the torso in a frame, strongest first, each [C]."""
 
     range: Float  # m
     velocity: Float  # radial, receding, m/s
@@ -46,7 +46,7 @@ class Peaks(NamedTuple):
 
 @dataclass(frozen=True)
 class TorsoTrack:
-    """The track of the torso."""
+    """Track of the torso through a recording."""
 
     time: Float  # middles of the frames [F], s
     range: Float  # m [F]
@@ -60,11 +60,11 @@ class TorsoTrack:
         from scipy.interpolate import CubicHermiteSpline
 
         inside = np.clip(t, self.time[0], self.time[-1])
-        found = np.full(t.shape, self.range[0])
+        position = np.full(t.shape, self.range[0])
         if self.time.size > 1:
-            found = CubicHermiteSpline(self.time, self.range, self.velocity)(inside)
+            position = CubicHermiteSpline(self.time, self.range, self.velocity)(inside)
         edge = np.where(t < self.time[0], self.velocity[0], self.velocity[-1])
-        return np.asarray(found + edge * (t - inside), dtype=float)
+        return np.asarray(position + edge * (t - inside), dtype=float)
 
     def delays(self, t: Float) -> Float:
         """Two-way delay (s) at times t (s)."""
@@ -72,7 +72,7 @@ class TorsoTrack:
 
 
 def without_static(bins: Complex) -> Complex:
-    """Range bins [..., pulse] less their mean over the recording."""
+    """Remove static echoes: range bins [..., pulse] less their mean over the pulses."""
     moving: Complex = bins - bins.mean(axis=-1, keepdims=True)
     return moving
 
@@ -96,7 +96,8 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
 
     Args:
         bins: range bins [receiver, bin, pulse] with static echoes removed.
-        waveform: its range axis is that of the bins.
+        segments: times of the pulses.
+        waveform: waveform; its range axis is that of the bins.
     """
     length = min(max(round(WINDOW_S * segments.prf), 8), int(segments.lengths.max()))
     hop = max(round((1 - OVERLAP) * length), 1)
@@ -104,7 +105,7 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
     doppler = np.fft.fftshift(np.fft.fftfreq(length, 1 / segments.prf))[::-1]
     speeds = -doppler * SPEED_OF_LIGHT / (2 * waveform.f0)
     ranges = waveform.range_axis()
-    found, time, profiles = list[Peaks](), list[float](), list[Float]()
+    peaks_of_frames, time, profiles = list[Peaks](), list[float](), list[Float]()
     for part in segments.slices:
         for at in range(part.start, part.stop - length + 1, hop):
             frame = bins[:, :, at : at + length]
@@ -112,18 +113,18 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
             power = np.square(np.abs(scipy.fft.fft(frame * window, axis=2))).sum(axis=0)
             # Approaching is positive Doppler, receding positive velocity: the axis is reversed.
             power = np.fft.fftshift(power, axes=1)[:, ::-1]
-            found.append(peaks(power, ranges, speeds, len(bins)))
+            peaks_of_frames.append(peaks(power, ranges, speeds, len(bins)))
             profiles.append(np.maximum(power - 2 * np.median(power), 0).sum(axis=1))
             time.append(float(segments.times(np.array(at))) + (length - 1) / 2 / segments.prf)
     times = np.array(time)
     spacing = float(ranges[1] - ranges[0]) if ranges.size > 1 else RANGE_SD_M
     range_sd = float(np.hypot(spacing / 2, RANGE_SD_M))
-    ridge = _ridge(found, times, range_sd)
+    ridge = _ridge(peaks_of_frames, times, range_sd)
     if np.count_nonzero(ridge >= 0) < max(MIN_FRAMES, MIN_SHARE * ridge.size):
         return None
     measured = np.full((ridge.size, 2), np.nan)
     for f in np.flatnonzero(ridge >= 0).tolist():
-        measured[f] = found[f].range[ridge[f]], found[f].velocity[ridge[f]]
+        measured[f] = peaks_of_frames[f].range[ridge[f]], peaks_of_frames[f].velocity[ridge[f]]
     sd = range_sd, max(float(speeds[1] - speeds[0]) / 2, 0.02)
     position, velocity = _smoothed(measured, times, sd)
     profile = np.array(profiles)
@@ -134,11 +135,11 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
 
 
 def peaks(power: Float, ranges: Float, speeds: Float, looks: int = 1) -> Peaks:
-    """The strongest peaks of a frame's power relative to its floor, the median of all cells.
+    """Find the strongest peaks of a frame's power, relative to its floor: the median of all cells.
 
     Args:
-        power: [range, velocity], the sum of `looks` receivers.
-        ranges, speeds: of rows and columns.
+        power: power [range, velocity], the sum of `looks` receivers.
+        ranges, speeds: ranges of the rows, m, and velocities of the columns, m/s.
         looks: number of receivers, whose noise is independent.
     """
     step = speeds[1] - speeds[0] if speeds.size > 1 else 1.0
@@ -177,12 +178,13 @@ def _vertex(power: Float, rows: Index, columns: Index) -> Float:
     return np.clip(shift, -0.5, 0.5)
 
 
-def _ridge(found: list[Peaks], time: Float, range_sd: float) -> Index:
-    """Number of the chosen candidate of each frame [F], -1 where it is bridged."""
+def _ridge(peaks_of_frames: list[Peaks], time: Float, range_sd: float) -> Index:
+    """Choose a candidate of each frame by dynamic programming [F], -1 where it is bridged."""
     scores: list[Float] = []
-    came: list[list[tuple[int, int]]] = []
-    best, at = 0.0, (-1, -1)
-    for f, now in enumerate(found):
+    predecessors: list[list[tuple[int, int]]] = []
+    best_score = 0.0
+    frame, candidate = -1, -1
+    for f, now in enumerate(peaks_of_frames):
         reward = np.minimum(10 * np.log10(np.maximum(now.snr, 1)), MAX_DB) / REWARD_DB
         score = reward.copy()  # the ridge may begin here
         previous = [(-1, -1)] * reward.size
@@ -190,7 +192,7 @@ def _ridge(found: list[Peaks], time: Float, range_sd: float) -> Index:
             dt = time[f] - time[back]
             if dt > MAX_GAP_S and back < f - 1:
                 break
-            before = found[back]
+            before = peaks_of_frames[back]
             if not before.range.size or not reward.size:
                 continue
             cost = _cost(before, now, dt, range_sd) + MISS * (f - 1 - back)
@@ -200,35 +202,45 @@ def _ridge(found: list[Peaks], time: Float, range_sd: float) -> Index:
             for c in np.flatnonzero(through > score).tolist():
                 score[c], previous[c] = through[c], (back, int(chosen[c]))
         scores.append(score)
-        came.append(previous)
+        predecessors.append(previous)
         for c, value in enumerate(score.tolist()):
-            if value > best:
-                best, at = value, (f, c)
-    ridge = np.full(len(found), -1)
-    while at[0] >= 0:
-        ridge[at[0]] = at[1]
-        at = came[at[0]][at[1]]
+            if value > best_score:
+                best_score = value
+                frame, candidate = f, c
+    ridge = np.full(len(peaks_of_frames), -1)
+    while frame >= 0:
+        ridge[frame] = candidate
+        frame, candidate = predecessors[frame][candidate]
     return ridge
 
 
 def _cost(before: Peaks, now: Peaks, dt: float, range_sd: float) -> Float:
-    """Half the squared deviations in range and velocity [before, now], in standard deviations.
+    """Cost of a step [before, now]: half the squared normalised deviations in range and velocity.
 
-    Infinite where nobody walks that fast.
+    It is infinite where nobody walks that fast.
     """
     change = now.velocity - before.velocity[:, None]
     mean = before.velocity[:, None] + change / 2
-    way = now.range - before.range[:, None]
-    off = way - mean * dt
-    faster = min(ACCELERATION * dt, CHANGE_MPS)
-    spread = np.hypot(range_sd, faster * dt / 2)
-    cost: Float = (off / spread) ** 2 + (change / np.hypot(faster, 0.1)) ** 2
-    too_far = np.abs(way) > MAX_SPEED_MPS * dt + 3 * range_sd
+    range_change = now.range - before.range[:, None]
+    deviation = range_change - mean * dt
+    velocity_sd = min(ACCELERATION * dt, CHANGE_MPS)
+    spread = np.hypot(range_sd, velocity_sd * dt / 2)
+    cost: Float = (deviation / spread) ** 2 + (change / np.hypot(velocity_sd, 0.1)) ** 2
+    too_far = np.abs(range_change) > MAX_SPEED_MPS * dt + 3 * range_sd
     return np.where(too_far, np.inf, cost / 2)
 
 
 def _smoothed(measured: Float, time: Float, sd: tuple[float, float]) -> tuple[Float, Float]:
-    """(range, velocity) [F] by filter and smoother; rows of NaN were not measured."""
+    """Smooth ranges and velocities by Kalman filter and Rauch-Tung-Striebel smoother.
+
+    Args:
+        measured: (range, velocity) [F, 2], m and m/s; NaN in frames without a measurement.
+        time: middles of the frames [F], s.
+        sd: standard deviations of a measured range and velocity.
+
+    Returns:
+        Range and velocity [F].
+    """
     first = int(np.flatnonzero(np.isfinite(measured[:, 0]))[0])
     state, spread, noise = measured[first], np.eye(2), np.diag(np.square(sd))
     states, spreads, ahead, ahead_spreads, steps = [], [], [], [], []

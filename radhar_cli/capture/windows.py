@@ -15,7 +15,7 @@ import numpy as np
 from radhar_cli.activity import TWELVE
 from radhar_cli.capture.board_frames import SAME
 from radhar_cli.capture.chain import maps_of
-from radhar_cli.capture.images import are_images, is_image, listed, read_image
+from radhar_cli.capture.images import are_images, is_image, list_images, read_image
 from radhar_cli.capture.recording import Recording, RecordingInfo
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.reading import validated
@@ -36,9 +36,12 @@ COLUMNS = ("file", "label", "person", "start", "stop")
 
 
 def read_manifest(path: Path) -> list[dict[str, Any]]:
-    """Rows of a manifest: CSV with a heading, or a YAML list of mappings.
+    """Read the rows of a manifest: CSV with a heading, or a YAML list of mappings.
 
-    Columns: file (below the manifest's folder), label, and if wanted person, start and stop (s).
+    Columns are file (below the manifest's folder), label, and optionally person, start, stop (s).
+
+    Raises:
+        ConfigError: it is neither, lists nothing, or a row cannot be used.
     """
     text = text_of(path, MAX_MANIFEST, ConfigError)
     if path.suffix.lower() in (".yaml", ".yml"):
@@ -50,13 +53,14 @@ def read_manifest(path: Path) -> list[dict[str, Any]]:
             rows = [*csv.DictReader(io.StringIO(text), strict=True)]
         except csv.Error as error:
             raise ConfigError(f"{path}: is not CSV ({error})") from None
-    checked = [_row(row, f"{path}: row {number}") for number, row in enumerate(rows, 1)]
+    checked = [_check_row(row, f"{path}: row {number}") for number, row in enumerate(rows, 1)]
     if not checked:
         raise ConfigError(f"{path}: lists nothing; should have columns {', '.join(COLUMNS)}")
     return checked
 
 
-def _row(row: dict[Any, Any], where: str) -> dict[str, Any]:
+def _check_row(row: dict[Any, Any], where: str) -> dict[str, Any]:
+    """Check a row of a manifest; return it as plain values of a part of the config."""
     given = {key: value for key, value in row.items() if value not in (None, "")}
     for key in given:
         if key not in COLUMNS:
@@ -81,24 +85,32 @@ def _row(row: dict[Any, Any], where: str) -> dict[str, Any]:
 
 
 def _slug(label: str) -> str:
+    """Slug of a label: S1 to S12 by number, others in lower case with underscores."""
     name = label.strip().lower().replace(" ", "_").replace("-", "_")
     return TWELVE.get(name, name)
 
 
 def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
-    """The config of a data set of the manifest's recordings, which are opened for their length.
+    """Make the config of a data set of recordings, which are opened for their length and radar.
 
     Numbers that `config` draws take their middle.
+
+    Args:
+        config: config that says how recordings are processed.
+        manifest: list of the recordings, or a tree or .npz of images.
+
+    Raises:
+        ConfigError: the manifest cannot be used, or recordings are of different radars.
     """
     if are_images(manifest):
         return _with_images(config, manifest)
-    parts, sums = read_manifest(manifest), dict[str, str]()
+    parts, checksums = read_manifest(manifest), dict[str, str]()
     lengths, radar = dict[str, float](), dict[str, Any]()
-    document = _shared(config)
-    given = document["recordings"]
+    document = _shared_document(config)
+    section = document["recordings"]
     checked = [{**part, "start_s": part["start_s"] or 0.0, "stop_s": 0.0} for part in parts]
     # Names are checked before any file is opened.
-    validated(RecordingsConfig, {**given, "parts": checked}, str(manifest), {})
+    validated(RecordingsConfig, {**section, "parts": checked}, str(manifest), {})
     for part in parts:
         name = part["file"]
         if name not in lengths:
@@ -106,15 +118,17 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
             refuse_outside(path, manifest.parent)
             with Recording(path) as recording:
                 lengths[name] = round(recording.segments.duration, 9)
-                own = radar_of(recording.info)
-            radar = radar or own
-            for key in radar | own:
-                ours, theirs = own.get(key), radar.get(key)
-                if not _same(ours, theirs):
-                    told = f"should be {_written(theirs)}, as in {parts[0]['file']}: one radar"
-                    raise ConfigError(f"{manifest}: {name}: {key} = {_written(ours)}: {told}")
+                own_radar = radar_of(recording.info)
+            radar = radar or own_radar
+            for key in radar | own_radar:
+                value, expected = own_radar.get(key), radar.get(key)
+                if not _agree(value, expected):
+                    raise ConfigError(
+                        f"{manifest}: {name}: {key} = {_value_text(value)}: should be "
+                        f"{_value_text(expected)}, as in {parts[0]['file']}: one radar"
+                    )
             with path.open("rb") as file:
-                sums[name] = hashlib.file_digest(file, "sha256").hexdigest()
+                checksums[name] = hashlib.file_digest(file, "sha256").hexdigest()
         start, stop = part["start_s"] or 0.0, part["stop_s"]
         stop = lengths[name] if stop is None else stop
         if not 0 <= start < stop <= lengths[name] + 1e-6:
@@ -123,20 +137,20 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
                 f"{lengths[name]:.6g} s"
             )
         part["start_s"], part["stop_s"] = start, stop
-    document["recordings"] = {**given, "parts": parts, "sha256": sums}
+    document["recordings"] = {**section, "parts": parts, "sha256": checksums}
     document["radar"] = as_recorded(document["radar"], radar)
-    return _whole(config, document, manifest)
+    return _with_split(config, document, manifest)
 
 
-def _shared(config: Config) -> dict[str, Any]:
-    """What a config says of measured data too, as plain values."""
-    every = resolved(nominal_scene(config, config.every_class[0]).config)
-    document = {key: every[key] for key in MeasuredConfig.model_fields}
-    return document | {"recordings": every["recordings"] or {}}
+def _shared_document(config: Config) -> dict[str, Any]:
+    """Plain values of the keys of a config that measured data have, too."""
+    nominal = resolved(nominal_scene(config, config.every_class[0]).config)
+    document = {key: nominal[key] for key in MeasuredConfig.model_fields}
+    return document | {"recordings": nominal["recordings"] or {}}
 
 
 def _with_images(config: Config, path: Path) -> MeasuredConfig:
-    """The config of a data set of images that exist already; each lasts recordings.window_s."""
+    """Make the config of a data set of existing images; each lasts recordings.window_s."""
     given = config.recordings or RecordingsConfig()
     if len(config.maps) != 1 or given.rows is None or not given.rows[0] < given.rows[1]:
         raise ConfigError(
@@ -145,15 +159,16 @@ def _with_images(config: Config, path: Path) -> MeasuredConfig:
         )
     if config.output.power is not None:
         raise ConfigError("output.power: should be null; images have no power behind them")
-    images, document = listed(path, given.packed), _shared(config)
+    images, document = list_images(path, given.packed), _shared_document(config)
     window = {"start_s": 0.0, "stop_s": given.window_s}
     parts = [{**part, "label": _slug(part["label"]), **window} for part in images.parts]
     document["recordings"] |= {"parts": parts, "sha256": images.sha256}
     document["image"] |= {"size_px": list(images.size)}
-    return _whole(config, document, path)
+    return _with_split(config, document, path)
 
 
-def _whole(config: Config, document: dict[str, Any], manifest: Path) -> MeasuredConfig:
+def _with_split(config: Config, document: dict[str, Any], manifest: Path) -> MeasuredConfig:
+    """Add the split to a document, and validate it as the config of a measured data set."""
     parts = document["recordings"]["parts"]
     document["split"] = _split(config, parts, manifest)
     if len(json.dumps(document)) > MAX_CONFIG:
@@ -161,22 +176,22 @@ def _whole(config: Config, document: dict[str, Any], manifest: Path) -> Measured
     return validated(MeasuredConfig, document, str(manifest), *config._places)
 
 
-def _same(one: Any, other: Any) -> bool:
-    """Whether two values of a key of `radar:` are the same, but for rounding."""
-    if isinstance(one, float) and isinstance(other, float):
-        return abs(one - other) <= SAME * abs(other)
-    if isinstance(one, list) and isinstance(other, list):
-        return len(one) == len(other) and all(map(_same, one, other))
-    return bool(one == other)
+def _agree(value: Any, other: Any) -> bool:
+    """Whether two values of a key of `radar:` agree, but for rounding."""
+    if isinstance(value, float) and isinstance(other, float):
+        return abs(value - other) <= SAME * abs(other)
+    if isinstance(value, list) and isinstance(other, list):
+        return len(value) == len(other) and all(map(_agree, value, other))
+    return bool(value == other)
 
 
-def _written(value: Any) -> str:
-    """A value of a key of `radar:` in a message."""
+def _value_text(value: Any) -> str:
+    """Text of a value of a key of `radar:`, for messages."""
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
 def radar_of(info: RecordingInfo) -> dict[str, Any]:
-    """Keys of `radar:` that a recording says."""
+    """Keys of `radar:` that a recording determines, with their values."""
     # Slow time has the frequency of the carrier.
     known: dict[str, Any] = {"carrier_hz": info.carrier_hz, "prf_hz": info.prf_hz}
     known["bandwidth_hz"] = 1e3
@@ -202,13 +217,14 @@ def radar_of(info: RecordingInfo) -> dict[str, Any]:
 
 
 def as_recorded(radar: dict[str, Any], recorded: dict[str, Any]) -> dict[str, Any]:
-    """The section `radar` of a config with what its recordings say (`radar_of`) in its place."""
+    """Replace keys of a config's section `radar` by those of its recordings (`radar_of`)."""
     if radar["waveform"] == "impulse" and "waveform" not in recorded:
         radar = radar | {"waveform": "fmcw", "profile_m": None}
     return radar | recorded
 
 
 def _split(config: Config, parts: Sequence[dict[str, Any]], manifest: Path) -> dict[str, Any]:
+    """Make the section `split`; by subject, it has the number of persons in the manifest."""
     split: dict[str, Any] = config.split.model_dump()
     if config.split.by == "subject":
         nobody = [number for number, part in enumerate(parts, 1) if part["person"] is None]
@@ -221,7 +237,7 @@ def _split(config: Config, parts: Sequence[dict[str, Any]], manifest: Path) -> d
 
 
 def warnings_of(config: MeasuredConfig) -> list[str]:
-    """What a user should know of a data set of recordings, in words."""
+    """Warnings for a data set of recordings: short parts, shared persons, packed images."""
     recorded, warnings = config.recordings, list[str]()
     if is_image(recorded.parts[0].file):
         height, width = config.image.size_px
@@ -244,29 +260,30 @@ def warnings_of(config: MeasuredConfig) -> list[str]:
 
 @dataclass(frozen=True)
 class WindowFactory:
-    """Makes the rows of a data set of recordings."""
+    """Callable that makes the rows of a data set of recordings."""
 
     folder: Path  # of the manifest, absolute
 
     def __call__(self, config: MeasuredConfig, row: int) -> SampleRow:
-        """Sample and values of a row."""
+        """Make the sample of a row, and its scene numbers."""
         recorded = config.recordings
         number, part, start = windows(config)[row]
         if is_image(part.file):
             return SampleRow(self._image(config, part.file), np.array([number, start, nan]))
         with Recording(self.folder / part.file) as recording:
-            made = maps_of(
+            results = maps_of(
                 recording, config, config.maps, start, start + recorded.window_s, recorded.receiver
             )
         images: dict[str, MapImage] = {}
         for name in config.maps:
-            one = made.maps[name]
-            columns = replace(one.columns, values=one.columns.values - start)
-            images[name] = image_of(config, replace(one, columns=columns))
-        sure = nan if made.track is None else float(made.track.confidence.mean())
-        return SampleRow(Synthesised(images, nan, False, {}), np.array([number, start, sure]))
+            power_map = results.maps[name]
+            columns = replace(power_map.columns, values=power_map.columns.values - start)
+            images[name] = image_of(config, replace(power_map, columns=columns))
+        confidence = nan if results.track is None else float(results.track.confidence.mean())
+        return SampleRow(Synthesised(images, nan, False, {}), np.array([number, start, confidence]))
 
     def _image(self, config: MeasuredConfig, file: str) -> Synthesised:
+        """Read the sample of an existing image."""
         recorded = config.recordings
         assert recorded.rows is not None
         levels = read_image(self.folder, file, config.image.size_px, recorded.packed)

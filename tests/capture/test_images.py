@@ -10,7 +10,7 @@ from command_line import radhar
 from PIL import Image
 
 from radhar_cli.capture import images
-from radhar_cli.capture.images import listed
+from radhar_cli.capture.images import list_images
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import CaptureError
 
@@ -128,11 +128,11 @@ def test_an_npz_that_promises_or_holds_too_much_is_refused(
     with zipfile.ZipFile(tmp_path / "x.npz", "w") as archive:
         archive.writestr("masks.npy", header)
     with pytest.raises(CaptureError, match=r"x\.npz: .*too few bytes"):
-        listed(tmp_path / "x.npz", packed=False)
+        list_images(tmp_path / "x.npz", packed=False)
     monkeypatch.setattr(images, "MAX_NPZ", 1000)
     np.savez(tmp_path / "large.npz", masks=masks(), label=np.array(["a"] * 12))
     with pytest.raises(CaptureError, match=r"large\.npz: .*more than 1000 bytes of images"):
-        listed(tmp_path / "large.npz", packed=False)
+        list_images(tmp_path / "large.npz", packed=False)
 
 
 def test_masks_are_taken_by_name_and_bytes_are_text(tmp_path: Path) -> None:
@@ -143,5 +143,5 @@ def test_masks_are_taken_by_name_and_bytes_are_text(tmp_path: Path) -> None:
         label=np.array([b"falling"] * 12),
         person=np.array([b"p1"] * 12),
     )
-    part = listed(tmp_path / "x.npz", packed=False).parts[0]
+    part = list_images(tmp_path / "x.npz", packed=False).parts[0]
     assert (part["label"], part["person"]) == ("falling", "p1")

@@ -1,4 +1,4 @@
-"""From an error that is allowed to settings of the direct engine, and the error that they made.
+"""Settings of the direct engine for an error that is allowed, and the error that they made.
 
 As FINUFFT turns eps into a kernel width, `settings` turns decibels into the spacing of knots, the
 size of a table and a precision; `measured_db` then compares the signal with the exact beat at some
@@ -37,16 +37,22 @@ ROUGH = 0.25  # share of the probes that lie where interpolation is likely to er
 
 
 class Settings(NamedTuple):
-    """What the direct engine does."""
+    """Settings of the direct engine."""
 
-    spacing: Spacing  # of the knots
+    spacing: Spacing  # spacing of the knots
     table_oversampling: int  # points of the table of G per fast-time sample
     single: bool  # whether phasors between knots are single precision
     cubic: bool  # whether phases between knots are cubics over 20 pulses or fewer
 
 
 def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Settings:
-    """Settings that usually err by `aim_db` or less, for a motion of that fundamental (Hz)."""
+    """Choose settings that usually err by `aim_db` or less.
+
+    Args:
+        aim_db: Relative L2 error after the canceller, dB.
+        waveform: The radar.
+        highest_frequency: Fundamental of the fastest motion, Hz.
+    """
     coarse = 10 ** ((aim_db - SPACING_DB) / 120)
     finest_table = max(1, MAX_CELLS // waveform.n_adc)
     return Settings(
@@ -62,7 +68,7 @@ def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Set
 
 
 def first_aim(tolerance_db: float) -> float:
-    """The error (dB) that settings for a tolerance are first chosen for."""
+    """Error (dB) for which settings are first chosen, below a tolerance (dB)."""
     return max(min(tolerance_db, COARSEST_DB) - MARGIN_DB, MIN_AIM_DB)
 
 
@@ -70,7 +76,7 @@ class AccuracyError(ValueError):
     """The direct engine cannot be as accurate as asked.
 
     Attributes:
-        limit_db: what it can be.
+        limit_db: Error that it reaches, dB.
     """
 
     def __init__(self, limit_db: float) -> None:
@@ -86,11 +92,19 @@ def measured_db(
     unit: float,
     likely: Float | None = None,
 ) -> float:
-    """Relative L2 error (dB) of y [M], in units of `unit`, after a canceller, from some pulses.
+    """Relative L2 error (dB) of a signal after a canceller, measured at some pulses.
 
-    Pulses are chosen by `probed_pulses`, `likely` is where errors may be large. The estimate of
+    Pulses are chosen by `probed_pulses`. The estimate of
     sum |e|^2 divides each |e|^2 by the density of the pulses; sum |x|^2 is known. e is the error
-    after the canceller where few pulses show that; before it otherwise, and bounds what is left.
+    after a `Fir`, and before another canceller, behind which it is no larger.
+
+    Args:
+        y: Signal [M] before the canceller, in units of `unit`.
+        source: Paths that y is the sum of.
+        waveform: The radar.
+        canceller: The canceller.
+        unit: Amplitude in which y is given.
+        likely: How large |e|^2 may be [M or more], up to a factor.
     """
     shown = canceller if isinstance(canceller, Fir) else NO_CANCELLER
     probes, density, total = probed_pulses(_power(y, canceller), likely)
@@ -111,11 +125,11 @@ def probed_pulses(power: Float, likely: Float | None = None) -> tuple[Index, Flo
 
     Args:
         power: |x|^2 [M].
-        likely: how large |e|^2 may be [M or more], up to a factor; None or zeros where nothing is
+        likely: How large |e|^2 may be [M or more], up to a factor; None or zeros where nothing is
             known of it.
 
     Returns:
-        The pulses, how often one is expected among them, and the sum of the power.
+        Numbers of the pulses, expected count of each among them, and the sum of the power.
     """
     total = float(power.sum())
     if total == 0:
@@ -132,13 +146,19 @@ def probed_pulses(power: Float, likely: Float | None = None) -> tuple[Index, Flo
 
 
 def relative_db(squares: Float, density: Float, total: float) -> float:
-    """Squared errors at some pulses, as an error of all relative to their power, in dB."""
+    """Relative error (dB) of a signal from squared errors at some pulses.
+
+    Args:
+        squares: |e|^2 at the pulses [P].
+        density: Expected count of each pulse [P].
+        total: Sum of |x|^2 over all pulses.
+    """
     relative = float((squares / density).sum()) / total
     return 10 * log10(relative) if relative > 0 else -inf
 
 
 def _power(y: Complex, canceller: Canceller) -> Float:
-    """|x|^2, after a `Fir` a block at a time."""
+    """Power |x|^2 [M] of y after the canceller."""
     if not isinstance(canceller, Fir):
         x = canceller(y)
         power: Float = x.real**2 + x.imag**2
@@ -157,7 +177,7 @@ def _exact(
     pulses: Index,
     canceller: tuple[float, ...],
 ) -> Complex:
-    """x at some pulses by way of the beat, a few of them at a time where chirps are long."""
+    """Exact x [pulses] at some pulses by way of the beat, a few of them at a time."""
     d, length = weights(waveform), max(1, BLOCK_SAMPLES // waveform.n_adc)
     return np.concatenate(
         [

@@ -13,7 +13,10 @@ BLOCK = 2**11  # start phasors per block; some forty follow from each
 
 
 def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:
-    """Phase (cycles) of a path at `frequency`: f tau, less K tau^2/2 if that term is kept."""
+    """Phases [...] (cycles) of delays [...] (s) at a frequency f (Hz).
+
+    They are f tau, less K tau^2/2 if the residual video phase is kept.
+    """
     cycles = frequency * delay
     if waveform.residual_video_phase:
         cycles -= 0.5 * waveform.slope * delay * delay
@@ -21,7 +24,7 @@ def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:
 
 
 def powers(w: Complex, count: int) -> Complex:
-    """w^0 .. w^(count - 1) [count, ...] of unit phasors w [...], by doubling."""
+    """Powers w^0 .. w^(count - 1) [count, ...] of unit phasors w [...], by doubling."""
     out = np.empty((count, *w.shape), dtype=w.dtype)
     out[0] = 1
     done, factor = 1, w
@@ -34,11 +37,16 @@ def powers(w: Complex, count: int) -> Complex:
 
 
 def beat_matrix(delay: Float, amplitude: Float, waveform: Waveform) -> Complex:
-    """s_b[n, m] = sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)) [N_ADC, M] of paths [I, M].
+    """Beat matrix s_b[n, m] = sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)) [N_ADC, M].
 
     With n = a fine + b the exponential is a product of one in a and one in b, so the sum over the
     paths is, pulse by pulse, a product of two small matrices: the same numbers to rounding, with
     two exponentials a path instead of N_ADC.
+
+    Args:
+        delay: Delays tau [I, M], s.
+        amplitude: Amplitudes A [I, M].
+        waveform: The radar.
     """
     coarse = isqrt(waveform.n_adc - 1) + 1
     fine = -(-waveform.n_adc // coarse)

@@ -37,9 +37,15 @@ LEAST_TURN, MARGIN = 1e-9, 5
 
 
 def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, float]:
-    """Samples [frame, loop, virtual, sample] in double precision, and P_s.
+    """Exact samples of a board in double precision.
 
-    P_s is the mean over frames, loops and channels of sum_i A_i^2.
+    Args:
+        channels: Paths of each virtual channel [V].
+        board: The board.
+
+    Returns:
+        Samples [frame, loop, virtual, sample], and P_s, the mean over frames, loops and channels of
+        sum_i A_i^2.
     """
     cube = np.empty((board.frames, board.loops, board.channels, board.samples), complex)
     power = 0.0
@@ -62,7 +68,7 @@ def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, f
 def fast_cube(
     channels: Sequence[PathSource], board: Board, tolerance_db: float
 ) -> tuple[Complex, float, float]:
-    """Samples as `exact_cube`, P_s, and the measured error relative to the cube, dB.
+    """Samples of a board within a tolerance, P_s, and the measured relative error in dB.
 
     In half a chirp a beat turns by y = 2 pi K (tau - tau_m) u_N/fs, tau_m the middle of a frame's
     delays, u_N = (N - 1)/2. With x = y/Y, Y the largest of all, and u = n - u_N it is a sum of few
@@ -78,7 +84,7 @@ def fast_cube(
     are made again in double precision, from MORE_NODES instants and then from those of all loops.
 
     Raises:
-        AccuracyError: the tolerance is missed all the same.
+        AccuracyError: The tolerance is missed all the same.
     """
     single = tolerance_db >= SINGLE_DB
     best = inf
@@ -111,7 +117,7 @@ def _summed(
 
 
 def mean_power(channels: Sequence[PathSource], board: Board) -> float:
-    """P_s of paths whose echo is not made: mean over frames, loops and channels of sum_i A_i^2."""
+    """Mean P_s over frames, loops and channels of sum_i A_i^2, without making the echo."""
     total = sum(float(np.einsum("ivl,ivl->", a, a)) for _, a in _frame_paths(channels, board))
     return total / (board.frames * board.loops * board.channels)
 
@@ -185,7 +191,7 @@ def _frame_sum(tau: Float, a: Float, board: Board, tolerance_db: float) -> Compl
 def _expanded(
     turn: Float, change: float, most: float, terms: int, v: Float, dtype: Any
 ) -> tuple[Float, Complex]:
-    """(change/most)^q T_p^(q)(turn/most)/q! [P, q, I] and c_p [P, N] of exp(-j turn v), v [N]."""
+    """Factors (change/most)^q T_p^(q)(turn/most)/q! [P, q, I], and c_p [P, N] of exp(-j turn v)."""
     count = ceil(most + CUBE_ROOTS[dtype == np.complex64] * (most + 15) ** (1 / 3))
     x, scale = turn / most, change / most
     given = np.zeros((count, terms, x.size))

@@ -11,7 +11,12 @@ Values = TypeVar("Values", Float, Complex)
 
 
 def coefficients(function: Callable[[Float], Values], count: int) -> Values:
-    """c_p [P, ...] of function(x) = sum_p c_p T_p(x), from values [P, ...] at P = `count` nodes."""
+    """Coefficients c_p [P, ...] of function(x) = sum_p c_p T_p(x), -1 <= x <= 1.
+
+    Args:
+        function: Values [P, ...] at x [P].
+        count: Number P of nodes and of coefficients.
+    """
     import scipy.fft  # slow to import
 
     angle = np.pi * (np.arange(count) + 0.5) / count

@@ -32,17 +32,25 @@ MIN_TERMS = 2**19  # terms of a sum; with fewer, numba takes longer to load than
 
 
 def pays(terms: int) -> bool:
-    """Whether a sum over paths and pulses of that many terms is made here."""
+    """Whether a sum of that many terms, paths times pulses, is worth compiled code."""
     return terms >= MIN_TERMS and installed("numba") is not None
 
 
 def interpolated_sum(
     paths: Paths, some: Index, unit: float, table: HalfBandTable, shift: Index, step: int
 ) -> Complex:
-    """sum_i A_i G_i exp(-j 2 pi f0 tau_i) at the pulses [segments * step], in units of `unit`.
+    """Sum of A_i G_i exp(-j 2 pi f0 tau_i) over paths, at the pulses between knots.
 
-    Paths are given at the knots; `some` are summed, with a `table` of G, and the `shift` of each
-    segment's stencil.
+    Args:
+        paths: Paths at the knots.
+        some: Numbers of the paths that are summed.
+        unit: Amplitude in which the result is given.
+        table: Table of G.
+        shift: Shift of each segment's stencil [segments].
+        step: Number of pulses of a segment.
+
+    Returns:
+        The sum [segments * step].
     """
     w, shape = table.waveform, (paths.delay.shape[1], some.size)
     cycles, real, imag = np.empty(shape), *np.empty((2, *shape), table.cubics[0].real.dtype)
@@ -72,7 +80,7 @@ def _cubics(step: int) -> tuple[Float, Float]:
     """Cubics of the runs of a segment, through Chebyshev points of each.
 
     Returns:
-        from the knots of a stencil with shift -REACH .. REACH to the coefficients of x^k
+        Weights from the knots of a stencil with shift -REACH .. REACH to the coefficients of x^k
         [runs, 2 REACH + 1, TERMS, TAPS]; and x at the pulses of a run [length], -1 to 1.
     """
     length, differences = runs(step, TERMS - 1)
@@ -95,7 +103,7 @@ def _at_knots(
     real: Float,
     imag: Float,
 ) -> None:
-    """Fill in phases and A G at knots [knots, I]."""
+    """Fill in phases (cycles) and real and imaginary parts of A G at knots [knots, I]."""
     f0, square, turn, per_unit, alternating = scale
     value, slope, curve, cube = table
     for i in range(some.size):

@@ -66,24 +66,24 @@ class DirectEcho:
     min_step: ClassVar[int] = MIN_STEP  # fewest pulses from knot to knot
 
     def signal_power(self) -> float:
-        """P_s = mean over the pulses of sum_i A_i^2."""
+        """Mean P_s over the pulses of sum_i A_i^2."""
         return self._motion.power
 
     @property
     def look(self) -> Look:
-        """What of the echo this is."""
+        """Look at the echo that is made: the coherent sum over range."""
         return Look.of_all("slow_time", RangeSum(self.waveform))
 
     def rows(self) -> tuple[Complex, Accuracy]:
-        """`slow_time` as `look` has it [K, M]."""
+        """Signal of `slow_time` with the rows of `look` [K, M], and its accuracy."""
         y, accuracy = self.slow_time()
         return np.atleast_2d(y), accuracy
 
     def slow_time(self) -> tuple[Complex, Accuracy]:
-        """y[m] [M] before the canceller, less what that removes exactly; and its accuracy.
+        """Signal y [M] before the canceller, less what that removes exactly; and its accuracy.
 
         Raises:
-            AccuracyError: the tolerance is below what float64 leaves of this signal.
+            AccuracyError: The tolerance is below what float64 leaves of this signal.
         """
         aim, best = first_aim(self.tolerance_db), 0.0
         chosen, motion = self._settings(aim), self._motion
@@ -124,6 +124,7 @@ class DirectEcho:
         return only(self._kept(motion), motion.at_pulses(self.source, self.waveform))
 
     def _kept(self, motion: PathsAtKnots) -> Bool:
+        """Whether paths [I] are summed: all that move, or all where the canceller leaves others."""
         kept: Bool = motion.moving | (not self.canceller.removes_static)
         return kept
 
@@ -144,6 +145,7 @@ class DirectEcho:
         return bool(np.sum(np.abs(left * amplitude) ** 2) > least)
 
     def _sum(self, chosen: Settings, motion: PathsAtKnots, unit: float) -> Complex:
+        """Signal y [M], in units of `unit`, by some settings."""
         y = np.zeros(self.waveform.n_pulses, dtype=complex)
         kept = self._kept(motion)
         if kept.any():
@@ -198,9 +200,10 @@ class DirectEcho:
 def _interpolated_sum(
     cycles: Float, envelope: Complex, shift: Index, step: int, cubic: bool
 ) -> Complex:
-    """sum_i envelope exp(-j 2 pi cycles) at the pulses [segments * step], in envelope's precision.
+    """Sum over paths of envelope exp(-j 2 pi cycles) at the pulses [segments * step].
 
-    Both are given at the knots [BEFORE + segments + AFTER, I].
+    It has the precision of the envelope. Phases and envelope are given at the knots
+    [BEFORE + segments + AFTER, I].
     """
     degree = CUBIC if cubic else TAPS - 1
     to_nodes, to_pulses = _weights(step, degree)
@@ -221,14 +224,18 @@ def _interpolated_sum(
 
 @lru_cache(maxsize=128)
 def _weights(step: int, degree: int) -> tuple[Float, Float]:
-    """From the knots -2 .. 3 of a segment to nodes [nodes, TAPS]; from these to its pulses
-    [step, nodes, 1]."""
+    """Weights of interpolation within a segment of `step` pulses.
+
+    Returns:
+        Weights from the knots -2 .. 3 of a segment to nodes [nodes, TAPS], and from these to its
+        pulses [step, nodes, 1].
+    """
     at = nodes(degree, step)
     to_pulses = lagrange_basis(at, np.arange(float(step))).T[:, :, None]
     return lagrange_basis(NODES, at / step).T, to_pulses
 
 
 def _phasor_sum(cycles: Float, envelope: Complex) -> Complex:
-    """sum_i envelope exp(-j 2 pi cycles) [M], of [M, I], in the envelope's precision."""
+    """Sum over paths of envelope exp(-j 2 pi cycles) [M], in the precision of the envelope."""
     total: Complex = np.einsum("mi,mi->m", unit_phasor(cycles, envelope.dtype), envelope)
     return total

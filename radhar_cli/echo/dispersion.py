@@ -24,44 +24,45 @@ NARROW = 1e-6  # of cosines, below which they make no polynomial
 
 
 def beat_of(paths: Paths, waveform: Waveform) -> Complex:
-    """s_b[n, m] [N_ADC, M] of any paths."""
+    """Beat matrix s_b[n, m] [N_ADC, M] of paths, through a layered wall or not."""
     if paths.through is None:
         return beat_matrix(paths.delay, paths.amplitude, waveform)
-    passed = Passed(paths.through, waveform)
+    wall = WallTransfer(paths.through, waveform)
     beat = np.empty((waveform.n_adc, paths.delay.shape[1]), complex)
-    for block, left in passed.both(paths.through):
+    for block, field in wall.two_way_blocks(paths.through):
         tau = paths.delay[:, block]
         turn = unit_phasor(waveform.slope / waveform.adc_rate * tau)
         first = unit_phasor(start_phase(tau, waveform, waveform.fc)) * paths.amplitude[:, block]
-        left *= powers(turn, waveform.n_adc)
-        beat[:, block] = np.einsum("nim,im->nm", left, first)
+        field *= powers(turn, waveform.n_adc)
+        beat[:, block] = np.einsum("nim,im->nm", field, first)
     return beat
 
 
 def power_of(paths: Paths, waveform: Waveform) -> Float:
-    """sum_i A_i^2 [M]; through a layered wall |A_i H_tx,i H_rx,i|^2 in the mean over a chirp."""
+    """Power sum_i A_i^2 [M], through a layered wall in the mean over a chirp."""
     a = paths.amplitude
     if paths.through is None:
         alone: Float = np.einsum("im,im->m", a, a)
         return alone
-    passed, power = Passed(paths.through, waveform), np.empty(a.shape[1])
-    for block, left in passed.both(paths.through):
-        power[block] = np.einsum("nim,im->m", np.abs(left) ** 2, a[:, block] ** 2)
+    wall = WallTransfer(paths.through, waveform)
+    power = np.empty(a.shape[1])
+    for block, field in wall.two_way_blocks(paths.through):
+        power[block] = np.einsum("nim,im->m", np.abs(field) ** 2, a[:, block] ** 2)
     return power / waveform.n_adc
 
 
-class Passed:
-    """H of legs at the fast-time samples of a radar, for the angles of some paths."""
+class WallTransfer:
+    """Transfer function H of legs at the fast-time samples of a radar, by the cosine."""
 
     def __init__(self, through: Through, waveform: Waveform) -> None:
-        given = through.cosine[np.isfinite(through.cosine)]
-        self.low, self.high = given.min(initial=1.0), given.max(initial=0.0)
+        cosines = through.cosine[np.isfinite(through.cosine)]
+        self.low, self.high = cosines.min(initial=1.0), cosines.max(initial=0.0)
         self.low = min(self.low, self.high - NARROW)
         self.layers, self.f = through.layers, waveform.frequencies()
         self.coefficients = _polynomial(self.layers, self.f, self.low, self.high)
 
-    def both(self, through: Through) -> Iterator[tuple[slice, Complex]]:
-        """Some pulses, and H_tx H_rx [N_ADC, I, some] of their paths, until there are no more."""
+    def two_way_blocks(self, through: Through) -> Iterator[tuple[slice, Complex]]:
+        """Yield slices of pulses, and H_tx H_rx [N_ADC, I, pulses] of their paths."""
         _, paths, pulses = through.cosine.shape
         length = max(1, BLOCK // (self.f.size * max(paths, 1)))
         for start in range(0, pulses, length):
@@ -69,7 +70,7 @@ class Passed:
             yield slice(start, start + length), self(tx) * self(rx)
 
     def __call__(self, cosine: Float) -> Complex:
-        """H [N_ADC, ...] at cosines [...]; 1 where they are nan: beside the wall."""
+        """Evaluate H [N_ADC, ...] at cosines [...]; it is 1 where they are NaN: beside the wall."""
         x = (2 * cosine - self.low - self.high) / (self.high - self.low)
         crossed = np.isfinite(x)
         if self.coefficients is None:
@@ -89,9 +90,9 @@ def _polynomial(layers: Layers, f: Float, low: float, high: float) -> Complex | 
         x = chebyshev.chebpts1(degree)
         cosine = low + (x + 1) * (high - low) / 2
         h = layers.transfer_function(f, cosine[:, None])
-        found = 2 / degree * chebyshev.chebvander(x, degree - 1).T @ h
-        found[0] /= 2
-        small = np.abs(found).max(axis=1) < ROUNDING * np.abs(found).max()
+        fit = 2 / degree * chebyshev.chebvander(x, degree - 1).T @ h
+        fit[0] /= 2
+        small = np.abs(fit).max(axis=1) < ROUNDING * np.abs(fit).max()
         if small[-2:].all():
-            return np.ascontiguousarray(found[: np.flatnonzero(~small)[-1] + 1])
+            return np.ascontiguousarray(fit[: np.flatnonzero(~small)[-1] + 1])
     return None

@@ -18,7 +18,7 @@ CHUNK_PULSES = 2**15
 
 
 def signal_power(source: PathSource, waveform: Waveform) -> float:
-    """P_s = mean over the pulses of sum_i A_i^2, with what a layered wall leaves of A."""
+    """Mean P_s over the pulses of sum_i A_i^2, with the loss of a layered wall."""
     total = 0.0
     for start in range(0, waveform.n_pulses, BLOCK_SAMPLES):
         power = np.empty(min(BLOCK_SAMPLES, waveform.n_pulses - start))
@@ -36,7 +36,14 @@ def beat_blocks(
     receiver: Sequence[Impairment] = (),
     motion_in_chirp: bool = False,
 ) -> Iterator[Complex]:
-    """s_b[n, m] [N_ADC, block] of consecutive blocks of pulses, after the receiver."""
+    """Yield s_b[n, m] [N_ADC, block] of consecutive blocks of pulses, after the receiver.
+
+    Args:
+        source: The paths.
+        waveform: The radar.
+        receiver: Impairments, in order.
+        motion_in_chirp: Whether paths go on moving during a chirp.
+    """
     raw = Look.of_all("beat", RawSamples(waveform))
     length = max(2, min(BLOCK_SAMPLES // waveform.n_adc, CHUNK_PULSES))
     for start in range(0, waveform.n_pulses, length):
@@ -59,33 +66,33 @@ def exact_echo(
     static: bool = True,
     motion_in_chirp: bool = False,
 ) -> list[Complex]:
-    """x [K, M] of every look at one echo, in one pass through its beat matrix.
+    """Signals x [K, M] of several looks at one echo, in one pass through its beat matrix.
 
     Looks are of one waveform, with the same taps. Where what stands still does not matter
     (`static`), the first pulse is taken out of every one: of an echo that does not move, however
     strong, nothing is left to round.
     """
     waveform, taps = looks[0].fast.waveform, looks[0].taps
-    found = [np.empty((look.fast.rows, look.count), complex) for look in looks]
+    signals = [np.empty((look.fast.rows, look.count), complex) for look in looks]
     canceller, first, still = Fir(taps), 0, None
     carried: Complex = np.empty((waveform.n_adc, 0), complex)
     for block in beat_blocks(source, waveform, receiver, motion_in_chirp):
         if not static:
             still = block[:, :1] if still is None else still
             block = block - still
-        wide = np.concatenate([carried, block], axis=1) if carried.size else block
-        carried = wide[:, wide.shape[1] - canceller.lost :]
-        if wide.shape[1] <= canceller.lost:
+        extended = np.concatenate([carried, block], axis=1) if carried.size else block
+        carried = extended[:, extended.shape[1] - canceller.lost :]
+        if extended.shape[1] <= canceller.lost:
             continue
-        cancelled = canceller(wide)
-        for look, x in zip(looks, found, strict=True):
+        cancelled = canceller(extended)
+        for look, x in zip(looks, signals, strict=True):
             if isinstance(look.pulses, range):
                 x[:, first : first + cancelled.shape[1]] = look.fast(cancelled)
                 continue
             here = slice(*np.searchsorted(look.pulses, [first, first + cancelled.shape[1]]))
             x[:, here] = look.fast(cancelled[:, look.pulses[here] - first])
         first += cancelled.shape[1]
-    return found
+    return signals
 
 
 def beat_at(
@@ -94,7 +101,7 @@ def beat_at(
     pulses: Index,
     canceller: tuple[float, ...] = (1.0,),
 ) -> Complex:
-    """sum_j c[j] s_b[n, m + j] at pulses m [N_ADC, len(pulses)], c the canceller's weights.
+    """Sum of c[j] s_b[n, m + j] over j at pulses m [N_ADC, pulses], c the canceller's weights.
 
     Exact in float64, without noise.
     """

@@ -50,25 +50,25 @@ SMALLEST = 3e-7, 1e-15  # coefficient over N that is kept, and singular value, l
 def kernel(u: Float, k: Index, samples: int, n_fft: int) -> Float:
     """D(k/N_FFT - u) = sin(pi N x)/sin(pi x) [..., K] at beat frequencies u [...], per sample."""
     at, turn = np.pi / n_fft * k, np.pi * u[..., None]
-    found: Float = np.sin(samples * at) * np.cos(samples * turn)
-    found -= np.cos(samples * at) * np.sin(samples * turn)
+    sines: Float = np.sin(samples * at) * np.cos(samples * turn)
+    sines -= np.cos(samples * at) * np.sin(samples * turn)
     below = np.sin(at) * np.cos(turn)
     below -= np.cos(at) * np.sin(turn)
     peak = np.abs(below) < AT_PEAK
     if peak.any():  # x is a whole number
         whole = np.rint(np.broadcast_to(k / n_fft - u[..., None], peak.shape)[peak])
-        found[peak] = samples * (1 - 2 * (whole * (samples - 1) % 2))
+        sines[peak] = samples * (1 - 2 * (whole * (samples - 1) % 2))
         below[peak] = 1
-    found /= below
-    return found
+    sines /= below
+    return sines
 
 
 @dataclass(frozen=True)
 class GatedEcho(DirectEcho):
     """Range bins of a source of paths, without noise, referred to mid-chirp."""
 
-    bins: slice = field(default_factory=lambda: slice(0, 0))  # those that are made
-    # (first [M], last + 1 [M]): which of them count, pulse by pulse; others may be zero. None is
+    bins: slice = field(default_factory=lambda: slice(0, 0))  # range bins that are made
+    # first [M] and last + 1 [M] of the bins that count at each pulse; others may be zero. None for
     # all
     needed: tuple[Index, Index] | None = None
     spans: list[slice] | None = None  # the pulses of each bin that count; None is all
@@ -76,7 +76,7 @@ class GatedEcho(DirectEcho):
 
     @property
     def look(self) -> Look:
-        """What of the echo this is."""
+        """Look at the echo that is made: the range bins."""
         spans = self.spans or [slice(0, self.waveform.n_pulses)] * (
             self.bins.stop - self.bins.start
         )
@@ -88,6 +88,7 @@ class GatedEcho(DirectEcho):
         return motion.step == 1 or super()._single_will_do(motion)
 
     def _needed(self) -> tuple[Index, Index]:
+        """First [M] and last + 1 [M] of the bins that count at each pulse."""
         if self.needed is not None:
             return self.needed
         every = np.ones(self.waveform.n_pulses, np.intp)
@@ -204,7 +205,7 @@ def _referred(real: Float, imag: Float, k: Index, w: Waveform) -> Complex:
 
 
 def complex_of(x: Float) -> np.dtype[Any]:
-    """The complex type of the precision of x."""
+    """Complex type of the precision of x."""
     return np.result_type(x.dtype, np.complex64)
 
 

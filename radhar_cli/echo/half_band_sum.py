@@ -52,7 +52,7 @@ class HalfBandTable:
         return value, slope, square, cube
 
     def __call__(self, u: Float) -> Complex:
-        """G(u) for u [...]."""
+        """Interpolate G(u) [...] at beat frequencies u [...], cycles per sample."""
         turns = np.floor(u)
         size = self.cubics[0].size
         place = (u - turns) * size
@@ -69,5 +69,5 @@ class HalfBandTable:
 
 @lru_cache(maxsize=4)
 def half_band_table(waveform: Waveform, oversampling: int, single: bool = False) -> HalfBandTable:
-    """Return the table of a radar, computed once."""
+    """Table of G of a radar, computed once."""
     return HalfBandTable(waveform, oversampling, single)

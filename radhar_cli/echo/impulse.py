@@ -23,7 +23,7 @@ BAND = 64  # frequencies within 10 dB of the middle, over which a wall's loss is
 
 
 def impulse_echo(source: PathSource, waveform: Impulse) -> Float:
-    """r [samples, M] at all pulses, without noise."""
+    """Range profiles r [samples, M] at all pulses, without noise."""
     r = np.zeros((waveform.samples, waveform.n_pulses))
     for pulses, paths in _chunks(source, waveform):
         r[:, pulses] = _spectral(paths, waveform) if paths.through else _pulses(paths, waveform)
@@ -31,7 +31,7 @@ def impulse_echo(source: PathSource, waveform: Impulse) -> Float:
 
 
 def impulse_power(source: PathSource, waveform: Impulse) -> float:
-    """P_s = mean over the pulses of sum_i A_i^2/2; of a layered wall in the mean over the band."""
+    """Mean P_s over the pulses of sum_i A_i^2/2; through a layered wall also over the band."""
     band = Waveform(waveform.fc, waveform.bandwidth, 1e-6, BAND * 1e6, 1.0, 1.0)
     chunks = _chunks(source, waveform)
     return sum(float(power_of(paths, band).sum()) for _, paths in chunks) / 2 / waveform.n_pulses
@@ -40,13 +40,13 @@ def impulse_power(source: PathSource, waveform: Impulse) -> float:
 def steady_profile(
     delay: float, amplitude: float, waveform: Impulse, reflected: Transfer | None = None
 ) -> Float:
-    """r [samples, 1] of a path that does not move.
+    """Range profile r [samples, 1] of a path that does not move.
 
     Args:
-        delay: of the path, s.
-        amplitude: for unit transmit power, without what is reflected.
-        waveform: the radar.
-        reflected: the reflection at frequencies [N] (Hz), [N]; None is 1 at all of them.
+        delay: Delay of the path, s.
+        amplitude: Amplitude for unit transmit power, without the reflection.
+        waveform: The radar.
+        reflected: Coefficient of reflection at frequencies [N] (Hz), [N]; None is 1 at all of them.
     """
     one = Paths(np.array([[delay]]), np.array([[amplitude]]))
     if reflected is None:
@@ -56,13 +56,14 @@ def steady_profile(
 
 
 def _chunks(source: PathSource, waveform: Impulse) -> Iterator[tuple[slice, Paths]]:
+    """Yield slices of pulses and their paths."""
     for first in range(0, waveform.n_pulses, CHUNK):
         pulses = np.arange(first, min(first + CHUNK, waveform.n_pulses))
         yield slice(first, first + pulses.size), source(waveform.times(pulses.astype(float)))
 
 
 def _pulses(paths: Paths, waveform: Impulse) -> Float:
-    """r [samples, M], each pulse added where it is."""
+    """Range profiles r [samples, M], each pulse added at its delay."""
     step, (first, _) = 2 * waveform.range_step / SPEED_OF_LIGHT, waveform.profile
     half = int(REACH * waveform.width / step) + 1
     around, pulse = np.arange(-half, half + 1)[:, None], np.arange(paths.delay.shape[1])
@@ -76,12 +77,12 @@ def _pulses(paths: Paths, waveform: Impulse) -> Float:
 
 
 def _spectral(paths: Paths, waveform: Impulse) -> Float:
-    """r [samples, M] from the echo at even frequencies, by a sum over them."""
+    """Range profiles r [samples, M] from the echo at even frequencies."""
     return _summed(beat_of(paths, waveform.stepped(waveform.profile[1] * LONGEST)), waveform)
 
 
 def _summed(echo: Complex, waveform: Impulse) -> Float:
-    """r [samples, M] of an echo S [N, M] at the frequencies of `stepped`."""
+    """Range profiles r [samples, M] of an echo S [N, M] at the frequencies of `stepped`."""
     f = waveform.stepped(waveform.profile[1] * LONGEST).frequencies()
     t = 2 * waveform.range_axis() / SPEED_OF_LIGHT
     back = np.exp(2j * np.pi * np.outer(t, f)) * (waveform.spectrum(f) * (f[1] - f[0]))

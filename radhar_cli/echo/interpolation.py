@@ -41,8 +41,10 @@ def lagrange_weights(step: int, shift: int = 0) -> Float:
 def shifts(times: Float, breakpoints: tuple[float, ...]) -> Index:
     """Shift of the stencil of each segment [segments], or EXACT where it holds a breakpoint.
 
-    Of knots [BEFORE + segments + AFTER] (s) and breakpoints (s) in order, at which what is
-    interpolated is not smooth; each belongs to what follows it.
+    Args:
+        times: Times of the knots [BEFORE + segments + AFTER], s.
+        breakpoints: Times in order at which the quantity is not smooth, s; the value at each
+            belongs to the piece after it.
     """
     segment = np.arange(BEFORE, times.size - AFTER)
     if not breakpoints:
@@ -51,8 +53,8 @@ def shifts(times: Float, breakpoints: tuple[float, ...]) -> Index:
     first = np.searchsorted(piece, piece, side="left")[segment]
     last = np.searchsorted(piece, piece, side="right")[segment] - 1
     shift = np.maximum(first - (segment - REACH), 0) + np.minimum(last - (segment + REACH + 1), 0)
-    spoilt = (piece[segment] != piece[segment + 1]) | (last - first < TAPS)
-    return np.where(spoilt, EXACT, shift)
+    crosses_breakpoint = (piece[segment] != piece[segment + 1]) | (last - first < TAPS)
+    return np.where(crosses_breakpoint, EXACT, shift)
 
 
 @lru_cache(maxsize=TAPS)
@@ -69,18 +71,18 @@ def stencils(knots: Values, shift: Index) -> Values:
     Segments marked EXACT are left without a meaning. Knots are [BEFORE + segments + AFTER, ...].
     """
     first = BEFORE - REACH
-    found = np.empty_like(knots, shape=(TAPS, shift.size, *knots.shape[1:]))
+    values = np.empty_like(knots, shape=(TAPS, shift.size, *knots.shape[1:]))
     for tap in range(TAPS):
-        found[tap] = knots[first + tap : first + tap + shift.size]
+        values[tap] = knots[first + tap : first + tap + shift.size]
     moved = np.flatnonzero((shift != 0) & (shift != EXACT))
-    for some in set(shift[moved].tolist()):
-        segments = moved[shift[moved] == some]
-        at = first + some + segments + np.arange(TAPS)[:, None]
-        weights = shifted_weights(some).astype(knots.real.dtype, copy=False)
-        found[:, segments] = (weights @ knots[at].reshape(TAPS, -1)).reshape(
+    for offset in set(shift[moved].tolist()):
+        segments = moved[shift[moved] == offset]
+        at = first + offset + segments + np.arange(TAPS)[:, None]
+        weights = shifted_weights(offset).astype(knots.real.dtype, copy=False)
+        values[:, segments] = (weights @ knots[at].reshape(TAPS, -1)).reshape(
             at.shape + knots.shape[1:]
         )
-    return found
+    return values
 
 
 def upsample(knots: Float, step: int, shift: Index) -> Float:

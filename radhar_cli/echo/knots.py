@@ -46,17 +46,22 @@ class Knots(NamedTuple):
         return self.paths if self.step == 1 else columns(self.paths, slice(BEFORE, -AFTER))
 
     def moving(self, since: Paths) -> Bool:
-        """Which paths [I] differ at any pulse seen from the first column of `since`."""
+        """Whether paths [I] differ at any pulse from the first column of `since`."""
         return _differ(self.at_pulses, since) | _differ(self.exact, since)
 
     def power(self) -> float:
-        """Sum over the pulses of sum_i A_i^2."""
+        """Sum of A_i^2 over paths and pulses."""
         at, exact = self.paths.amplitude, self.exact.amplitude
         powers = np.einsum("im,im->m", at, at), np.einsum("im,im->m", exact, exact)
         return float(self.interpolated(*powers).sum())
 
     def interpolated(self, at_knots: Float, exact: Float) -> Float:
-        """A quantity at all the pulses [M], of its values where `paths` and `exact` are."""
+        """Interpolate a quantity to all the pulses [M].
+
+        Args:
+            at_knots: Its values at the knots.
+            exact: Its values at `exact_pulses`.
+        """
         if self.step == 1:
             return at_knots
         first, last = self.pulses
@@ -76,7 +81,7 @@ class Spacing(NamedTuple):
 
 
 class PathsAtKnots(NamedTuple):
-    """A recording seen at its knots."""
+    """Knots that resolve the motion of a recording, and what they show."""
 
     step: int  # pulses from knot to knot; 1 where nothing is interpolated
     moving: Bool  # which paths change at all [I]
@@ -130,7 +135,7 @@ def resolve(
 
 
 def widest_step(waveform: Waveform, per_second: float) -> int:
-    """Pulses from knot to knot that are `per_second` or more, and MIN_KNOTS in all."""
+    """Largest number of pulses from knot to knot for `per_second` knots, and MIN_KNOTS in all."""
     return int(min(waveform.prf // per_second, waveform.n_pulses // MIN_KNOTS))
 
 
@@ -146,7 +151,7 @@ def delay_track(source: PathSource, waveform: Waveform, per_second: float) -> Fl
 
 
 def mean_power(source: PathSource, waveform: Waveform, per_second: float) -> float:
-    """P_s = mean over the pulses of sum_i A_i^2, by way of knots."""
+    """Mean P_s over the pulses of sum_i A_i^2, by way of knots."""
     return resolve(source, waveform, Spacing(per_second, POWER_CHANGE, inf)).power
 
 
@@ -203,7 +208,7 @@ def _roughness(knots: Knots, w: Waveform) -> Float:
 
 
 def _fastest_cycles(w: Waveform) -> float:
-    """By how much G's fastest component turns for a delay, cycles/s."""
+    """Turns of G's fastest component for a delay, cycles/s."""
     # Referred to mid-chirp, the ends of the chirp, which turn fastest, weigh next to nothing.
     return w.bandwidth / 4 if w.centred else w.bandwidth
 
@@ -239,16 +244,16 @@ def columns(paths: Paths, some: slice | Index) -> Paths:
 
 
 def only(kept: Bool, source: Callable[[Float], Paths]) -> Callable[[Float], Paths]:
-    """A source of some of the paths."""
+    """Source of some of the paths [I] of another."""
     return lambda t: source(t).only(kept)
 
 
 def _differ(paths: Paths, since: Paths) -> Bool:
-    """Which paths are not at all times as in the first column of `since`."""
+    """Whether paths [I] differ at any time from the first column of `since`."""
     few = slice(None, None, max(1, paths.delay.shape[1] // 16))
-    found: Bool = np.zeros(len(paths.delay), bool)
+    differs: Bool = np.zeros(len(paths.delay), bool)
     for part, first in zip(paths[:2], since[:2], strict=True):
         for times in few, slice(None):
-            rest = np.flatnonzero(~found)
-            found[rest] = (part[rest, times] != first[rest, :1]).any(axis=1)
-    return found
+            same = np.flatnonzero(~differs)
+            differs[same] = (part[same, times] != first[same, :1]).any(axis=1)
+    return differs

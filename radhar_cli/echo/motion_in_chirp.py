@@ -13,7 +13,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.beat import start_phase
-from radhar_cli.echo.dispersion import Passed
+from radhar_cli.echo.dispersion import WallTransfer
 from radhar_cli.echo.interpolation import lagrange_basis
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.phasor import unit_phasor
@@ -23,7 +23,7 @@ NODES = 5
 
 
 def chebyshev_nodes() -> Float:
-    """The zeros of T_5 in -1 .. 1, rising."""
+    """Zeros of T_5 in -1 .. 1, rising [NODES]."""
     return -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 
 
@@ -34,13 +34,16 @@ def chirp_weights(count: int) -> Float:
 
 
 def moving_beat_matrix(source: PathSource, waveform: Waveform, pulses: Float) -> Complex:
-    """[N_ADC, M]: sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)), A and tau at t_m + n/fs."""
+    """Beat matrix sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)) [N_ADC, M].
+
+    A and tau are those at t_m + n/fs.
+    """
     sample = np.arange(waveform.n_adc) / waveform.adc_rate
     within = (chebyshev_nodes() + 1) / 2 * sample[-1]
     t = waveform.times(pulses)[:, None] + within
     paths = source(t.ravel())
     beat = np.zeros((pulses.size, waveform.n_adc), dtype=complex)
-    passed = None if paths.through is None else Passed(paths.through, waveform)
+    wall = None if paths.through is None else WallTransfer(paths.through, waveform)
     for path, (delay, amplitude) in enumerate(zip(paths.delay, paths.amplitude, strict=True)):
         tau = _at_samples(delay.reshape(t.shape), waveform.n_adc)
         cycles = start_phase(tau, waveform, waveform.fc)
@@ -49,8 +52,8 @@ def moving_beat_matrix(source: PathSource, waveform: Waveform, pulses: Float) ->
         turning = unit_phasor(cycles)
         turning *= _at_samples(amplitude.reshape(t.shape), waveform.n_adc)
         for cosine in [] if paths.through is None else paths.through.cosine[:, path]:
-            assert passed is not None
-            at_nodes = passed(cosine.reshape(t.shape))
+            assert wall is not None
+            at_nodes = wall(cosine.reshape(t.shape))
             turning *= np.einsum("nmk,kn->mn", at_nodes, chirp_weights(waveform.n_adc))
         beat += turning
     return beat.T

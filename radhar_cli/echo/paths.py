@@ -1,4 +1,4 @@
-"""What an echo engine is given: paths, and a source that yields them at any time."""
+"""Paths, and sources that yield them at any time: the input of echo engines."""
 
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
@@ -17,16 +17,16 @@ class Through(NamedTuple):
 
     @classmethod
     def of(cls, layers: Layers | None, cosine: Float | None) -> "Through | None":
-        """Of both, or of none."""
+        """Legs through these layers at these cosines [2, I, M]; None where either is missing."""
         return None if layers is None or cosine is None else cls(layers, cosine)
 
     @classmethod
     def joined(cls, several: "Sequence[Through | None]") -> "Through | None":
-        """Those of several paths, which pass the same wall or none."""
-        given = [one for one in several if one is not None]
+        """Legs of several groups of paths together, which pass the same wall or none."""
+        given = [group for group in several if group is not None]
         if not given:
             return None
-        return cls(given[0].layers, np.concatenate([one.cosine for one in given], axis=1))
+        return cls(given[0].layers, np.concatenate([group.cosine for group in given], axis=1))
 
 
 class Paths(NamedTuple):
@@ -38,7 +38,7 @@ class Paths(NamedTuple):
     through: Through | None = None
 
     def only(self, paths: Bool | Index | slice, times: Index | slice = slice(None)) -> "Paths":
-        """Some of the paths, at some of the times."""
+        """Choose some of the paths, at some of the times."""
         through = self.through
         if through is not None:
             through = through._replace(cosine=through.cosine[:, paths][..., times])

@@ -19,8 +19,10 @@ MAX_RUN = 20
 
 
 def nodes(degree: int, length: int) -> Float:
-    """Where to take a polynomial of `degree` over pulses 0 .. length - 1: Chebyshev points, or all
-    pulses where they are no more."""
+    """Nodes of a polynomial of `degree` over pulses 0 .. length - 1.
+
+    They are Chebyshev points, or all pulses where these are as few.
+    """
     count = min(degree + 1, length)
     if count == length:
         return np.arange(float(length))
@@ -59,9 +61,13 @@ def runs(step: int, degree: int) -> Runs:
 
 
 def phasors_between_knots(cycles: Float, step: int, degree: int, dtype: Any) -> Complex:
-    """exp(-j 2 pi phase) at the pulses of all segments [step, segments, I].
+    """Phasors exp(-j 2 pi phase) at the pulses of all segments [step, segments, I].
 
-    Of `cycles` at the knots -2 .. 3 of every segment [TAPS, segments, I]; `degree` is d.
+    Args:
+        cycles: Phases at the knots -2 .. 3 of every segment [TAPS, segments, I], cycles.
+        step: Number of pulses of a segment.
+        degree: Degree d of the polynomials.
+        dtype: Complex type of the result.
     """
     length, differences = runs(step, degree)
     shape = (*differences.shape[:2], *cycles.shape[1:])
@@ -70,10 +76,10 @@ def phasors_between_knots(cycles: Float, step: int, degree: int, dtype: Any) -> 
     turns = turns.reshape(shape)
     turns[:, 0] += anchor
     factors = unit_phasor(turns, dtype)
-    found = np.empty((len(factors), length, *shape[2:]), dtype)
-    found[:, 0] = factors[:, 0]
+    phasors = np.empty((len(factors), length, *shape[2:]), dtype)
+    phasors[:, 0] = factors[:, 0]
     for pulse in range(1, length):
-        np.multiply(found[:, pulse - 1], factors[:, 1], out=found[:, pulse])
+        np.multiply(phasors[:, pulse - 1], factors[:, 1], out=phasors[:, pulse])
         for order in range(1, shape[1] - 1):
             np.multiply(factors[:, order], factors[:, order + 1], out=factors[:, order])
-    return found.reshape(-1, *shape[2:])[:step]
+    return phasors.reshape(-1, *shape[2:])[:step]

@@ -16,7 +16,7 @@ class StaticReturn(NamedTuple):
 
 
 def leakage(antennas: Antennas) -> StaticReturn:
-    """From transmitter to receiver: amplitude 10^(-isolation/20), delay |p_tx - p_rx|/c."""
+    """Leakage between the antennas: amplitude 10^(-isolation/20), delay |p_tx - p_rx|/c."""
     return StaticReturn(
         dist(antennas.tx, antennas.rx) / SPEED_OF_LIGHT, 10 ** (-antennas.isolation_db / 20)
     )
@@ -31,7 +31,7 @@ def near_face_distance(antennas: Antennas, wall: Wall) -> float:
 def wall_echo(antennas: Antennas, wall: Wall, waveform: Waveform) -> StaticReturn:
     """Specular echo of the near face: |Gamma| G lambda/(4 pi 2 d), delay 2 d/c.
 
-    d is the `near_face_distance`, above 0. Of layers, whose R depends on frequency, it is without
+    d is the `near_face_distance`, above 0. For layers, whose R depends on frequency, it lacks
     |Gamma|.
     """
     d = near_face_distance(antennas, wall)

@@ -13,7 +13,7 @@ from radhar_cli.config.identity import resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.frames_panel import BoardFrames, draw_frames
-from radhar_cli.figures.maps_panel import Shown, draw_maps
+from radhar_cli.figures.maps_panel import MapsPage, draw_maps
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.replacing import replacing
 from radhar_cli.simulation.board_file import write_frames
@@ -90,4 +90,4 @@ def _draw_maps(maps: Maps, config: Config, title: str, path: Path) -> None:
             axes.plot(track.time, track.range, "w:", linewidth=0.8, scalex=False, scaley=False)
             axes.plot(track.time, sure, "w-", linewidth=1.0, scalex=False, scaley=False)
 
-    draw_maps(Shown(maps.maps, config.image, maps.f0, float(far), title, over), path)
+    draw_maps(MapsPage(maps.maps, config.image, maps.f0, float(far), title, over), path)

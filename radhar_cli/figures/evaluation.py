@@ -20,11 +20,15 @@ MAX_NUMBERED = 32  # classes; with more, cells of a confusion matrix have no num
 def curves_png(
     runs: Mapping[str, Sequence[Any]], best: Mapping[str, int], score: str, loss: str
 ) -> bytes:
-    """Score and loss by epoch, training dashed and validation solid, the kept epoch marked.
+    """Draw score and loss over the epoch, training dashed, validation solid, the kept epoch marked.
 
     Args:
-        best: kept epoch of a run, by name.
-        score, loss: what they are.
+        runs: rows of metrics of each epoch, by name of the run.
+        best: kept epoch, by name of the run.
+        score, loss: what the score and the loss are, for the axes.
+
+    Returns:
+        The PNG file.
     """
     figure = page(10.5, 4.2)
     left, right = figure.subplots(1, 2)
@@ -56,8 +60,18 @@ def curves_png(
 
 
 def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -> bytes:
-    """Draw counts [true class, predicted class]; colour and percentage are shares of a row."""
-    totals, shown = counts.sum(1, keepdims=True), [name.replace("_", " ") for name in names]
+    """Draw a confusion matrix; colour and percentage are shares of a row.
+
+    Args:
+        counts: counts [true class, predicted class].
+        names: names of the classes.
+        title: line above.
+
+    Returns:
+        The PNG file.
+    """
+    totals = counts.sum(1, keepdims=True)
+    labels = [name.replace("_", " ") for name in names]
     shares = np.divide(counts, totals, out=np.zeros(counts.shape), where=totals > 0)
     side = 2.6 + 0.62 * min(len(names), MAX_NUMBERED)
     figure = page(side + 1.0, side)
@@ -69,8 +83,8 @@ def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -
             look: dict[str, Any] = {"color": "white" if share > 0.55 else "black", "fontsize": 7}
             text = f"{count}\n{100 * share:.1f} %"
             axes.text(column, row, text, ha="center", va="center", **look)
-    axes.set_xticks(range(len(names)), shown, rotation=40, ha="right", fontsize=8)
-    axes.set_yticks(range(len(names)), shown, fontsize=8)
+    axes.set_xticks(range(len(names)), labels, rotation=40, ha="right", fontsize=8)
+    axes.set_yticks(range(len(names)), labels, fontsize=8)
     axes.set(xlabel="predicted", ylabel="true")
     figure.colorbar(drawn, ax=axes, shrink=0.75, label="share of the true class (%)")
     axes.set_title(title, fontsize=10)
@@ -78,18 +92,35 @@ def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -
 
 
 def reliability_png(confidence: Float, accuracy: Float, count: Index, title: str) -> bytes:
-    """Draw the share that is right over the probability of the winning class, and how many.
+    """Draw the accuracy over the probability of the predicted class, and the counts.
 
     Args:
-        confidence, accuracy: of each bin, nan where there is nothing.
-        count: predictions of each bin.
+        confidence, accuracy: mean of each bin [bin], NaN in an empty one.
+        count: number of predictions in each bin [bin].
+        title: line above.
+
+    Returns:
+        The PNG file.
     """
     figure = page(4.6, 4.8)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3.2, 1])
     above.plot([0, 1], [0, 1], ":", color="0.5", linewidth=1, label="calibrated")
-    there = count > 0
-    above.plot(confidence[there], accuracy[there], "o-", color="C0", markersize=5, label="measured")
-    above.vlines(confidence[there], confidence[there], accuracy[there], color="C3", linewidth=1)
+    has_predictions = count > 0
+    above.plot(
+        confidence[has_predictions],
+        accuracy[has_predictions],
+        "o-",
+        color="C0",
+        markersize=5,
+        label="measured",
+    )
+    above.vlines(
+        confidence[has_predictions],
+        confidence[has_predictions],
+        accuracy[has_predictions],
+        color="C3",
+        linewidth=1,
+    )
     above.set(ylabel="share that is right", ylim=(-0.02, 1.04))
     above.legend(fontsize=8, loc="upper left")
     edges = np.linspace(0, 1, len(count) + 1)
@@ -103,7 +134,7 @@ def reliability_png(confidence: Float, accuracy: Float, count: Index, title: str
 
 
 def captioned_png(images: Sequence[Levels], captions: Sequence[str], title: str) -> bytes:
-    """Draw RGB images [H, W, 3] with captions of some lines, four a row."""
+    """Draw RGB images [H, W, 3] with captions, ACROSS in a row; return the PNG file."""
     rows, columns = -(-len(images) // ACROSS), min(ACROSS, len(images))
     figure = page(2.5 * columns, 3.1 * rows + 0.4)
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
@@ -119,16 +150,26 @@ def captioned_png(images: Sequence[Levels], captions: Sequence[str], title: str)
 def embeddings_png(
     panels: Mapping[str, Float], label: Index, names: Sequence[str], title: str
 ) -> bytes:
-    """Draw each embedding [N, 2] under its name; `label` [N] numbers `names`."""
+    """Draw embeddings side by side, each under its name, with a colour for each class.
+
+    Args:
+        panels: points [N, 2] of each embedding, by name.
+        label: number of the class of each point [N].
+        names: names of the classes.
+        title: line above.
+
+    Returns:
+        The PNG file.
+    """
     figure = page(5.2 * len(panels) + 1.6, 4.8)
     drawn = figure.subplots(1, len(panels), squeeze=False)[0]
     colours = colormaps["tab20"]
     for axes, (space, points) in zip(drawn, panels.items(), strict=True):
         for number, class_name in enumerate(names):
-            mine = points[label == number]
-            if len(mine):
+            of_class = points[label == number]
+            if len(of_class):
                 name = class_name.replace("_", " ")
-                axes.scatter(*mine.T, s=12, color=colours(number % 20), label=name)
+                axes.scatter(*of_class.T, s=12, color=colours(number % 20), label=name)
         axes.set_title(space, fontsize=10)
         axes.set(xticks=[], yticks=[])
     figure.legend(*drawn[0].get_legend_handles_labels(), loc="outside right center", fontsize=7)
@@ -143,8 +184,8 @@ def filters_png(runs: Mapping[str, Sequence[Float]]) -> bytes:
     differ by orders of magnitude, and it is the pattern that is compared.
 
     Args:
-        runs: {name: its filters}, each [H, W]: magnitude of the effective weight in FFT order, mean
-            over channels; rows are the Doppler axis of the map, columns its time axis.
+        runs: filters by name of the run, each [H, W]: magnitude of the effective weight in FFT
+            order, mean over channels; rows are the Doppler axis of the map, columns its time axis.
     """
     columns = max(len(filters) for filters in runs.values())
     figure = page(1.9 * columns + 1.5, 1.95 * len(runs) + 0.9)
@@ -179,7 +220,7 @@ def filters_png(runs: Mapping[str, Sequence[Float]]) -> bytes:
 
 @dataclass(frozen=True)
 class Point:
-    """Accuracy and its interval on one data set, in shares; `snr_db` where it has a single one."""
+    """Accuracy on one data set and its interval, as shares; no `snr_db` if it has several."""
 
     data: str
     snr_db: float | None
@@ -189,7 +230,14 @@ class Point:
 
 
 def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
-    """Draw a line for every run; points over the SNR, or over the names of the data sets."""
+    """Draw the accuracy of each run over the SNR, or over the names of the data sets.
+
+    Args:
+        lines: points by name of the run.
+
+    Returns:
+        The PNG file.
+    """
     figure = page(7.5, 4.6)
     axes = figure.subplots()
     by_snr = all(point.snr_db is not None for points in lines.values() for point in points)
@@ -219,7 +267,7 @@ def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
 
 
 def bars_png(names: Sequence[str], values: Sequence[float], quantity: str, title: str) -> bytes:
-    """Draw a bar for every name."""
+    """Draw a bar for every name, whose values are of one quantity; return the PNG file."""
     figure = page(6.0, 0.8 + 0.26 * len(names))
     axes = figure.subplots()
     places = range(len(names))

@@ -30,7 +30,7 @@ NAMES = {
 
 @dataclass(frozen=True)
 class BoardFrames:
-    """What a page of frames shows, simulated or measured."""
+    """Content of a page of frames of a board, simulated or measured."""
 
     made: Mapping[str, Any]  # {name: FrameMaps}, and `cloud`, `skeletons` where there are some
     board: Board  # whose frames
@@ -41,7 +41,7 @@ class BoardFrames:
 
 
 def of_simulation(simulation: Simulation) -> BoardFrames:
-    """The frames of a scene."""
+    """Content of the page of a simulated scene with a board."""
     assert simulation.board is not None
     p = simulation.board.aim.to_radar(simulation.truth.positions.transpose(2, 1, 0))
     return BoardFrames(
@@ -54,38 +54,39 @@ def of_simulation(simulation: Simulation) -> BoardFrames:
     )
 
 
-def draw_frames(shown: BoardFrames, path: Path) -> None:
+def draw_frames(content: BoardFrames, path: Path) -> None:
     """Write frames.png: maps in dB below the peak of all frames, and the cloud from the radar."""
-    maps = {name: one for name, one in shown.made.items() if isinstance(one, FrameMaps)}
-    cloud, middles = shown.made.get("cloud"), shown.board.middles
-    chosen = np.linspace(0, shown.board.frames - 1, COLUMNS).round().astype(int).tolist()
+    maps = {name: map_ for name, map_ in content.made.items() if isinstance(map_, FrameMaps)}
+    cloud, middles = content.made.get("cloud"), content.board.middles
+    chosen = np.linspace(0, content.board.frames - 1, COLUMNS).round().astype(int).tolist()
     rows = len(maps) + (cloud is not None)
     figure = page(2.6 * COLUMNS + 1, 2.7 * rows + 0.6, apart=0.06)
     grid = figure.subplots(rows, COLUMNS, squeeze=False)
-    for row, (name, one) in zip(grid, maps.items(), strict=False):
+    for row, (name, frame_maps) in zip(grid, maps.items(), strict=False):
         for axes, frame in zip(row, chosen, strict=True):
-            drawn = _draw_map(axes, one, frame, shown)
+            drawn = _draw_map(axes, frame_maps, frame, content)
             axes.set_title(f"{NAMES[name]}, {middles[frame]:.2f} s", fontsize=8)
         row[0].set_ylabel("range (m)", fontsize=7)
         figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB").ax.tick_params(labelsize=6)
     if cloud is not None:
-        sides = [SideView(axes, "from the radar", *_limits(shown)) for axes in grid[-1]]
+        sides = [SideView(axes, "from the radar", *_limits(content)) for axes in grid[-1]]
         for side, axes, frame in zip(sides, grid[-1], chosen, strict=True):
-            side.show(*_moment(shown, frame))
+            side.show(*_moment(content, frame))
             axes.set_title(f"points, {middles[frame]:.2f} s", fontsize=8)
         colour_bar(figure, sides[0], ax=list(grid[-1]), pad=0.01)
-    figure.suptitle(shown.title, fontsize=10)
+    figure.suptitle(content.title, fontsize=10)
     write_figure(figure, path, 90)
 
 
-def _draw_map(axes: Axes, maps: FrameMaps, frame: int, shown: BoardFrames) -> AxesImage:
+def _draw_map(axes: Axes, maps: FrameMaps, frame: int, content: BoardFrames) -> AxesImage:
+    """Draw the map of one frame, in dB below the peak of all."""
     with np.errstate(divide="ignore"):
         level = 10 * np.log10(maps.power[frame] / maps.power.max(initial=TINY))
-    look: dict[str, Any] = {"cmap": shown.image.colour_map, "origin": "lower", "aspect": "auto"}
+    look: dict[str, Any] = {"cmap": content.image.colour_map, "origin": "lower", "aspect": "auto"}
     extent = (*maps.columns.edges, *maps.rows.edges)
-    lowest = -shown.image.dynamic_range_db
+    lowest = -content.image.dynamic_range_db
     drawn = axes.imshow(level, extent=extent, vmin=lowest, vmax=0, **look)
-    axes.set_ylim(0, min(shown.farthest or np.inf, maps.rows.edges[1]))
+    axes.set_ylim(0, min(content.farthest or np.inf, maps.rows.edges[1]))
     if maps.columns.name == "azimuth":  # left of the radar is left
         axes.invert_xaxis()
     axes.set_xlabel(f"{maps.columns.name} ({maps.columns.unit})", fontsize=7)
@@ -93,36 +94,36 @@ def _draw_map(axes: Axes, maps: FrameMaps, frame: int, shown: BoardFrames) -> Ax
     return drawn
 
 
-def draw_cloud(shown: BoardFrames, path: Path, advance: Advance) -> None:
+def draw_cloud(content: BoardFrames, path: Path, advance: Advance) -> None:
     """Write cloud.gif: every frame's points over its skeleton, at true speed."""
-    film = Film(shown.title, *_limits(shown))
+    film = Film(content.title, *_limits(content))
 
     def show(frame: int) -> None:
-        film.show(*_moment(shown, frame), f"t = {shown.board.middles[frame]:.2f} s")
+        film.show(*_moment(content, frame), f"t = {content.board.middles[frame]:.2f} s")
 
-    film.write(path, show, shown.board.frames, round(1000 * shown.board.period), advance)
-
-
-def _joints(shown: BoardFrames) -> Float:
-    """Joints [frame, person, joint, 3]; of captures there are none."""
-    skeletons = shown.made.get("skeletons")
-    return np.empty((shown.board.frames, 0, 0, 3)) if skeletons is None else skeletons.positions
+    film.write(path, show, content.board.frames, round(1000 * content.board.period), advance)
 
 
-def _moment(shown: BoardFrames, frame: int) -> tuple[Float, Float, Float]:
-    """Points [n, 3] and speeds [n] of a frame, and its bones [bone, 2, 3]."""
-    cloud: Cloud = shown.made["cloud"]
+def _joints(content: BoardFrames) -> Float:
+    """Joints [frame, person, joint, 3], m; nobody where none are known, as in captures."""
+    skeletons = content.made.get("skeletons")
+    return np.empty((content.board.frames, 0, 0, 3)) if skeletons is None else skeletons.positions
+
+
+def _moment(content: BoardFrames, frame: int) -> tuple[Float, Float, Float]:
+    """Points [n, 3], their speeds [n] and bones [bone, 2, 3] of a frame, m and m/s."""
+    cloud: Cloud = content.made["cloud"]
     points = cloud.points[cloud.start[frame] : cloud.start[frame + 1]]
-    ends = [bones(body, shown.parents) for body in _joints(shown)[frame]]
+    ends = [bones(body, content.parents) for body in _joints(content)[frame]]
     return points[:, :3], points[:, 3], np.concatenate([np.empty((0, 2, 3)), *ends])
 
 
-def _limits(shown: BoardFrames) -> tuple[Float, float]:
-    """Lowest and highest (ahead, left, up) [3, 2] of skeletons and most points; their speed."""
-    points, joints = shown.made["cloud"].points, _joints(shown).reshape(-1, 3)
-    seen = joints if len(joints) else points[:, :3]
+def _limits(content: BoardFrames) -> tuple[Float, float]:
+    """Lowest and highest (ahead, left, up) to draw [3, 2], m, and the highest speed, m/s."""
+    points, joints = content.made["cloud"].points, _joints(content).reshape(-1, 3)
+    places = joints if len(joints) else points[:, :3]
     limits = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
-    if len(seen):
-        limits = np.nanpercentile(seen, [1, 99], axis=0) + np.array([[-0.4], [0.4]])
+    if len(places):
+        limits = np.nanpercentile(places, [1, 99], axis=0) + np.array([[-0.4], [0.4]])
     fastest = max(float(np.percentile(np.abs(points[:, 3]), 99)), 0.1) if len(points) else 1.0
     return limits.T, fastest

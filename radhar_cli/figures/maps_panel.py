@@ -36,8 +36,8 @@ MOST_COLUMNS = 4096  # of a map that is drawn, ten times the pixels of a panel
 
 
 @dataclass(frozen=True)
-class Shown:
-    """What a page of maps shows, simulated or measured."""
+class MapsPage:
+    """Content of a page of maps, simulated or measured."""
 
     maps: Mapping[str, PowerMap]
     image: ImageConfig  # dynamic range and colours
@@ -48,11 +48,11 @@ class Shown:
     over: Callable[[Axes, str, float], None] | None = None
 
 
-def of_simulation(simulation: Simulation, overlay: bool) -> Shown:
-    """The maps of a scene, and if asked the true Doppler of every joint."""
+def of_simulation(simulation: Simulation, overlay: bool) -> MapsPage:
+    """Content of the page of a scene, with the true Doppler of every joint if `overlay`."""
     p = simulation.truth.positions.transpose(2, 1, 0)
     farthest = point_delay(p, simulation.antennas, simulation.wall).max() * SPEED_OF_LIGHT / 2
-    return Shown(
+    return MapsPage(
         simulation.maps,
         simulation.config.image,
         simulation.waveform.f0,
@@ -62,9 +62,9 @@ def of_simulation(simulation: Simulation, overlay: bool) -> Shown:
     )
 
 
-def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
-    """Draw one map with its axes and its entropy."""
-    image, power_map = shown.image, shown.maps[name]
+def draw_map(axes: Axes, name: str, page_content: MapsPage) -> AxesImage:
+    """Draw the map of that name with its axes and its entropy."""
+    image, power_map = page_content.image, page_content.maps[name]
     rows, columns = power_map.rows, power_map.columns
     is_range, is_doppler = rows.name == "range", rows.name == "frequency"
     unit = 1e3 if is_doppler and rows.values.max() >= 2000 else 1.0
@@ -86,23 +86,23 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
     axes.tick_params(labelsize=7)
     if is_range:
         axes.set_ylabel("range (m)", fontsize=8)
-        axes.set_ylim(0, min(high, shown.farthest))
+        axes.set_ylim(0, min(high, page_content.farthest))
     elif not is_doppler:
         axes.set_ylabel(f"{rows.name} ({rows.unit})", fontsize=8)
     else:
         axes.set_ylabel("Doppler (kHz)" if unit > 1 else "Doppler (Hz)", fontsize=8)
-        speed = SPEED_OF_LIGHT / (2 * shown.f0) * unit
+        speed = SPEED_OF_LIGHT / (2 * page_content.f0) * unit
         scale = (partial(np.multiply, speed), partial(np.multiply, 1 / speed))
         second = axes.secondary_yaxis("right", functions=scale)
         second.set_ylabel("approaching (m/s)", fontsize=8)
         second.tick_params(labelsize=7)
-    if shown.over is not None and columns.name == "time":
-        shown.over(axes, name, unit)
+    if page_content.over is not None and columns.name == "time":
+        page_content.over(axes, name, unit)
     return drawn
 
 
 def columns_that_show(cells: Float) -> Float:
-    """Cells [rows, columns] in MOST_COLUMNS columns at most, each the mean of as many."""
+    """Average cells [row, column] to at most MOST_COLUMNS columns, each the mean of as many."""
     every = -(-cells.shape[1] // MOST_COLUMNS)
     if every == 1:
         return cells
@@ -112,53 +112,55 @@ def columns_that_show(cells: Float) -> Float:
 
 
 def _draw_truth(simulation: Simulation, axes: Axes, map_name: str, unit: float) -> None:
-    """Curves of everybody's true Doppler, folded into +-PRF/2 as the map is."""
+    """Draw curves of everybody's true Doppler, aliased into +-PRF/2 as the map is."""
     if simulation.maps[map_name].rows.name != "frequency":
         return
     truth, prf = simulation.truth, simulation.waveform.prf
     joint, names = simulation.joint, simulation.motion.names
-    own = [number for number, name in enumerate(names) if joint in (None, name)]
+    drawn_joints = [number for number, name in enumerate(names) if joint in (None, name)]
     others = [one.truth.doppler for one in simulation.others if joint is None]
-    doppler = np.concatenate([truth.doppler[:, own], *others], axis=1)
+    doppler = np.concatenate([truth.doppler[:, drawn_joints], *others], axis=1)
     if "compensated" in map_name:
         doppler = doppler - truth.doppler[:, :1]
     every = max(1, truth.time.size // 1500)
-    for curve in folded(doppler[::every], prf).T:
+    for curve in alias_doppler(doppler[::every], prf).T:
         look: dict[str, Any] = {"color": "white", "linewidth": 0.5, "alpha": 0.6}
         axes.plot(truth.time[::every], curve / unit, "--", scalex=False, scaley=False, **look)
 
 
-def folded(doppler: Float, prf: float) -> Float:
-    """Doppler [time, curve] within +-PRF/2, NaN where a curve begins again at the other edge."""
-    seen: Float = (doppler + prf / 2) % prf - prf / 2
-    seen[1:][np.abs(np.diff(seen, axis=0)) > prf / 2] = np.nan
-    return seen
+def alias_doppler(doppler: Float, prf: float) -> Float:
+    """Alias Doppler [time, curve], Hz, into +-PRF/2; NaN where a curve jumps to the other edge."""
+    aliased: Float = (doppler + prf / 2) % prf - prf / 2
+    aliased[1:][np.abs(np.diff(aliased, axis=0)) > prf / 2] = np.nan
+    return aliased
 
 
-def draw_maps(shown: Shown, path: Path) -> None:
-    """Write maps.png: the maps that were computed, one colour bar in dB."""
-    names = [name for name in dict.fromkeys((*TITLES, *shown.maps)) if name in shown.maps]
+def draw_maps(page_content: MapsPage, path: Path) -> None:
+    """Write maps.png: all maps on one page, with one colour bar."""
+    names = [
+        name for name in dict.fromkeys((*TITLES, *page_content.maps)) if name in page_content.maps
+    ]
     rows = 1 if len(names) <= ONE_ROW else 2
     columns = -(-len(names) // rows)
     figure = page(max(11.0, 3.7 * columns + 1), 4.1 * rows, apart=0.12)
     panels = [figure.add_subplot(rows, columns, 1 + place) for place in range(len(names))]
-    drawn = [draw_map(axes, name, shown) for axes, name in zip(panels, names, strict=True)]
+    drawn = [draw_map(axes, name, page_content) for axes, name in zip(panels, names, strict=True)]
     bar = figure.colorbar(drawn[0], ax=panels, shrink=0.8, pad=0.01)
     powers = "power (dB below the largest of each map)"
-    bar.set_label("amplitude" if shown.image.kind == "signed" else powers, fontsize=9)
-    figure.suptitle(shown.title, fontsize=11)
+    bar.set_label("amplitude" if page_content.image.kind == "signed" else powers, fontsize=9)
+    figure.suptitle(page_content.title, fontsize=11)
     write_figure(figure, path, 90)
 
 
 def title(simulation: Simulation) -> str:
-    """One line that says what was simulated."""
+    """Describe a simulation in a line."""
     alone = simulation.joint
     more = [] if alone is None else [f"{alone.replace('_', ' ')} alone"]
-    return "   |   ".join([*described(simulation.scene, simulation.waveform), *more])
+    return "   |   ".join([*describe_scene(simulation.scene, simulation.waveform), *more])
 
 
-def described(scene: Scene, waveform: Waveform) -> list[str]:
-    """What a scene is of, in a few words each."""
+def describe_scene(scene: Scene, waveform: Waveform) -> list[str]:
+    """Describe a scene: activity, radar, surroundings, noise and seed, a few words each."""
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
     noise = "no noise" if figure is None else f"noise figure {figure:g} dB"
     kind = scene.config.radar.waveform

@@ -19,7 +19,7 @@ rcParams["text.parse_math"] = False  # a class may be called $a$
 
 
 def page(width: float, height: float, apart: float = 0.04) -> Figure:
-    """An empty figure of that size in inches, with panels `apart` inches from each other."""
+    """Make an empty figure of a size in inches, with panels `apart` inches from each other."""
     layout = ConstrainedLayoutEngine(w_pad=apart)
     figure = Figure(figsize=(width, height), layout=layout)
     FigureCanvasAgg(figure)
@@ -29,9 +29,15 @@ def page(width: float, height: float, apart: float = 0.04) -> Figure:
 def page_of_rows(
     rows: Mapping[str, Sequence[T]], size: tuple[float, float], margin: tuple[float, float]
 ) -> tuple[Figure, list[tuple[Axes, T]]]:
-    """A figure with a row of panels beside each name, and what each panel is to show.
+    """Make a figure with a row of panels beside each name.
 
-    `size` is that of a panel, `margin` what the figure has beside and above them, in inches.
+    Args:
+        rows: what the panels of a row are to show, by name.
+        size: width and height of a panel, inches.
+        margin: space beside and above the panels, inches.
+
+    Returns:
+        The figure, and each panel with what it is to show.
     """
     columns = max(map(len, rows.values()))
     figure = page(size[0] * columns + margin[0], size[1] * len(rows) + margin[1])
@@ -46,14 +52,14 @@ def page_of_rows(
 
 
 def png_bytes(figure: Figure) -> bytes:
-    """A figure as PNG, the same bytes for the same figure."""
+    """Encode a figure as PNG, the same bytes for the same figure."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
     return buffer.getvalue()
 
 
 def write_figure(figure: Figure, path: Path, dpi: float) -> None:
-    """Write a figure, as its suffix says or as PNG, into a file that appears when it is whole."""
+    """Write a figure in the format of the suffix, else PNG; the file appears when complete."""
     kind = path.suffix[1:].lower()
     known = kind in figure.canvas.get_supported_filetypes()
     with replacing(path) as unfinished:

@@ -15,7 +15,7 @@ from matplotlib.colors import to_hex
 from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.frames_panel import NAMES
-from radhar_cli.figures.maps_panel import TITLES, folded
+from radhar_cli.figures.maps_panel import TITLES, alias_doppler
 from radhar_cli.figures.maps_panel import title as title_of
 from radhar_cli.figures.sides import limbs
 from radhar_cli.motion.protocol import Motion
@@ -42,7 +42,7 @@ Points: TypeAlias = tuple[Float, Index, Float]  # times and starts of frames, po
 
 
 class ShownBody(NamedTuple):
-    """Somebody's name, joints, and bones (x, y, z, approaching) [time, joint, 2, 4]."""
+    """A person: name, names of joints, bones (x, y, z, approaching speed) [time, joint, 2, 4]."""
 
     name: str
     joints: Sequence[str]
@@ -50,20 +50,20 @@ class ShownBody(NamedTuple):
 
 
 class SceneView(NamedTuple):
-    """What a page shows of a scene besides its maps."""
+    """View of a scene besides its maps: bodies, true Doppler and the radar."""
 
     time: Float  # at which something is shown, s
     bodies: Sequence[ShownBody] = ()
     axes: Sequence[str] = ("x, range (m)", "y, cross-range (m)", "z, height (m)")
     radar: Any = ((0.0, 0.0, 0.0),)  # places of antennas, m
     curves: Mapping[str, Float] = {}  # true Doppler of joints, the torso's first, Hz
-    prf: float = 1.0  # to which they are folded, Hz
+    prf: float = 1.0  # to which they are alias_doppler, Hz
     hertz: float = 0.0  # Doppler of 1 m/s, 0 where it is not known
     farthest: float = np.inf  # range that maps show, m
 
 
 def of_simulation(simulation: Simulation) -> Entry:
-    """What the page shows of a simulated scene."""
+    """Make the entry of a simulated scene."""
     image, board, frames = simulation.config.image, simulation.board, simulation.frames
     motions = (simulation.motion, *(one.motion for one in simulation.others))
     seen, plots, cloud = moving(simulation.scene, motions), list[Entry](), None
@@ -90,13 +90,21 @@ def of_simulation(simulation: Simulation) -> Entry:
 def entry(
     seen: SceneView, plots: list[Entry], title: str, notes: list[str], numbers: Mapping[str, float]
 ) -> Entry:
-    """All that the page shows of a scene."""
+    """Make the entry of a scene.
+
+    Args:
+        seen: view of the scene.
+        plots: its plots.
+        title: line above.
+        notes: remarks, a line each.
+        numbers: numbers of the scene by config key.
+    """
     shown = {key: f"{value:.6g}" for key, value in numbers.items()}
     return {"title": title, "notes": notes, "numbers": shown, "time": seen.time, "plots": plots}
 
 
 def moving(scene: Scene, motions: Sequence[Motion]) -> SceneView:
-    """Everybody's skeleton and true Doppler."""
+    """Compute the view of a scene: everybody's skeleton and true Doppler, in order of `motions`."""
     made = record(scene, ("antennas", "wall", "waveform"), motions=tuple(motions))
     antennas, wall, w = made["antennas"], made["wall"], made["waveform"]
     time = clock(0, float(w.times(np.array([w.n_pulses - 1.0]))[0]))
@@ -117,12 +125,18 @@ def moving(scene: Scene, motions: Sequence[Motion]) -> SceneView:
 
 
 def clock(start: float, end: float) -> Float:
-    """Times at which the page shows something, s."""
+    """Times from `start` to `end` at which the page shows something, s."""
     return np.linspace(start, end, min(int((end - start) * FRAMES_PER_SECOND) + 2, MAX_FRAMES))
 
 
 def space(seen: SceneView, cloud: Points | None, board: Board | None) -> Entry:
-    """Skeletons and points in 3-D, in the axes of the scene where the board's place is known."""
+    """Plot skeletons and points in 3-D.
+
+    Args:
+        seen: view of the scene.
+        cloud: times and starts of frames, and points (ahead, left, up, approaching); None for none.
+        board: board whose place is known, so that points are in the axes of the scene; else None.
+    """
     traces, moves = list[Entry](), list[Entry]()
     around, fastest = [np.array(seen.radar)], 0.5
     for body in seen.bodies:
@@ -156,14 +170,15 @@ def space(seen: SceneView, cloud: Points | None, board: Board | None) -> Entry:
 
 
 def _moves(at: Index, frames: Sequence[Float] | Float) -> Entry:
-    """What a trace shows: frames of (x, y, z, approaching), and which one at each time."""
+    """Move of a trace: frames of (x, y, z, approaching speed), and the frame at each time."""
     keys, exact = enumerate(("x", "y", "z", "marker.color")), [one.astype(float) for one in frames]
     return {"at": at, "frames": {key: [one[:, n].round(3) for one in exact] for n, key in keys}}
 
 
-def _nearest(times: Float, wanted: Float) -> Index:
-    nearest: Index = np.abs(times - wanted[:, None]).argmin(axis=1)
-    return nearest
+def _nearest(times: Float, instants: Float) -> Index:
+    """Index of the time nearest to each instant [instant]."""
+    index: Index = np.abs(times - instants[:, None]).argmin(axis=1)
+    return index
 
 
 def heat(
@@ -174,9 +189,16 @@ def heat(
     axes: tuple[Axis, Axis],
     times: Float | None = None,
 ) -> Entry:
-    """A map: levels [frame, row, column], lowest first, of a kind of image, and (columns, rows).
+    """Plot a map.
 
-    With times (s) it shows the frame of the instant, else a cursor where its columns are times.
+    Args:
+        seen: view of the scene.
+        name: name of the map.
+        grey: levels [frame, row, column], lowest row first.
+        look: settings of images, and the kind of this one.
+        axes: axes of columns and rows.
+        times: times of the frames [frame], s, to show the frame of each instant; None shows a
+            cursor where the columns are times.
     """
     (image, kind), more = look, ""
     low, high, unit = SCALES.get(kind, (-image.dynamic_range_db, 0.0, "dB re peak"))
@@ -209,9 +231,9 @@ def heat(
 
 
 def _curves(seen: SceneView, compensated: bool) -> list[Entry]:
-    """True Doppler of the joints, as the radar folds it; a click at the legend shows it."""
+    """Traces of the true Doppler of the joints, aliased by the radar, shown by a click."""
     doppler = np.stack(list(seen.curves.values()), axis=1)
-    shown = folded(doppler - doppler[:, :1] * compensated, seen.prf).T / seen.hertz
+    shown = alias_doppler(doppler - doppler[:, :1] * compensated, seen.prf).T / seen.hertz
     look = {"type": "scatter", "dx": seen.time[-1] / (len(doppler) - 1)}
     named = zip(seen.curves, shown.round(2), strict=True)
     key = {**look, "y": [None], "name": "true Doppler: click", "showlegend": True}
@@ -219,7 +241,7 @@ def _curves(seen: SceneView, compensated: bool) -> list[Entry]:
 
 
 def write_page(scenes: Iterable[Entry], path: Path) -> None:
-    """Write the page.
+    """Write the page of scenes.
 
     What scenes say is text from strangers: it is packed in base64, and the page's script gives it
     to the browser as text alone.

@@ -24,13 +24,13 @@ LABELS = {0: "ahead (m)", 1: "right (m)", 2: "up (m)"}
 
 
 def bones(joints: Float, parents: Parents) -> Float:
-    """Joints [..., joint, n] as ends of bones [..., joint, 2, n]: from a joint's parent to it."""
+    """Ends of bones [..., joint, 2, n], from parent to joint, of joints [..., joint, n]."""
     pairs = [(one if parent is None else parent, one) for one, parent in enumerate(parents)]
     return joints[..., np.array(pairs, int).reshape(-1, 2), :]
 
 
 def limbs(joints: Float, parents: Parents, hips: Float | None) -> Float:
-    """`bones` whose thighs hang on the hip joints [..., 2, 3], where there are some."""
+    """Ends of bones as by `bones`, thighs from the hip joints [..., 2, 3] where there are any."""
     ends = bones(joints, parents)
     if hips is not None:
         ends[..., KNEES, 0, :3] = hips
@@ -41,7 +41,14 @@ class SideView:
     """Points, coloured by their speed, over bones, from one side."""
 
     def __init__(self, axes: Axes, name: str, limits: Float, fastest: float) -> None:
-        """`limits` are the lowest and highest (ahead, left, up) [3, 2], `fastest` in m/s."""
+        """Prepare the axes.
+
+        Args:
+            axes: axes to draw in.
+            name: view, one of VIEWS.
+            limits: lowest and highest (ahead, left, up) [3, 2], m.
+            fastest: speed at the ends of the colours, m/s.
+        """
         self.across, self.sign, self.up = VIEWS[name]
         (self.bones,) = axes.plot([], [], color="0.6", linewidth=1.5)
         look: dict[str, Any] = {"s": 14, "edgecolors": "0.3", "linewidths": 0.3, "zorder": 3}
@@ -54,7 +61,7 @@ class SideView:
         axes.tick_params(labelsize=6)
 
     def show(self, points: Float, speed: Float, ends: Float) -> None:
-        """Points [n, 3], how fast they approach [n], and bones [bone, 2, 3]."""
+        """Show points [n, 3], their approaching speed [n], and bones [bone, 2, 3], in m and m/s."""
         lines = np.insert(ends, 2, np.nan, axis=1).reshape(-1, 3)
         self.bones.set_data(self.sign * lines[:, self.across], lines[:, self.up])
         places = points[:, [self.across, self.up]] * (self.sign, 1)
@@ -63,14 +70,14 @@ class SideView:
 
 
 def colour_bar(figure: Figure, side: SideView, **where: Any) -> None:
-    """Say what the colours of points mean."""
+    """Add the colour bar of the points' speed to a figure; `where` is that of `Figure.colorbar`."""
     bar = figure.colorbar(side.points, **where)
     bar.set_label("approaching (m/s)", fontsize=7)
     bar.ax.tick_params(labelsize=6)
 
 
 class Film:
-    """Three sides and a clock, in the left `share` of a wide figure."""
+    """Film of three sides and a clock, in the left `share` of a wide figure."""
 
     def __init__(self, title: str, limits: Float, fastest: float, share: float = 1.0) -> None:
         self.figure = Figure(figsize=(13, 4.6), dpi=80)
@@ -87,7 +94,7 @@ class Film:
         self.clock = self.figure.text(share / 2, 0.02, "", ha="center", fontsize=9)
 
     def show(self, points: Float, speed: Float, ends: Float, clock: str) -> None:
-        """What every side shows of a moment, and the time."""
+        """Show a moment on every side (as `SideView.show`), and the text of the clock."""
         for side in self.sides:
             side.show(points, speed, ends)
         self.clock.set_text(clock)
@@ -104,7 +111,10 @@ class Film:
         """Write a GIF; what never changes is drawn once.
 
         Args:
-            frame_ms: duration of each.
+            path: file to write.
+            show: function that shows the frame of a number.
+            count: number of frames.
+            frame_ms: duration of each, ms.
             advance: called with 1 after every frame.
             others: artists that change besides the points, the bones and the clock.
         """
@@ -134,11 +144,11 @@ class Film:
 
 
 def gif_blocks(frames: Iterator[Image.Image], frame_ms: int) -> Iterator[bytes]:
-    """A GIF that plays again and again, block by block; Pillow's `save` holds all frames at once.
+    """Encode a GIF that plays in a loop, block by block; Pillow's `save` holds all frames at once.
 
     Args:
         frames: one or more pictures of the same palette of `UNCHANGED` colours.
-        frame_ms: duration of each.
+        frame_ms: duration of each, ms.
     """
     last = next(frames)
     yield from getheader(last, info={"loop": 0, "duration": frame_ms})[0]

@@ -1,4 +1,4 @@
-"""Skeletons that a network found beside the true ones, and the error of every joint."""
+"""Skeletons that a network estimated beside the true ones, and the error of every joint."""
 
 from collections.abc import Sequence
 
@@ -14,10 +14,15 @@ REACH = np.array([-1.15, 1.15])  # m
 
 
 def skeletons_png(pairs: Sequence[tuple[Float, Float, str]], parents: Parents, title: str) -> bytes:
-    """Draw (true [joint, 3], found [joint, 3], caption) as columns, from two sides.
+    """Draw estimated skeletons over true ones, a column for each pair, from two sides.
 
     Args:
-        parents: of each joint; empty to draw points alone.
+        pairs: (true joints [joint, 3], estimated ones, caption) of each, m.
+        parents: parent of each joint; empty to draw points alone.
+        title: line above.
+
+    Returns:
+        The PNG file.
     """
     figure = page(2.1 * len(pairs), 5.4)
     grid = figure.subplots(len(SIDES), len(pairs), squeeze=False)

@@ -14,14 +14,16 @@ SHOWN_BESIDE = ("stft", "fsst", "stft_compensated", "rtm")
 
 
 def frame_count(simulation: Simulation) -> int:
-    """Frames of the animation at true speed."""
+    """Number of frames of the animation at true speed."""
     return max(2, round(simulation.waveform.duration * FRAMES_PER_SECOND))
 
 
 def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
-    """Write the animation, which follows a body that is alone and else shows everybody's places.
+    """Write the animation; it follows a person who is alone, and else shows everybody's places.
 
     Args:
+        simulation: the scene.
+        path: GIF file to write.
         advance: called with 1 after every frame.
     """
     truth = simulation.truth
@@ -33,17 +35,17 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
     bounds = [((p - middle).min(axis=0), (p - middle).max(axis=0)) for p in tracks]
     low = np.min([least for least, _ in bounds], axis=0) - 0.1
     high = np.max([most for _, most in bounds], axis=0) + 0.1
-    around = np.round((low + high) / 2) * (1, 1, 0)
-    low = np.minimum(low, around - (1, 1, 0))
-    high = np.maximum(high, np.add(around, (1, 1, 2)))
+    centre = np.round((low + high) / 2) * (1, 1, 0)
+    low = np.minimum(low, centre - (1, 1, 0))
+    high = np.maximum(high, np.add(centre, (1, 1, 2)))
     limits = np.stack([low, high], axis=1)
     fastest = max(float(np.abs(truth.radial_velocity).max()), 0.1)
     film = Film(title(simulation), limits, fastest, share=0.7)
     cursor = []
-    shown = [name for name in SHOWN_BESIDE if name in simulation.maps] or list(simulation.maps)
-    if shown:
+    map_names = [name for name in SHOWN_BESIDE if name in simulation.maps] or list(simulation.maps)
+    if map_names:
         axes = film.figure.add_axes((0.76, 0.14, 0.18, 0.7))
-        draw_map(axes, shown[0], of_simulation(simulation, overlay=False))
+        draw_map(axes, map_names[0], of_simulation(simulation, overlay=False))
         cursor.append(axes.axvline(0, color="white", linewidth=1))
 
     def show(frame: int) -> None:

@@ -10,7 +10,7 @@ from radhar_cli.figures.page import page_of_rows, png_bytes
 
 @dataclass(frozen=True)
 class Picture:
-    """Levels [H, W], edges (left, right, bottom, top), and a few words."""
+    """A map to draw: levels [H, W], edges (left, right, bottom, top), and a caption."""
 
     levels: Levels
     extent: tuple[float, float, float, float]
@@ -20,11 +20,16 @@ class Picture:
 def pictures_png(
     rows: Mapping[str, Sequence[Picture]], title: str, across: str, upwards: str
 ) -> bytes:
-    """Draw rows of maps, each under its name.
+    """Draw rows of maps, each row beside its name.
 
     Args:
+        rows: maps of each row, by name.
+        title: line above.
         across: quantity and unit of the columns of a map.
-        upwards: of its rows.
+        upwards: quantity and unit of its rows.
+
+    Returns:
+        The PNG file.
     """
     figure, panels = page_of_rows(rows, (2.0, 1.75), (1.2, 0.8))
     for panel, one in panels:

@@ -17,7 +17,9 @@ TrainedMap: TypeAlias = Annotated[
 AnyMap: TypeAlias = Annotated[
     str | None, typer.Option("--map", help="Name of the map. The default is the first one.")
 ]
-Split: TypeAlias = Annotated[str, typer.Option(help="Part of the split: train, val, test or all.")]
+Split: TypeAlias = Annotated[
+    str, typer.Option(help="Part of the split: train, val (or validation), test or all.")
+]
 Device: TypeAlias = Annotated[
     str, typer.Option(help="Device to compute on: auto, cpu, cuda or mps.")
 ]

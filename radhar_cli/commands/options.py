@@ -3,13 +3,16 @@
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
 from radhar_cli import interrupts
 from radhar_cli.commands.tell import tell
 from radhar_cli.errors import INTERRUPTED, FolderError
+
+if TYPE_CHECKING:
+    from radhar_cli.config.reading import Override
 
 Overrides: TypeAlias = Annotated[
     list[str] | None,
@@ -109,7 +112,13 @@ def refuse_to_replace_results(out: Path, names: Iterable[str], replace: bool) ->
         )
 
 
-def with_tolerance(overrides: list[str] | None, tolerance: float | None) -> list[str]:
-    """Overrides of the config (KEY=VALUE), with --tolerance, where it is given, as the last."""
-    named = [] if tolerance is None else [f"--tolerance engine.tolerance_db={tolerance!r}"]
+def with_tolerance(overrides: list[str] | None, tolerance: float | None) -> list["str | Override"]:
+    """Overrides of the config, with --tolerance, where it is given, as the last."""
+    from radhar_cli.config.reading import Override
+
+    named = (
+        []
+        if tolerance is None
+        else [Override("engine.tolerance_db", repr(tolerance), "--tolerance")]
+    )
     return [*(overrides or []), *named]

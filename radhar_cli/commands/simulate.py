@@ -23,6 +23,7 @@ RECORDING = "recording.h5"
 FROM_FILE = "from_file"  # the class of `--motion` without `--activity`
 
 if TYPE_CHECKING:
+    from radhar_cli.config.reading import Override
     from radhar_cli.simulation.simulate import Simulation
 
 
@@ -182,23 +183,30 @@ def _write_recording(simulation: "Simulation", path: Path) -> Path:
     return path
 
 
-def _motion_file_overrides(motion: Path, slug: str) -> list[str]:
+def _motion_file_overrides(motion: Path, slug: str) -> list["Override"]:
     """Overrides that give a class one motion file: from its start, at its speed, not mirrored."""
     import json
 
-    path = json.dumps(str(motion.absolute()))
-    section = f"classes.{slug}"
-    unchanged = [f"{section}.start=0", f"{section}.playback_speed=1", f"{section}.mirror=0"]
-    return [f"{section}.files=[{path}]", f"activities=[{slug}]", *unchanged]
+    from radhar_cli.config.reading import Override
+
+    values = {
+        f"classes.{slug}.files": json.dumps([str(motion.absolute())]),
+        "activities": json.dumps([slug]),
+        f"classes.{slug}.start": "0",
+        f"classes.{slug}.playback_speed": "1",
+        f"classes.{slug}.mirror": "0",
+    }
+    return [Override(key, value, "--motion") for key, value in values.items()]
 
 
 def _reader_overrides(
     slug: str, up: str | None, joints: Path | None, skeleton: Path | None
-) -> list[str]:
+) -> list["Override"]:
     """Overrides that tell how to read the motion file of a class: --up, --joints, --skeleton."""
     import json
 
     from radhar_cli.config.documents import read_document
+    from radhar_cli.config.reading import Override
 
     options = (
         ("up", up),
@@ -206,7 +214,7 @@ def _reader_overrides(
         ("skeleton", None if skeleton is None else str(skeleton.absolute())),
     )
     return [
-        f"--{key} classes.{slug}.{key}={json.dumps(value)}"
+        Override(f"classes.{slug}.{key}", json.dumps(value), f"--{key}")
         for key, value in options
         if value is not None
     ]

@@ -72,13 +72,13 @@ def train(
     if tensorboard:
         needs("tensorboard", ("tensorboard",))
     from radhar_cli.commands.terminal import TrainingView
-    from radhar_cli.config.reading import load_section
+    from radhar_cli.config.reading import Override, load_section
     from radhar_cli.learning import run_files, training
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.settings import TrainConfig
 
     named = {"map": map_, "model": model, "target": target}
-    overrides = [f"--{key} {key}={value}" for key, value in named.items() if value]
+    overrides = [Override(key, value, f"--{key}") for key, value in named.items() if value]
     settings = load_section(TrainConfig, config, [*(set_ or []), *overrides])
     refuse_output_inside_data(out, [*data, *([init] if init else [])])
     names = read_classes(classes)

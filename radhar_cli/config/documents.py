@@ -18,6 +18,7 @@ Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
 BASE = "base"
 SUFFIXES = (".yaml", ".yml", ".json")
 RADARS = {path.stem: path for path in sorted(Path(__file__).with_name("radars").glob("*.cfg"))}
+OTHER_NAMES = {"split.val": "split.validation"}  # as folders and options have them
 MAX_CHAIN = 8  # files in a chain of bases
 _ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole
 
@@ -36,6 +37,13 @@ def read_document(path: Path) -> tuple[Document, Places]:
     if not isinstance(document, dict):
         raise ConfigError(f"{path}: should be a mapping of keys such as 'seed: 1'")
     places = {key: f"{path}:{line}" for key, line in lines.items()}
+    split = document.get("split")
+    if isinstance(split, dict):
+        for other, key in OTHER_NAMES.items():
+            short, name = other.removeprefix("split."), key.removeprefix("split.")
+            if short in split and name not in split:
+                split[name] = split.pop(short)
+                places[key] = places.pop(other, str(path))
     radar = document.get("radar")
     if isinstance(radar, dict) and "cfg" in radar:
         radar["cfg"] = cfg_text(radar["cfg"], path.parent, places.get("radar.cfg", str(path)))

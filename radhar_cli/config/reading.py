@@ -5,13 +5,13 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from radhar_cli.config.annotations import range_of, section
 from radhar_cli.config.checks import Problem
-from radhar_cli.config.documents import BASE, Places, cfg_text, read_on_bases
+from radhar_cli.config.documents import BASE, OTHER_NAMES, Places, cfg_text, read_on_bases
 from radhar_cli.config.motion_files import resolve_files
 from radhar_cli.config.schema import Config, ConfigOfRecordings, PerActivity, Section
 from radhar_cli.config.units import key_in_our_unit, value_with_unit
@@ -49,15 +49,39 @@ ABSENT = {
 }
 
 
+class Override(NamedTuple):
+    """A key whose value comes from elsewhere than a config file.
+
+    Attributes:
+        key: dotted.
+        text: the value, as YAML.
+        option: of the command line, which messages name instead of the file: `--tolerance`.
+    """
+
+    key: str
+    text: str
+    option: str
+
+    @classmethod
+    def parsed(cls, text: str) -> "Override":
+        """An override of the form ``radar.prf_hz=128``, as `--set` takes it."""
+        key, equals, value = text.partition("=")
+        key = key.strip()
+        if not equals or not all(key.split(".")):
+            raise ConfigError(
+                f"--set {text}: should be key=value with a dotted key, such as radar.prf_hz=128"
+            )
+        return cls(OTHER_NAMES.get(key, key), value, f"--set {key}")
+
+
 def load_config(
-    path: str | Path, overrides: Iterable[str] = (), kind: type[Config] = Config
+    path: str | Path, overrides: Iterable[str | Override] = (), kind: type[Config] = Config
 ) -> Config:
     """Read a data set's config file, and its bases, and apply overrides.
 
     Args:
         path: YAML file.
-        overrides: texts such as ``radar.prf_hz=128``, or with the option that they stand for,
-            ``--tolerance engine.tolerance_db=-60``.
+        overrides: texts such as ``radar.prf_hz=128``, as `--set` takes them, or `Override`.
         kind: class of the config.
 
     Returns:
@@ -95,7 +119,7 @@ def as_config(config: Config | str | Path) -> Config:
     return config
 
 
-def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()) -> S:
+def load_section(kind: type[S], path: Path | None, overrides: Iterable[str | Override] = ()) -> S:
     """Read a file that holds one `kind` of config, or its defaults, and apply overrides.
 
     Args:
@@ -109,19 +133,24 @@ def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()
     return _load(kind, path, overrides)[0]
 
 
-def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S, Places, Options]:
+def _load(
+    kind: type[S], path: Path | None, overrides: Iterable[str | Override]
+) -> tuple[S, Places, Options]:
     """Read a config, the places of its keys, and the options that gave some of them."""
-    given = [one.partition(" ")[::2] if one.startswith("--") else ("", one) for one in overrides]
-    bases = [text for _, text in given if text.partition("=")[0].strip() == BASE]
-    document, places = read_on_bases(path, with_overrides({}, bases))
+    given = [Override.parsed(one) if isinstance(one, str) else one for one in overrides]
+    of_base: dict[str, Any] = {}
+    for override in given:
+        if override.key == BASE:
+            _apply(of_base, override)
+    document, places = read_on_bases(path, of_base)
     options: Options = {}
-    for option, text in given:
-        if text in bases:
+    for override in given:
+        if override.key == BASE:
             continue
-        key = _override(document, text)
-        places = {k: v for k, v in places.items() if not _within(k, key)}
-        options[key] = option or f"--set {key}"
-    where = str(path) if path else "--set"
+        _apply(document, override)
+        places = {k: v for k, v in places.items() if not _within(k, override.key)}
+        options[override.key] = override.option
+    where = str(path) if path else ", ".join(dict.fromkeys(options.values())) or "the defaults"
     return validated(kind, document, where, places, options), places, options
 
 
@@ -158,30 +187,24 @@ def with_overrides(document: dict[str, Any], overrides: Iterable[str]) -> dict[s
     Raises:
         ConfigError: a text is no key=value, or its value is no YAML.
     """
-    for override in overrides:
-        _override(document, override)
+    for text in overrides:
+        _apply(document, Override.parsed(text))
     return document
 
 
-def _override(document: dict[str, Any], override: str) -> str:
-    """Change a document by `key=value`, in place, and return the key."""
-    key, equals, text = override.partition("=")
-    names = key.strip().split(".")
-    if not equals or not all(names):
-        raise ConfigError(
-            f"--set {override}: should be key=value with a dotted key, such as radar.prf_hz=128"
-        )
+def _apply(document: dict[str, Any], override: Override) -> None:
+    """Write the value of an override into the document."""
+    names = override.key.split(".")
     place = document
     for name in names[:-1]:
         inner = place.get(name)
         if isinstance(inner, list) and names[0] == "classes":
             inner = {"files": inner}  # the short form of a class of files
         place[name] = place = inner if isinstance(inner, dict) else {}
-    value, _ = parse_yaml(text, f"--set {key.strip()}")
+    value, _ = parse_yaml(override.text, override.option)
     if names == ["radar", "cfg"]:
-        value = cfg_text(value, Path(), "--set")
+        value = cfg_text(value, Path(), override.option)
     place[names[-1]] = value
-    return key.strip()
 
 
 def _within(key: str, parent: str) -> bool:

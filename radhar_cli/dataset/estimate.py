@@ -97,7 +97,7 @@ def jobs_that_pay(config: Config) -> int:
             plan, place = plan_images(config), rows[len(rows) // 2]
             for _ in range(2):  # the first imports
                 start = process_time()
-                synthesise(draw_valid_scene(config, *place)[0], plan)
+                synthesise(draw_valid_scene(config, *place)[0], plan, config)
                 seconds = process_time() - start
                 if seconds > PAYS_S:
                     break
@@ -139,7 +139,7 @@ def estimate(
         for number, row in enumerate([places[0], *places]):
             start = perf_counter()
             scene, _ = draw_valid_scene(config, *rows[row])
-            sample, png_bytes = synthesise(scene, plan), 0
+            sample, png_bytes = synthesise(scene, plan, config), 0
             values = scene_fields.values(scene, columns, sample.error_db)
             if table is not None:
                 level, images = config.output.png_level, sample.images.values()

@@ -76,19 +76,18 @@ class SampleRow(NamedTuple):
 RowFactory: TypeAlias = Callable[[MeasuredConfig, int], SampleRow]
 
 
-def synthesise(scene: Scene, plan: Plan, config: Config | None = None) -> Synthesised:
+def synthesise(scene: Scene, plan: Plan, config: Config) -> Synthesised:
     """Run the plan of a data set on one scene.
 
     Args:
         scene: the scene.
         plan: plan of the images (`plan_images`).
-        config: config of the data set, whose classes the labels number; None for the scene's own,
-            which has but the class that is performed.
+        config: config of the data set, whose classes the labels number; that of the scene has but
+            the class that is performed.
 
     Raises:
         SceneError: an engine misses its tolerance, or a product cannot be stored.
     """
-    config = scene.config if config is None else config
     recording = run(plan, {"scene": scene})
     images: dict[str, MapImage] = {name: recording[f"image:{name}"] for name in scene.config.maps}
     labels: dict[str, Levels] = {}

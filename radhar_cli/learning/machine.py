@@ -38,7 +38,7 @@ def choose_device(name: str) -> torch.device:
         name = next(device for device, is_there in is_available.items() if is_there)
     if name not in is_available:
         hint = did_you_mean(name, is_available, f"the devices are auto, {', '.join(is_available)}")
-        raise MachineError(f"--device {name}: is not a device; {hint}")
+        raise MachineError(f'device = "{name}": is not a device; {hint}')
     if not is_available[name]:
         listed = ", ".join(device for device, is_there in is_available.items() if is_there)
         raise MachineError(f'device = "{name}": is not on this machine; it has {listed}')

@@ -9,7 +9,7 @@ from torch.utils.data import Dataset, get_worker_info
 from radhar_cli.arrays import Index
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.identity import identity, identity_hash
-from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.layout import SPLITS, Rows
 from radhar_cli.dataset.on_demand import Recipe
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.errors import ConfigError
@@ -50,7 +50,8 @@ class Samples(Dataset[dict[str, Any]]):
         if check_split_name(split) != "all":
             numbers = np.flatnonzero(split_rows(self.config) == SPLIT_NAMES[split])
         if not numbers.size:
-            raise ConfigError(f"split.{split}: leaves no sample for it; should be larger")
+            key = f"split.{SPLITS[SPLIT_NAMES[split]]}"
+            raise ConfigError(f"{key}: leaves no sample for it; should be larger")
         self._numbers = numbers
         self.label: Index = self._rows.label[numbers]
         self.classes = self._rows.names

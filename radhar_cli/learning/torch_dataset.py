@@ -11,7 +11,7 @@ from torch import Tensor
 from torch.utils.data import Dataset
 
 from radhar_cli.errors import ConfigError
-from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet
+from radhar_cli.learning.images.image_set import ImageSet, check_split_name
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.settings import Kind
 
@@ -71,8 +71,7 @@ def torch_dataset(
         FolderError: it is no data set, or has no such map or no image of that split; the message
             says what it has.
     """
-    if split not in (*SPLIT_NAMES, "all"):
-        raise ConfigError(f"split = {split!r}: should be train, val, test or all")
+    check_split_name(split)
     if input not in ("rgb", "gray"):
         raise ConfigError(f"input = {input!r}: should be rgb or gray")
     images = open_images(Path(path), map, input)

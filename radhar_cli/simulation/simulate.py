@@ -396,7 +396,7 @@ def activity_of(asked: str | Activity | None, config: Config) -> Activity:
     """
     chosen = config.chosen_activities
     if asked is None and len(chosen) > 1:
-        raise ConfigError(f"--activity is needed: the config has {len(chosen)} activities")
+        raise ConfigError(f"an activity is needed: the config has {len(chosen)} activities")
     if asked is None:
         return chosen[0]
     if not isinstance(asked, (str, Activity)):

@@ -12,10 +12,12 @@ from hypothesis import strategies as st
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.number import Choice, Normal, Uniform, Vary
+from radhar_cli.config.reading import Override, load_section
 from radhar_cli.config.schema import for_activity
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.errors import ConfigError, FolderError
+from radhar_cli.learning.settings import TrainConfig
 
 
 def written(folder: Path, text: str) -> Path:
@@ -566,11 +568,16 @@ def test_a_stored_config_that_is_broken_names_its_file(stored: object) -> None:
     [
         ("radar.prf_hz=-1", "--set radar.prf_hz = -1: "),
         ("radar={prf_hz: -1}", "--set radar: radar.prf_hz = -1: "),
-        ("--tolerance engine.tolerance_db=3", "--tolerance: engine.tolerance_db = 3: "),
+        (
+            Override("engine.tolerance_db", "3", "--tolerance"),
+            "--tolerance: engine.tolerance_db = 3: ",
+        ),
         ("rada.x=1", '--set rada.x: rada = {"x": 1}: '),
     ],
 )
-def test_mistakes_in_set_name_the_option(tmp_path: Path, override: str, place: str) -> None:
+def test_mistakes_in_set_name_the_option(
+    tmp_path: Path, override: str | Override, place: str
+) -> None:
     path = tmp_path / "scene.yaml"
     path.write_text("seed: 1\nradar: {prf_hz: 100}\nengine: {tolerance_db: -60}\n")
     with pytest.raises(ConfigError) as caught:
@@ -584,6 +591,26 @@ def test_a_mistake_of_file_and_option_together_names_both(tmp_path: Path) -> Non
     with pytest.raises(ConfigError) as caught:
         load_config(path, ["split.train=0.9"])
     assert str(caught.value).startswith(f"{path}:2: split (--set split.train) = ")
+
+
+@pytest.mark.parametrize("name", ["val", "validation"])
+def test_validation_may_be_called_as_its_folder_is(tmp_path: Path, name: str) -> None:
+    assert read(tmp_path, f"split: {{train: 0.7, {name}: 0.3}}").split.validation == 0.3
+    overridden = read(tmp_path, "split: {train: 0.8}", "split.train=0.7", f"split.{name}=0.3")
+    assert overridden.split.validation == 0.3
+    (line,) = mistakes(tmp_path, f"seed: 1\nsplit:\n  {name}: -1\n")
+    assert ":3: split.validation = -1: should be" in line
+
+
+def test_validation_has_one_value(tmp_path: Path) -> None:
+    (line,) = mistakes(tmp_path, "split: {val: 0.2, validation: 0.2}")
+    assert "split.val = 0.2: is an unknown key" in line
+
+
+def test_a_default_that_an_option_spoils_names_the_option(tmp_path: Path) -> None:
+    """The mistake is of the whole config, of which no file was given."""
+    with pytest.raises(ConfigError, match=r"^--target: should have model: cloudnet"):
+        load_section(TrainConfig, None, [Override("target", "skeleton", "--target")])
 
 
 def test_activities_that_are_not_named_keep_the_default_of_the_key(tmp_path: Path) -> None:

@@ -1,19 +1,27 @@
 """Point clouds of a data set in the formats of others."""
 
 import csv
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from command_line import radhar
 from listener import Listener
 
 from radhar_cli.config.ti_header import board_header
-from radhar_cli.dataset.formats.clouds import clouds_of
+from radhar_cli.dataset.formats.clouds import (
+    MARS_JOINTS,
+    clouds_of,
+    kinect_joints,
+    write_mars,
+)
 from radhar_cli.dataset.formats.convert import convert
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError
+from radhar_cli.motion.skeleton import JOINTS
 from tests.boards import CFG, CLOUDS
 
 
@@ -38,18 +46,40 @@ def samples(place, split):
             yield data.class_slugs[data.label[row]], rows.name(row), row, clouds_of(data, row)
 
 
-def read(place, to, part, slug, name):
-    with (place / to / part / slug / f"{name}.csv").open() as file:
+def read_csv(path):
+    with path.open() as file:
         lines = list(csv.DictReader(file))
     return {key: np.array([float(line[key]) for line in lines]) for key in lines[0]}
 
 
+def read_as_voxels_py(path):
+    """{field: numbers} and each point's frame, found as RadHAR's voxels.py finds them: by words."""
+    words = path.read_text().split()
+    pairs = list(pairwise(words))
+    frame = np.cumsum([value == "0" for word, value in pairs if word == "point_id:"]) - 1
+    fields = ("x", "y", "z", "velocity", "intensity", "range", "doppler_bin", "bearing", "point_id")
+    return {
+        name: np.array([float(value) for word, value in pairs if word == f"{name}:"])
+        for name in fields
+    } | {"frame": frame}
+
+
+def loaded_as_mars_model_py(folder):
+    """{split: (features, labels)} by the names and shapes that MARS_model.py loads."""
+    parts = {
+        part: tuple(np.load(folder / f"{name}_{part}.npy") for name in ("featuremap", "labels"))
+        for part in ("train", "validate", "test")
+    }
+    assert {features.shape[1:] for features, _ in parts.values()} == {(8, 8, 5)}
+    assert {labels.shape[1:] for _, labels in parts.values()} == {(57,)}
+    return parts
+
+
 def test_mars_has_every_frame_with_its_points_and_joints(place):
-    for split, part in enumerate(("train", "validation")):
-        features, labels, frames = (
-            np.load(place / "mars" / f"{name}_{part}.npy")
-            for name in ("featuremap", "labels", "frames")
-        )
+    parts = loaded_as_mars_model_py(place / "mars")
+    for split, part in enumerate(("train", "validate", "test")):
+        features, labels = parts[part]
+        frames = np.load(place / "mars" / f"frames_{part}.npy")
         here = list(samples(place, split))
         assert len(features) == len(labels) == len(frames) == sum(len(c.joints) for *_, c in here)
         with open_dataset(place / "set") as data:
@@ -62,7 +92,51 @@ def test_mars_has_every_frame_with_its_points_and_joints(place):
             assert len(there) == mine.sum()
             assert there[:, :3].tolist() == sorted(clouds.xyz[mine].astype(np.float32).tolist())
             assert sorted(there[:, 3]) == sorted(clouds.doppler[mine].astype(np.float32))
-            np.testing.assert_array_equal(label.reshape(3, -1).T, clouds.joints[frame])
+            # x of all 19, y of all, z of all; these are ours under the Kinect's places.
+            x_y_z = np.array([label[0:19], label[19:38], label[38:57]]).T
+            ours = [JOINTS.index(name) for name in OURS_IN_MARS.values()]
+            np.testing.assert_array_equal(x_y_z[[*OURS_IN_MARS]], clouds.joints[frame][ours])
+
+
+# Places in the order of the Kinect, without its hands, finger tips and thumbs.
+OURS_IN_MARS = {
+    **{0: "hip", 1: "torso", 3: "head"},
+    **{4: "left_shoulder", 5: "left_elbow", 6: "left_hand"},
+    **{7: "right_shoulder", 8: "right_elbow", 9: "right_hand"},
+    **{11: "left_knee", 12: "left_ankle", 15: "right_knee", 16: "right_ankle"},
+}
+
+
+def test_joints_of_the_kinect_that_ours_lack():
+    """Medians of MARS's first subject, who stands and faces the radar (kinect_data_test.csv)."""
+    measured = {
+        **{"SpineBase": [0.17, 1.96, -0.11], "SpineMid": [0.17, 1.97, 0.22]},
+        **{"Neck": [0.16, 1.98, 0.54], "Head": [0.15, 1.99, 0.69]},
+        **{"ShoulderLeft": [0.35, 1.96, 0.41], "ShoulderRight": [-0.03, 1.96, 0.38]},
+        **{"HipLeft": [0.25, 1.91, -0.11], "HipRight": [0.08, 1.92, -0.11]},
+        **{"KneeLeft": [0.30, 1.97, -0.47], "KneeRight": [0.03, 1.95, -0.48]},
+        **{"AnkleLeft": [0.33, 1.99, -0.85], "AnkleRight": [-0.02, 1.98, -0.86]},
+        **{"FootLeft": [0.34, 1.90, -0.94], "FootRight": [-0.04, 1.88, -0.94]},
+        "SpineShoulder": [0.16, 1.98, 0.46],
+    }
+    of_kinect = {MARS_JOINTS[place]: name for place, name in OURS_IN_MARS.items()}
+    joints = np.array(
+        [
+            measured.get(next(k for k, ours in of_kinect.items() if ours == name), [0, 0, 0])
+            for name in JOINTS
+        ]
+    )
+    computed = dict(zip(MARS_JOINTS, kinect_joints(joints), strict=True))
+    for name, position in measured.items():
+        np.testing.assert_allclose(computed[name], position, atol=0.08, err_msg=name)
+
+
+def test_mars_needs_the_joints_of_people(place, tmp_path, monkeypatch):
+    """Recordings of 3 scatterers are no people."""
+    with open_dataset(place / "set") as data:
+        monkeypatch.setitem(data.products, "skeleton", np.empty((len(data), 5, 3, 3)))
+        with pytest.raises(FolderError, match="3 joints; mars needs those of people, 13"):
+            write_mars(data, tmp_path, Listener())
 
 
 def test_axes_and_signs_of_the_formats(place):
@@ -72,11 +146,12 @@ def test_axes_and_signs_of_the_formats(place):
             row: (data.products["points"][row], data.products["skeleton"][row][:, 0])
             for row in range(len(data))
         }
-    for split, part in enumerate(("train", "validation")):
+    for split, (part, folder) in enumerate((("train", "Train"), ("validation", "Validation"))):
         for slug, name, row, clouds in samples(place, split):
             points, joints = products[row]
             ahead, left, up, doppler = points[:, :4].T
-            ros, ti = (read(place, to, part, slug, name) for to in ("ros", "ti"))
+            ros = read_as_voxels_py(place / "ros" / folder / slug / f"{name}.txt")
+            ti = read_csv(place / "ti" / part / slug / f"{name}.csv")
             for axes in ((ros["x"], ros["y"], ros["z"]), (ti["y"], -ti["x"], ti["z"])):
                 np.testing.assert_allclose(axes, [ahead, left, up], rtol=2e-5, atol=1e-6)
             np.testing.assert_allclose(ros["velocity"], -doppler, rtol=2e-5, atol=1e-6)
@@ -88,18 +163,38 @@ def test_axes_and_signs_of_the_formats(place):
             assert (away[moving] == (doppler[moving] < 0)).all()
             np.testing.assert_allclose(ti["snr"], points[:, 5], rtol=2e-5, atol=1e-6)
             assert set(ti["track"]) <= {0, 255}
-            assert (ros["frame"] == ti["frame"]).all()
-            assert (np.diff(ros["frame"]) >= 0).all()
-            first = np.diff(ros["frame"], prepend=-1) > 0
-            assert ((ros["point_id"] == 0) == first).all()
+            # Frames without points leave no record: those of RadHAR are counted by `point_id: 0`.
+            np.testing.assert_array_equal(
+                ros["frame"], np.unique(ti["frame"], return_inverse=True)[1]
+            )
+            assert ((ros["point_id"] == 0) == (np.diff(ros["frame"], prepend=-1) > 0)).all()
             np.testing.assert_array_equal(clouds.joints[..., 0], -joints[..., 1])
+
+
+def test_records_of_ros_are_yaml_with_the_fields_of_the_message(place):
+    path = next((place / "ros" / "Train").rglob("*.txt"))
+    *records, last = yaml.safe_load_all(path.read_text())
+    assert last is None  # every record is closed
+    fields = "header point_id x y z range velocity doppler_bin bearing intensity"
+    assert [*records[0]] == fields.split()
+    assert [record["header"]["seq"] for record in records] == [*range(len(records))]
+    assert records[0]["header"]["frame_id"] == "ti_mmwave"
+    stamps = [record["header"]["stamp"] for record in records]
+    seconds = np.array([stamp["secs"] + 1e-9 * stamp["nsecs"] for stamp in stamps])
+    with open_dataset(place / "set") as data:
+        period = board_header(data.config.radar.cfg).period_s
+        frames = len(data.products["points_start"][0]) - 1
+    np.testing.assert_allclose(seconds % period, 0, atol=1e-9)
+    assert 0 <= seconds.min() <= seconds.max() <= (frames - 1) * period + 1e-9
+
+
+READER = {"mars": "numpy as np", "ros": "yaml", "ti": "csv"}
 
 
 @pytest.mark.parametrize("to", ["mars", "ros", "ti"])
 def test_the_folder_says_which_axes_and_units(place, to):
     card = (place / to / "README.md").read_text()
-    if to != "mars":
-        assert "\nimport csv\n" in card
+    assert f"\nimport {READER[to]}\n" in card
     for word in ("right" if to != "ros" else "left", "receding", "m/s"):
         assert word in card
     assert (place / to / "config.yaml").exists()

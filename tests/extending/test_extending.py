@@ -453,7 +453,7 @@ def test_products_that_cannot_be_stored_are_refused() -> None:
     registry.add_product(Product("words", (), lambda: "text", ""))
     scene = walking(output=CONFIG.output.model_copy(update={"products": ("words",)}))
     with pytest.raises(SceneError, match="words is str; should be an array"):
-        synthesise(scene, plan_images(scene.config))
+        synthesise(scene, plan_images(scene.config), scene.config)
     with pytest.raises(ValueError, match="should be a name"):
         registry.add_product(Product("a b", (), tuple, ""))
 

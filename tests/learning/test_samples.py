@@ -17,7 +17,7 @@ from radhar_cli.config.schema import Config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.on_demand import sample
 from radhar_cli.dataset.split import VALIDATION, split_rows
-from radhar_cli.errors import ConfigError, SceneError
+from radhar_cli.errors import RadharError, SceneError
 from radhar_cli.learning.samples import Samples
 
 pytestmark = pytest.mark.filterwarnings("ignore:This DataLoader will create")  # on few cores
@@ -119,9 +119,13 @@ def test_mistakes_are_refused_in_one_line():
         (lambda: Samples(config(), 2**63), "seed = 9223372036854775808: should be"),
         (lambda: Samples("x.yaml"), r"x\.yaml: no such file"),
         (lambda: Samples(7), "config = 7: should be the path"),
-        (lambda: Samples(config(split={"train": 1, "validation": 0}), split="val"), "no sample"),
+        (
+            lambda: Samples(config(split={"train": 1, "validation": 0}), split="val"),
+            r"^split\.validation: leaves no sample",
+        ),
+        (lambda: Samples(config(), split="foo"), "^split = 'foo': is not a split; the splits are"),
     ):
-        with pytest.raises(ConfigError, match=words):
+        with pytest.raises(RadharError, match=words):
             make()
 
 

@@ -67,7 +67,7 @@ def test_mistakes_say_what_there_is(data: Path) -> None:
     for arguments, error, words in (
         ({"map": "fsst"}, FolderError, "no map 'fsst'; .*stft"),
         ({"split": "test"}, FolderError, r"no test images \(it has 4 train, 4 validation\)"),
-        ({"split": "tset"}, ConfigError, "split = 'tset': should be train, val, test or all"),
+        ({"split": "tset"}, ConfigError, "split = 'tset': is not a split; did you mean 'test'"),
         ({"input": "red"}, ConfigError, "input = 'red': should be rgb or gray"),
     ):
         with pytest.raises(error, match=words):

@@ -147,7 +147,7 @@ from radhar_cli.scene import draw_scene
 import numpy as np, json, scipy.fft, scipy.signal, PIL.Image
 def make(document):
     config = Config.model_validate(document)
-    synthesise(draw_scene(config, activity_named("punching"), 0), plan_images(config))
+    synthesise(draw_scene(config, activity_named("punching"), 0), plan_images(config), config)
 compiled.MIN_TERMS = 0
 document = json.loads(sys.argv[1])
 make(document | {"duration_s": 4.0})  # so that numba is loaded, if it is there

@@ -1,7 +1,9 @@
-"""Point clouds as others keep them: arrays of MARS, columns of TI's ROS driver and of TI's viewer.
+"""Point clouds as others keep them: arrays of MARS, messages of TI's ROS driver, TI's viewer.
 
-All of them have Doppler as TI does, receding positive. MARS: S. An and U. Y. Ogras, 2021. ROS:
-message RadarScan of ti_mmwave_rospkg for SDK 2. TI: the point clouds of its Industrial Visualizer.
+All of them have Doppler as TI does, receding positive. MARS: S. An and U. Y. Ogras, 2021, as their
+script MARS_model.py loads it. ROS: messages RadarScan of ti_mmwave_rospkg for SDK 2 as `rostopic
+echo` prints them, which RadHAR (A. D. Singh et al., 2019) keeps and its script voxels.py reads. TI:
+the point clouds of its Industrial Visualizer.
 """
 
 import csv
@@ -20,14 +22,25 @@ from radhar_cli.config.ti_header import board_header
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
+from radhar_cli.errors import FolderError
+from radhar_cli.motion.segments import cross, unit
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.progress import Progress
 
 SIDE = 8  # MARS: 64 points of a frame as a square
-ROS = (
-    "frame", "stamp_s", "point_id", "x", "y", "z", "range", "velocity", "doppler_bin", "bearing",
-    "intensity",
+MARS_SPLITS = ("train", "validate", "test")  # in its file names
+# The 19 of the Kinect's 25 joints that MARS learns, in the Kinect's order.
+MARS_JOINTS = (
+    "SpineBase", "SpineMid", "Neck", "Head", "ShoulderLeft", "ElbowLeft", "WristLeft",
+    "ShoulderRight", "ElbowRight", "WristRight", "HipLeft", "KneeLeft", "AnkleLeft", "FootLeft",
+    "HipRight", "KneeRight", "AnkleRight", "FootRight", "SpineShoulder",
 )  # fmt: skip
+# Where the joints that ours lack are, read off the medians of MARS's subject 1: the neck between
+# the shoulders' middle and the head, a hip joint beside `hip` over the width of the shoulders, a
+# foot ahead of its ankle and below it over the length of the shank.
+NECK, HIP_ASIDE, FOOT_AHEAD, FOOT_BELOW = 1 / 3, 0.23, 0.22, 0.2
+ROS_SPLITS = ("Train", "Validation", "Test")  # folders; RadHAR has the first and the last
+ROS_FRAME = "ti_mmwave"
 TI = ("frame", "x", "y", "z", "doppler", "snr", "noise", "track")
 NO_TRACK = 255  # of a point that belongs to nobody
 
@@ -81,47 +94,131 @@ def feature_map(clouds: Clouds, frame: int) -> NDArray[np.float32]:
     return found.reshape(SIDE, SIDE, 5)
 
 
+def kinect_joints(joints: Float) -> Float:
+    """Positions [..., 19, 3] of MARS_JOINTS.
+
+    Args:
+        joints: positions [..., 13, 3] of JOINTS, m, in any right-handed axes.
+    """
+    at = dict(zip(JOINTS, np.moveaxis(joints, -2, 0), strict=True))
+    across = at["left_shoulder"] - at["right_shoulder"]
+    middle = (at["left_shoulder"] + at["right_shoulder"]) / 2
+    places = {
+        "SpineBase": at["hip"],
+        "SpineMid": at["torso"],
+        "SpineShoulder": middle,
+        "Neck": middle + NECK * (at["head"] - middle),
+        "Head": at["head"],
+    }
+    for side, sign in (("left", 1), ("right", -1)):
+        knee, ankle = at[f"{side}_knee"], at[f"{side}_ankle"]
+        shank = ankle - knee
+        ahead = np.moveaxis(unit(cross(*(np.moveaxis(v, -1, 0) for v in (shank, across)))), 0, -1)
+        length = np.linalg.norm(shank, axis=-1, keepdims=True)
+        of_side = {
+            "Shoulder": at[f"{side}_shoulder"],
+            "Elbow": at[f"{side}_elbow"],
+            "Wrist": at[f"{side}_hand"],
+            "Hip": at["hip"] + sign * HIP_ASIDE * across,
+            "Knee": knee,
+            "Ankle": ankle,
+            "Foot": ankle + FOOT_AHEAD * length * ahead + FOOT_BELOW * shank,
+        }
+        places |= {f"{name}{side.capitalize()}": place for name, place in of_side.items()}
+    return np.stack([places[name] for name in MARS_JOINTS], axis=-2)
+
+
 def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write featuremap_<split>.npy, labels_<split>.npy and frames_<split>.npy into a folder."""
+    """Write featuremap_<split>.npy, labels_<split>.npy and frames_<split>.npy of all three splits.
+
+    Raises:
+        FolderError: its skeletons are not of the thirteen joints.
+    """
     counts, joints = data.products["points_start"].counts - 1, data.products["skeleton"].shape[2]
-    shapes = {"featuremap": (SIDE, SIDE, 5), "labels": (3 * joints,), "frames": (3,)}
-    for split, part in data.present_splits.items():
+    if joints != len(JOINTS):
+        raise FolderError(
+            f"{data.path}: its skeletons have {joints} joints; mars needs those of people, "
+            f"{len(JOINTS)}"
+        )
+    shapes = {"featuremap": (SIDE, SIDE, 5), "labels": (3 * len(MARS_JOINTS),), "frames": (3,)}
+    for split, part in enumerate(MARS_SPLITS):
         total, done = int(counts[data.split == split].sum()), 0
         features, labels, frames = (
-            open_memmap(
+            _new_array(
                 folder / f"{name}_{part}.npy",
-                mode="w+",
-                dtype="<i8" if name == "frames" else "<f4",
-                shape=(total, *shape),
+                np.dtype("<i8" if name == "frames" else "<f4"),
+                (total, *shape),
             )
             for name, shape in shapes.items()
         )
         for entry in _of_split(data, split):
             clouds = clouds_of(data, entry.row)
-            for frame, skeleton in enumerate(clouds.joints):
+            for frame, skeleton in enumerate(kinect_joints(clouds.joints)):
                 features[done] = feature_map(clouds, frame)
                 labels[done] = skeleton.T.ravel()
                 frames[done] = entry.number, entry.place, frame
                 done += 1
             progress.advance(1)
-    names = ", ".join(JOINTS) if joints == len(JOINTS) else "as the recorded motion has them"
-    _describe(data, folder, _MARS.format(joints=joints, names=names))
+    _describe(data, folder, _MARS.format(names=", ".join(MARS_JOINTS)))
+
+
+def _new_array(path: Path, kind: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+    """A new .npy file to fill; of no rows a file that is there is all (mmap has no empty ones)."""
+    if not shape[0]:
+        np.save(path, np.zeros(shape, kind))
+        return np.zeros(shape, kind)
+    return open_memmap(path, mode="w+", dtype=kind, shape=shape)
 
 
 def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write <split>/<class>/<sample>.csv into a folder, with the columns ROS."""
+    """Write <Split>/<class>/<sample>.txt of messages RadarScan, a record a point."""
     header = board_header(data.config.radar.cfg or "")
     middle = 2 ** (header.loops - 1).bit_length() // 2
+    rows = Rows.of(data.config)
+    for split in data.present_splits:
+        for entry in _of_split(data, split):
+            path = folder / ROS_SPLITS[split] / entry.label / f"{rows.name(entry.row)}.txt"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            clouds = clouds_of(data, entry.row)
+            if len(clouds.frame):  # voxels.py stops at a file without a record
+                path.write_text(_radar_scans(clouds, header.period_s, middle), encoding="utf-8")
+            progress.advance(1)
+    _describe(data, folder, _ROS)
 
-    def columns(c: Clouds) -> Sequence[Any]:
-        right, ahead, up = c.xyz.T
-        point = np.arange(len(c.frame)) - np.searchsorted(c.frame, c.frame)
-        reach, bearing = np.linalg.norm(c.xyz, axis=1), np.degrees(np.arctan2(-right, ahead))
-        seen = (reach, c.doppler, c.bins + middle, bearing, 10 * np.log10(c.amplitude + 1))
-        return (c.frame, c.frame * header.period_s, point, ahead, -right, up, *seen)
 
-    _write_csv(data, folder, ROS, columns, progress)
-    _describe(data, folder, f"{_ROS}\n\n{_READ_CSV}")
+def _radar_scans(c: Clouds, period_s: float, middle: int) -> str:
+    """The points of a sample as `rostopic echo` prints messages RadarScan."""
+    right, ahead, up = c.xyz.T
+    point = np.arange(len(c.frame)) - np.searchsorted(c.frame, c.frame)
+    reach, bearing = np.linalg.norm(c.xyz, axis=1), np.degrees(np.arctan2(-right, ahead))
+    stamp_ns = np.round(c.frame * period_s * 1e9).astype(np.int64)
+    columns = {
+        "point_id": point,
+        "x": ahead,
+        "y": -right,
+        "z": up,
+        "range": reach,
+        "velocity": c.doppler,
+        "doppler_bin": c.bins + middle,
+        "bearing": bearing,
+        "intensity": 10 * np.log10(c.amplitude + 1),
+    }
+    names = list(columns)
+    lines: list[str] = []
+    values = zip(*(column.tolist() for column in columns.values()), strict=True)
+    for number, (nanoseconds, line) in enumerate(zip(stamp_ns.tolist(), values, strict=True)):
+        seconds, rest = divmod(nanoseconds, 10**9)
+        lines += [
+            "header: ",
+            f"  seq: {number}",
+            "  stamp: ",
+            f"    secs: {seconds}",
+            f"    nsecs: {rest:>9}",
+            f'  frame_id: "{ROS_FRAME}"',
+            *(f"{name}: {_number(value)}" for name, value in zip(names, line, strict=True)),
+            "---",
+        ]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
@@ -172,8 +269,13 @@ def _write_csv(
                 writer = csv.writer(file, lineterminator="\n")
                 writer.writerow(head)
                 for line in zip(*values, strict=True):
-                    writer.writerow(f"{v + 0.0:.6g}" if isinstance(v, float) else v for v in line)
+                    writer.writerow(map(_number, line))
             progress.advance(1)
+
+
+def _number(value: float) -> str:
+    """A number in six digits, never -0; an integer as it is."""
+    return f"{value + 0.0:.6g}" if isinstance(value, float) else str(value)
 
 
 _MARS = """\
@@ -181,21 +283,37 @@ _MARS = """\
 import numpy as np
 
 features = np.load("featuremap_train.npy")    # [frame, 8, 8, 5]
-labels = np.load("labels_train.npy")          # [frame, 3 x joints]
+labels = np.load("labels_train.npy")          # [frame, 57]
 activity, sample, frame = np.load("frames_train.npy").T
 ```
 
-The layout of MARS (An and Ogras, 2021): every frame alone, up to 64 points in ascending order of x,
-y, z as 8 x 8 pixels of x (right), y (ahead), z (up of the radar; m), Doppler (m/s, receding
-positive) and intensity; zeros follow the last point. `labels` has the x of the {joints} joints,
-their y, then their z: {names}. Intensity is the firmware's magnitude; with `cloud.chain: best` the
-amplitude over the noise's."""
+The layout of MARS (An and Ogras, 2021): its MARS_model.py reads `featuremap_` and `labels_` of
+`train`, `validate` and `test` in a folder `feature` beside it; it needs frames in all three (keys
+`split.validation` and `split.test`). Every frame stands alone, up to 64 points in ascending order
+of x, y, z as 8 x 8 pixels of x (right), y (ahead), z (up of the radar; m), Doppler (m/s, receding
+positive) and intensity; zeros follow the last point. Intensity is the firmware's magnitude; with
+`cloud.chain: best` the amplitude over the noise's.
+
+`labels` has the x of 19 joints of a Kinect, their y, then their z: {names}. SpineMid is radhar's
+torso, a wrist its hand. Computed of their neighbours, as radhar has 13 joints: SpineShoulder (the
+middle of the shoulders), Neck (a third of the way from there to the head), HipLeft and HipRight
+(beside the hip, 0.23 of the shoulders' distance), FootLeft and FootRight (ahead of the ankle and
+below it, 0.22 and 0.2 of the shank). `frames_` is ours: class, sample and frame of every row."""
 
 _ROS = """\
-`train/CLASS/SAMPLE.csv` has a line a point, as the message RadarScan of TI's ROS driver
-(ti_mmwave_rospkg, SDK 2) has it: frame and its time `stamp_s`; `point_id` in the frame; x (ahead),
-y (left), z (up of the radar) and range, m; velocity, m/s, positive receding; `doppler_bin`, zero
-Doppler in the middle one; bearing, degrees, positive left; intensity, 10 lg(magnitude + 1)."""
+`Train/CLASS/SAMPLE.txt` has a record a point, closed by a line `---`, as `rostopic echo` prints the
+message RadarScan of TI's ROS driver (ti_mmwave_rospkg, SDK 2) and as RadHAR keeps its recordings:
+`header.stamp` (the frame's time after the start); `point_id`, 0 where a frame begins, so that a
+frame without points leaves no record and a sample without any no file; x (ahead), y (left), z (up
+of the radar) and range, m; velocity, m/s, positive receding; `doppler_bin`, zero Doppler in the
+middle one; bearing, degrees, positive left; intensity, 10 lg(magnitude + 1). RadHAR's voxels.py
+reads a folder of classes, such as `Train`, with these in its `sub_dirs`.
+
+```python
+import yaml
+
+points = [*yaml.safe_load_all(open("Train/CLASS/SAMPLE.txt").read())][:-1]  # slow, but short
+```"""
 
 _TI = """\
 `train/CLASS/SAMPLE.csv` has a line a point: its frame, and the seven columns that a point cloud of

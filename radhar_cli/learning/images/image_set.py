@@ -11,7 +11,7 @@ from PIL import Image
 from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
-from radhar_cli.errors import FolderError, did_you_mean
+from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.settings import Kind, Target
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.rounding import half_up
@@ -175,7 +175,8 @@ class ImageSet:
         if split == "all":
             return np.arange(len(self))
         if self.split is None:
-            raise FolderError(f"{self.where}: is not split into train and val; --split all")
+            why = "is not split into train and val; should be read whole, split = all"
+            raise FolderError(f"{self.where}: {why}")
         numbers = np.flatnonzero(self.split == SPLIT_NAMES[split])
         if not numbers.size:
             counts = np.bincount(self.split, minlength=3)
@@ -291,10 +292,10 @@ def check_split_name(name: str) -> str:
     """Name of a split: train, val (or validation, valid), test or all.
 
     Raises:
-        FolderError: there is no such split.
+        ConfigError: there is no such split.
     """
     known = {**SPLIT_NAMES, "all": -1}
     if name not in known:
-        hint = did_you_mean(name, known, "the splits are train, val, test and all")
-        raise FolderError(f"--split {name}: is not a split; {hint}")
+        hint = did_you_mean(name, known, "the splits are train, val (validation), test and all")
+        raise ConfigError(f"split = {name!r}: is not a split; {hint}")
     return name

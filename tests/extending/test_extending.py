@@ -555,7 +555,7 @@ def test_the_commands_know_activities_of_ones_own(
 
 @pytest.fixture
 def own_class(monkeypatch: pytest.MonkeyPatch) -> str:
-    monkeypatch.setattr(activity, "_OWN", {})
+    monkeypatch.setattr(activity, "_ADDED", {})
     return add_activity("swinging_ball", swinging).slug
 
 

@@ -102,11 +102,11 @@ def test_another_seed_is_another_data_set_with_an_identity_of_its_own():
 
 def test_user_defined_classes_are_known_to_workers(monkeypatch):
     """A spawned worker begins without it, and gets the samples as bytes."""
-    monkeypatch.setattr(activity, "_OWN", {})
+    monkeypatch.setattr(activity, "_ADDED", {})
     add_activity("swinging_ball", swinging)
     samples = Samples(config(activities=["walking", "swinging_ball"]))
     here, handed = [samples[0], samples[4]], pickle.dumps(samples)
-    monkeypatch.setattr(activity, "_OWN", {})
+    monkeypatch.setattr(activity, "_ADDED", {})
     there = [pickle.loads(handed)[row] for row in (0, 4)]
     assert sorted(made["label"] for made in there) == [0, 1]
     for one, other in zip(here, there, strict=True):

@@ -503,6 +503,8 @@ def document(key: str, value: float) -> dict[str, Any]:
         "motion": {"model": "human"},
         "classes": {"squats": {"sequence": ["squatting"]}, "trips": {"sequence": ["tripping"]}},
     }
+    if key == "motion.lane_start":  # which acts on lanes alone
+        base["motion"]["lane_m"] = 3.0
     if not section:
         return base | {name: value}
     return base | {section: base.get(section, {}) | {name: value}}

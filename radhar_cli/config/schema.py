@@ -1597,6 +1597,17 @@ class Config(Section):
             return False
         return not names or not names.isdisjoint((activity.label, *activity.movements))
 
+    def users_of(self, key: str) -> tuple[str, ...]:
+        """Movements and activities that use the number of a dotted key under the model of motion.
+
+        Empty where the model does not know it, and where everybody uses it.
+        """
+        names = set(_uses().get(key, {}).get(self.motion.model, ()))
+        if names.issuperset(EXERCISES):
+            names = names.difference(EXERCISES) | {"exercises"}
+        activities = [one.slug for one in ACTIVITIES if one.label in names]
+        return (*(name for name in (*MOVEMENTS, "exercises") if name in names), *activities)
+
     @property
     def has_noise(self) -> bool:
         """Whether a receiver adds noise to the echo."""

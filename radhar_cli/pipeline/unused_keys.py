@@ -1,13 +1,13 @@
 """Keys of a config that have no effect, because of what another key says."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from operator import eq
 from typing import Any
 
 from pydantic import BaseModel
 
-from radhar_cli.activity import ACTIVITIES
+from radhar_cli.activity import DEFAULT, Activity
 from radhar_cli.config.annotations import (
     OnlyMaps,
     annotations,
@@ -23,7 +23,6 @@ from radhar_cli.config.schema import (
     PerActivity,
     RadarConfig,
     WallConfig,
-    class_activities,
 )
 from radhar_cli.scene import FALL, numbers
 
@@ -34,23 +33,32 @@ def unused_keys(config: Config) -> list[str]:
     """Say which keys have no effect although they say something else than if they were left out."""
     fixed = all(isinstance(number, int | float) for _, number in numbers(config))
     same = _drawn_from if fixed else eq
-    usual = _left_out(config)
     without = {"recordings": "the scenes of a config; it needs radhar generate --recordings"}
-    without |= dict([*_of_nobody(config), *_of_other_maps(config), *_without_condition(config)])
-    found = [
+    without |= dict(_of_nobody(config, config.chosen_activities, config.activities))
+    without |= dict([*_of_other_maps(config), *_without_condition(config)])
+    found = _describe_unused(config, without, same)
+    found += _describe_idle_entries(config, config.chosen_activities, config.activities)
+    for number, person in enumerate(config.people, 1):
+        theirs, activities = config.of_person(number), config.activities_of(number)
+        without = dict(_of_nobody(theirs, activities, person.names))
+        unmet = _without_condition(theirs)
+        without |= {key: why for key, why in unmet if key.startswith(_OF_PEOPLE)}
+        lines = _describe_unused(theirs, without, same)
+        lines += _describe_idle_entries(theirs, activities, person.names)
+        found += [f"people.{number - 1}.{line}" for line in lines]
+    return found
+
+
+def _describe_unused(
+    config: Config, without: Mapping[str, str], same: Callable[[Any, Any], bool]
+) -> list[str]:
+    """Describe keys {key: reason} that are not what they are where they are left out."""
+    usual = _left_out(config)
+    return [
         f"{key} has no effect with {why}"
         for key, why in without.items()
         if not same(at(config, key), at(usual, key))
     ]
-    for number in range(1, len(config.people) + 1):
-        theirs = config.of_person(number)
-        usual = _left_out(theirs)
-        found += [
-            f"people.{number - 1}.{key} has no effect with {why}"
-            for key, why in _of_nobody(theirs, config.activities_of(number))
-            if not same(at(theirs, key), at(usual, key))
-        ]
-    return found
 
 
 def _left_out(config: Config) -> Config:
@@ -82,15 +90,65 @@ def _of_other_maps(config: Config) -> Iterator[tuple[str, str]]:
             yield key, entry("maps", config.maps)
 
 
-def _of_nobody(config: Config, activities: Any = None) -> Iterator[tuple[str, str]]:
-    """(key, reason) of numbers of people that no activity uses under the model of motion."""
-    if activities is None:
-        own = class_activities(config.classes) | {a.slug: a for a in config.chosen_activities}
-        activities = ({a.slug: a for a in ACTIVITIES} | own).values()
-    for key in (*(key for key, _ in numbers(config)), FALL):
-        of_people = key.startswith(_OF_PEOPLE)
-        if of_people and not any(config.depends_on(activity, key) for activity in activities):
-            yield key, entry("motion.model", config.motion.model)
+def _of_nobody(
+    config: Config, activities: Sequence[Activity], chosen: str | tuple[str, ...]
+) -> Iterator[tuple[str, str]]:
+    """(key, reason) of numbers of people that no activity uses.
+
+    Args:
+        config: config whose numbers are those of the people.
+        activities: what these people do.
+        chosen: the same as the config says it, for the reason.
+    """
+    for key in _keys_of_people(config):
+        if not any(config.depends_on(one, key) for one in activities):
+            yield key, _why_nobody(config, activities, key, entry("activities", chosen))
+
+
+def _describe_idle_entries(
+    config: Config, activities: Sequence[Activity], chosen: str | tuple[str, ...]
+) -> list[str]:
+    """Describe entries of `per_activity` for activities that are not there, or do not use them.
+
+    Args:
+        config: config whose numbers are those of the people.
+        activities: what these people do.
+        chosen: the same as the config says it, for the reason.
+    """
+    usual, lines = _left_out(config), list[str]()
+    for key in _keys_of_people(config):
+        value, default = at(config, key), at(usual, key)
+        users = {one.slug for one in activities if config.depends_on(one, key)}
+        if not users or not isinstance(value, PerActivity):
+            continue
+        others = default.per_activity if isinstance(default, PerActivity) else {DEFAULT: default}
+        idle = [
+            slug
+            for slug, number in value.per_activity.items()
+            if slug not in (*users, DEFAULT) and number != others.get(slug, others.get(DEFAULT))
+        ]
+        names = idle[0] if len(idle) == 1 else f"{{{', '.join(idle)}}}"
+        if idle:
+            doing = entry("activities", chosen)
+            line = f"{key}.per_activity.{names} has no effect with {doing}: nobody uses it"
+            lines.append(line)
+    return lines
+
+
+def _keys_of_people(config: Config) -> Iterator[str]:
+    keys = (*(key for key, _ in numbers(config)), FALL)
+    return (key for key in keys if key.startswith(_OF_PEOPLE))
+
+
+def _why_nobody(config: Config, activities: Sequence[Activity], key: str, doing: str) -> str:
+    """Why no activity uses a number of people, and which would."""
+    if all(one.motion is not None or config.files_of(one) is not None for one in activities):
+        return f"{doing}, whose motion no model makes"
+    users = config.users_of(key)
+    if not users:
+        return entry("motion.model", config.motion.model)
+    names = " or ".join([", ".join(users[:-1]), users[-1]] if users[1:] else users)
+    return f"{doing}; it needs {names}"
 
 
 def _drawn_from(value: Any, default: Any) -> bool:

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import IntFlag
-from math import log10
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,7 +22,6 @@ from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.segments import Landmarks
 from radhar_cli.pipeline.motion_paths import OfMotion, point_delay, through_wall_delay
-from radhar_cli.pipeline.noise import noise_law_of
 from radhar_cli.pipeline.physics import (
     antennas_of,
     body_of,
@@ -35,10 +33,9 @@ from radhar_cli.pipeline.physics import (
     ways_of,
 )
 from radhar_cli.pipeline.unused_keys import unused_keys
-from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
-from radhar_cli.radar.transmission import transmission
+from radhar_cli.pipeline.visibility import noise_alone
+from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.receiver.noise_law import Silent, Snr, Thermal
 from radhar_cli.scene import (
     MAX_PLACES,
     Person,
@@ -50,7 +47,6 @@ from radhar_cli.scene import (
 )
 
 MIN_DISTANCE_M = 0.05
-LEAST_SNR_DB = -80.0  # of a raw sample; compression and windows gain less than that
 BODY_RADIUS_M = 0.2  # of the upper body about the torso, horizontally
 BEHIND_M = 1.0  # this far behind the radar nobody is meant to be
 HEAD_M = 0.2  # from the highest joint to the top of the head
@@ -503,7 +499,7 @@ def _cure(person: Person, check: SceneCheck) -> str:
 
 
 def config_warnings(config: Config) -> list[str]:
-    """Say which keys and lines of a .cfg have no effect, and which interference lines alias."""
+    """Say which keys and lines have no effect or alias, and whether maps are noise alone."""
     lines = list[str]()
     if config.radar.cfg is not None:
         header = config.radar.header
@@ -517,7 +513,9 @@ def config_warnings(config: Config) -> list[str]:
                 f"(radar.cfg): it is {window_s:g} s"
             )
         lines += [f"radar.cfg: {one} {off}" for one in header.not_simulated]
-    return unused_keys(config) + tone_warnings(config) + lines + _buried(config) + _folded(config)
+    return (
+        unused_keys(config) + tone_warnings(config) + lines + noise_alone(config) + _folded(config)
+    )
 
 
 def _says_window(config: Config) -> bool:
@@ -545,60 +543,6 @@ def _folded(config: Config) -> list[str]:
         f"echoes by way of room.faces come from up to {farthest:.3g} m, beyond the range half-band "
         f"of {reach:.3g} m: they are missing from maps, or alias (radar.adc_rate_hz, room.order)"
     ]
-
-
-def _buried(config: Config) -> list[str]:
-    """Say that nothing but noise is left of people behind an opaque wall, or far from the beam.
-
-    Judged by one scatterer of 1 m^2 where the first activity's people are in the middle of all
-    draws, behind the middle of the wall.
-    """
-    law, walled = noise_law_of(config), config.wall is not None
-    aimed = config.radar.beam is not None or config.radar.cfg is not None
-    if isinstance(law, Silent) or not (walled or aimed or isinstance(law, Thermal)):
-        return []
-    if law.by_signal and config.snr_reference != "free_space":
-        return []
-    scene = nominal_scene(config, config.chosen_activities[0])
-    antennas, motion, w = antennas_of(scene), scene.people[0].motion, waveform_of(scene)
-    p = np.array([motion.range_m or 0.0, motion.cross_range_m or 0.0, 1.0])[:, None, None]
-    left = antennas.field(p)
-    pattern = 1.0 if left is None else float(left.max())
-    taken = {"the wall": _wall_loss_db(scene), "the beam": -20 * log10(max(pattern, 1e-300))}
-    if isinstance(law, Snr):
-        snr, given = law.decibels, f"snr_db = {law.decibels:g} in free space"
-    else:
-        legs = leg(p, antennas.tx), leg(p, antennas.rx)
-        echo = amplitude(*legs, np.ones((1, 1)), antennas.gain, w.wavelength)
-        snr = 20 * log10(float(echo[0, 0]) / law.sigma(0.0, w.sample_rate))
-        given = f"thermal noise, in which 1 m^2 there has {snr:.0f} dB in free space,"
-    least = LEAST_SNR_DB
-    if config.radar.cfg is not None:
-        header = config.radar.header
-        pulses = header.loops * len(header.order) * len(header.receivers)
-        least = -10 * log10(header.samples * pulses)
-    if snr - sum(taken.values()) > least:
-        return []
-    causes = [f"{what} takes {loss:.0f} dB of the echo" for what, loss in taken.items() if loss > 3]
-    keys = ["wall.loss_tangent", "wall.size_m"] if taken["the wall"] > 3 else []
-    if taken["the beam"] > 3:
-        keys += ["radar.beam"] if config.radar.cfg is None else ["radar.yaw_deg", "radar.tilt_deg"]
-    keys += ["motion.range_m"] if not keys else []
-    cure = "; or snr_reference: received" if law.by_signal else ", receiver.noise_figure_db"
-    both = f"{' and '.join(causes)}, both ways: " if causes else ""
-    return [f"{both}at {given} maps show noise alone ({', '.join(keys)}{cure})"]
-
-
-def _wall_loss_db(scene: Scene) -> float:
-    """What the wall of a scene takes of an echo from behind its middle, both ways, dB."""
-    wall, antennas = wall_of(scene), antennas_of(scene)
-    if wall is None:
-        return 0.0
-    behind = np.array(wall.center)[:, None, None] + [[[wall.size[0]]], [[0.0]], [[0.0]]]
-    fc = waveform_of(scene).fc
-    ways = [transmission(behind, one, wall, fc) for one in (antennas.tx, antennas.rx)]
-    left = float(np.prod([way.factor[0, 0] for way in ways]))
-    return -20 * log10(max(left, 1e-300))
 
 
 def scene_warnings(scene: Scene) -> list[str]:

@@ -364,7 +364,8 @@ def test_no_warning_for_keys_with_effect() -> None:
 
 
 def test_no_warning_for_scenes_inside_the_model() -> None:
-    assert by_kind(Config(**FREE_SPACE, activities=("S1", "S5"), samples_per_class=3)) == {}
+    motion = {"model": "paper", "range_m": 2, "angle_deg": 0}
+    assert by_kind(Config(motion=motion, activities=("S1", "S5"), samples_per_class=3)) == {}
 
 
 def near_the_wall(on_invalid: str) -> Config:

@@ -396,3 +396,10 @@ def test_a_scene_is_the_same_for_another_radar_and_beside_other_classes(tmp_path
     assert len(set(alone.values())) == len(alone) == 4
     beside = fingerprints(tmp_path / "beside", own, sits, "radar.bandwidth_hz=5e8", "snr_db=3")
     assert {name: beside[name] for name in alone} == alone
+
+
+def test_a_scene_is_the_same_for_a_radar_that_takes_the_name_of_a_column(tmp_path):
+    grabbing = ("activities=[grabbing]", "samples_per_class=2", "maps=[stft]")
+    sfcw = ("radar.waveform=sfcw", "radar.steps=200", "radar.dwell_s=2e-6")
+    by_fmcw = fingerprints(tmp_path / "fmcw", *grabbing)
+    assert fingerprints(tmp_path / "sfcw", *grabbing, *sfcw) == by_fmcw

@@ -127,17 +127,18 @@ def _persons(data: Dataset) -> tuple[str, ...] | None:
 def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
     """A fingerprint of who moved and how, in SI units; radar, wall and noise do not enter.
 
-    Numbers enter with their names where they apply, so that a scene has the same fingerprint in a
-    data set that has further classes or people in other scenes.
+    Numbers enter with their dotted keys where they apply, so that a scene has the same fingerprint
+    in a data set that has further classes or people in other scenes, or another radar, whose keys
+    may change names of columns.
     """
     fields = [field for field in data.fields if field.key.startswith(_WHO_AND_HOW)]
-    fields.sort(key=lambda field: field.name)
+    fields.sort(key=lambda field: field.key)
     columns = [data.scene[field.name][:] for field in fields]
     table = np.stack(columns, axis=1) if columns else np.zeros((len(slugs), 0))
     known = ~np.isnan(table)
     patterns, pattern = np.unique(known, axis=0, return_inverse=True)
     names = [
-        " ".join(np.array([f.name for f in fields])[is_known].tolist()) for is_known in patterns
+        " ".join(np.array([f.key for f in fields])[is_known].tolist()) for is_known in patterns
     ]
     fingerprints = []
     for row, slug in enumerate(slugs):

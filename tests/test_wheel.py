@@ -11,7 +11,7 @@ import pytest
 from command_line import ROOT
 from small import small_config
 
-PACKAGE = ROOT / "radhar_cli"
+PACKAGE, CONFIGS = ROOT / "radhar_cli", ROOT / "configs"
 
 
 def run(*command: object, folder: Path, **more: str) -> str:
@@ -30,12 +30,14 @@ def run(*command: object, folder: Path, **more: str) -> str:
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Built of what git would give, as a folder of an earlier build could lend it old modules."""
     source, out = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("wheel")
-    shutil.copytree(PACKAGE, source / PACKAGE.name, ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in (PACKAGE, CONFIGS):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(folder, source / folder.name, symlinks=True, ignore=ignored)
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, source)
-    build = (sys.executable, "-m", "build", "--no-isolation", "--wheel", "-o", out, source)
-    run(*build, folder=source)
-    (built,) = out.iterdir()
+    build = (sys.executable, "-m", "build", "--no-isolation", "-o", out, source)
+    run(*build, folder=source)  # the archive of sources first, the wheel out of it
+    (built,) = out.glob("*.whl")
     return built
 
 
@@ -46,8 +48,18 @@ def test_the_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
         about = file.read(metadata).decode()
         points = file.read(metadata.replace("METADATA", "entry_points.txt")).decode()
         licences = [name for name in file.namelist() if name.endswith("licenses/LICENSE")]
-    found = (path for suffix in ("py", "cfg", "html") for path in PACKAGE.rglob(f"*.{suffix}"))
+    found = (
+        path
+        for suffix in ("py", "cfg", "html")
+        for path in PACKAGE.rglob(f"*.{suffix}")
+        if "presets" not in path.parts
+    )
     ours = {str(path.relative_to(ROOT)) for path in found}
+    ours |= {
+        f"radhar_cli/config/presets/{path.relative_to(CONFIGS)}"
+        for path in CONFIGS.rglob("*")
+        if path.is_file()
+    }
     assert names == ours | {"radhar_cli/py.typed", "radhar_cli/dataset/viridis.rgb"}
     assert "radhar = radhar_cli.cli:main" in points
     assert licences
@@ -67,6 +79,10 @@ def test_it_works_without_the_repository(wheel: Path, tmp_path: Path) -> None:
     more = {"folder": tmp_path, "PYTHONPATH": str(tmp_path / "installed")}
     run(*radhar, "config", "init", "mine.yaml", **more)
     assert "prf_hz: 10000.0" in run(*radhar, "config", "show", "mine.yaml", **more)
+    run(*radhar, "config", "init", "board.yaml", "--preset", "measured/radhar_1443", **more)
+    assert "frameCfg 0 2 16 0 33.333 1 0" in run(*radhar, "config", "show", "board.yaml", **more)
+    run(*radhar, "config", "init", "room.yaml", "--preset", "human/room", **more)
+    assert (tmp_path / "room.yaml").read_bytes() == (CONFIGS / "human/room.yaml").read_bytes()
 
 
 @pytest.mark.slow

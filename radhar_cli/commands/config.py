@@ -45,27 +45,46 @@ def init(
     minimal: Annotated[
         bool, typer.Option("--minimal", help="About 15 lines instead of every key.")
     ] = False,
+    preset: Annotated[
+        str | None,
+        typer.Option(
+            "--preset",
+            metavar="NAME",
+            help="A config of radhar's folder configs: quickstart, human/room, train/paper, ...; "
+            "a wrong name lists them all.",
+        ),
+    ] = None,
 ) -> None:
-    """Write a config to start from: all keys, a minimum, or a TI board's.
+    """Write a config to start from: all keys, a minimum, a TI board's, or one that radhar ships.
+
+    What documents call configs/human/room.yaml is `--preset human/room` where there is no clone.
 
     Example:
 
       radhar config init mine.yaml --minimal
+
+      radhar config init room.yaml --preset human/room
     """
-    from radhar_cli.config.starting_file import MINIMAL, as_commented_yaml, of_board
+    from radhar_cli.config.starting_file import MINIMAL, as_commented_yaml, of_board, of_preset
     from radhar_cli.errors import FolderError, RadharError
     from radhar_cli.replacing import write_text
 
     if out.exists() or out.is_symlink() or not out.parent.is_dir():
         why = "exists already" if out.parent.is_dir() else "there is no such folder"
         raise FolderError(f"{out}: {why}; should be a new file")
-    if (radar is not None) + train + minimal > 1:
-        raise RadharError("--radar, --train and --minimal: should be only one of them")
+    if (radar is not None) + train + minimal + (preset is not None) > 1:
+        raise RadharError("--radar, --train, --minimal and --preset: should be only one of them")
     if radar is not None:
         write_text(out, of_board(radar, out.parent))
         report(file=out)
         tell(f"{out}: the board of {radar}; radar.device should be the one that runs it")
         tell(f"  then        radhar simulate {out} --activity punching -o OUT")
+        return
+    if preset is not None:
+        write_text(out, of_preset(preset))
+        report(file=out)
+        train = preset.removeprefix("configs/").startswith("train/")
+        tell(f"  then        radhar {'train DATA --config' if train else 'generate'} {out} -o OUT")
         return
     write_text(out, MINIMAL if minimal else as_commented_yaml(_kind(train)))
     report(file=out)

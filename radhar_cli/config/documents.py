@@ -18,7 +18,13 @@ Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
 BASE = "base"
 SUFFIXES = (".yaml", ".yml", ".json")
 RADARS = {path.stem: path for path in sorted(Path(__file__).with_name("radars").glob("*.cfg"))}
+SHIPPED = Path(__file__).with_name("presets")  # in a clone a link to configs/, in a wheel its files
+PRESETS = {
+    path.relative_to(SHIPPED).with_suffix("").as_posix(): path
+    for path in sorted(SHIPPED.rglob("*.yaml"))
+}
 OTHER_NAMES = {"split.val": "split.validation"}  # as folders and options have them
+_SHIPPED_PATHS = {f"configs/{name}.yaml": name for name in PRESETS}  # as documents name them
 MAX_CHAIN = 8  # files in a chain of bases
 _ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole
 
@@ -32,6 +38,11 @@ def read_document(path: Path) -> tuple[Document, Places]:
     Raises:
         ConfigError: the file cannot be read, is not YAML, or holds no mapping.
     """
+    if path.as_posix() in _SHIPPED_PATHS and not path.exists():
+        name = _SHIPPED_PATHS[path.as_posix()]
+        raise ConfigError(
+            f"{path}: no such file; `radhar config init FILE --preset {name}` writes that config"
+        )
     document, lines = parse_yaml(text_of(path, MAX_TEXT, ConfigError), str(path))
     document = {} if document is None else document
     if not isinstance(document, dict):

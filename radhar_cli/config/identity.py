@@ -20,11 +20,29 @@ def as_yaml(config: Section) -> str:
 
 
 def yaml_text(document: dict[str, Any]) -> str:
-    """Return plain values as YAML, the innermost lists and mappings in a line."""
+    """Return plain values as YAML, the innermost lists and mappings in a line.
+
+    A text of several lines, such as that of a .cfg, is a block.
+    """
     import yaml
 
-    return yaml.safe_dump(
-        document, sort_keys=False, default_flow_style=None, width=100, allow_unicode=True
+    class Dumper(yaml.SafeDumper):
+        """Dumper with a representation of texts of its own."""
+
+    def represent_text(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+        style = "|" if "\n" in text else None
+        if not {"\x85", "\u2028", "\u2029"}.isdisjoint(text):
+            style = '"'  # other styles would fold these line breaks
+        return dumper.represent_scalar("tag:yaml.org,2002:str", text, style=style)
+
+    Dumper.add_representer(str, represent_text)
+    return yaml.dump(
+        document,
+        Dumper=Dumper,
+        sort_keys=False,
+        default_flow_style=None,
+        width=100,
+        allow_unicode=True,
     )
 
 

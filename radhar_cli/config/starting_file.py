@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from contextlib import suppress
 from decimal import Decimal
+from itertools import takewhile
 from pathlib import Path
 from textwrap import wrap
 from typing import Any, Literal, get_args, get_origin
@@ -14,9 +15,18 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import ValidationError
 
 from radhar_cli.config.annotations import section
-from radhar_cli.config.documents import RADARS, cfg_text
+from radhar_cli.config.documents import (
+    BASE,
+    PRESETS,
+    RADARS,
+    cfg_text,
+    read_on_bases,
+)
+from radhar_cli.config.identity import yaml_text
 from radhar_cli.config.schema import Config, Section, possible_maps
 from radhar_cli.config.ti_header import board_header
+from radhar_cli.config.yaml_reader import parse_yaml
+from radhar_cli.errors import ConfigError
 from radhar_cli.light import SPEED_OF_LIGHT
 
 WIDTH = 100
@@ -148,6 +158,33 @@ body: {{scatterers: surfaces}}
 cloud: {{chain: board}}  # as the firmware makes points; best: fewer, finer ones
 maps: [{maps}]
 """
+
+
+def of_preset(name: str) -> str:
+    """Write the text of a config that comes with radhar, one of configs/.
+
+    A config that needs no other file is written as it is. Otherwise its base is merged into it, the
+    .cfg of its board stands in it as text, and of its comments the first remain.
+
+    Args:
+        name: name in PRESETS, or the path of that config in a clone, `configs/human/room.yaml`.
+
+    Raises:
+        ConfigError: there is no such config; names all of them.
+    """
+    short = name.removeprefix("configs/").removesuffix(".yaml")
+    if short not in PRESETS:
+        raise ConfigError(
+            f"--preset {json.dumps(name)[:120]}: should be one of {', '.join(PRESETS)}"
+        )
+    path = PRESETS[short]
+    text = path.read_text(encoding="utf-8")
+    as_written, _ = parse_yaml(text, str(path))
+    radar = as_written.get("radar") or {}
+    if BASE not in as_written and radar.get("cfg", "").lower() in ("", *RADARS):
+        return text
+    head = "".join(takewhile(lambda line: line.startswith("#"), text.splitlines(keepends=True)))
+    return f"{head}\n{yaml_text(read_on_bases(path, {})[0])}"
 
 
 def _maps_of_board(cfg: str, device: str, period_s: float) -> tuple[str, ...]:

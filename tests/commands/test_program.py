@@ -1,12 +1,22 @@
 """The program as a user meets it: end to end in a temporary folder."""
 
 import json
+import re
+import shlex
 
 import h5py
 import pytest
 import yaml
 from command_line import ROOT, ok, process, radhar
 from small import small_config
+from typer.main import get_command
+
+from radhar_cli.cli import program
+from radhar_cli.config import Config, load_config
+from radhar_cli.config.reading import load_section
+from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.split import split_rows
+from radhar_cli.learning.settings import TrainConfig
 
 TRAINING = sorted((ROOT / "configs/train").glob("*.yaml"))
 CONFIGS = sorted(set((ROOT / "configs").rglob("*.yaml")) - set(TRAINING))
@@ -80,13 +90,43 @@ def test_a_group_alone_shows_its_help(group):
     assert done.stderr.startswith("Usage: radhar")
 
 
-def test_every_help_has_an_example():
-    for command in (
-        *("generate", "simulate", "verify", "preview", "inspect", "config show"),
-        *("train", "eval", "export", "predict", "tradeoff", "import", "process", "fit"),
-    ):
-        done = ok(*command.split(), "--help")
-        assert "Example" in done.stdout, command
+def every_command(command, *words):
+    """(words, command) of a command and of all below it."""
+    yield words, command
+    for name, inner in getattr(command, "commands", {}).items():
+        yield from every_command(inner, *words, name)
+
+
+def images_of_the_quickstart():
+    """Paths of the PNGs that `make demo` writes."""
+    config = load_config(ROOT / "configs/quickstart.yaml")
+    rows = Rows.of(config)
+    for row, split in enumerate(split_rows(config)):
+        for name in config.maps:
+            yield f"datasets/quickstart/{rows.png_path(name, split, row)}"
+
+
+IMAGES = {*images_of_the_quickstart()}
+HELPS = {" ".join(words): known for words, known in every_command(get_command(program())) if words}
+
+
+@pytest.mark.parametrize("name", HELPS)
+def test_the_examples_of_a_help_can_be_run(name):
+    """Their options and arguments are those of the command; configs exist and take their --set."""
+    examples = re.findall(r"^ +radhar (.*(?:\n +\S.*)*)$", HELPS[name].help, re.MULTILINE)
+    assert examples, "has no example"
+    for words in map(shlex.split, examples):
+        assert " ".join(words).startswith(f"{name} ")
+        known, arguments = get_command(program()), words
+        while hasattr(known, "commands"):
+            first, *arguments = arguments
+            known = known.commands[first]
+        context = known.make_context(first, arguments)
+        sets = context.params.get("set_") or []
+        for path in (ROOT / word for word in words if word.startswith("configs/")):
+            load_section(TrainConfig if path in TRAINING else Config, path, sets)
+        images = {word for word in words if word.startswith("datasets/") and word.endswith(".png")}
+        assert images <= IMAGES
 
 
 @pytest.mark.parametrize(("limit", "file"), [(6000, ""), (40_000, "dataset.h5: ")])

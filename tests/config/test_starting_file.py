@@ -7,13 +7,13 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from command_line import ok, radhar
+from command_line import ROOT, ok, radhar
 
 from radhar_cli.config import Config, load_config
-from radhar_cli.config.documents import RADARS
+from radhar_cli.config.documents import PRESETS, RADARS
 from radhar_cli.config.reading import load_section
 from radhar_cli.config.schema import Section, WallConfig
-from radhar_cli.config.starting_file import WIDTH, as_commented_yaml, of_board
+from radhar_cli.config.starting_file import WIDTH, as_commented_yaml, of_board, of_preset
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.settings import TrainConfig
@@ -125,3 +125,49 @@ def test_the_minimal_file_is_short_and_can_be_built_at_once(tmp_path: Path) -> N
 def test_an_unknown_radar_is_a_line_that_names_the_known_ones(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r'"iwr6843": should be .* or one of iwr1443boost, .*isk'):
         of_board("iwr6843", tmp_path)
+
+
+def test_every_shipped_config_is_a_preset() -> None:
+    shipped = (ROOT / "configs").rglob("*.yaml")
+    assert {str(path.relative_to(ROOT / "configs")) for path in shipped} == {
+        f"{name}.yaml" for name in PRESETS
+    }
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_a_written_preset_needs_no_other_file(tmp_path: Path, name: str) -> None:
+    """It says in a folder of its own what the shipped config says in its own."""
+    path, kind = tmp_path / "mine.yaml", TrainConfig if name.startswith("train/") else Config
+    said = ok("config", "init", path, "--preset", name).stdout
+    assert load_section(kind, path) == load_section(kind, ROOT / f"configs/{name}.yaml")
+    assert path.read_text().startswith("# ")
+    then = f"train DATA --config {path}" if kind is TrainConfig else f"generate {path}"
+    assert f"radhar {then} -o OUT" in said
+
+
+def test_a_preset_is_named_as_documents_name_its_file() -> None:
+    """One that needs no other file keeps its comments."""
+    text = (ROOT / "configs/human/older.yaml").read_text()
+    assert of_preset("configs/human/older.yaml") == of_preset("human/older") == text
+
+
+@pytest.mark.parametrize("name", ["human/rom", "../configs/smoke", "/etc/passwd", "", "human"])
+def test_an_unknown_preset_is_a_line_that_names_the_known_ones(tmp_path: Path, name: str) -> None:
+    done = radhar("config", "init", tmp_path / "mine.yaml", "--preset", name)
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert f'--preset "{name}": should be one of boards/iwr1443, human/exercises' in line
+    assert all(name in line for name in PRESETS)
+    assert not (tmp_path / "mine.yaml").exists()
+
+
+def test_who_has_no_clone_is_told_of_the_preset(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("configs/human/room.yaml", "configs/room.yaml", "room.yaml"):
+        error = radhar("generate", name, "-o", "set").stderr
+        assert f"{name}: no such file" in error
+        assert ("`radhar config init FILE --preset human/room` writes" in error) == (
+            name == "configs/human/room.yaml"
+        )

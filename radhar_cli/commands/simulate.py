@@ -152,9 +152,10 @@ def _print_summary(simulation: "Simulation", written: list[Path]) -> None:
     tell(f"{activity.label} {activity.slug}: synthesised in {elapsed_s:.2f} s")
     file = describe(simulation)["motion_file"]
     if file is not None:
+        loop = f", in a loop that starts at {file['start_s']:.2f} s" if file["loops"] else ""
         tell(
             f"  motion: {file['path']}, {file['begin_s']:.2f} to {file['end_s']:.2f} s of its "
-            f"{file['lasts_s']:.2f} s{', in a loop' if file['loops'] else ''}; {file['up']} is up; "
+            f"{file['lasts_s']:.2f} s{loop}; {file['up']} is up; "
             f"leg length of a person of {file['stature_m']:.2f} m"
         )
     report(

@@ -126,11 +126,13 @@ def _motion_file(motion: Motion) -> dict[str, Any] | None:
     """Describe which part of which file was the motion; None where a model made it."""
     if not isinstance(motion, FileMotion):
         return None
+    cycle = motion.cycle
     return {
         "path": motion.clip.where,
-        "begin_s": motion.begin,
+        "start_s": motion.begin,  # second of the file at the start of the recording
+        "begin_s": motion.begin if cycle is None else min(motion.begin, cycle.begin),
         "end_s": motion.end_used,
-        "loops": motion.cycle is not None,
+        "loops": cycle is not None,
         "up": motion.clip.up,
         "lasts_s": motion.clip.seconds,
         "stature_m": motion.clip.stature,

@@ -1,5 +1,7 @@
 """`radhar motion` and `radhar simulate --motion`: our motions out, anyone's in."""
 
+import json
+
 import h5py
 import numpy as np
 import pytest
@@ -96,3 +98,16 @@ def test_options_say_what_a_motion_file_does_not(tmp_path):
     assert (alone.returncode, alone.stderr) == (
         *(2, "radhar: --up y: should go with --motion, whose file it reads\n"),
     )
+
+
+def test_simulate_says_which_part_of_a_file_is_repeated_and_where_it_starts(tmp_path):
+    write_npz(tmp_path / "wave.npz", frames("punching", 2.0, 60.0), 60.0, [*WANTED])
+    (tmp_path / "x.yaml").write_text(
+        "duration_s: 6\nradar: {prf_hz: 500}\nmaps: [stft]\nmotion: {range_m: 6}\n"
+        "classes: {wave: {files: [wave.npz], past_end: loop, start: 1}}\nactivities: [wave]\n"
+    )
+    done = ok("simulate", tmp_path / "x.yaml", "--no-figures", "-o", tmp_path / "out")
+    file = json.loads((tmp_path / "out/scene.json").read_text())["motion_file"]
+    assert file["loops"]
+    assert 0 <= file["begin_s"] < file["start_s"] < file["end_s"] <= file["lasts_s"]
+    assert f"in a loop that starts at {file['start_s']:.2f} s" in done.stdout

@@ -34,6 +34,7 @@ from radhar_cli.dataset.split import split_rows, split_warnings
 from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.dataset.workers import parent_pid, run_tasks
 from radhar_cli.errors import FolderError, UnfinishedError
+from radhar_cli.pipeline.products import plan_images
 from radhar_cli.progress import Progress
 
 # Samples a batch: few at first; of many rows more, as each shard costs some ms of the assembly, but
@@ -80,9 +81,12 @@ def build(
         part: make only the rows of this part, in its folder below `folder`.
 
     Raises:
+        ConfigError: `output.products` names what the radar does not make, or no array.
         FolderError: the folder holds other files or another data set, or another run writes there.
         UnfinishedError: the disk is full or cannot be written; the same command resumes.
     """
+    if isinstance(config, Config):
+        plan_images(config)  # refuses products before scenes are checked
     folder, count = folder.absolute(), len(Rows.of(config))
     if part is not None:
         if part.of > count:

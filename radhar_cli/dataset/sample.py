@@ -103,7 +103,9 @@ def synthesise(scene: Scene, plan: Plan, config: Config) -> Synthesised:
     if isinstance(accuracy, Accuracy) and isfinite(accuracy.error_db):
         error_db = accuracy.error_db
     deepest = scene.config.image.dynamic_range_db
-    products = {name: _array(recording[name], name, deepest) for name in scene.config.stored}
+    products = {
+        name: storable_array(recording[name], name, deepest) for name in scene.config.stored
+    }
     return Synthesised(
         images, error_db, fell_back, labels, slow_time, products, labels_of(scene, config)
     )
@@ -142,7 +144,7 @@ def labels_of(scene: Scene, config: Config) -> dict[str, NDArray[Any]]:
     return {LABELS: present, PERSON_LABEL: person}
 
 
-def _array(value: Any, name: str, dynamic_range_db: float) -> NDArray[Any]:
+def storable_array(value: Any, name: str, dynamic_range_db: float) -> NDArray[Any]:
     """Array of a product as it is stored: the power of a map, the samples of a signal, or an array.
 
     Frame maps are stored as grey levels, in decibels below the peak of the sample.

@@ -96,38 +96,85 @@ def board_products(c: Config) -> Iterator[Product]:
         yield Product("signal_power", ("echo",), lambda echo: echo.power, "P_s, for snr_db")
     yield from noise_products(c)
     needs = ("echo", "noise", "board", "scene")
-    yield Product("cube", needs, _add_impairments, "raw samples with noise and channel errors")
+    yield Product(
+        "cube", needs, _add_impairments, "raw samples with noise and channel errors", is_array=True
+    )
     make = partial(range_doppler, remove_mean=still)
-    yield Product("range_doppler", ("cube", "board"), make, "range-Doppler maps of the frames")
+    yield Product(
+        "range_doppler", ("cube", "board"), make, "range-Doppler maps of the frames", is_array=True
+    )
     for axis, name in enumerate(("range_azimuth", "range_elevation")):
         make = partial(range_angle, remove_mean=still, axis=axis)
-        yield Product(name, ("cube", "board"), make, f"{name.replace('_', '-')} maps of the frames")
+        yield Product(
+            name,
+            ("cube", "board"),
+            make,
+            f"{name.replace('_', '-')} maps of the frames",
+            is_array=True,
+        )
     chain = f"points of the frames, chain: {c.cloud.chain}"
     yield Product("cloud", ("cube", "board"), partial(_cloud, c), chain)
-    yield Product("points", ("cloud",), lambda cloud: cloud.points, "of all frames")
-    yield Product("points_start", ("cloud",), lambda cloud: cloud.start, "first of each frame")
+    yield Product("points", ("cloud",), lambda cloud: cloud.points, "of all frames", is_array=True)
+    yield Product(
+        "points_start", ("cloud",), lambda cloud: cloud.start, "first of each frame", is_array=True
+    )
     yield Product(
         "skeletons", ("scene", "motions", "board"), skeletons_of, "joints in each frame's middle"
     )
-    yield Product("skeleton", ("skeletons",), lambda s: s.positions, "positions of joints")
-    yield Product("skeleton_velocity", ("skeletons",), lambda s: s.velocities, "their velocities")
+    yield Product(
+        "skeleton", ("skeletons",), lambda s: s.positions, "positions of joints", is_array=True
+    )
+    yield Product(
+        "skeleton_velocity",
+        ("skeletons",),
+        lambda s: s.velocities,
+        "their velocities",
+        is_array=True,
+    )
     whose = ("cloud", "skeletons", "board", "scene")
     yield Product("owners", whose, owners_of, "nearest joint of each point, or its image")
-    yield Product("points_person", ("owners",), lambda o: o.person, "whose each point is")
-    yield Product("points_kind", ("owners",), lambda o: o.kind, "by way of which faces")
+    yield Product(
+        "points_person", ("owners",), lambda o: o.person, "whose each point is", is_array=True
+    )
+    yield Product(
+        "points_kind", ("owners",), lambda o: o.kind, "by way of which faces", is_array=True
+    )
     yield Product("canceller", (), lambda: MeanRemoval() if still else NO_CANCELLER, does)
-    yield Product("slow_time", ("board_bins",), lambda x: x.summed(), "sum over range, uncancelled")
-    yield Product("board_bins", ("cube", "board"), range_bins, "range bins of every channel")
+    yield Product(
+        "slow_time",
+        ("board_bins",),
+        lambda x: x.summed(),
+        "sum over range, uncancelled",
+        is_array=True,
+    )
+    yield Product(
+        "board_bins", ("cube", "board"), range_bins, "range bins of every channel", is_array=True
+    )
     yield Product(
         "range_signals",
         ("cube", "board", "canceller"),
         range_bins,
         "its range bins after the canceller",
+        is_array=True,
     )
-    yield Product("signal", ("range_signals",), lambda x: x.summed(), "their coherent sum")
+    yield Product(
+        "signal", ("range_signals",), lambda x: x.summed(), "their coherent sum", is_array=True
+    )
     width = c.image.size_px[1]
-    yield Product("range_profiles", ("range_signals",), lambda x: x.columns(width), "some pulses")
-    yield Product("torso_track", ("motions", "board", "wall"), torso_track, "delay of the torso")
+    yield Product(
+        "range_profiles",
+        ("range_signals",),
+        lambda x: x.columns(width),
+        "some pulses",
+        is_array=True,
+    )
+    yield Product(
+        "torso_track",
+        ("motions", "board", "wall"),
+        torso_track,
+        "delay of the torso",
+        is_array=True,
+    )
     if c.processing.range_sum == "gated":
         of_gate = ("range_signals", "frames", "torso_track")
         yield Product(

@@ -21,12 +21,15 @@ class Product:
         needs: names of the products that it is made from.
         make: makes it; called with those products, in that order.
         does: one line for people.
+        is_array: whether it is an array, or a map or signal that holds one, so that
+            `output.products` can store it. One of a user's own is checked when it is made.
     """
 
     name: str
     needs: tuple[str, ...]
     make: Callable[..., Any]
     does: str
+    is_array: bool = False
 
 
 @dataclass(frozen=True)

@@ -93,7 +93,8 @@ def plan_images(config: Config) -> Plan:
     """Plan the products of a data set: the image of every map, by signal, and what it stores.
 
     Raises:
-        ConfigError: `output.products` names one that the radar or the engine does not make.
+        ConfigError: `output.products` names one that the radar or the engine does not make, or
+            that is no array.
     """
     own = {product.name for product in own_products()}
     of_signals = [name for name in config.maps if name in MAP_NAMES and name not in own]
@@ -107,10 +108,12 @@ def plan_images(config: Config) -> Plan:
     if config.output.column_labels:
         asked.append("motions")
     table = products(config)
-    absent = [name for name in config.output.products if name not in table]
-    if absent:
-        right = "should be products that this radar and engine make, such as signal"
-        raise ConfigError(f"output.products = {json.dumps(absent)}: {right}")
+    storable = own | {name for name, product in table.items() if product.is_array}
+    wrong = [name for name in config.output.products if name not in storable]
+    if wrong:
+        names = ", ".join(name for name in table if name in storable)
+        right = f"should be arrays that this radar and engine make: {names}"
+        raise ConfigError(f"output.products = {json.dumps(wrong)}: {right}")
     return plan(table, asked, ["scene"])
 
 
@@ -136,7 +139,9 @@ def products(config: Config) -> dict[str, Product]:
     table = {row.name: row for row in rows}
     if config.radar.output == "real" and config.radar.waveform == "cw":
         table["signal_iq"] = replace(table["signal"], name="signal_iq")
-        table["signal"] = Product("signal", ("signal_iq",), in_phase, "in-phase channel")
+        table["signal"] = Product(
+            "signal", ("signal_iq",), in_phase, "in-phase channel", is_array=True
+        )
     return table
 
 
@@ -183,7 +188,9 @@ def _physics(c: Config) -> Iterator[Product]:
     yield Product("paths", ("scene", *seen, *room), lambda *g: sum_of_paths(sources_of(*g)), parts)
     if snr_of_other_paths(c):
         yield Product("snr_paths", ("scene", *seen), of_people, "paths of people, for the SNR")
-    yield Product("torso_track", seen, torso_track, "delay of the torso at every pulse")
+    yield Product(
+        "torso_track", seen, torso_track, "delay of the torso at every pulse", is_array=True
+    )
 
 
 def _knots_per_second(c: Config, source: PathSource, w: Waveform) -> float:
@@ -347,11 +354,12 @@ def _direct(c: Config) -> Iterator[Product]:
         ("echo", "direct"),
         lambda echo, direct: signal_of_look(echo[0], direct.look),
         "slow-time signal without noise",
+        is_array=True,
     )
     needs = ("echo", "direct", "canceller", "receiver")
-    yield Product("signal", needs, signal, "receiver, then canceller")
+    yield Product("signal", needs, signal, "receiver, then canceller", is_array=True)
     does = "range profiles at the pulses that the range-time map shows"
-    yield Product("range_profiles", ECHO_NEEDS, range_profiles, does)
+    yield Product("range_profiles", ECHO_NEEDS, range_profiles, does, is_array=True)
     engine_row = "gated" if _gated(c) else "direct"  # from the knots that are there anyway
     if snr_of_other_paths(c):
         yield Product("signal_power", ("snr_paths", "waveform"), power, "P_s, for snr_db")
@@ -387,7 +395,13 @@ def _direct(c: Config) -> Iterator[Product]:
     needs = ("gated_echo", "gated", "canceller", "receiver")
     does = "samples and their measured error, of the gate's bins"
     yield Product("gated_echo", ("gated", "scene"), partial(_echo_of, c), does)
-    yield Product("range_signals", needs, signal, "receiver, then canceller, of the gate's bins")
+    yield Product(
+        "range_signals",
+        needs,
+        signal,
+        "receiver, then canceller, of the gate's bins",
+        is_array=True,
+    )
 
 
 def _echo_of(c: Config, echo: DirectEcho, scene: Scene) -> tuple[Complex, EchoAccuracy]:
@@ -444,12 +458,22 @@ def _exact(c: Config) -> Iterator[Product]:
     does = "the whole beat matrix, cancelled, compressed"
     yield Product("beat_cube", ECHO_NEEDS, beat_cube, does)
     yield Product(
-        "signal", ("beat_cube",), lambda signals: signals[0], "its sum over the kept bins"
+        "signal",
+        ("beat_cube",),
+        lambda signals: signals[0],
+        "its sum over the kept bins",
+        is_array=True,
     )
-    yield Product("range_profiles", ("beat_cube", *ECHO_NEEDS), range_profiles, "its range bins")
+    yield Product(
+        "range_profiles",
+        ("beat_cube", *ECHO_NEEDS),
+        range_profiles,
+        "its range bins",
+        is_array=True,
+    )
     if _gated(c):
         does = "the beat matrix, compressed, of the gate's bins"
-        yield Product("range_signals", ("gate", *ECHO_NEEDS), range_signals, does)
+        yield Product("range_signals", ("gate", *ECHO_NEEDS), range_signals, does, is_array=True)
 
 
 def _impulse(c: Config) -> Iterator[Product]:
@@ -463,13 +487,17 @@ def _impulse(c: Config) -> Iterator[Product]:
 
     power_of = "snr_paths" if snr_of_other_paths(c) else "paths"
     does = "real samples over range, a pulse at its delay for every path"
-    yield Product("profiles", ("paths", "waveform"), impulse_echo, does)
+    yield Product("profiles", ("paths", "waveform"), impulse_echo, does, is_array=True)
     yield Product("signal_power", (power_of, "waveform"), impulse_power, "P_s, for snr_db")
     needs = ("profiles", "waveform", "canceller", "receiver")
-    yield Product("range_signals", needs, signal, "receiver, then canceller")
+    yield Product("range_signals", needs, signal, "receiver, then canceller", is_array=True)
     profiles = lambda x: x.columns(c.image.size_px[1])  # noqa: E731
-    yield Product("range_profiles", ("range_signals",), profiles, "those that the map shows")
-    yield Product("signal", ("range_signals",), Signal.summed, "their sum over range")
+    yield Product(
+        "range_profiles", ("range_signals",), profiles, "those that the map shows", is_array=True
+    )
+    yield Product(
+        "signal", ("range_signals",), Signal.summed, "their sum over range", is_array=True
+    )
     yield Product("accuracy", (), lambda: Accuracy(1, 0, False, -inf), "paths at every pulse")
 
 
@@ -485,11 +513,17 @@ def _signals(c: AnyConfig) -> Iterator[Product]:
 
     for raw in ("signal", *(["range_signals"] if _gated(c) else [])):
         smooth = "Savitzky-Golay filter"
-        yield Product(f"{raw}_denoised", (raw,), denoised, smooth)
+        yield Product(f"{raw}_denoised", (raw,), denoised, smooth, is_array=True)
         yield Product(
-            f"{raw}_compensated", (raw, "torso_track"), compensated, "bulk Doppler compensation"
+            f"{raw}_compensated",
+            (raw, "torso_track"),
+            compensated,
+            "bulk Doppler compensation",
+            is_array=True,
         )
-        yield Product(f"{raw}_compensated_denoised", (f"{raw}_compensated",), denoised, smooth)
+        yield Product(
+            f"{raw}_compensated_denoised", (f"{raw}_compensated",), denoised, smooth, is_array=True
+        )
 
 
 def _gate(c: AnyConfig) -> Iterator[Product]:
@@ -503,7 +537,7 @@ def _gate(c: AnyConfig) -> Iterator[Product]:
     if not _gated(c):
         return
     ranges = lambda w: w.range_axis()  # noqa: E731 - an impulse radar's begins elsewhere
-    yield Product("range_axis", ("waveform",), ranges, "ranges of the bins")
+    yield Product("range_axis", ("waveform",), ranges, "ranges of the bins", is_array=True)
     if isinstance(within, tuple):
         place = f"range bins from {within[0]:g} to {within[1]:g} m"
         yield Product("gate", ("range_axis",), lambda ranges: gate_of(c, ranges, None), place)
@@ -533,7 +567,7 @@ def _maps(c: AnyConfig) -> Iterator[Product]:
         small = partial(reduced_map, power_map.power, size)
         return _image(c, cfar, small, power_map.extent, binary_exponent(power_map.power))
 
-    yield Product("rtm", ("range_profiles",), rtm, "power of the range profiles")
+    yield Product("rtm", ("range_profiles",), rtm, "power of the range profiles", is_array=True)
     if masks:
         yield Product("cfar", ("scene",), lambda s: cfar_of(s.config), "threshold of the masks")
     for name in ("rtm", *(product.name for product in own_products())):
@@ -575,7 +609,13 @@ def _doppler_maps(c: AnyConfig, signal: str) -> Iterator[Product]:
         power = partial(_doppler_power, c, kind)
         single = c.engine.precision == "auto" and shallow
         image = partial(_doppler_image, c, power, single)
-        yield Product(kind + suffix, needs, partial(_doppler_map, power), f"power of the {does}")
+        yield Product(
+            kind + suffix,
+            needs,
+            partial(_doppler_map, power),
+            f"power of the {does}",
+            is_array=True,
+        )
         yield Product(
             f"image:{kind}{suffix}",
             (*masks, *needs),

@@ -413,6 +413,12 @@ def _window(c: AnyConfig, w: Waveform) -> int:
     return length if c.radar.cfg is None else min(length, c.radar.header.loops)
 
 
+def _prf_in_words(c: AnyConfig, w: Waveform) -> str:
+    """The pulse rate of a waveform, and the key that one would change it by."""
+    board = c.radar.cfg is not None
+    return f"radar.cfg has a PRF of {w.prf:g} Hz" if board else f"radar.prf_hz may be {w.prf:g}"
+
+
 HIGHEST_F0 = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz")
 
 
@@ -439,7 +445,7 @@ def _signal_problems(c: AnyConfig) -> Iterator[Problem]:
         yield Problem(*duration_entry, f"should hold at least 2 pulses (it holds {pulses})")
     if doppler and window < min(MIN_WINDOW, usable_pulses if board else MIN_WINDOW):
         right = f"the window of window_s * prf_hz at least {MIN_WINDOW} pulses (it has {window})"
-        yield Problem(*window_entry, f"should make {right}: radar.prf_hz may be {shortest.prf:g}")
+        yield Problem(*window_entry, f"should make {right}: {_prf_in_words(c, shortest)}")
     if doppler and window > usable_pulses:
         right = (
             f"should make the window at most the {usable_pulses} {pulses_meant} (it has {window})"
@@ -664,7 +670,7 @@ def _image_problems(c: AnyConfig) -> Iterator[Problem]:
     if max(-limits[0], limits[1]) > fastest * (1 + 1e-9):
         right = (
             f"should be within the unambiguous band, -{fastest:.6g} to {fastest:.6g} m/s "
-            f"(c prf_hz / 4 f0: radar.prf_hz may be {shortest.prf:g})"
+            f"(c prf_hz / 4 f0: {_prf_in_words(c, shortest)})"
         )
         yield Problem("image.doppler_limits_mps", list(limits), right)
     step = SPEED_OF_LIGHT * shortest.prf / (2 * _waveform(c).f0 * max(_window(c, shortest), 1))

@@ -13,7 +13,15 @@ from radhar_cli.config.annotations import range_of, section
 from radhar_cli.config.checks import Problem
 from radhar_cli.config.documents import BASE, OTHER_NAMES, Places, cfg_text, read_on_bases
 from radhar_cli.config.motion_files import resolve_files
-from radhar_cli.config.schema import Config, ConfigOfRecordings, PerActivity, Section
+from radhar_cli.config.number import FORMS
+from radhar_cli.config.schema import (
+    Config,
+    ConfigOfRecordings,
+    FilesConfig,
+    PerActivity,
+    Section,
+    SequenceConfig,
+)
 from radhar_cli.config.units import key_in_our_unit, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
@@ -22,9 +30,11 @@ from radhar_cli.untrusted import shown
 S = TypeVar("S", bound=Section)
 
 _UNION_TAGS = {
-    *("number", "uniform", "normal", "choice", "vary", "same", "per_activity"),
-    *("movements", "recordings", "material", "dielectric"),
+    *("<same>", "<per_activity>"),
+    *("<movements>", "<recordings>"),
+    *("<material>", "<dielectric>"),
 }
+_CLASS_KINDS: dict[str, type[BaseModel]] = {"sequence": SequenceConfig, "files": FilesConfig}
 Options: TypeAlias = dict[str, str]
 MAX_MISTAKES = 20
 MAX_VALUE, MAX_ADVICE = 200, 500  # characters of value and advice in a message
@@ -47,6 +57,9 @@ ABSENT = {
     **dict.fromkeys(("stride_jitter", "width_jitter_m"), "now follows speed_variation"),
     **dict.fromkeys(_UNMEASURED, "is not there any more: nothing measured depends on it"),
 }
+
+_OF_LAYERS = "is a key of layers: wall.layers: [{material: concrete}], or wall.eps_r"
+MISPLACED = {"wall.material": _OF_LAYERS, "wall.thickness_m": _OF_LAYERS}
 
 
 class Override(NamedTuple):
@@ -172,11 +185,12 @@ def validated(
     try:
         return kind.model_validate(document)
     except ValidationError as error:
+        items = _mistakes_alone(error, document)
         mistakes = dict.fromkeys(
             _place(where, problem.key, places, options) + _what(problem)
-            for problem in islice(_found(kind, error, document), MAX_MISTAKES)
+            for problem in islice(_found(kind, items, document), MAX_MISTAKES)
         )
-        more = error.error_count() - MAX_MISTAKES
+        more = len(items) - MAX_MISTAKES
         messages = [*mistakes, f"{where}: and {more} more"] if more > 0 else [*mistakes]
         raise ConfigError("\n".join(messages)) from None
 
@@ -220,15 +234,51 @@ _WORDING = {
 }
 
 
-def _found(kind: type[BaseModel], error: ValidationError, document: Any) -> Iterator[Problem]:
-    for item in error.errors(include_url=False):
+def _mistakes_alone(error: ValidationError, document: Any) -> list[Any]:
+    """Pydantic's errors, without those that only follow from another one.
+
+    Pydantic counts a list's valid items alone, and takes a class without `files` for one of
+    movements.
+    """
+    items = error.errors(include_url=False)
+    parents = {item["loc"][:n] for item in items for n in range(len(item["loc"]))}
+
+    def follows(item: Any) -> bool:
+        if item["type"] == "too_short" and item["loc"] in parents:
+            return bool(len(item["input"]) >= item["ctx"]["min_length"])
+        names = _document_path(item["loc"], document)
+        return (
+            item["type"] == "extra_forbidden"
+            and len(names) == 3
+            and _kinds_of_class(names, document) == []
+            and names[-1] in FilesConfig.model_fields
+        )
+
+    return [item for item in items if not follows(item)]
+
+
+def _kinds_of_class(names: list[int | str], document: Any) -> list[type[BaseModel]] | None:
+    """Kinds that a class of the document may be by its keys; None outside of `classes`."""
+    if names[:1] != ["classes"] or len(names) < 3:
+        return None
+    its_keys = document["classes"].get(names[1])
+    if isinstance(its_keys, (list, tuple)):  # the short form of a class of files
+        return [FilesConfig]
+    return [kind for key, kind in _CLASS_KINDS.items() if key in (its_keys or ())]
+
+
+def _found(kind: type[BaseModel], items: Iterable[Any], document: Any) -> Iterator[Problem]:
+    for item in items:
         if item["type"] == "across":
             yield from item["ctx"]["problems"]
             continue
         names = _document_path(item["loc"], document)
         key = ".".join(str(name) for name in names)
         if item["type"] in ("extra_forbidden", "unexpected_keyword_argument"):
-            yield Problem(key, item["input"], _unknown(kind, names, item["input"]))
+            yield Problem(key, item["input"], _unknown(kind, names, item["input"], document))
+        elif item["type"] == "missing" and _kinds_of_class(names, document) == []:
+            right = "should have a `sequence` of movements, or `files` of motion"
+            yield Problem(key.removesuffix(".sequence"), item["input"], right)
         elif names[:1] == ["maps"] and (absent := ABSENT.get(str(item["input"]))):
             yield Problem(key, item["input"], absent)
         else:
@@ -244,9 +294,16 @@ def _advice_on_number(
     kind: type[BaseModel], names: list[int | str], item: Any, message: str
 ) -> str:
     """Advice on a text in the place of a number: the number in our unit, or its range."""
-    key, value = ".".join(str(name) for name in names), item["input"]
+    value = item["input"]
+    if isinstance(value, dict) and "per_activity" in value and "number" in message:
+        return f"has no per_activity, it is the same for every activity: {message}"
     if not isinstance(value, str) or "number" not in message:
         return message
+    if names[-2:-1] in (["normal"], ["vary"]) and names[-1] == 1:
+        return message  # no number of the key itself
+    if len(names) > 2 and names[-2] in FORMS:
+        names = names[:-2]
+    key = ".".join(str(name) for name in names)
     with_unit = value_with_unit(key, value)
     if with_unit is not None:
         return with_unit
@@ -255,39 +312,46 @@ def _advice_on_number(
 
 
 def _document_path(location: tuple[int | str, ...], document: Any) -> list[int | str]:
-    """Drop from a pydantic location the tags of unions, which are no keys of the document.
-
-    A tag comes once more as the key of the same name where the error lies inside of it.
-    """
+    """Drop from a pydantic location the tags of unions, which are no keys of the document."""
     names: list[int | str] = []
-    place, tag = document, None
+    place = document
     for name in location:
-        if name in _UNION_TAGS and name != tag and names:  # the document has `recordings` itself
-            tag = name
-            continue
         if isinstance(place, dict) and name in place:
-            place, tag = place[name], None
+            place = place[name]
         elif isinstance(place, (list, tuple)) and isinstance(name, int):
             place = place[name] if name < len(place) else None
-        elif isinstance(name, str) and (not isinstance(place, dict) or "[" in name):
-            continue  # of a union, too
+        elif name in _UNION_TAGS or (
+            isinstance(name, str) and (not isinstance(place, dict) or "[" in name)
+        ):
+            continue  # a tag, or pydantic's own name of a union's member
         else:
             place = None
         names.append(name)
     return names
 
 
-def _unknown(kind: type[BaseModel], names: list[int | str], value: object) -> str:
+def _unknown(kind: type[BaseModel], names: list[int | str], value: object, document: Any) -> str:
     if issubclass(kind, Config) and (absent := ABSENT.get(str(names[-1]))):
         return absent
+    if misplaced := MISPLACED.get(".".join(map(str, names))):
+        return misplaced
     place: type[BaseModel] | None = kind
     for name in names[:-1]:
         if isinstance(name, str):  # no place in a list of sections
             field = place.model_fields.get(name) if place else None
             place = section(field) if field else None
-    if place is None:
+    places = _kinds_of_class(names, document) if len(names) == 3 else None
+    if places is None:
+        places = [] if place is None else [place]
+    elif len(places) > 1:
+        if names[-1] in _CLASS_KINDS:
+            return "should be left out: a class has a `sequence` or `files`, not both"
+        places = [FilesConfig]
+    elif not places:
+        places = [*_CLASS_KINDS.values()]
+    if not places:
         return "is an unknown key"
-    known = list(place.model_fields)
+    known = [name for one in places for name in one.model_fields]
     in_our_unit = key_in_our_unit(str(names[-1]), value, known)
     if in_our_unit is not None:
         return f"is an unknown key; {in_our_unit}"

@@ -152,12 +152,13 @@ class PerActivity(Generic[T]):
 
 def _kind(value: Any) -> str:
     several = "per_activity" in value if isinstance(value, dict) else isinstance(value, PerActivity)
-    return "per_activity" if several else "same"
+    return "<per_activity>" if several else "<same>"
 
 
 # A number that may also differ by activity.
 By: TypeAlias = Annotated[
-    Annotated[T, Tag("same")] | Annotated[PerActivity[T], Tag("per_activity")], Discriminator(_kind)
+    Annotated[T, Tag("<same>")] | Annotated[PerActivity[T], Tag("<per_activity>")],
+    Discriminator(_kind),
 ]
 
 
@@ -716,11 +717,11 @@ class FilesConfig(Section):
 def _class_kind(value: Any) -> str:
     of_files = isinstance(value, (FilesConfig, list, tuple))
     of_files |= isinstance(value, dict) and "files" in value
-    return "recordings" if of_files else "movements"
+    return "<recordings>" if of_files else "<movements>"
 
 
 ClassConfig: TypeAlias = Annotated[
-    Annotated[SequenceConfig, Tag("movements")] | Annotated[FilesConfig, Tag("recordings")],
+    Annotated[SequenceConfig, Tag("<movements>")] | Annotated[FilesConfig, Tag("<recordings>")],
     Discriminator(_class_kind),
 ]
 
@@ -837,11 +838,11 @@ class BoxConfig(Section):
 
 
 def _material_kind(value: Any) -> str:
-    return "dielectric" if isinstance(value, (dict, DielectricConfig)) else "material"
+    return "<dielectric>" if isinstance(value, (dict, DielectricConfig)) else "<material>"
 
 
 _Face = Annotated[
-    Annotated[Material, Tag("material")] | Annotated[DielectricConfig, Tag("dielectric")],
+    Annotated[Material, Tag("<material>")] | Annotated[DielectricConfig, Tag("<dielectric>")],
     Discriminator(_material_kind),
 ]
 

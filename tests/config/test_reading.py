@@ -457,6 +457,88 @@ def test_each_mistake_is_reported_in_one_line(tmp_path: Path, broken: Broken) ->
     assert broken.right in line.removeprefix(start)
 
 
+NAMES_OF_FORMS = (
+    *("number", "uniform", "normal", "choice", "vary", "same", "per_activity"),
+    *("movements", "dielectric", "material"),
+)
+
+
+@pytest.mark.parametrize("name", NAMES_OF_FORMS)
+@pytest.mark.parametrize(
+    "section", ["", "subject", "motion", "radar.beam", "wall", "room", "split", "image.cfar"]
+)
+def test_an_unknown_key_is_named_whatever_its_name(tmp_path: Path, section: str, name: str) -> None:
+    key = f"{section}.{name}".lstrip(".")
+    document: dict[str, object] = {name: 3}
+    for part in reversed(section.split(".") if section else []):
+        document = {part: document}
+    (line,) = mistakes(tmp_path, json.dumps(document))
+    assert f": {key} = 3: is " in line
+
+
+@pytest.mark.parametrize("name", NAMES_OF_FORMS)
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("people: [{activity: walking, motion: {NAME: 3}}]", "people.0.motion"),
+        ("classes: {hop: {sequence: [kicking], NAME: 3}}", "classes.hop"),
+        ("wall: {layers: [{material: concrete, NAME: 3}], echoes: exact}", "wall.layers.0"),
+        ("room: {faces: {floor: {NAME: 3}}}", "room.faces.floor"),
+        ("motion: {range_m: {uniform: [1, 2], NAME: 3}}", "motion.range_m"),
+    ],
+)
+def test_an_unknown_key_of_lists_and_mappings_is_named(
+    tmp_path: Path, text: str, place: str, name: str
+) -> None:
+    if f"{name}: " in text or (place, name) == ("motion.range_m", "per_activity"):
+        return  # a key there
+    (line,) = mistakes(tmp_path, text.replace("NAME", name))
+    assert f": {place}" in line
+    if place != "motion.range_m" or name not in ("normal", "choice", "vary"):  # of two forms
+        assert f": {place}.{name} = 3: is an unknown key" in line
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (
+            "motion: {range_m: {uniform: [1, x]}}",
+            'motion.range_m.uniform.1 = "x": should be a valid number, from -1e+06 to 1e+06 m',
+        ),
+        (
+            "motion: {range_m: {normal: [1, x]}}",
+            'motion.range_m.normal.1 = "x": should be a valid number',
+        ),
+        (
+            "motion: {speed_mps: {per_activity: {walking: {choice: [1, x]}}}}",
+            'motion.speed_mps.per_activity.walking.choice.1 = "x": should be a valid number',
+        ),
+        ("wall: {layers: [{material: beton}]}", 'wall.layers.0.material = "beton": should be'),
+        ("wall: {layers: []}", "wall.layers = []: should have at least 1 item, not 0"),
+        (
+            "wall: {material: concrete}",
+            "is a key of layers: wall.layers: [{material: concrete}], or wall.eps_r",
+        ),
+        (
+            "classes: {kicking: {past_end: loop}}",
+            "should have a `sequence` of movements, or `files` of motion",
+        ),
+        (
+            "classes: {hop: {files: [a.bvh], sequence: [kicking]}}",
+            "should be left out: a class has a `sequence` or `files`, not both",
+        ),
+        ("radar: {beam: {start: 1}}", "radar.beam.start = 1: is an unknown key"),
+        (
+            "subject: {height_m: {per_activity: {walking: 1.7}}}",
+            "has no per_activity, it is the same for every activity: should be a number or one",
+        ),
+    ],
+)
+def test_one_mistake_gives_one_message(tmp_path: Path, text: str, says: str) -> None:
+    (line,) = mistakes(tmp_path, text)
+    assert says in line
+
+
 def test_all_mistakes_are_reported_together(tmp_path: Path) -> None:
     lines = mistakes(tmp_path, "sead: 1\nradar:\n  prf_hz: -1\nsnr_db: loud\n")
     assert {line.split(": ")[1].split(" =")[0] for line in lines} == {

@@ -278,6 +278,15 @@ def test_what_a_board_cannot_do_is_said_in_a_line(path: Path, override: str) -> 
     assert WRONG[override] in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    "override", ["image.doppler_limits_mps=[50, 60]", "processing.window_s=0.0005"]
+)
+def test_the_pulse_rate_of_a_board_is_said_to_be_of_radar_cfg(path: Path, override: str) -> None:
+    with pytest.raises(ConfigError, match=r"radar\.cfg has a PRF of [\d.]+ Hz") as caught:
+        load_config(path, [override, "maps=[stft]"])
+    assert "radar.prf_hz" not in str(caught.value)
+
+
 def fewer(path: Path, loops: int, receivers: int = 15) -> None:
     """Frames of so many loops, and these receivers, in board.cfg."""
     text = CFG.replace("frameCfg 0 2 32", f"frameCfg 0 2 {loops}")

@@ -18,7 +18,7 @@ from small import small_config
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.image_file import luminance, read_gray, read_rgb
-from radhar_cli.errors import FolderError
+from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.images.image_set import ImageSet, check_split_name, labels_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
@@ -318,7 +318,7 @@ def test_a_class_without_training_images_is_named(tmp_path):
 
 def test_an_unknown_split_is_refused_with_a_suggestion():
     assert check_split_name("all") == "all"
-    with pytest.raises(FolderError, match="did you mean 'train'"):
+    with pytest.raises(ConfigError, match="did you mean 'train'"):
         check_split_name("trian")
 
 

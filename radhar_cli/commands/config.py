@@ -55,7 +55,7 @@ def init(
         ),
     ] = None,
 ) -> None:
-    """Write a config to start from, whole or minimal, of a board or shipped.
+    """Write a config to start from: minimal, whole, of a board, shipped.
 
     What documents call configs/human/room.yaml is `--preset human/room` where there is no clone.
 

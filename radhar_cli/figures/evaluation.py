@@ -135,7 +135,7 @@ def reliability_png(confidence: Float, accuracy: Float, count: Index, title: str
 
 def captioned_png(images: Sequence[Levels], captions: Sequence[str], title: str) -> bytes:
     """Draw RGB images [H, W, 3] with captions, ACROSS in a row; return the PNG file."""
-    rows, columns = -(-len(images) // ACROSS), min(ACROSS, len(images))
+    rows, columns = -(-len(images) // ACROSS), ACROSS  # the title needs the width of four
     figure = page(2.5 * columns, 3.1 * rows + 0.4)
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for panel in panels:

@@ -76,11 +76,11 @@ class _Reader:
             self.modules.add(value.__name__)
             return "module", value.__name__.rpartition(".")[2]
         if isinstance(value, type) or (not hasattr(value, "__dict__") and not is_dataclass(value)):
-            return self._named(value)
-        return "object", self._named(type(value)), self.describe(_state(value))
+            return self._describe_named(value)
+        return "object", self._describe_named(type(value)), self.describe(_state(value))
 
-    def _named(self, value: Any) -> Any:
-        """A class, or an object that holds nothing that Python shows."""
+    def _describe_named(self, value: Any) -> Any:
+        """Describe a class, or an object that holds nothing that Python shows."""
         if hasattr(value, "tobytes") and hasattr(value, "dtype"):  # an array
             numbers = hashlib.sha256(value.tobytes()).hexdigest()
             return "array", str(value.dtype), str(getattr(value, "shape", "")), numbers

@@ -76,7 +76,7 @@ class Override(NamedTuple):
     option: str
 
     @classmethod
-    def parsed(cls, text: str) -> "Override":
+    def parse(cls, text: str) -> "Override":
         """An override of the form ``radar.prf_hz=128``, as `--set` takes it."""
         key, equals, value = text.partition("=")
         key = key.strip()
@@ -150,7 +150,7 @@ def _load(
     kind: type[S], path: Path | None, overrides: Iterable[str | Override]
 ) -> tuple[S, Places, Options]:
     """Read a config, the places of its keys, and the options that gave some of them."""
-    given = [Override.parsed(one) if isinstance(one, str) else one for one in overrides]
+    given = [Override.parse(one) if isinstance(one, str) else one for one in overrides]
     of_base: dict[str, Any] = {}
     for override in given:
         if override.key == BASE:
@@ -202,7 +202,7 @@ def with_overrides(document: dict[str, Any], overrides: Iterable[str]) -> dict[s
         ConfigError: a text is no key=value, or its value is no YAML.
     """
     for text in overrides:
-        _apply(document, Override.parsed(text))
+        _apply(document, Override.parse(text))
     return document
 
 

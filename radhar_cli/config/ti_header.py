@@ -382,7 +382,7 @@ def board_header(text: str, where: str = "radar.cfg") -> BoardHeader:
         period_s=device.period_ms * 1e-3,
         detection=detection,
         unknown=unknown,
-        not_simulated=_not_simulated(text),
+        not_simulated=_find_switches_without_effect(text),
     )
 
 
@@ -404,16 +404,16 @@ _SWITCHES = {
 _BY_DEFAULT = Cfar(CASO, 8, 4, False, 15.0)
 
 
-def _not_simulated(text: str) -> tuple[str, ...]:
-    """Commands, each once, that switch on what neither a cube nor its points have."""
-    found = dict[str, None]()
+def _find_switches_without_effect(text: str) -> tuple[str, ...]:
+    """Find commands, each once, that switch on what neither a cube nor its points have."""
+    commands = dict[str, None]()
     for line in text.splitlines():
         command, *words = line.partition("%")[0].split() or [""]
         if any(
             float(word) != 0 for word in words[_SWITCHES.get(command, slice(0))] if _is_number(word)
         ):
-            found[command] = None
-    return tuple(found)
+            commands[command] = None
+    return tuple(commands)
 
 
 def _is_number(word: str) -> bool:

@@ -65,7 +65,7 @@ def fields(config: AnyConfig) -> tuple[Field, ...]:
         keys.insert(keys.index("subject.height_m") + 1, "subject.weight_kg")
     keys += keys_of_people(config)
     measured = (ERROR,) if config.has_error else ()
-    return (*_uniquely_named([_field(key) for key in keys]), *measured)
+    return (*_make_names_unique([_field(key) for key in keys]), *measured)
 
 
 def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> Float:
@@ -79,7 +79,7 @@ def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> F
     return np.array([error_db if f is ERROR else number_at(scene, f.key) for f in columns])
 
 
-def _uniquely_named(columns: list[Field]) -> list[Field]:
+def _make_names_unique(columns: list[Field]) -> list[Field]:
     """Give longer names to columns whose names are taken or alike; return all columns."""
     for longer in (_name_with_section, lambda field: field.key):
         counts = Counter([ERROR.name, *TAKEN, *(field.name for field in columns)])

@@ -93,9 +93,9 @@ class _Shards:
     def __init__(self, folder: Path, part: str) -> None:
         self._folder, self._part = folder, part
         self.number, self._samples, self._bytes = 0, 0, 0
-        self._file = self._opened()
+        self._file = self._open_next_file()
 
-    def _opened(self) -> tarfile.TarFile:
+    def _open_next_file(self) -> tarfile.TarFile:
         path = self._folder / f"{self._part}-{self.number:06d}.tar"
         return tarfile.open(path, "w", format=tarfile.USTAR_FORMAT)
 
@@ -106,7 +106,7 @@ class _Shards:
         if full and self._samples:
             self._file.close()
             self.number += 1
-            self._samples, self._bytes, self._file = 0, 0, self._opened()
+            self._samples, self._bytes, self._file = 0, 0, self._open_next_file()
         for ending, content in members.items():
             member = tarfile.TarInfo(f"{key}.{ending}")  # of time 0, nobody's
             member.size = len(content)

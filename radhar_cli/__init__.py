@@ -3,15 +3,18 @@
 The packages, in the order in which imports go (docs/reference/architecture.md):
 
     motion        `Motion`: scatterers over time; the paper's model, the human one, their skeleton
-    activity      the twelve activities, and user-defined classes
+    activities    the twelve activities, other movements, and user-defined classes
     radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel)
     config        the schema of the YAML file, its checks, and how it is read
     scene         (config, class, index) -> one scene: a config with nothing left to draw
     processing    cancellers, range compression, compensation, STFT, FSST, entropy, image
     receiver      impairments between echo and processing; noise
     echo          paths -> echo: exact (the reference), direct (closed form), gated, impulse, boards
-    pipeline      scene -> maps: the table of products, the plan of a request, the check of scenes
-    simulation    one scene with its truth, and its files
+    bodies        motion -> paths: points, ellipsoids, surfaces; delay and amplitude over time
+    assembly      numbers of a scene -> objects of physics: radar, wall, room, people, receiver
+    products      scene -> maps: the table of products, the plan of a request, its run
+    scene_checks  where a scene leaves its models, what noise hides, which keys do nothing
+    single_scene  one scene with its truth, and its files
     figures       panels, animations, confusion matrices, curves
     dataset       many scenes -> shards -> dataset.h5 and PNG; resume, verify, estimate
     capture       recordings of real radars -> maps, fitted configs, data sets
@@ -51,13 +54,13 @@ if TYPE_CHECKING:  # for the completion of editors
     from radhar_cli.learning.sequences import Sequences as Sequences
     from radhar_cli.learning.torch_dataset import torch_dataset as torch_dataset
     from radhar_cli.learning.trained_run import load_run as load_run
-    from radhar_cli.simulation.simulate import simulate as simulate
+    from radhar_cli.single_scene.simulate import simulate as simulate
 
 __version__ = "0.1.0"
 
 _INTERFACE = {
     "load_config": "radhar_cli.config",
-    "simulate": "radhar_cli.simulation.simulate",
+    "simulate": "radhar_cli.single_scene.simulate",
     "open_dataset": "radhar_cli.dataset.reading",
     "sample": "radhar_cli.dataset.on_demand",
     "Samples": "radhar_cli.learning.samples",

@@ -7,9 +7,9 @@ from contextlib import suppress
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from radhar_cli import interrupts
 from radhar_cli.errors import INTERRUPTED, RadharError
-from radhar_cli.untrusted import shown
+from radhar_cli.files.untrusted import shown
+from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
     import typer

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from radhar_cli.activity import Activity
+from radhar_cli.activities.activity import Activity
 from radhar_cli.config.annotations import Mark, of_kind
 from radhar_cli.config.number import Choice, Distribution, Number, is_fixed, nominal, quantile
 from radhar_cli.config.paths import at, changed, each_number
@@ -23,7 +23,7 @@ from radhar_cli.config.schema import (
     for_activity,
 )
 from radhar_cli.motion.skeleton import default_weight
-from radhar_cli.randomness import PERSON, SCENE, stream
+from radhar_cli.numerics.randomness import PERSON, SCENE, stream
 
 # The keys of a config whose numbers may be drawn, scene by scene.
 SCENE_KEYS = (

@@ -23,8 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.activity import ACTIVITIES
-from radhar_cli.arrays import Complex
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
@@ -35,15 +34,16 @@ from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.pipeline.plan import Plan, Product, plan
-from radhar_cli.pipeline.products import plan_images, products, signal_of_look
-from radhar_cli.pipeline.run import record, run
+from radhar_cli.numerics.arrays import Complex
+from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.signal import Signal, shown_pulses
+from radhar_cli.products.plan import Plan, Product, plan
+from radhar_cli.products.run import record, run
+from radhar_cli.products.table import plan_images, products, signal_of_look
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Scene, draw_scene
-from radhar_cli.worker_process import prepare_process
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "configs/paper/free_space.yaml"
@@ -371,7 +371,7 @@ from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.paths import Paths
 from radhar_cli.radar.waveform import Waveform
 try:
-    from radhar_cli.worker_process import prepare_process
+    from radhar_cli.processes.worker_process import prepare_process
 except ImportError:  # an older tree
     from radhar_cli.process import prepare_process
 
@@ -448,11 +448,11 @@ from collections import Counter
 from time import process_time
 from radhar_cli.config import load_config
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import run
-from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.products.table import plan_images
+from radhar_cli.products.run import run
+from radhar_cli.scene_checks.validity import draw_valid_scene
 try:
-    from radhar_cli.worker_process import prepare_process
+    from radhar_cli.processes.worker_process import prepare_process
 except ImportError:  # an older tree
     from radhar_cli.process import prepare_process
 
@@ -590,7 +590,7 @@ LENGTHS = (60, 120, 240, 480)  # s
 _LENGTHS = """
 import json, sys, time
 from radhar_cli.config import load_config
-from radhar_cli.pipeline.run import record
+from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene
 def once(seconds):
     config = load_config(sys.argv[1], ["snr_db=null", "motion.lane_m=4", f"duration_s={seconds}"])

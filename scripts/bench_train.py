@@ -32,7 +32,7 @@ from torch.nn.functional import cross_entropy
 from radhar_cli.learning import machine
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.models.fftnet import GlobalFilter
-from radhar_cli.worker_process import keep_memory
+from radhar_cli.processes.worker_process import keep_memory
 name, px, batch, steps, *changes = sys.argv[1:]
 px, batch, steps = int(px), int(batch), int(steps)
 if "complex" in changes:

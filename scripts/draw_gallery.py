@@ -15,7 +15,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 from PIL import Image
 
-from radhar_cli.activity import ACTIVITIES
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.build import build

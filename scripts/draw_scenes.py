@@ -16,11 +16,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from radhar_cli.activity import activity_named
+from radhar_cli.activities.activity import activity_named
+from radhar_cli.assembly.physics import antennas_of, motion_of, ways_of
 from radhar_cli.config import Config
-from radhar_cli.pipeline.physics import antennas_of, motion_of, ways_of
-from radhar_cli.pipeline.run import record
 from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.products.run import record
 from radhar_cli.radar.layers import Layer, Layers
 from radhar_cli.radar.propagation import leg
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT

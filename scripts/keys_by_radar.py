@@ -18,7 +18,8 @@ from typing import Any, Literal, NamedTuple, TypeAlias, get_args, get_origin
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
-from radhar_cli.activity import MOVEMENTS
+from radhar_cli.activities.activity import MOVEMENTS
+from radhar_cli.assembly.physics import motion_of
 from radhar_cli.config.annotations import (
     ABOVE_ZERO,
     GIVEN,
@@ -33,12 +34,11 @@ from radhar_cli.config.schema import Config, PerActivity, possible_maps
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import RadharError
 from radhar_cli.motion.human.two_link import OutOfReachError
-from radhar_cli.pipeline.physics import motion_of
-from radhar_cli.pipeline.products import plan_images, products
-from radhar_cli.pipeline.run import record
-from radhar_cli.pipeline.validity import config_warnings, draw_valid_scene
+from radhar_cli.products.run import record
+from radhar_cli.products.table import plan_images, products
 from radhar_cli.scene import draw_scene
-from radhar_cli.simulation.simulate import RAW_ECHO, RAW_PROFILES
+from radhar_cli.scene_checks.validity import config_warnings, draw_valid_scene
+from radhar_cli.single_scene.simulate import RAW_ECHO, RAW_PROFILES
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/reference/keys.md"
 CFG = """

@@ -74,8 +74,8 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 @pytest.fixture(scope="session")
 def small_set(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The data set of small.SMALL, its config beside it; who changes it takes a copy."""
-    from listener import Listener
-    from small import small_config
+    from helpers.listener import Listener
+    from helpers.small import small_config
 
     from radhar_cli.config import load_config
     from radhar_cli.dataset.build import build

@@ -11,15 +11,15 @@ from itertools import combinations, product
 from pathlib import Path
 from typing import Any
 
-import boards
 import numpy as np
 import pytest
 import yaml
-from command_line import Done, radhar
-from covering import combinations_of, covering_rows
-from random_configs import KEYS
-from recorded import frames, write_bvh
-from slow import slow
+from helpers import boards
+from helpers.command_line import Done, radhar
+from helpers.covering import combinations_of, covering_rows
+from helpers.random_configs import KEYS
+from helpers.recorded import frames, write_bvh
+from helpers.slow import slow
 
 from radhar_cli.config import load_config
 from radhar_cli.errors import ConfigError

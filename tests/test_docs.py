@@ -8,7 +8,7 @@ import command_pages
 import config_tables
 import h5py
 import pytest
-from documents import DOCS, PAGES, Row, commands, leaves, rows, value_at, written
+from helpers.documents import DOCS, PAGES, Row, commands, leaves, rows, value_at, written
 from pydantic import BaseModel
 from typer.main import get_command
 
@@ -17,8 +17,8 @@ from radhar_cli.config import Config
 from radhar_cli.config.reading import load_section
 from radhar_cli.config.schema import FilesConfig
 from radhar_cli.learning.settings import ScheduleConfig, TrainConfig
-from radhar_cli.simulation.scene_file import write_scene
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.single_scene.scene_file import write_scene
+from radhar_cli.single_scene.simulate import simulate
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = {page.name: page for page in DOCS}

@@ -19,17 +19,17 @@ import numpy as np
 import pytest
 import yaml
 from capture.dca1000_file import Radar, body, echo, words
-from command_line import ROOT, radhar
-from documents import PAGES, Block, blocks
+from helpers.command_line import ROOT, radhar
+from helpers.documents import PAGES, Block, blocks
+from helpers.recorded import frames, write_amc, write_bvh, write_npz
+from helpers.shell import Answer, Call, run_shell
 from learning.patterns import tree
-from recorded import frames, write_amc, write_bvh, write_npz
-from shell import Answer, Call, run_shell
 from torch.utils.data import DataLoader
 from typer.main import get_command
 
 from radhar_cli.cli import program
 from radhar_cli.config import Config, load_config
-from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.scene_checks.validity import draw_valid_scene
 
 LANGUAGES = {"sh", "bash", "yaml", "python", "text"}  # text is not run
 # What no test can run, by a part of the block, and why.

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 import yaml
-from command_line import ok
-from documents import PAGES, Block, blocks
-from recorded import frames, write_amc, write_bvh, write_npz
+from helpers.command_line import ok
+from helpers.documents import PAGES, Block, blocks
+from helpers.recorded import frames, write_amc, write_bvh, write_npz
 
 from radhar_cli.config import load_config
 

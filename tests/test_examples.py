@@ -6,7 +6,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from command_line import ROOT, radhar
+from helpers.command_line import ROOT, radhar
 from PIL import Image
 
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import kstest
 
-from radhar_cli.activity import ACTIVITIES, activity_named
+from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.config.number import is_fixed, nominal, support
 from radhar_cli.scene import (

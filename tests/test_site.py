@@ -12,7 +12,7 @@ from typing import Any
 import nbformat
 import pytest
 import run_notebook
-from command_line import ROOT
+from helpers.command_line import ROOT
 
 import radhar_cli
 

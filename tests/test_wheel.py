@@ -8,8 +8,8 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from command_line import ROOT
-from small import small_config
+from helpers.command_line import ROOT
+from helpers.small import small_config
 
 PACKAGE, CONFIGS = ROOT / "radhar_cli", ROOT / "configs"
 

@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float
 from radhar_cli.capture.settings import USUAL_AXES, AxisName, CaptureSettings
 from radhar_cli.capture.source import Parts, Source
 from radhar_cli.dataset.untrusted_hdf5 import NumberColumn, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, did_you_mean
-from radhar_cli.untrusted import regular_size
+from radhar_cli.files.untrusted import regular_size
+from radhar_cli.numerics.arrays import Float
 
 MAX_RECEIVERS = 1024
 MAX_PACKING = 200  # growth of a file when it is unpacked

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from radhar_cli.assembly.physics import board_of
 from radhar_cli.capture.chain import pulses_between
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.schema import FRAME_MAPS, Config
 from radhar_cli.errors import CaptureError
-from radhar_cli.pipeline.physics import board_of
-from radhar_cli.pipeline.plan import plan
-from radhar_cli.pipeline.products import products
-from radhar_cli.pipeline.run import run
+from radhar_cli.products.plan import plan
+from radhar_cli.products.run import run
+from radhar_cli.products.table import products
 from radhar_cli.radar.board import Board
 from radhar_cli.scene import Numbers
 

@@ -10,20 +10,20 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Complex
+from radhar_cli.assembly.physics import board_of, canceller_of, frames_of, fsst_frames_of
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
 from radhar_cli.config.schema import AnyConfig
 from radhar_cli.errors import CaptureError
-from radhar_cli.phasor import unit_phasor
-from radhar_cli.pipeline.physics import board_of, canceller_of, frames_of, fsst_frames_of
-from radhar_cli.pipeline.run import process
+from radhar_cli.numerics.arrays import Bool, Complex
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal, nearest
+from radhar_cli.products.run import process
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform

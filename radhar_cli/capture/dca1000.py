@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import Parts, Source
 from radhar_cli.errors import CaptureError
-from radhar_cli.untrusted import refuse_outside, regular_size
+from radhar_cli.files.untrusted import refuse_outside, regular_size
 
 WORD = np.dtype("<u2")
 PROBED_WORDS = 2**20

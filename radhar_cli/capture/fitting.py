@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.fft
 
-from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.capture.chain import bins_of_part, fill_lost_pulses, pulses_between
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
@@ -25,6 +24,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.page import page, write_figure
+from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.processing.frames import Frames
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform

@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Levels
 from radhar_cli.capture.array_files import check_npz, parser_errors_as_capture_errors
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, read_gray
 from radhar_cli.errors import CaptureError
-from radhar_cli.untrusted import refuse_outside, regular_size
+from radhar_cli.files.untrusted import refuse_outside, regular_size
+from radhar_cli.numerics.arrays import Levels
 
 MAX_NPZ = 2**29  # bytes of its images, which are held
 

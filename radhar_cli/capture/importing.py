@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
 from radhar_cli.capture import findings
 from radhar_cli.capture.array_files import open_arrays
 from radhar_cli.capture.dca1000 import open_dca1000
@@ -24,6 +23,7 @@ from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.config.ti_header import read_header
 from radhar_cli.errors import CaptureError
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform

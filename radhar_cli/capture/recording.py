@@ -14,17 +14,17 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from radhar_cli import __version__
-from radhar_cli.arrays import Complex
 from radhar_cli.capture.findings import CLIPPED, LOST, Damage, checked
 from radhar_cli.capture.source import Parts
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
-from radhar_cli.new_hdf5 import new_hdf5
+from radhar_cli.files.new_hdf5 import new_hdf5
+from radhar_cli.files.replacing import replacing
+from radhar_cli.files.untrusted import Closing
+from radhar_cli.numerics.arrays import Complex
 from radhar_cli.radar.impulse import impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.replacing import replacing
-from radhar_cli.untrusted import Closing
 
 KIND, SCHEMA_VERSION = "radhar recording", 1
 CHUNK_BYTES = 2**20

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 
 Parts = NDArray[Any]
 PIECE_BYTES = 2**24

@@ -15,7 +15,7 @@ import scipy.fft
 from scipy.ndimage import maximum_filter, uniform_filter
 from scipy.special import gammainccinv
 
-from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 

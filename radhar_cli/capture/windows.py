@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.activity import TWELVE
+from radhar_cli.activities.activity import TWELVE
 from radhar_cli.capture.board_frames import SAME
 from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.images import are_images, is_image, list_images, read_image
@@ -24,11 +24,11 @@ from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.recorded import windows
 from radhar_cli.dataset.sample import SampleRow, Synthesised
 from radhar_cli.errors import ConfigError, did_you_mean
-from radhar_cli.pipeline.products import image_of
+from radhar_cli.files.untrusted import refuse_outside, text_of
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.power_map import MapImage
+from radhar_cli.products.table import image_of
 from radhar_cli.scene import nominal_scene
-from radhar_cli.untrusted import refuse_outside, text_of
 
 MAX_MANIFEST = 2**20  # bytes
 MAX_CONFIG = 2**19  # characters of the resolved config: two of it lie beside the data set

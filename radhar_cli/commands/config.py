@@ -67,7 +67,7 @@ def init(
     """
     from radhar_cli.config.starting_file import MINIMAL, as_commented_yaml, of_board, of_preset
     from radhar_cli.errors import FolderError, RadharError
-    from radhar_cli.replacing import write_text
+    from radhar_cli.files.replacing import write_text
 
     if out.exists() or out.is_symlink() or not out.parent.is_dir():
         why = "exists already" if out.parent.is_dir() else "there is no such folder"
@@ -125,7 +125,7 @@ def schema(
     import json
 
     from radhar_cli.config.json_schema import json_schema
-    from radhar_cli.replacing import write_text
+    from radhar_cli.files.replacing import write_text
 
     text = json.dumps(json_schema(_kind(train)), indent=1)
     if out is None:

@@ -9,7 +9,7 @@ from radhar_cli.commands.learning_options import Classes, Device, Resize, Split,
 from radhar_cli.commands.options import ReplaceResults
 from radhar_cli.commands.tell import report, tell
 from radhar_cli.errors import FolderError
-from radhar_cli.untrusted import read_json
+from radhar_cli.files.untrusted import read_json
 
 SCORES = ("accuracy", "mean_average_precision", "mpjpe_cm")
 

@@ -31,7 +31,7 @@ def fit(
     from radhar_cli.capture.fitting import draw
     from radhar_cli.capture.fitting import fit as fit_recordings
     from radhar_cli.errors import FolderError
-    from radhar_cli.replacing import write_text
+    from radhar_cli.files.replacing import write_text
 
     if out.resolve() in {path.resolve() for path in recordings}:
         raise FolderError(f"{out}: is one of the recordings; -o should name another file")

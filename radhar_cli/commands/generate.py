@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from radhar_cli import interrupts
 from radhar_cli.commands.options import Overrides, StartOver, Tolerance, resumable, with_tolerance
 from radhar_cli.commands.tell import tell
 from radhar_cli.errors import ConfigError
+from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
     from radhar_cli.config.schema import AnyConfig, Config
@@ -78,7 +78,7 @@ def generate(
         from radhar_cli.dataset.layout import Rows
         from radhar_cli.dataset.parts import DataSetPart
         from radhar_cli.dataset.workers import cores, on_cluster
-        from radhar_cli.worker_process import prepare_process
+        from radhar_cli.processes.worker_process import prepare_process
 
         prepare_process()
         kind = Config if recordings is None else ConfigOfRecordings
@@ -111,7 +111,7 @@ def generate(
 def _measured(config: "Config", manifest: Path) -> "tuple[AnyConfig, RowFactory]":
     """The config of a data set of recordings, and what makes its rows."""
     from radhar_cli.capture.windows import WindowFactory, warnings_of, with_recordings
-    from radhar_cli.pipeline.unused_keys import unused_keys
+    from radhar_cli.scene_checks.unused_keys import unused_keys
 
     measured = with_recordings(config, manifest)
     unused = unused_keys(config)

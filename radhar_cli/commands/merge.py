@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli import interrupts
 from radhar_cli.commands.options import resumable
+from radhar_cli.processes import interrupts
 
 
 def merge(

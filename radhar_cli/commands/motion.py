@@ -29,8 +29,8 @@ def motion(
     """
     from radhar_cli.config import load_config
     from radhar_cli.errors import ConfigError, UnfinishedError
-    from radhar_cli.replacing import write_text
-    from radhar_cli.simulation.motion_file import scene_bvh
+    from radhar_cli.files.replacing import write_text
+    from radhar_cli.single_scene.motion_file import scene_bvh
 
     if out.suffix.lower() != ".bvh":
         raise ConfigError(f"{out}: should end in .bvh")

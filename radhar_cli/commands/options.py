@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
-from radhar_cli import interrupts
 from radhar_cli.commands.tell import tell
 from radhar_cli.errors import INTERRUPTED, FolderError
+from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
     from radhar_cli.config.reading import Override

@@ -24,7 +24,7 @@ FROM_FILE = "from_file"  # the class of `--motion` without `--activity`
 
 if TYPE_CHECKING:
     from radhar_cli.config.reading import Override
-    from radhar_cli.simulation.simulate import Simulation
+    from radhar_cli.single_scene.simulate import Simulation
 
 
 def simulate(
@@ -91,10 +91,10 @@ def simulate(
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file, refuse_foreign_files
     from radhar_cli.errors import ConfigError
-    from radhar_cli.simulation import scene_file
-    from radhar_cli.simulation.simulate import map_names
-    from radhar_cli.simulation.simulate import simulate as simulate_scene
-    from radhar_cli.worker_process import prepare_process
+    from radhar_cli.processes.worker_process import prepare_process
+    from radhar_cli.single_scene import scene_file
+    from radhar_cli.single_scene.simulate import map_names
+    from radhar_cli.single_scene.simulate import simulate as simulate_scene
 
     prepare_process()
     overrides = with_tolerance(set_, tolerance)
@@ -145,7 +145,7 @@ def simulate(
 
 def _print_summary(simulation: "Simulation", written: list[Path]) -> None:
     """Print what was simulated, and where the files lie."""
-    from radhar_cli.simulation.scene_file import describe
+    from radhar_cli.single_scene.scene_file import describe
 
     activity = simulation.activity
     elapsed_s = sum(simulation.seconds.values())
@@ -225,7 +225,7 @@ def _draw_figures(simulation: "Simulation", out: Path, overlay: bool) -> list[Pa
     """Write maps.png, the animation, and a board's frames and cloud; return their paths."""
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.figures import maps_panel, stickman
-    from radhar_cli.simulation.scene_file import ANIMATION, CLOUD, FRAMES, MAPS
+    from radhar_cli.single_scene.scene_file import ANIMATION, CLOUD, FRAMES, MAPS
 
     if simulation.maps:
         maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), out / MAPS)

@@ -13,9 +13,9 @@ from typing import Annotated, Any
 
 import typer
 
-from radhar_cli import interrupts
-from radhar_cli.plain_json import plain
-from radhar_cli.untrusted import shown
+from radhar_cli.files.plain_json import plain
+from radhar_cli.files.untrusted import shown
+from radhar_cli.processes import interrupts
 
 Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON, for programs.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors only.")]

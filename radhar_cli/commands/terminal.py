@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from tqdm import tqdm
 
-from radhar_cli import interrupts
 from radhar_cli.commands.tell import counted, is_quiet, is_shown, report, tell
-from radhar_cli.untrusted import Closing, shown
+from radhar_cli.files.untrusted import Closing, shown
+from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
     from radhar_cli.config.schema import AnyConfig
@@ -147,7 +147,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     from radhar_cli.dataset.estimate import DRY_RUN_S, plan_build
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
-    from radhar_cli.pipeline.products import plan_images
+    from radhar_cli.products.table import plan_images
 
     rows = Rows.of(config)
     samples = f"samples     {len(rows)} = {rows.counts_text}"

@@ -31,10 +31,10 @@ def tradeoff(
     needs("tradeoff", ["skimage"])
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.processes.worker_process import prepare_process
     from radhar_cli.tradeoff.report import FILES, write_report
     from radhar_cli.tradeoff.settings import Scenes
     from radhar_cli.tradeoff.study import ROUNDS, run_sweep
-    from radhar_cli.worker_process import prepare_process
 
     refuse_file(out)
     refuse_to_replace_results(out, FILES, overwrite)

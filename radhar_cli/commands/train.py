@@ -6,10 +6,10 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli import interrupts
 from radhar_cli.commands.learning_options import Classes
 from radhar_cli.commands.options import Overrides, StartOver, resumable
 from radhar_cli.commands.tell import report, tell
+from radhar_cli.processes import interrupts
 
 
 def train(

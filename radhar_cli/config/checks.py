@@ -5,7 +5,13 @@ from contextlib import suppress
 from math import ceil
 from typing import Any, NamedTuple
 
-from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
+from radhar_cli.activities.activity import (
+    ACTIVITIES,
+    DEFAULT,
+    Activity,
+    activity_named,
+    own_activities,
+)
 from radhar_cli.config.annotations import Limits, People, at, of_kind
 from radhar_cli.config.number import MAX_NUMBER, nominal, support
 from radhar_cli.config.schema import (
@@ -26,7 +32,7 @@ from radhar_cli.config.schema import (
     for_activity,
     why_no_map,
 )
-from radhar_cli.light import SPEED_OF_LIGHT
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import Waveform

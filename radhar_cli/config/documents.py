@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 from radhar_cli.config.number import FORMS
 from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
 from radhar_cli.errors import ConfigError
-from radhar_cli.untrusted import read_text, text_of
+from radhar_cli.files.untrusted import read_text, text_of
 
 Document: TypeAlias = dict[str, Any]
 Places: TypeAlias = dict[str, str]  # {dotted key: file:line}

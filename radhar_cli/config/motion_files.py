@@ -7,8 +7,8 @@ from pathlib import Path
 
 from radhar_cli.config.schema import MAX_FILES, MAX_PATH_LENGTH, Config, FilesConfig
 from radhar_cli.errors import ConfigError, FolderError, MotionFileError
+from radhar_cli.files.untrusted import refuse_outside
 from radhar_cli.motion.files.reading import read_motion
-from radhar_cli.untrusted import refuse_outside
 
 Refuse = Callable[[str, object, str], ConfigError]
 

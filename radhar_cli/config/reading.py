@@ -25,7 +25,7 @@ from radhar_cli.config.schema import (
 from radhar_cli.config.units import key_in_our_unit, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
-from radhar_cli.untrusted import shown
+from radhar_cli.files.untrusted import shown
 
 S = TypeVar("S", bound=Section)
 

@@ -28,7 +28,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from radhar_cli.activity import (
+from radhar_cli.activities.activity import (
     ACTIVITIES,
     DEFAULT,
     EXERCISES,
@@ -38,6 +38,7 @@ from radhar_cli.activity import (
     activity_named,
     is_new_slug,
 )
+from radhar_cli.activities.vocabulary import advice_on
 from radhar_cli.config.annotations import (
     ABOVE_ZERO,
     GIVEN,
@@ -76,9 +77,11 @@ from radhar_cli.config.number import (
     within,
 )
 from radhar_cli.errors import did_you_mean
-from radhar_cli.light import SPEED_OF_LIGHT
+from radhar_cli.extensions import is_known, own_products
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.numerics.rounding import half_up
 from radhar_cli.radar.board import (
     DEVICES,
     EVEN,
@@ -89,9 +92,6 @@ from radhar_cli.radar.board import (
     sidelobe,
 )
 from radhar_cli.radar.materials import Material
-from radhar_cli.registry import is_known, own_products
-from radhar_cli.rounding import half_up
-from radhar_cli.vocabulary import advice_on
 
 if TYPE_CHECKING:
     from radhar_cli.config.ti_header import BoardHeader
@@ -1223,7 +1223,7 @@ class OutputConfig(Section):
     slow_time: Flag = False
     """Whether the complex slow-time signal is stored."""
     products: tuple[Name, ...] = ()
-    """Further products that are stored as arrays, a user's own too (`radhar_cli.registry`)."""
+    """Further products that are stored as arrays, a user's own too (`radhar_cli.extensions`)."""
     license: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.+-]{0,60}$")] | None = None
     """Licence in the data card, as the Hugging Face Hub calls it: cc-by-4.0, mit."""
 

@@ -27,7 +27,7 @@ from radhar_cli.config.schema import Config, Section, possible_maps
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError
-from radhar_cli.light import SPEED_OF_LIGHT
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 
 WIDTH = 100
 MAPS_OF_BOARDS = ("stft", "range_doppler", "range_azimuth", "points")

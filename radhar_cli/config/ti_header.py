@@ -18,8 +18,8 @@ from pydantic import AliasPath, BeforeValidator, ConfigDict, Field
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Section
 from radhar_cli.errors import CaptureError, ConfigError
+from radhar_cli.files.untrusted import read_json, text_of
 from radhar_cli.radar.detection import CA, CAGO, CASO, Cfar, Detection, ti_threshold_db
-from radhar_cli.untrusted import read_json, text_of
 
 MAX_CFG = 2**16
 MAX_CHIRPS = 512  # of a frame

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 import yaml
 
 from radhar_cli.errors import ConfigError
-from radhar_cli.untrusted import DEEPEST
+from radhar_cli.files.untrusted import DEEPEST
 
 MAX_TEXT = 2**16  # characters, every alias written out
 MAX_KEY_LENGTH = 100

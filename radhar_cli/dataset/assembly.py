@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float
+from radhar_cli.assembly.physics import kinds_of
 from radhar_cli.config.identity import as_yaml, config_hash, resolved
 from radhar_cli.config.schema import FRAME_MAPS, AnyConfig, Config
 from radhar_cli.dataset import layout, scene_fields
@@ -43,13 +43,13 @@ from radhar_cli.dataset.untrusted_hdf5 import (
     remember,
 )
 from radhar_cli.errors import UnfinishedError
+from radhar_cli.files.new_hdf5 import new_hdf5
+from radhar_cli.files.replacing import replacing
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.new_hdf5 import new_hdf5
-from radhar_cli.pipeline.physics import kinds_of
-from radhar_cli.pipeline.validity import FLAG_TYPE, Flags, flagged, warnings
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.processes.progress import Progress
 from radhar_cli.processing.points import COLUMNS
-from radhar_cli.progress import Progress
-from radhar_cli.replacing import replacing
+from radhar_cli.scene_checks.validity import FLAG_TYPE, Flags, flagged, warnings
 
 RUN, RUN_BYTES = 128, 2**28
 COLUMN_RUN, CHUNK_BYTES = 4096, 2**16

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import AnyConfig, Config, MeasuredConfig
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
@@ -22,12 +21,13 @@ from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.dataset.workers import NO_PARENT
 from radhar_cli.errors import MachineError
-from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.validity import FLAG_TYPE, Flags, draw_valid_scene, warnings
-from radhar_cli.progress import NO_PROGRESS, Progress
+from radhar_cli.numerics.arrays import Levels
+from radhar_cli.processes.progress import NO_PROGRESS, Progress
+from radhar_cli.processes.time_limit import time_limit
+from radhar_cli.processes.worker_process import prepare_process
+from radhar_cli.products.table import plan_images
 from radhar_cli.scene import Scene
-from radhar_cli.time_limit import time_limit
-from radhar_cli.worker_process import prepare_process
+from radhar_cli.scene_checks.validity import FLAG_TYPE, Flags, draw_valid_scene, warnings
 
 CHECKED_SCENES = 24  # before a build; each is checked as it is made
 

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import AnyConfig
 from radhar_cli.motion.phases import PHASES, phase_numbers
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.numerics.arrays import Levels
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import Scene
 

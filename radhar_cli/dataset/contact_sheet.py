@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
 from radhar_cli.dataset.layout import row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.figures.page import DPI, page_of_rows, write_figure
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.numerics.arrays import Levels
 from radhar_cli.processing.frame_sheets import bones_sheet
 
 MAX_SIDE = 1024  # px of a panel

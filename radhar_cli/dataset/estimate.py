@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.batch import CHECKED_SCENES, check_scenes
@@ -19,11 +18,12 @@ from radhar_cli.dataset.sample import Synthesised, synthesise
 from radhar_cli.dataset.shards import encode_shard
 from radhar_cli.dataset.workers import cores
 from radhar_cli.errors import RadharError
-from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.validity import FLAG_TYPE, draw_valid_scene
-from radhar_cli.progress import NO_PROGRESS, Progress
-from radhar_cli.time_limit import time_limit
-from radhar_cli.worker_process import prepare_process
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.processes.progress import NO_PROGRESS, Progress
+from radhar_cli.processes.time_limit import time_limit
+from radhar_cli.processes.worker_process import prepare_process
+from radhar_cli.products.table import plan_images
+from radhar_cli.scene_checks.validity import FLAG_TYPE, draw_valid_scene
 
 PROBES = 24
 PROBE_SECONDS = 8.0

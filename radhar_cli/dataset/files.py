@@ -7,8 +7,8 @@ from pathlib import Path
 
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError
-from radhar_cli.replacing import replacing
-from radhar_cli.untrusted import regular_size
+from radhar_cli.files.replacing import replacing
+from radhar_cli.files.untrusted import regular_size
 
 MAX_TEXT = 2**20
 

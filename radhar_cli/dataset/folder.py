@@ -17,8 +17,8 @@ from radhar_cli.dataset.files import refuse_foreign_work, refuse_links, unfinish
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError, RadharError
-from radhar_cli.replacing import UNFINISHED
-from radhar_cli.untrusted import read_json
+from radhar_cli.files.replacing import UNFINISHED
+from radhar_cli.files.untrusted import read_json
 
 
 def refuse_file(folder: Path) -> None:

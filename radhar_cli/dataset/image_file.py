@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from radhar_cli.arrays import Levels
 from radhar_cli.dataset.png import stored_levels
 from radhar_cli.errors import FolderError
-from radhar_cli.untrusted import regular_size
+from radhar_cli.files.untrusted import regular_size
+from radhar_cli.numerics.arrays import Levels
 
 # No format that runs a program: EPS, whatever its file is called, would start Ghostscript.
 FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")

@@ -11,9 +11,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from radhar_cli.activity import Activity
-from radhar_cli.arrays import Index
+from radhar_cli.activities.activity import Activity
 from radhar_cli.config.schema import MAP_NAMES, AnyConfig
+from radhar_cli.numerics.arrays import Index
 
 # Of dataset.h5; 3: labels are 0 to C - 1 in the order of the config.
 SCHEMA_VERSION = 3
@@ -48,7 +48,7 @@ def chunked(config: AnyConfig) -> Parts:
     if config.output.power is not None:
         parts |= {f"power/{name}": ("<f2", size) for name in config.maps}
     if config.output.slow_time:
-        from radhar_cli.pipeline.physics import max_samples  # slow to import
+        from radhar_cli.assembly.physics import max_samples  # slow to import
 
         parts["slow_time"] = ("<c8", (max_samples(config),))
     return parts

@@ -17,7 +17,7 @@ from radhar_cli.dataset.reading import stored_config
 from radhar_cli.dataset.shards import Runs, Shard, list_shards, require_tiling
 from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.errors import FolderError
-from radhar_cli.progress import Progress
+from radhar_cli.processes.progress import Progress
 
 
 class _Place(NamedTuple):

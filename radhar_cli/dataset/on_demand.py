@@ -12,19 +12,19 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.activity import Activity, know_activities, own_activities
+from radhar_cli.activities.activity import Activity, know_activities, own_activities
 from radhar_cli.config.reading import as_config
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import chunked
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import ConfigError
-from radhar_cli.pipeline.plan import Plan
-from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.processes.worker_process import one_thread
+from radhar_cli.products.plan import Plan
+from radhar_cli.products.table import plan_images
 from radhar_cli.scene import ByIdentity
-from radhar_cli.simulation.simulate import activity_of
-from radhar_cli.worker_process import one_thread
+from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.single_scene.simulate import activity_of
 
 
 def sample(

@@ -8,8 +8,8 @@ import numpy as np
 from isal import isal_zlib
 from PIL import Image
 
-from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import DEFAULT_COLOUR_MAP
+from radhar_cli.numerics.arrays import Levels
 
 _DEFAULT_TABLE = Path(__file__).with_name(f"{DEFAULT_COLOUR_MAP}.rgb")  # Matplotlib starts slowly
 _FAST = 2  # of ISA-L's 0 to 3: about as small as zlib's 1

@@ -4,14 +4,14 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.arrays import Index, Levels
 from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.batch import write_png_rows
 from radhar_cli.dataset.image_tables import write_missing_tables
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.workers import parent_pid, run_tasks
-from radhar_cli.progress import Progress
+from radhar_cli.numerics.arrays import Index, Levels
+from radhar_cli.processes.progress import Progress
 
 ROWS = 32  # rows per task
 

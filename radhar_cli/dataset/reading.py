@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import AnyConfig, Config, MeasuredConfig
 from radhar_cli.dataset import layout, scene_fields
@@ -15,8 +14,9 @@ from radhar_cli.dataset.folder import holds_samples, stored_identity
 from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.untrusted_hdf5 import Column, NumberColumn, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
-from radhar_cli.registry import any_name
-from radhar_cli.untrusted import Closing
+from radhar_cli.extensions import any_name
+from radhar_cli.files.untrusted import Closing
+from radhar_cli.numerics.arrays import Float, Index, Levels
 
 MAX_ENTROPY_BITS = 64.0
 BLOCK = 4096  # rows of a column read at once

@@ -8,18 +8,18 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Complex, Float, Levels
 from radhar_cli.config.schema import Config, MeasuredConfig
 from radhar_cli.dataset.column_labels import column_labels, label_names
 from radhar_cli.dataset.layout import COLUMN_LABEL, LABELS, PERSON_LABEL
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError
-from radhar_cli.pipeline.fallback import EchoAccuracy, Fallback
-from radhar_cli.pipeline.plan import Plan
-from radhar_cli.pipeline.run import run
+from radhar_cli.numerics.arrays import Complex, Float, Levels
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.image import levels
 from radhar_cli.processing.power_map import MapImage
+from radhar_cli.products.fallback import EchoAccuracy, Fallback
+from radhar_cli.products.plan import Plan
+from radhar_cli.products.run import run
 from radhar_cli.scene import Scene
 
 

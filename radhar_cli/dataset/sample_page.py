@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.activities.vocabulary import FROM_FILES, advice_on
+from radhar_cli.assembly.physics import board_of, motion_of
 from radhar_cli.config.schema import FRAME_MAPS, Config, MeasuredConfig
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import SPLITS, Rows, column_axis, row_axis
@@ -15,13 +17,11 @@ from radhar_cli.figures import scene_page
 from radhar_cli.figures.scene_page import Entry, SceneView, ShownBody
 from radhar_cli.figures.sides import bones
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
-from radhar_cli.pipeline.physics import board_of, motion_of
-from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.processing.frame_maps import doppler_axis, range_axis
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
 from radhar_cli.scene import Scene, nominal_scene
-from radhar_cli.vocabulary import FROM_FILES, advice_on
+from radhar_cli.scene_checks.validity import draw_valid_scene
 
 MOST = 50  # samples of a page
 

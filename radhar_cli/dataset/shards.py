@@ -15,13 +15,13 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float
 from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK, checksum_of, chunked, count_of
 from radhar_cli.dataset.png import deflate
 from radhar_cli.dataset.sample import Synthesised
 from radhar_cli.errors import SceneError, UnfinishedError
+from radhar_cli.numerics.arrays import Float
 
 USER_BLOCK = 512
 RUNS_NAMED = 10

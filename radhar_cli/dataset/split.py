@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from radhar_cli.arrays import Index, Levels
 from radhar_cli.config.schema import AnyConfig, FilesConfig, MeasuredConfig, SplitConfig
 from radhar_cli.dataset.layout import SPLITS, Rows
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.randomness import SPLIT, stream
-from radhar_cli.rounding import half_up
+from radhar_cli.numerics.arrays import Index, Levels
+from radhar_cli.numerics.randomness import SPLIT, stream
+from radhar_cli.numerics.rounding import half_up
 
 TRAIN, VALIDATION, TEST = 0, 1, 2
 

@@ -27,7 +27,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from radhar_cli.dataset import hdf5_check
 from radhar_cli.errors import FolderError
-from radhar_cli.untrusted import Closing, parse_json, regular_size
+from radhar_cli.files.untrusted import Closing, parse_json, regular_size
 
 # What h5py raises on a file whose structure is damaged.
 _DAMAGED = (

@@ -11,10 +11,10 @@ from itertools import islice
 from multiprocessing import resource_tracker
 from typing import Any, TypeVar
 
-from radhar_cli.activity import Activity, know_activities, own_activities
+from radhar_cli.activities.activity import Activity, know_activities, own_activities
 from radhar_cli.errors import MachineError, UnfinishedError
-from radhar_cli.registry import know_products, own_products
-from radhar_cli.worker_process import end_with, prepare_process
+from radhar_cli.extensions import know_products, own_products
+from radhar_cli.processes.worker_process import end_with, prepare_process
 
 T = TypeVar("T")
 NO_PARENT = 0  # parent of workers on other machines, which end with their scheduler

@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.beat import BLOCK_SAMPLES
 from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.half_band_sum import MAX_CELLS
 from radhar_cli.echo.knots import Spacing
 from radhar_cli.echo.paths import Paths
+from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller, Fir
 from radhar_cli.processing.look import weights
 from radhar_cli.radar.waveform import Waveform

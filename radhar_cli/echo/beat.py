@@ -4,8 +4,8 @@ from math import isqrt
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
-from radhar_cli.phasor import unit_phasor
+from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.radar.waveform import Waveform
 
 BLOCK_SAMPLES = 2**18  # size of a block of the beat matrix

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.accuracy import SPARE_DB, AccuracyError
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.chebyshev import coefficients
 from radhar_cli.echo.interpolation import lagrange_basis
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.phase_recurrence import nodes
-from radhar_cli.phasor import unit_phasor
+from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.radar.board import Board
 
 BLOCK_FRAMES = 16

@@ -5,7 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 
 Values = TypeVar("Values", Float, Complex)
 

@@ -11,8 +11,6 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from radhar_cli.accelerators import installed, machine_code
-from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.half_band_sum import HalfBandTable
 from radhar_cli.echo.interpolation import (
     BEFORE,
@@ -25,6 +23,8 @@ from radhar_cli.echo.interpolation import (
 )
 from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.phase_recurrence import nodes, runs
+from radhar_cli.numerics.accelerators import installed, machine_code
+from radhar_cli.numerics.arrays import Complex, Float, Index
 
 TERMS = 4  # coefficients of a cubic
 LANES = 16  # paths per SIMD batch; a remainder would be computed one by one

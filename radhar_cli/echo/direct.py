@@ -13,7 +13,6 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import (
     MIN_AIM_DB,
@@ -32,7 +31,8 @@ from radhar_cli.echo.interpolation import AFTER, BEFORE, NODES, TAPS, lagrange_b
 from radhar_cli.echo.knots import MIN_STEP, Knots, PathsAtKnots, Spacing, only, resolve
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.echo.phase_recurrence import nodes, phasors_between_knots
-from radhar_cli.phasor import unit_phasor
+from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Canceller, Fir
 from radhar_cli.processing.look import Look, RangeSum
 from radhar_cli.radar.waveform import Waveform

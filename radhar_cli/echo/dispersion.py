@@ -10,10 +10,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.beat import beat_matrix, powers, start_phase
 from radhar_cli.echo.paths import Paths, Through
-from radhar_cli.phasor import unit_phasor
+from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.radar.layers import Layers
 from radhar_cli.radar.waveform import Waveform
 

@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.beat import BLOCK_SAMPLES, beat_matrix
 from radhar_cli.echo.dispersion import beat_of, power_of
 from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
 from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.look import Look, RawSamples
 from radhar_cli.radar.waveform import Waveform

@@ -16,7 +16,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.accuracy import Settings, probed_pulses, relative_db
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.chebyshev import coefficients
@@ -34,7 +33,8 @@ from radhar_cli.echo.interpolation import (
 from radhar_cli.echo.knots import Knots, PathsAtKnots, columns
 from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.phase_recurrence import phasors_between_knots
-from radhar_cli.phasor import unit_phasor
+from radhar_cli.numerics.arrays import Complex, Float, Index
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Fir
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.range_compression import range_compression

@@ -9,9 +9,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.dispersion import beat_of, power_of
 from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.numerics.arrays import Complex, Float, Index
 
 Values = TypeVar("Values", Float, Complex)
 

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
@@ -18,6 +17,7 @@ from radhar_cli.echo.interpolation import (
     upsample,
 )
 from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.numerics.arrays import Bool, Float, Index
 from radhar_cli.radar.waveform import Waveform
 
 CHUNK_KNOTS, BLOCK = 32768, 2**15

@@ -11,12 +11,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.dispersion import WallTransfer
 from radhar_cli.echo.interpolation import lagrange_basis
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.phasor import unit_phasor
+from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.radar.waveform import Waveform
 
 NODES = 5

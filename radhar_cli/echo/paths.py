@@ -5,7 +5,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Float, Index
+from radhar_cli.numerics.arrays import Bool, Float, Index
 from radhar_cli.radar.layers import Layers
 
 

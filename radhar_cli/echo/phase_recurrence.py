@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.interpolation import NODES, REACH, TAPS, lagrange_basis
-from radhar_cli.phasor import unit_phasor
+from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.numerics.phasor import unit_phasor
 
 # A rounding of D2p, 1e-7 in single precision, grows with the square of the pulses since the start.
 MAX_RUN = 20

@@ -10,8 +10,8 @@ from matplotlib import colormaps
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.figures.page import page, png_bytes
+from radhar_cli.numerics.arrays import Float, Index, Levels
 
 ACROSS = 4  # pictures in a row
 MAX_NUMBERED = 32  # classes; with more, cells of a confusion matrix have no numbers

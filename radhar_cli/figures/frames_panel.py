@@ -9,15 +9,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
-from radhar_cli.arrays import Float
 from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.maps_panel import title
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.figures.sides import Advance, Film, SideView, bones, colour_bar
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import Cloud
 from radhar_cli.radar.board import Board
-from radhar_cli.simulation.simulate import Simulation
+from radhar_cli.single_scene.simulate import Simulation
 
 COLUMNS = 6
 TINY = float(np.finfo(np.float32).tiny)  # instead of the largest power of black maps

@@ -10,15 +10,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
-from radhar_cli.arrays import Float
+from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.page import page, write_figure
-from radhar_cli.pipeline.motion_paths import point_delay
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene import Scene
-from radhar_cli.simulation.simulate import Simulation
+from radhar_cli.single_scene.simulate import Simulation
 
 TITLES: Mapping[str, str] = {
     "rtm": "range-time map",

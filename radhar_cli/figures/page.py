@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from radhar_cli.replacing import replacing
+from radhar_cli.files.replacing import replacing
 
 T = TypeVar("T")
 DPI = 110

@@ -12,24 +12,24 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
-from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.frames_panel import NAMES
 from radhar_cli.figures.maps_panel import TITLES, alias_doppler
 from radhar_cli.figures.maps_panel import title as title_of
 from radhar_cli.figures.sides import limbs
+from radhar_cli.files.replacing import write_text
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.pipeline.motion_paths import point_delay
-from radhar_cli.pipeline.run import record
+from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.image import levels, reduced_map, signed_levels
 from radhar_cli.processing.power_map import Axis
+from radhar_cli.products.run import record
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
-from radhar_cli.replacing import write_text
 from radhar_cli.scene import Scene, scene_numbers
-from radhar_cli.simulation.simulate import Simulation
-from radhar_cli.simulation.truth import truth
+from radhar_cli.single_scene.simulate import Simulation
+from radhar_cli.single_scene.truth import truth
 
 FRAMES_PER_SECOND, MAX_FRAMES = 25, 600
 FINER = 4  # points of a Doppler curve a frame

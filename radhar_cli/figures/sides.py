@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageChops
 from PIL.GifImagePlugin import getdata, getheader
 
-from radhar_cli.arrays import Float
-from radhar_cli.replacing import replacing
+from radhar_cli.files.replacing import replacing
+from radhar_cli.numerics.arrays import Float
 
 Parents: TypeAlias = tuple[int | None, ...]
 Advance: TypeAlias = Callable[[int], object]

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.figures.page import page, png_bytes
 from radhar_cli.figures.sides import Parents, bones
+from radhar_cli.numerics.arrays import Float
 
 # What lies across and which way: seen from the radar left is left; from the person's left.
 SIDES = {"from the radar": (1, -1), "from the side": (0, 1)}

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from radhar_cli.arrays import Levels
 from radhar_cli.figures.page import page_of_rows, png_bytes
+from radhar_cli.numerics.arrays import Levels
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,6 @@ from torch import Tensor, nn
 from torch.nn.functional import cross_entropy
 from torch.nn.modules.batchnorm import _BatchNorm
 
-from radhar_cli.arrays import Index
 from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError
@@ -32,9 +31,10 @@ from radhar_cli.learning.machine import use_deterministic_algorithms
 from radhar_cli.learning.run_files import TRAINED_ON
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
 from radhar_cli.learning.starting_point import is_of_last_layer
-from radhar_cli.progress import Messages
-from radhar_cli.randomness import TRAINING, stream
-from radhar_cli.worker_process import keep_memory
+from radhar_cli.numerics.arrays import Index
+from radhar_cli.numerics.randomness import TRAINING, stream
+from radhar_cli.processes.progress import Messages
+from radhar_cli.processes.worker_process import keep_memory
 
 MIN_IMAGES, BATCH = 16, 96
 EPOCHS = 20  # where none are asked for and batch norm alone would not do

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from radhar_cli.arrays import Float, Levels
 from radhar_cli.learning.settings import AugmentConfig
-from radhar_cli.randomness import TRAINING, stream
+from radhar_cli.numerics.arrays import Float, Levels
+from radhar_cli.numerics.randomness import TRAINING, stream
 
 
 @dataclass(frozen=True)

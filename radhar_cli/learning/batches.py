@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 from torch.utils.data import DataLoader, Dataset
 
-from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.images.image_set import Pixels, repeated
-from radhar_cli.randomness import TRAINING, stream
+from radhar_cli.numerics.arrays import Float, Index
+from radhar_cli.numerics.randomness import TRAINING, stream
 
 SMALLEST = 2  # images of a batch, for batch norm
 AS_STORED = -1

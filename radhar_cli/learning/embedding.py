@@ -5,7 +5,7 @@ from sklearn.decomposition import PCA
 from sklearn.manifold import TSNE
 from sklearn.metrics import silhouette_score
 
-from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.numerics.arrays import Float, Index, Levels
 
 MAX_POINTS = 2000
 FIRST_COMPONENTS = 50

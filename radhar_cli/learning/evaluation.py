@@ -11,7 +11,6 @@ import numpy as np
 import torch
 from torch import nn
 
-from radhar_cli.arrays import Float, Index
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.split import TRAIN
 from radhar_cli.errors import FolderError
@@ -25,7 +24,8 @@ from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.models.build import features_and_logits
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
-from radhar_cli.progress import NO_PROGRESS, Progress
+from radhar_cli.numerics.arrays import Float, Index
+from radhar_cli.processes.progress import NO_PROGRESS, Progress
 
 WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
 PREDICT_BATCH = 32

@@ -6,8 +6,8 @@ import numpy as np
 import torch
 from torch import nn
 
-from radhar_cli.arrays import Float
 from radhar_cli.learning.models.fftnet import GlobalFilter
+from radhar_cli.numerics.arrays import Float
 
 
 def filter_magnitudes(model: nn.Module) -> list[Float]:

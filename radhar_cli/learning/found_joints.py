@@ -9,15 +9,15 @@ import numpy as np
 import torch
 from torch import nn
 
-from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import ConfigError, FolderError
+from radhar_cli.files.replacing import replacing
 from radhar_cli.learning.batches import Reader, batches_in_order
 from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled
 from radhar_cli.learning.images.image_set import Pixels
 from radhar_cli.learning.images.sequences import SequenceReader
 from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
-from radhar_cli.replacing import replacing
+from radhar_cli.numerics.arrays import Float, Index
 
 SUFFIXES = (".npz", ".csv")
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index
+from radhar_cli.numerics.arrays import Float, Index
 
 CALIBRATION_BINS = 15
 

@@ -11,10 +11,10 @@ from torch import Tensor, nn
 from torch.nn.functional import interpolate
 
 from radhar_cli.errors import FolderError
+from radhar_cli.files.replacing import replacing
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.images.sequences import COLUMNS
 from radhar_cli.learning.run_folder import RunError, RunMetadata, first_line, load_best
-from radhar_cli.replacing import replacing
 
 TOLERANCE = 1e-4
 INPUTS = {"rgb": "pixels", "gray": "pixels", "frames": "frames", "clouds": "clouds"}

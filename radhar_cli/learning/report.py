@@ -8,7 +8,7 @@ from typing import Any
 
 import torch
 
-from radhar_cli.build_version import build_version
+from radhar_cli.code_identity.build_version import build_version
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
@@ -27,7 +27,7 @@ from radhar_cli.learning.single_result import (
     open_run,
 )
 from radhar_cli.learning.targets import LOSSES, SCORES
-from radhar_cli.progress import Progress
+from radhar_cli.processes.progress import Progress
 
 NETWORK = ("model", "parameters", "multiply_adds", "best_epoch")
 

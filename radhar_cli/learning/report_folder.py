@@ -9,8 +9,8 @@ from typing import Any
 
 from radhar_cli.dataset.files import write_result
 from radhar_cli.errors import FolderError
-from radhar_cli.plain_json import plain
-from radhar_cli.untrusted import read_json
+from radhar_cli.files.plain_json import plain
+from radhar_cli.files.untrusted import read_json
 
 NUMBERS = "report.json"
 

@@ -23,6 +23,7 @@ from radhar_cli.config.schema import Section
 from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
 from radhar_cli.errors import ConfigError, ModelError, RadharError
+from radhar_cli.files.untrusted import regular_size
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.images.image_set import shape_in_words
 from radhar_cli.learning.models.build import Cost, build_model, cost
@@ -38,7 +39,6 @@ from radhar_cli.learning.run_files import (
     TRAINED_ON,
 )
 from radhar_cli.learning.settings import Kind, TrainConfig
-from radhar_cli.untrusted import regular_size
 
 MAX_CLASSES = 10_000
 MAX_HEADER = 2**24  # bytes

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 from torch.utils.data import Dataset, get_worker_info
 
-from radhar_cli.arrays import Index
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import SPLITS, Rows
@@ -14,7 +13,8 @@ from radhar_cli.dataset.on_demand import Recipe
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.images.image_set import SPLIT_NAMES, check_split_name
-from radhar_cli.worker_process import prepare_process
+from radhar_cli.numerics.arrays import Index
+from radhar_cli.processes.worker_process import prepare_process
 
 
 class Samples(Dataset[dict[str, Any]]):

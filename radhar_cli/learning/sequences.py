@@ -8,7 +8,6 @@ import torch
 from torch import Tensor
 from torch.utils.data import Dataset
 
-from radhar_cli.arrays import Index
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.images.image_set import SPLIT_NAMES, check_split_name
@@ -19,6 +18,7 @@ from radhar_cli.learning.images.sequences import (
     longest_sequence,
     sequence_product,
 )
+from radhar_cli.numerics.arrays import Index
 
 
 class Sequences(Dataset[dict[str, Any]]):

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from sklearn.metrics import confusion_matrix
 from torch import nn
 
-from radhar_cli.activity import ACTIVITIES
-from radhar_cli.arrays import Index
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.figures.evaluation import (
     captioned_png,
     confusion_png,
     embeddings_png,
     reliability_png,
 )
+from radhar_cli.files.untrusted import shown as escaped
 from radhar_cli.learning import metrics
 from radhar_cli.learning.evaluation import Predictions, open_for_model, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet
@@ -35,8 +35,8 @@ from radhar_cli.learning.run_folder import (
     read_trained_on,
 )
 from radhar_cli.learning.skeleton_result import evaluate_skeletons, predict_skeletons
-from radhar_cli.progress import Progress
-from radhar_cli.untrusted import shown as escaped
+from radhar_cli.numerics.arrays import Index
+from radhar_cli.processes.progress import Progress
 
 MIN_EMBEDDED = 2
 MAX_MISTAKES, FEW = 12, 4  # images that are shown

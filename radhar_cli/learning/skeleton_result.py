@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 import torch
 
-from radhar_cli.arrays import Float, Index
 from radhar_cli.figures.evaluation import bars_png
 from radhar_cli.figures.skeletons import skeletons_png
 from radhar_cli.learning.found_joints import joint_batches
@@ -14,7 +13,8 @@ from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_folder import RunMetadata
 from radhar_cli.learning.targets import NEAR_M
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
-from radhar_cli.progress import NO_PROGRESS, Progress
+from radhar_cli.numerics.arrays import Float, Index
+from radhar_cli.processes.progress import NO_PROGRESS, Progress
 
 AXES = ("ahead", "left", "up")
 DISTANCE = "mean distance between found and true joint (cm)"

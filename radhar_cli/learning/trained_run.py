@@ -7,12 +7,12 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from radhar_cli.arrays import Float
 from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled, predict_batches
 from radhar_cli.learning.found_joints import FoundJoints, find_joints
 from radhar_cli.learning.images.image_set import check_split_name
 from radhar_cli.learning.machine import choose_device
 from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
+from radhar_cli.numerics.arrays import Float
 
 
 @dataclass(frozen=True)

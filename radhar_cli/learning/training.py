@@ -13,7 +13,6 @@ from torch import Tensor, nn
 from torch.optim.swa_utils import AveragedModel, update_bn
 
 from radhar_cli import __version__
-from radhar_cli.arrays import Index
 from radhar_cli.config.identity import resolved
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError, FolderError, RadharError
@@ -34,9 +33,10 @@ from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
 from radhar_cli.learning.targets import SCORES, loss_and_score
-from radhar_cli.progress import Messages
-from radhar_cli.randomness import TRAINING, stream
-from radhar_cli.worker_process import keep_memory
+from radhar_cli.numerics.arrays import Index
+from radhar_cli.numerics.randomness import TRAINING, stream
+from radhar_cli.processes.progress import Messages
+from radhar_cli.processes.worker_process import keep_memory
 
 STATISTICS_IMAGES = 2048  # from which batch norm of averaged weights has its statistics
 FEW_STEPS = 10  # an epoch; fewer are warned of

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Levels
+from radhar_cli.numerics.arrays import Float, Levels
 
 # What the twelve activities and sequences of movements consist of. Data sets store these numbers:
 # new names go to the end.

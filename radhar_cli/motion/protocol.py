@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 
 T = TypeVar("T")
 CACHED_SETS = 8  # sets of times that a cache holds: the chirps of a board's transmitters

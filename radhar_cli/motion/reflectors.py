@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 
 TONES = 8
 SLOWEST = 0.1  # of a residual motion, over its highest frequency

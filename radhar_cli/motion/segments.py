@@ -10,9 +10,9 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.skeleton import default_weight
+from radhar_cli.numerics.arrays import Float
 
 REFERENCE_STATURE = 1.75
 # A trunk reaches from below the hip to above the shoulders, on both sides of the torso point, and a

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 
 REFERENCE_HEIGHT = 1.8
 REFERENCE_WEIGHT = 84.24

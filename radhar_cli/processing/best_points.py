@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.frame_maps import spectra, without_turns
 from radhar_cli.processing.points import COLUMNS, Cloud, elevation_pair
 from radhar_cli.radar.board import Board, sidelobe

@@ -10,8 +10,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from radhar_cli.accelerators import installed, machine_code
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.accelerators import installed, machine_code
+from radhar_cli.numerics.arrays import Complex, Float
 
 MIN_SAMPLES = 2**19  # with fewer, numba takes longer to load than it saves
 

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Float, Levels
+from radhar_cli.numerics.arrays import Bool, Float, Levels
 
 SET = 255  # level of a detected cell; all others are 0
 FLOOR_DB = -300.0  # lowest level of a map scaled near 1

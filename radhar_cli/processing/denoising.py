@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 
 
 def savgol(x: Complex, order: int, frame: int) -> Complex:

@@ -1,7 +1,7 @@
 """Bulk Doppler compensation by a torso-delay track (paper, section "DTMs Generation")."""
 
-from radhar_cli.arrays import Complex, Float
-from radhar_cli.phasor import unit_phasor
+from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.numerics.phasor import unit_phasor
 
 
 def compensate(x: Complex, torso_delay: Float, f0: float) -> Complex:

@@ -4,8 +4,8 @@ from math import log
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.errors import RadharError
+from radhar_cli.numerics.arrays import Float
 
 
 class EntropySum:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.accelerators import installed, load
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.accelerators import installed, load
+from radhar_cli.numerics.arrays import Complex, Float
 
 COEFFICIENTS = 2**15  # of frames transformed at once, which stay in a processor's cache, by FFTW
 PLANNING = Lock()  # one thread at a time forgets wisdom and plans

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board, longest_rows
 

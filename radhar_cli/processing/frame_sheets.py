@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from PIL import Image, ImageDraw
 
-from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.image import binary_exponent, levels, reduced

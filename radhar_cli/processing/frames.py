@@ -6,8 +6,8 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index
-from radhar_cli.rounding import exact
+from radhar_cli.numerics.arrays import Float, Index
+from radhar_cli.numerics.rounding import exact
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.stft import Stft
 
 

@@ -9,7 +9,7 @@ from math import floor
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index
+from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.processing.frames import Frames
 
 

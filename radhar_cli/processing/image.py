@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Half, Levels
 from radhar_cli.errors import RadharError
+from radhar_cli.numerics.arrays import Float, Half, Levels
 from radhar_cli.processing.cfar import FLOOR_DB
 from radhar_cli.processing.entropy import EntropySum, largest_power
 

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Index
+from radhar_cli.numerics.arrays import Complex, Index
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Complex, Float, Index
+from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.processing.frame_maps import (
     doppler_spectrum,
     range_spectrum,

@@ -4,7 +4,7 @@ import hashlib
 from dataclasses import dataclass, field
 from math import nan
 
-from radhar_cli.arrays import Float, Half, Levels
+from radhar_cli.numerics.arrays import Float, Half, Levels
 from radhar_cli.processing.entropy import entropy_bits
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Complex
+from radhar_cli.numerics.arrays import Complex
 from radhar_cli.radar.waveform import Waveform
 
 

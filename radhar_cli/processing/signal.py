@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.processing.canceller import Canceller
 from radhar_cli.radar.pulse_times import PulseTimes
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.errors import RadharError
+from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.processing.fourier import fill_in_spectra
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate

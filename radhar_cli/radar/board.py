@@ -14,8 +14,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from radhar_cli.arrays import Float
-from radhar_cli.light import SPEED_OF_LIGHT
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform

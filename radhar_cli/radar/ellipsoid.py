@@ -17,8 +17,8 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index
-from radhar_cli.light import SPEED_OF_LIGHT
+from radhar_cli.numerics.arrays import Float, Index
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 
 LEFT_IN_SHADOW = 0.03  # field deep in the shadow of a body, relative to none
 PENUMBRA = 0.4  # width of the edge of a shadow over sqrt(wavelength * 1 m)

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.radar.wall import Crossing, Wall, faces_met
 
 Polarisation = Literal["perpendicular", "parallel"]

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.radar.materials import permittivity
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 

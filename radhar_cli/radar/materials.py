@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 
 EPSILON_0 = 8.8541878128e-12  # F/m
 

@@ -7,7 +7,7 @@ middle of the shadow it is 0.8 dB stronger to 10 dB weaker (tests/radar/test_per
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 
 HALF_WIDTH_M = 0.165  # half width of a person of usual thickness
 LEAST = 0.03  # two-way field that gets around a person

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.room import DIRECT_LEG, Leg, Point
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 
 
 @dataclass(frozen=True, eq=False)

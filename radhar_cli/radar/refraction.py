@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.wall import Crossing, Wall, extra_delay, faces_met
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 

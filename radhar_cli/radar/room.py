@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.fresnel import reflection
 
 Point = tuple[float, float, float]

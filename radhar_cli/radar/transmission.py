@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.fresnel import faces_factor
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.refraction import refract

@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from radhar_cli.arrays import Float
-from radhar_cli.light import SPEED_OF_LIGHT as SPEED_OF_LIGHT
-from radhar_cli.rounding import half_up
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT as SPEED_OF_LIGHT
+from radhar_cli.numerics.rounding import half_up
 
 
 @dataclass(frozen=True)

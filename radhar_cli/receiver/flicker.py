@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.look import Look
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment

@@ -1,7 +1,7 @@
 """Interface of impairments, which act on an echo between the antenna and the processing."""
 
-from radhar_cli.arrays import Complex
 from radhar_cli.errors import RadharError
+from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.look import Look
 
 

@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float, Index
-from radhar_cli.phasor import unit_phasor
+from radhar_cli.numerics.arrays import Complex, Float, Index
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.look import Look
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment

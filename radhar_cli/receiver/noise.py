@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.arrays import Complex
+from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.look import Look
 from radhar_cli.receiver.impairment import Impairment
 

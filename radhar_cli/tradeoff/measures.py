@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Levels
 from radhar_cli.echo.direct import Accuracy
-from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import record, run
+from radhar_cli.numerics.arrays import Complex, Levels
+from radhar_cli.products.run import record, run
+from radhar_cli.products.table import plan_images
 from radhar_cli.tradeoff.settings import Scenes, Setting
 
 QUIET = ("snr_db=null", "receiver.noise_figure_db=null")

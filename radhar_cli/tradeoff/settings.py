@@ -8,8 +8,8 @@ from pathlib import Path
 from radhar_cli.config import load_config
 from radhar_cli.config.number import nominal
 from radhar_cli.config.schema import Config, EngineConfig
-from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.scene import Scene
+from radhar_cli.scene_checks.validity import draw_valid_scene
 
 # Of what differs most: a standing person's arms, a walk, a fall.
 QUICK = ("punching", "walking", "walking_to_falling")

@@ -7,7 +7,7 @@ from statistics import median, quantiles
 from typing import Any, TypeAlias
 
 from radhar_cli.errors import RadharError
-from radhar_cli.progress import Progress
+from radhar_cli.processes.progress import Progress
 from radhar_cli.tradeoff.measures import Errors, SceneErrors, Times, time_setting
 from radhar_cli.tradeoff.settings import Scenes, Setting, sweep
 

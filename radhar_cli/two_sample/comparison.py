@@ -14,10 +14,10 @@ import numpy as np
 from PIL import Image
 from scipy.stats import ks_2samp, wasserstein_distance
 
-from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.learning.metrics import wilson
-from radhar_cli.progress import Progress
-from radhar_cli.randomness import TRAINING, stream
+from radhar_cli.numerics.arrays import Bool, Float, Index
+from radhar_cli.numerics.randomness import TRAINING, stream
+from radhar_cli.processes.progress import Progress
 from radhar_cli.two_sample.map_statistics import (
     STATISTICS,
     DopplerMap,

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import binary_dilation, find_objects, label, median_filter, uniform_filter
 
-from radhar_cli.arrays import Bool, Float
+from radhar_cli.numerics.arrays import Bool, Float
 
 TALL = 0.04  # of all rows: a piece apart from the zero line that is as tall belongs to the body
 JOINED = 2  # cells between two pieces that are one

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.capture.images import is_image
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError, did_you_mean
 from radhar_cli.learning.images.folder import map_of_folder
 from radhar_cli.learning.images.image_set import ImageSet, Resized
 from radhar_cli.learning.images.opening import is_h5, open_images
+from radhar_cli.numerics.arrays import Float, Index, Levels
 
 MAX_SIDE = 512  # px; larger images are brought there
 ASSUMED_DB = 40.0  # that levels span where a file does not say

@@ -6,20 +6,20 @@ import h5py
 import numpy as np
 import pytest
 from capture.dca1000_file import Radar, body, echo, words, write_studio
-from command_line import radhar
+from helpers.command_line import radhar
 
-from radhar_cli.arrays import Complex
 from radhar_cli.capture.chain import Maps, maps_of
 from radhar_cli.capture.importing import import_capture, read_settings, write_simulated
 from radhar_cli.capture.recording import Label, Recording
 from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config, possible_maps
 from radhar_cli.errors import CaptureError
+from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.simulation.simulate import Simulation, simulate
+from radhar_cli.single_scene.simulate import Simulation, simulate
 
 SCENE = """
 activities: [walking]

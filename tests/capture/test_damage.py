@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from capture.test_array_files import RADAR, cube, imported, save
-from command_line import radhar
+from helpers.command_line import radhar
 
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.importing import import_capture, read_settings

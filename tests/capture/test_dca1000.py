@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from capture.dca1000_file import Radar, body, echo, words, write_studio
-from command_line import radhar
+from helpers.command_line import radhar
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 

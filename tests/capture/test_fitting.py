@@ -6,18 +6,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from command_line import radhar
-from documented import KEYS
-from slow import slow
+from helpers.command_line import radhar
+from helpers.documented import KEYS
+from helpers.slow import slow
 
-from radhar_cli.activity import ACTIVITIES
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.capture.fitting import fit
 from radhar_cli.capture.importing import write_simulated
 from radhar_cli.capture.recording import Label, RecordingInfo, SourceNote, write_recording
 from radhar_cli.config import load_config
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.simulation.simulate import Simulation, simulate
+from radhar_cli.single_scene.simulate import Simulation, simulate
 
 CONFIG = """
 duration_s: 4

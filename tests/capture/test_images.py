@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import radhar
+from helpers.command_line import radhar
 from PIL import Image
 
 from radhar_cli.capture import images

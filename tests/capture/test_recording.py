@@ -6,8 +6,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from command_line import radhar
-from small import small_config
+from helpers.command_line import radhar
+from helpers.small import small_config
 
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording, is_recording

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from radhar_cli.arrays import Complex, Float
 from radhar_cli.capture.tracking import TorsoTrack, hann_in_range, peaks, track_torso
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import radhar
+from helpers.command_line import radhar
 
 from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.importing import write_simulated
@@ -14,8 +14,8 @@ from radhar_cli.config import load_config, resolved
 from radhar_cli.config.schema import MeasuredConfig
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.learning.images.opening import open_images
-from radhar_cli.pipeline.products import image_of
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.products.table import image_of
+from radhar_cli.single_scene.simulate import simulate
 
 CONFIG = """
 duration_s: 3

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import ok, radhar
-from documented import KEYS
+from helpers.command_line import ok, radhar
+from helpers.documented import KEYS
 from PIL import Image
 
 CONFIG = """

@@ -5,8 +5,8 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from command_line import ok, radhar
-from small import small_config
+from helpers.command_line import ok, radhar
+from helpers.small import small_config
 
 from radhar_cli.figures.page import page, write_figure
 

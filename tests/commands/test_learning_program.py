@@ -5,8 +5,8 @@ import json
 import shutil
 
 import pytest
-from command_line import ok, radhar
-from documented import KEYS
+from helpers.command_line import ok, radhar
+from helpers.documented import KEYS
 from learning.patterns import BASE, split_tree, trained
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 from shutil import copytree
 
 import h5py
-from command_line import ok, radhar
-from small import small_config
+from helpers.command_line import ok, radhar
+from helpers.small import small_config
 
 from radhar_cli.config.schema import MAP_NAMES
 

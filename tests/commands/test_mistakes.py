@@ -5,10 +5,10 @@ import shutil
 from pathlib import Path
 
 import pytest
-from command_line import radhar
+from helpers.command_line import radhar
+from helpers.recorded import frames, write_amc
+from helpers.small import small_config
 from learning.patterns import BASE, split_tree, trained, tree
-from recorded import frames, write_amc
-from small import small_config
 
 SIMULATE, GENERATE = "simulate small.yaml -a S8 -o x", "generate c.yaml -o x"
 COMPARE = "compare set"

@@ -5,10 +5,10 @@ import json
 import h5py
 import numpy as np
 import pytest
-from command_line import ROOT, ok, radhar
-from recorded import frames, write_npz
+from helpers.command_line import ROOT, ok, radhar
+from helpers.recorded import frames, write_npz
 
-from radhar_cli.activity import ACTIVITIES
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.motion.files.clip import make_clip
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import read_motion

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from command_line import ROOT, ok, radhar
-from documented import KEYS
+from helpers.command_line import ROOT, ok, radhar
+from helpers.documented import KEYS
+from helpers.small import small_config
 from learning.patterns import BASE, split_tree
-from small import small_config
 
 from radhar_cli import commands
 from radhar_cli.cli import main, program

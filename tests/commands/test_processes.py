@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from command_line import process
-from small import fingerprint
+from helpers.command_line import process
+from helpers.small import fingerprint
 
 
 def shell(line):

@@ -7,8 +7,8 @@ import shlex
 import h5py
 import pytest
 import yaml
-from command_line import ROOT, ok, process, radhar
-from small import small_config
+from helpers.command_line import ROOT, ok, process, radhar
+from helpers.small import small_config
 from typer.main import get_command
 
 from radhar_cli.cli import program

@@ -9,9 +9,9 @@ import time
 from pathlib import Path
 
 import pytest
-from command_line import processes
+from helpers.command_line import processes
+from helpers.small import SMALL, small_config
 from learning.patterns import BASE, same_run, split_tree, trained
-from small import SMALL, small_config
 from typer.testing import CliRunner
 
 from radhar_cli.cli import main, program

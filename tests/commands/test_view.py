@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import ROOT, ok, radhar
-from small import edited, small_config
+from helpers.command_line import ROOT, ok, radhar
+from helpers.small import edited, small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.figures.scene_page import of_simulation, write_page
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.single_scene.simulate import simulate
 
 pytest.importorskip("plotly", reason="needs radhar[view]")
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "google-chrome"))), None)

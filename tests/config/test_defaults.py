@@ -8,8 +8,8 @@ import pytest
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.light import SPEED_OF_LIGHT
-from radhar_cli.pipeline.validity import Flags, draw_valid_scene, warnings
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.scene_checks.validity import Flags, draw_valid_scene, warnings
 
 ROOT = Path(__file__).resolve().parents[2]
 README_ONCE = """

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
+from tests.boards import CFG
 
-from radhar_cli.activity import ACTIVITIES, activity_named
+from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.config import (
     MAP_NAMES,
     Config,
@@ -33,7 +34,6 @@ from radhar_cli.config.schema import (
     SubjectConfig,
     ToneConfig,
 )
-from tests.boards import CFG
 
 
 def test_the_defaults_of_the_paper_are_its_free_space_data_set() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from command_line import ROOT, radhar
+from helpers.command_line import ROOT, radhar
 
 from radhar_cli.config import Config
 from radhar_cli.config.json_schema import json_schema

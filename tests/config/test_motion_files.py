@@ -5,13 +5,13 @@ import shutil
 from pathlib import Path
 
 import pytest
-from recorded import frames, write_bvh, write_npz
+from helpers.recorded import frames, write_bvh, write_npz
 
-from radhar_cli.activity import activity_named
+from radhar_cli.activities.activity import activity_named
+from radhar_cli.assembly.motion_files import file_motion
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.identity import config_hash, flat_document
 from radhar_cli.errors import ConfigError, MotionFileError
-from radhar_cli.pipeline.motion_files import file_motion
 from radhar_cli.scene import draw_scene, nominal_scene
 
 TEXT = """

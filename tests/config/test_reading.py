@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activity import ACTIVITIES
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.number import Choice, Normal, Uniform, Vary
 from radhar_cli.config.reading import Override, load_section

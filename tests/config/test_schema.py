@@ -4,7 +4,7 @@ import pickle
 from pathlib import Path
 
 import pytest
-from command_line import ROOT
+from helpers.command_line import ROOT
 
 from radhar_cli.config import load_config
 from radhar_cli.config.reading import load_section

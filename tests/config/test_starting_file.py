@@ -7,7 +7,7 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from command_line import ROOT, ok, radhar
+from helpers.command_line import ROOT, ok, radhar
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.documents import PRESETS, RADARS
@@ -18,7 +18,7 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.radar.board import DEVICES
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.single_scene.simulate import simulate
 
 KINDS = pytest.mark.parametrize("kind", [Config, TrainConfig], ids=["data", "train"])
 

@@ -12,12 +12,12 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from helpers.listener import Listener
+from helpers.small import fingerprint, small_config
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from listener import Listener
-from small import fingerprint, small_config
 
-from radhar_cli.activity import Activity
+from radhar_cli.activities.activity import Activity
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset import assembly as assembly_module
 from radhar_cli.dataset import batch as batch_module
@@ -27,9 +27,9 @@ from radhar_cli.dataset.sample import Synthesised
 from radhar_cli.dataset.shards import list_shards, shard_folder
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.pipeline.validity import Flags
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import Scene, draw_scene, scene_numbers
+from radhar_cli.scene_checks.validity import Flags
 
 
 def stub_draw(config: Config, activity: Activity, index: int) -> tuple[Scene, Flags]:

@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from listener import Listener
+from helpers.listener import Listener
 
+from radhar_cli.assembly.physics import motion_of
 from radhar_cli.config import Config
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import RadharError, SceneError
-from radhar_cli.pipeline.physics import motion_of
-from radhar_cli.pipeline.run import record
+from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.single_scene.simulate import simulate
 
 ENGINES = pytest.mark.parametrize("engine", ["direct", "cube"])
 OPAQUE = {"wall": {"loss_tangent": 1}, "snr_reference": "received"}  # 77 GHz: 1e-170 or less

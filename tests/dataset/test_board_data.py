@@ -5,12 +5,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from command_line import radhar
+from helpers.command_line import radhar
+from tests.boards import CFG
 
 from radhar_cli.dataset.contact_sheet import over_bones
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.processing.frame_sheets import BONE
-from tests.boards import CFG
 
 YAML = """
 radar: {device: IWR1443BOOST, cfg: board.cfg, position_m: [0, 0, 1]}

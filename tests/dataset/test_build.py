@@ -8,10 +8,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from helpers.listener import Listener
+from helpers.small import SMALL, fingerprint, full_disk_after, small_config
 from joblib.externals.loky import get_reusable_executor
-from listener import Listener
 from PIL import Image
-from small import SMALL, fingerprint, full_disk_after, small_config
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.identity import resolved

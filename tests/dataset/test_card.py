@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from command_line import ROOT
-from listener import Listener
+from helpers.command_line import ROOT
+from helpers.listener import Listener
+from helpers.small import fingerprint, small_config
 from PIL import Image
-from small import fingerprint, small_config
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset import layout

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from command_line import radhar
-from listener import Listener
+from helpers.command_line import radhar
+from helpers.listener import Listener
+from tests.boards import CFG, CLOUDS
 
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.dataset.formats.clouds import (
@@ -22,7 +23,6 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.motion.skeleton import JOINTS
-from tests.boards import CFG, CLOUDS
 
 
 @pytest.fixture(scope="module", params=["board", "best"])

@@ -9,9 +9,9 @@ import sys
 import time
 
 import pytest
-from command_line import ROOT
-from listener import Listener
-from small import fingerprint, small_config
+from helpers.command_line import ROOT
+from helpers.listener import Listener
+from helpers.small import fingerprint, small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build

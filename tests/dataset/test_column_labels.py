@@ -6,10 +6,11 @@ from itertools import pairwise
 import h5py
 import numpy as np
 import pytest
-from listener import Listener
-from small import fingerprint, small_config
+from helpers.listener import Listener
+from helpers.small import fingerprint, small_config
 
-from radhar_cli.activity import ACTIVITIES, MOVEMENTS
+from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS
+from radhar_cli.assembly.physics import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.column_labels import column_labels, label_names
@@ -17,10 +18,9 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.verify import verify
 from radhar_cli.motion.phases import PHASES
 from radhar_cli.motion.protocol import ScattererSubset
-from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import nominal_scene
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.single_scene.simulate import simulate
 
 TEXT = """
 seed: 5

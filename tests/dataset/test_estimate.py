@@ -4,8 +4,8 @@ import time
 from itertools import count
 
 import pytest
-from command_line import ok
-from small import small_config
+from helpers.command_line import ok
+from helpers.small import small_config
 
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
@@ -14,7 +14,7 @@ from radhar_cli.dataset import estimate as estimate_module
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.estimate import estimate, jobs_that_pay, plan_build
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.progress import NO_PROGRESS
+from radhar_cli.processes.progress import NO_PROGRESS
 
 
 def test_bytes_are_close_to_those_of_the_build(tmp_path):

@@ -14,9 +14,9 @@ import pyarrow.parquet as pq
 import pytest
 import torch
 import yaml
-from command_line import ROOT, radhar
-from listener import Listener
-from small import edited, fingerprint, small_config
+from helpers.command_line import ROOT, radhar
+from helpers.listener import Listener
+from helpers.small import edited, fingerprint, small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import layout

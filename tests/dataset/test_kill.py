@@ -12,9 +12,9 @@ import time
 from pathlib import Path
 
 import pytest
-from command_line import processes
-from slow import slow
-from small import fingerprint, small_config
+from helpers.command_line import processes
+from helpers.slow import slow
+from helpers.small import fingerprint, small_config
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 FOLDERS = 7

@@ -7,10 +7,10 @@ import tracemalloc
 
 import h5py
 import pytest
-from listener import Listener
+from helpers.listener import Listener
+from helpers.small import small_config
+from helpers.stub_shards import stub_shard
 from PIL import ImageFont
-from small import small_config
-from stub_shards import stub_shard
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import build as build_module

@@ -8,9 +8,9 @@ import time
 from pathlib import Path
 
 import pytest
-from command_line import radhar
-from listener import Listener
-from small import fingerprint, small_config
+from helpers.command_line import radhar
+from helpers.listener import Listener
+from helpers.small import fingerprint, small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build

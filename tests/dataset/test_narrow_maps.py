@@ -3,15 +3,15 @@
 import h5py
 import numpy as np
 import pytest
-from command_line import ok, radhar
+from helpers.command_line import ok, radhar
 
-from radhar_cli.activity import activity_named
+from radhar_cli.activities.activity import activity_named
 from radhar_cli.config.reading import load_config
 from radhar_cli.dataset.sample import storable_array
 from radhar_cli.errors import SceneError
-from radhar_cli.pipeline.plan import plan
-from radhar_cli.pipeline.products import products
-from radhar_cli.pipeline.run import run
+from radhar_cli.products.plan import plan
+from radhar_cli.products.run import run
+from radhar_cli.products.table import products
 from radhar_cli.scene import draw_scene
 
 SMALL = """

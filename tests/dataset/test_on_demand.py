@@ -4,9 +4,9 @@ import pickle
 
 import numpy as np
 import pytest
-from command_line import process
-from listener import Listener
-from small import SMALL, small_config
+from helpers.command_line import process
+from helpers.listener import Listener
+from helpers.small import SMALL, small_config
 
 import radhar_cli as radhar
 from radhar_cli.config import load_config
@@ -15,7 +15,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.on_demand import Recipe, sample
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError, SceneError
-from radhar_cli.pipeline.products import plan_images
+from radhar_cli.products.table import plan_images
 
 EVERYTHING = """
 on_invalid: redraw

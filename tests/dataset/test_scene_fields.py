@@ -2,13 +2,13 @@
 
 from math import pi
 
-import boards
 import numpy as np
 import pytest
+from helpers import boards
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activity import ACTIVITIES, activity_named
+from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.dataset.scene_fields import TAKEN, fields, values
 from radhar_cli.scene import draw_scene, numbers, scene_numbers

@@ -7,7 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from small import small_config
+from helpers.small import small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import scene_fields

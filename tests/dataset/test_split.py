@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activity import ACTIVITIES
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import Config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.split import TEST, TRAIN, VALIDATION, split_rows, split_warnings

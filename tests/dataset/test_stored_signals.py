@@ -5,9 +5,9 @@ import hashlib
 import h5py
 import numpy as np
 import pytest
-from small import SMALL, edited, fingerprint, small_config
+from helpers.small import SMALL, edited, fingerprint, small_config
 
-from radhar_cli.activity import activity_named
+from radhar_cli.activities.activity import activity_named
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
 from radhar_cli.dataset import verify as verification
@@ -17,7 +17,7 @@ from radhar_cli.dataset.layout import row_bytes
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError
-from radhar_cli.pipeline.run import record
+from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene
 
 WITH_SIGNALS = SMALL + "output: {png: false, power: float16, slow_time: true}\n"

@@ -3,7 +3,7 @@
 import shutil
 
 import pytest
-from small import full_disk_after, small_config
+from helpers.small import full_disk_after, small_config
 
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
@@ -11,8 +11,8 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.summary import summarise
 from radhar_cli.errors import FolderError
-from radhar_cli.simulation.scene_file import write_all
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.single_scene.scene_file import write_all
+from radhar_cli.single_scene.simulate import simulate
 
 
 @pytest.mark.parametrize("name", ["", "dataset.h5"])

@@ -11,9 +11,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from listener import Listener
+from helpers.listener import Listener
+from helpers.small import SMALL, small_config
 from PIL import Image
-from small import SMALL, small_config
 
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import Config, load_config

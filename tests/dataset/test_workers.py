@@ -13,7 +13,7 @@ import sys
 from radhar_cli.dataset.workers import run_tasks
 
 def counts():
-    from radhar_cli.worker_process import prepare_process
+    from radhar_cli.processes.worker_process import prepare_process
     prepare_process()
     import scipy.linalg
     from threadpoolctl import threadpool_info

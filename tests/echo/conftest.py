@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from radhar_cli.accelerators import installed
 from radhar_cli.echo import compiled
+from radhar_cli.numerics.accelerators import installed
 
 
 @pytest.fixture(scope="module", params=["numpy", "numba"])

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import reference as ref
 
-from radhar_cli.activity import ACTIVITIES, Activity
+from radhar_cli.activities.activity import ACTIVITIES, Activity
+from radhar_cli.assembly.physics import motion_of
 from radhar_cli.config.schema import Config
 from radhar_cli.echo.accuracy import AccuracyError, measured_db
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import ScattererSubset
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.pipeline.physics import motion_of
-from radhar_cli.pipeline.run import record
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Fir
+from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import draw_scene
 

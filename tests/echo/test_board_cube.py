@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.boards import MARS, Straight, channels
 
-from radhar_cli.arrays import Float
 from radhar_cli.echo.accuracy import SPARE_DB, AccuracyError
 from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power, measured_db
 from radhar_cli.echo.paths import Paths
-from radhar_cli.light import SPEED_OF_LIGHT
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
-from tests.boards import MARS, Straight, channels
 
 P, V, A = [(2, 0.3, -0.1), (1.5, -0.4, 0.6)], [(-1, 0.2, 0), (0.5, 0, 0.3)], [1, 0.5]
 # Of a program of other authors; [frame, loop, virtual, sample].

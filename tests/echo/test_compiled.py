@@ -8,13 +8,13 @@ import reference as ref
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.accelerators import installed
 from radhar_cli.echo import compiled, direct
 from radhar_cli.echo.direct import DirectEcho, Settings
 from radhar_cli.echo.half_band_sum import half_band_table
 from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, shifts
 from radhar_cli.echo.knots import Spacing
 from radhar_cli.echo.paths import Paths
+from radhar_cli.numerics.accelerators import installed
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, NO_CANCELLER
 from radhar_cli.radar.waveform import Waveform
 

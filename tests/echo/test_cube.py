@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import reference as ref
 
-from radhar_cli.activity import ACTIVITIES
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config.schema import Config
 from radhar_cli.echo import exact
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.phasor import unit_phasor
-from radhar_cli.pipeline.run import record
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import Fir
+from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import draw_scene
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import reference as ref
 
-from radhar_cli.activity import ACTIVITIES, Activity
+from radhar_cli.activities.activity import ACTIVITIES, Activity
 from radhar_cli.config.schema import Config
-from radhar_cli.pipeline.run import record
+from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene
 
 # The default tolerance; what the maps show is 50 dB deep.

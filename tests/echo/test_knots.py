@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from radhar_cli.arrays import Float
 from radhar_cli.echo.accuracy import probed_pulses
 from radhar_cli.echo.knots import Spacing, resolve
 from radhar_cli.echo.paths import Paths
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.waveform import Waveform
 
 RADAR = Waveform(77e9, 4e9, 40e-6, 1e6, prf=5000.0, duration=0.5)

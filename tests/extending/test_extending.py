@@ -7,17 +7,18 @@ from functools import partial
 from itertools import combinations
 from pathlib import Path
 
-import command_line
 import h5py
 import numpy as np
 import pytest
-from listener import Listener
+from helpers import command_line
+from helpers.listener import Listener
+from helpers.signals import signal
 from pydantic import ValidationError
-from signals import signal
 
-from radhar_cli import activity, registry
-from radhar_cli.activity import activity_named, add_activity
-from radhar_cli.arrays import Complex, Float
+from radhar_cli import extensions
+from radhar_cli.activities import activity
+from radhar_cli.activities.activity import activity_named, add_activity
+from radhar_cli.assembly.physics import antennas_of, impairments_of, motion_of, waveform_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.schema import ToneConfig, possible_maps
 from radhar_cli.dataset.build import build
@@ -26,21 +27,21 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import ConfigError, RadharError, SceneError
-from radhar_cli.pipeline.physics import antennas_of, impairments_of, motion_of, waveform_of
-from radhar_cli.pipeline.plan import Product
-from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import process, record
-from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.look import Look
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
+from radhar_cli.products.plan import Product
+from radhar_cli.products.run import process, record
+from radhar_cli.products.table import plan_images
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Person, Scene, nominal_scene
-from radhar_cli.simulation.simulate import RAW_ECHO
+from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.single_scene.simulate import RAW_ECHO
 
 C = 299_792_458.0
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500}
@@ -339,7 +340,7 @@ def offset_and_noise(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impa
 
 @pytest.fixture
 def own(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(registry, "_PRODUCTS", {})
+    monkeypatch.setattr(extensions, "_PRODUCTS", {})
 
 
 OWN = {
@@ -358,7 +359,7 @@ def test_products_of_ones_own_reach_a_data_set(tmp_path: Path, engine: str, jobs
     """A map, an array with another number of rows a sample, antennas and an impairment, with noise;
     the same with workers, and synthesised anew."""
     for product in OWN.values():
-        registry.add_product(product)
+        extensions.add_product(product)
     document = {
         "activities": ["punching", "walking"],
         "samples_per_class": 2,
@@ -386,7 +387,7 @@ def test_products_of_ones_own_reach_a_data_set(tmp_path: Path, engine: str, jobs
 @pytest.mark.usefixtures("own")
 def test_a_map_of_ones_own_is_simulated_and_drawn(tmp_path: Path) -> None:
     for product in (RAW_ECHO, OWN["a map"]):
-        registry.add_product(product)
+        extensions.add_product(product)
     config = tmp_path / "own.yaml"
     document = CONFIG.model_dump(mode="json", exclude_defaults=True)
     config.write_text(json.dumps(document | {"maps": ["stft", "range_speed"]}))
@@ -400,13 +401,13 @@ def test_a_map_of_ones_own_is_simulated_and_drawn(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("own")
 def test_a_data_set_is_read_where_its_products_are_not_known(tmp_path: Path) -> None:
-    registry.add_product(RAW_ECHO)
-    registry.add_product(OWN["a map"])
+    extensions.add_product(RAW_ECHO)
+    extensions.add_product(OWN["a map"])
     config = Config.model_validate(
         CONFIG.model_dump() | {"maps": ["range_speed"], "samples_per_class": 1}
     )
     build(config, tmp_path, 1, Listener())
-    registry._PRODUCTS.clear()
+    extensions._PRODUCTS.clear()
     with open_dataset(tmp_path) as data:
         assert data.maps["range_speed"][0].any()
     with pytest.raises(ValidationError, match="should be 'rtm'"):
@@ -434,7 +435,7 @@ def test_two_versions_of_a_product_are_two_data_sets(
 ) -> None:
     hashes = []
     for make in (*makes, makes[0]):
-        registry.add_product(Product("scaled", ("signal",), make, ""))
+        extensions.add_product(Product("scaled", ("signal",), make, ""))
         hashes.append(identity_hash(identity(CONFIG)))
     assert hashes[0] == hashes[2] != hashes[1]
 
@@ -442,7 +443,7 @@ def test_two_versions_of_a_product_are_two_data_sets(
 @pytest.mark.usefixtures("own")
 @pytest.mark.parametrize("name", ["antennas", "receiver"])
 def test_a_board_refuses_products_that_it_has_not(name: str) -> None:
-    registry.add_product(OWN[name])
+    extensions.add_product(OWN[name])
     board = load_config("configs/boards/iwr1443.yaml")
     with pytest.raises(ConfigError, match=f"product {name}: has no effect with radar.cfg"):
         plan_images(board)
@@ -450,20 +451,20 @@ def test_a_board_refuses_products_that_it_has_not(name: str) -> None:
 
 @pytest.mark.usefixtures("own")
 def test_products_that_cannot_be_stored_are_refused() -> None:
-    registry.add_product(Product("words", (), lambda: "text", ""))
+    extensions.add_product(Product("words", (), lambda: "text", ""))
     scene = walking(output=CONFIG.output.model_copy(update={"products": ("words",)}))
     with pytest.raises(SceneError, match="words is str; should be an array"):
         synthesise(scene, plan_images(scene.config), scene.config)
     with pytest.raises(ValueError, match="should be a name"):
-        registry.add_product(Product("a b", (), tuple, ""))
+        extensions.add_product(Product("a b", (), tuple, ""))
 
 
 def test_the_commands_import_modules_of_ones_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "my_radar.py").write_text(
-        "from radhar_cli.pipeline.plan import Product\n"
-        "from radhar_cli.registry import add_product\n"
+        "from radhar_cli.products.plan import Product\n"
+        "from radhar_cli.extensions import add_product\n"
         "add_product(Product('middle', ('signal',), lambda s: s.x[0, 0, 9:19], 'ten pulses'))\n"
     )
     sets = (
@@ -495,7 +496,7 @@ def test_the_commands_import_modules_of_ones_own(
 FAN = """
 from dataclasses import dataclass
 import numpy as np
-from radhar_cli.activity import add_activity
+from radhar_cli.activities.activity import add_activity
 
 @dataclass(frozen=True)
 class Fan:

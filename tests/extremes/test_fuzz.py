@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 import reference as ref
 import yaml
-from extreme_scenes import ENGINES
-from random_configs import KEYS, Document, Drawer
-from slow import slow
+from helpers.extreme_scenes import ENGINES
+from helpers.random_configs import KEYS, Document, Drawer
+from helpers.slow import slow
 
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError, RadharError
-from radhar_cli.pipeline import validity
-from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import Results, run
-from radhar_cli.pipeline.run import record as record_scene
-from radhar_cli.pipeline.validity import draw_valid_scene, scene_warnings
+from radhar_cli.products.run import Results, run
+from radhar_cli.products.run import record as record_scene
+from radhar_cli.products.table import plan_images
 from radhar_cli.scene import draw_scene
+from radhar_cli.scene_checks import validity
+from radhar_cli.scene_checks.validity import draw_valid_scene, scene_warnings
 
 SEED = 20261121
 BLOCKS, CONFIGS = 10, 220

@@ -1,6 +1,6 @@
 """Ten million pulses: memory does not grow with the recording beyond a few arrays of its length.
 
-A process of its own each, so that its peak is its own. tests/pipeline/test_long_recordings.py has
+A process of its own each, so that its peak is its own. tests/products/test_long_recordings.py has
 two million.
 """
 
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from peak_memory import PEAK
+from helpers.peak_memory import PEAK
 
 ROOT = Path(__file__).resolve().parents[2]
 PULSES = int(os.environ.get("RADHAR_LONG_PULSES", 10_000_000))
@@ -23,12 +23,12 @@ PROGRAM = (
     PEAK
     + """
 import json, sys
-from radhar_cli.activity import activity_named
+from radhar_cli.activities.activity import activity_named
 from radhar_cli.config import Config
-from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import run
-from radhar_cli.pipeline.validity import draw_valid_scene
-from radhar_cli.worker_process import prepare_process
+from radhar_cli.products.table import plan_images
+from radhar_cli.products.run import run
+from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.processes.worker_process import prepare_process
 
 prepare_process()
 config = Config.model_validate(json.loads(sys.argv[1]))

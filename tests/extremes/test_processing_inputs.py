@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from signals import signal
+from helpers.signals import signal
 
 from radhar_cli.config.schema import Config, SavgolConfig
 from radhar_cli.errors import RadharError
-from radhar_cli.pipeline.products import products
 from radhar_cli.processing import fsst, image
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE
 from radhar_cli.processing.denoising import savgol
@@ -24,6 +23,7 @@ from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.stft import Stft
+from radhar_cli.products.table import products
 from radhar_cli.radar.waveform import Waveform
 
 Function = Callable[[np.ndarray], np.ndarray]

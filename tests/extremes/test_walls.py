@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 import reference as ref
-from extreme_scenes import config_of, record, relative, signal
+from helpers.extreme_scenes import config_of, record, relative, signal
 
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError, SceneError
-from radhar_cli.pipeline.run import Results
+from radhar_cli.products.run import Results
 from radhar_cli.radar.wall import Wall, crossing
 
 DIRECT_DB = -60.0

@@ -19,7 +19,7 @@ from radhar_cli.figures.maps_panel import (
 )
 from radhar_cli.figures.sides import UNCHANGED, gif_blocks
 from radhar_cli.figures.stickman import draw_stickman, frame_count
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.single_scene.simulate import simulate
 
 ROOT = Path(__file__).resolve().parents[2]
 WALL = ROOT / "configs/paper/figures_through_wall.yaml"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch
-from command_line import radhar
+from helpers.command_line import radhar
 from learning.patterns import CLASSES, Watched, clear_line, plant, settings, tree
 from PIL import Image
 

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
+from helpers.listener import Listener
+from helpers.small import small_config
 from learning.patterns import CLASSES, clear_line, plant, split_tree, trained, tree
-from listener import Listener
 from PIL import Image
-from small import small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build

@@ -1,4 +1,4 @@
-"""scripts/few_shots.py: accuracy after learning from a few labelled images of each class."""
+"""Accuracy after learning from a few labelled images of each class (few_shots.py)."""
 
 import json
 import math

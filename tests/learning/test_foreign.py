@@ -4,10 +4,10 @@ import json
 
 import numpy as np
 import pytest
+from helpers.listener import Listener
+from helpers.small import small_config
 from learning.patterns import CLASSES, clear_line, one_clear_line, split_tree, tree
-from listener import Listener
 from PIL import Image
-from small import small_config
 from typer.testing import CliRunner
 
 from radhar_cli.cli import program

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import ok, radhar
+from helpers.command_line import ok, radhar
+from helpers.listener import Listener
+from helpers.small import small_config
 from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 from learning.patterns import clear_line, settings, split_tree, stripes, tree
-from listener import Listener
 from PIL import Image
-from small import small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
@@ -23,7 +23,7 @@ from radhar_cli.learning.images.image_set import ImageSet, check_split_name, lab
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.training import checked_images
-from radhar_cli.rounding import half_up
+from radhar_cli.numerics.rounding import half_up
 
 SET = """
 seed: 3

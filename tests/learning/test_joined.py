@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from helpers.listener import Listener
 from learning.patterns import Watched, clear_line, same_run, settings, split_tree
-from listener import Listener
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from command_line import radhar
+from helpers.command_line import radhar
 
 from radhar_cli.learning.images.h5 import h5_images
 from radhar_cli.learning.images.image_set import ImageSet

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from helpers.listener import Listener
 from learning.patterns import (
     Watched,
     best_weights,
@@ -19,7 +20,6 @@ from learning.patterns import (
     trained,
     tree,
 )
-from listener import Listener
 
 from radhar_cli.cli import program
 from radhar_cli.errors import FolderError, ModelError, RadharError

@@ -2,8 +2,8 @@
 
 import pytest
 import torch
+from helpers.slow import slow
 from learning.patterns import SIZE, trained
-from slow import slow
 
 from radhar_cli.errors import ModelError
 from radhar_cli.learning import run_folder as run

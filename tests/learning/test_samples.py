@@ -11,8 +11,8 @@ from extending.test_extending import swinging
 from torch.utils.data import DataLoader, DistributedSampler
 
 import radhar_cli as radhar
-from radhar_cli import activity
-from radhar_cli.activity import add_activity
+from radhar_cli.activities import activity
+from radhar_cli.activities.activity import add_activity
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.on_demand import sample

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from command_line import radhar
+from helpers.command_line import radhar
+from tests.boards import CFG, CLOUDS
 from torch.utils.data import DataLoader
 
 import radhar_cli
@@ -24,7 +25,6 @@ from radhar_cli.learning.models.cloudnet import moving_centroid
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.skeleton_result import predict_skeletons
 from radhar_cli.learning.targets import skeleton_loss
-from tests.boards import CFG, CLOUDS
 
 QUICK = ("--set", "device=cpu", "--set", "precision=float32", "--set", "threads=1")
 

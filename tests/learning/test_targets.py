@@ -6,8 +6,8 @@ from pathlib import Path
 
 import few_shots
 import pytest
-from boards import CFG, CLOUDS
-from command_line import Done, radhar
+from helpers.boards import CFG, CLOUDS
+from helpers.command_line import Done, radhar
 
 from radhar_cli.errors import RadharError
 from radhar_cli.learning import adaptation

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from command_line import radhar as run
+from helpers.command_line import radhar as run
 from torch.utils.data import DataLoader
 
 import radhar_cli as radhar

@@ -9,6 +9,7 @@ import time
 import numpy as np
 import pytest
 import torch
+from helpers.slow import slow
 from learning.patterns import (
     BASE,
     Watched,
@@ -23,7 +24,6 @@ from learning.patterns import (
     tree,
     without_seconds,
 )
-from slow import slow
 from torch import nn
 
 from radhar_cli.learning import run_files, targets, training

@@ -6,7 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from radhar_cli.activity import ACTIVITIES, activity_named
+from radhar_cli.activities.activity import ACTIVITIES, activity_named
+from radhar_cli.assembly.physics import motion_of
 from radhar_cli.config import Config
 from radhar_cli.motion.protocol import Motion, ScattererSubset
 from radhar_cli.motion.segments import (
@@ -18,7 +19,6 @@ from radhar_cli.motion.segments import (
     thickness,
 )
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.scene import nominal_scene
 
 STATURE = 1.75

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from tests.boards import MARS, cube_of
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.points import board_points
 from radhar_cli.radar.board import DEVICES, Array
 from radhar_cli.radar.detection import CASO, Cfar, Detection
-from tests.boards import MARS, cube_of
 
 
 def _strongest(cube: Float, board: object) -> Float:

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from helpers.signals import signal
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from signals import signal
 
 from radhar_cli.errors import RadharError
 from radhar_cli.processing import fsst

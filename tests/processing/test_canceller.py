@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.signal import butter, lfilter
 
-from radhar_cli.accelerators import installed, machine_code
+from radhar_cli.numerics.accelerators import installed, machine_code
 from radhar_cli.processing import canceller as canceller_module
 from radhar_cli.processing.canceller import (
     FIRST_DIFFERENCE,

@@ -8,7 +8,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from radhar_cli.accelerators import installed
+from radhar_cli.numerics.accelerators import installed
 from radhar_cli.processing import fourier
 from radhar_cli.processing.fourier import COEFFICIENTS, fill_in_spectra
 
@@ -103,7 +103,7 @@ def test_dask_is_not_imported():
     """pyfftw would: that takes as long as thirty of the paper's samples."""
     program = """
 import sys
-from radhar_cli.accelerators import load
+from radhar_cli.numerics.accelerators import load
 load("pyfftw").FFTW
 assert "dask" not in sys.modules
 """

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers.signals import signal
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from signals import signal
 
 from radhar_cli.processing import stft as stft_module
 from radhar_cli.processing.frames import Frames

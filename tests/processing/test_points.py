@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from tests.boards import MARS, cube_of
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.points import COLUMNS, board_points
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.detection import CA, CAGO, CASO, Cfar, Detection, ti_threshold_db
-from tests.boards import MARS, cube_of
 
 DETECTION = Detection(
     Cfar(CASO, 8, 4, False, ti_threshold_db(1130, 12)),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import reference as ref
-from signals import signal
+from helpers.signals import signal
 
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.stft import Stft

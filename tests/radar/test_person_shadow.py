@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import fresnel
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.radar.person_shadow import HALF_WIDTH_M, LEAST, field_behind_person, limit_shadow
 
 C = 299_792_458.0

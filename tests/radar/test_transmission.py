@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from radhar_cli.activity import activity_named
+from radhar_cli.activities.activity import activity_named
+from radhar_cli.bodies.motion_paths import MotionPaths
 from radhar_cli.config import Config
-from radhar_cli.pipeline.motion_paths import MotionPaths
-from radhar_cli.pipeline.run import record
-from radhar_cli.pipeline.validity import Flags, check_scene
+from radhar_cli.products.run import record
 from radhar_cli.radar.wall import Wall
 from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.scene_checks.validity import Flags, check_scene
 
 T = np.linspace(0, 4, 50)
 

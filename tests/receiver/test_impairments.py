@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activity import activity_named
+from radhar_cli.activities.activity import activity_named
 from radhar_cli.config.schema import Config
-from radhar_cli.pipeline.run import record
+from radhar_cli.numerics.randomness import NOISE, stream
 from radhar_cli.processing import look as look_module
 from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.look import FastTime, Look, RangeBins, RangeSum, RawSamples
+from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.flicker import FlickerNoise
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.interference import InterferenceLine

@@ -8,12 +8,9 @@ import pytest
 import reference as ref
 from scipy.stats import expon, ks_2samp, kstest
 
-from radhar_cli.activity import activity_named
+from radhar_cli.activities.activity import activity_named
+from radhar_cli.assembly.physics import motion_of
 from radhar_cli.config.schema import MAP_NAMES, Config
-from radhar_cli.pipeline.physics import motion_of
-from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import Results, run
-from radhar_cli.pipeline.run import record as record_scene
 from radhar_cli.processing.look import (
     FastTime,
     Look,
@@ -21,6 +18,9 @@ from radhar_cli.processing.look import (
     RangeSum,
     RawSamples,
 )
+from radhar_cli.products.run import Results, run
+from radhar_cli.products.run import record as record_scene
+from radhar_cli.products.table import plan_images
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.noise import (
     WhiteNoise,

@@ -5,16 +5,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.boards import CFG
 
 from radhar_cli.config.schema import Config
-from radhar_cli.pipeline.noise import noise_law_of
-from radhar_cli.pipeline.run import record
-from radhar_cli.pipeline.unused_keys import unused_keys
-from radhar_cli.pipeline.validity import config_warnings
+from radhar_cli.products.noise import noise_law_of
+from radhar_cli.products.run import record
 from radhar_cli.receiver.noise_law import Silent, Snr, Thermal
 from radhar_cli.scene import Scene, nominal_scene
-from radhar_cli.simulation.simulate import RAW_ECHO
-from tests.boards import CFG
+from radhar_cli.scene_checks.unused_keys import unused_keys
+from radhar_cli.scene_checks.validity import config_warnings
+from radhar_cli.single_scene.simulate import RAW_ECHO
 
 BOLTZMANN, T0 = 1.380649e-23, 290.0
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 250}

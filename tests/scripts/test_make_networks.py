@@ -1,4 +1,4 @@
-"""scripts/make_networks.py at a tiny size."""
+"""scripts/studies/make_networks.py at a tiny size."""
 
 import hashlib
 import json
@@ -6,10 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import command_line
 import pytest
+from helpers import command_line
 
-SCRIPT = command_line.ROOT / "scripts/make_networks.py"
+SCRIPT = command_line.ROOT / "scripts/studies/make_networks.py"
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""scripts/price_of_realism.py: a row at the smallest size, and what is made once."""
+"""scripts/studies/price_of_realism.py: a row at the smallest size, and what is made once."""
 
 import importlib.util
 import re
@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
-import command_line
 import pytest
+from helpers import command_line
 
 
 @pytest.fixture

@@ -1,18 +1,18 @@
-"""scripts/radhar_classes.py: windows of clouds, and what it refuses."""
+"""scripts/studies/radhar_classes.py: windows of clouds, and what it refuses."""
 
 import importlib.util
 import sys
 from pathlib import Path
 from types import ModuleType
 
-import command_line
 import numpy as np
 import pytest
+from helpers import command_line
 
 
 @pytest.fixture(scope="module")
 def script() -> ModuleType:
-    path = command_line.ROOT / "scripts/radhar_classes.py"
+    path = command_line.ROOT / "scripts/studies/radhar_classes.py"
     spec = importlib.util.spec_from_file_location("radhar_classes", path)
     assert spec is not None
     assert spec.loader is not None

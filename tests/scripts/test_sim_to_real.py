@@ -1,4 +1,4 @@
-"""scripts/sim_to_real.py at the smallest sizes, and on files that are not what it asks for."""
+"""The study sim_to_real.py at the smallest sizes, and on files that are not what it asks for."""
 
 import importlib.util
 import re
@@ -7,9 +7,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import command_line
 import numpy as np
 import pytest
+from helpers import command_line
 from scipy import ndimage
 
 from radhar_cli import load_config, sample
@@ -22,7 +22,7 @@ OURS = ("walking", "sitting_down", "standing_up", "grabbing", "walking_to_fallin
 
 @pytest.fixture(scope="module")
 def script() -> ModuleType:
-    path = command_line.ROOT / "scripts/sim_to_real.py"
+    path = command_line.ROOT / "scripts/studies/sim_to_real.py"
     spec = importlib.util.spec_from_file_location("sim_to_real", path)
     assert spec is not None
     assert spec.loader is not None

@@ -8,7 +8,7 @@ import stated_errors
 
 from radhar_cli.config import load_config
 from radhar_cli.echo.direct import DirectEcho
-from radhar_cli.pipeline.run import record
+from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene
 
 ROOT = Path(__file__).resolve().parents[2]

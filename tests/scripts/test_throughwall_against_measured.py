@@ -1,4 +1,4 @@
-"""scripts/throughwall_against_measured.py: reads a picture, measures what trails in it."""
+"""scripts/studies/throughwall_against_measured.py: reads a picture, measures what trails in it."""
 
 import importlib.util
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 from matplotlib import colormaps
 from PIL import Image
 
-PATH = Path(__file__).parents[2] / "scripts/throughwall_against_measured.py"
+PATH = Path(__file__).parents[2] / "scripts/studies/throughwall_against_measured.py"
 SPEC = importlib.util.spec_from_file_location(PATH.stem, PATH)
 assert SPEC is not None
 assert SPEC.loader is not None

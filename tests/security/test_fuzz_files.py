@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from helpers.small import fingerprint, full_disk_after
 from learning.patterns import trained
 from security.bounded import limited
 from security.mutations import mutate_file
-from small import fingerprint, full_disk_after
 
 from radhar_cli.commands.inspect import print_summary
 from radhar_cli.commands.terminal import BarProgress
@@ -32,8 +32,8 @@ from radhar_cli.errors import RadharError
 from radhar_cli.learning.evaluation import open_for_model
 from radhar_cli.learning.evaluation import predict as ask
 from radhar_cli.learning.run_folder import load_best, read_history, read_metadata, read_trained_on
-from radhar_cli.simulation.scene_file import write_all
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.single_scene.scene_file import write_all
+from radhar_cli.single_scene.simulate import simulate
 
 CPU = torch.device("cpu")
 

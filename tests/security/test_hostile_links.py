@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers.recorded import frames, write_amc, write_bvh
 from PIL import Image
-from recorded import frames, write_amc, write_bvh
 
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.windows import with_recordings

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from recorded import frames, write_amc, write_bvh, write_npz
+from helpers.recorded import frames, write_amc, write_bvh, write_npz
 from security.bounded import answers, limited, refused
 from security.mutations import mutate_file
 

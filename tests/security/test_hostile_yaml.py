@@ -8,7 +8,7 @@ from security.bounded import Answer, answers, refused
 
 from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
 from radhar_cli.errors import ConfigError
-from radhar_cli.untrusted import DEEPEST, parse_json
+from radhar_cli.files.untrusted import DEEPEST, parse_json
 
 
 def laughs(first: str, one: str, joined: str) -> str:

@@ -5,7 +5,7 @@ import pytest
 from radhar_cli.commands.inspect import print_summary
 from radhar_cli.commands.tell import tell
 from radhar_cli.commands.terminal import BarProgress
-from radhar_cli.untrusted import shown
+from radhar_cli.files.untrusted import shown
 
 HOSTILE = "a\x1b[2J\x9b31m\r\x08\x07\u202e\udcff[red]b[/] :smile:\nc"
 ESCAPED = r"a\x1b[2J\x9b31m\r\x08\x07\u202e\udcff[red]b[/] :smile:"

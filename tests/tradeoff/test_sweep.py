@@ -4,7 +4,7 @@ import csv
 import json
 
 import pytest
-from listener import Listener
+from helpers.listener import Listener
 from typer.testing import CliRunner
 
 from radhar_cli.cli import program

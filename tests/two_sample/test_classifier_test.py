@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.two_sample.comparison import correct_predictions, interval
 
 COUNT = 40

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from command_line import ok, radhar
-from listener import Listener
+from helpers.command_line import ok, radhar
+from helpers.listener import Listener
 from PIL import Image
 
 from radhar_cli.errors import FolderError

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.two_sample.map_statistics import (
     STATISTICS,
     DopplerMap,

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.lib.format import open_memmap
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.schema import Config
 from radhar_cli.config.ti_header import board_header
@@ -25,7 +24,8 @@ from radhar_cli.dataset.table import Entry, entries
 from radhar_cli.errors import FolderError
 from radhar_cli.motion.segments import cross, unit
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.progress import Progress
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.processes.progress import Progress
 
 SIDE = 8  # MARS: 64 points of a frame as a square
 MARS_SPLITS = ("train", "validate", "test")  # in its file names

@@ -11,7 +11,7 @@ from radhar_cli.dataset.files import refuse_links
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError, UnfinishedError
-from radhar_cli.progress import Progress
+from radhar_cli.processes.progress import Progress
 
 # Module and function of each format.
 FORMATS = {

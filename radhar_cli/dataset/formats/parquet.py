@@ -16,7 +16,7 @@ from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries, number_names
-from radhar_cli.progress import Progress
+from radhar_cli.processes.progress import Progress
 
 FILE_BYTES = 2**28  # of pixels per file
 GROUP, GROUP_BYTES = 256, 2**26  # samples and bytes of pixels per row group

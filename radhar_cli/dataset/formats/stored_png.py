@@ -2,10 +2,10 @@
 
 import hashlib
 
-from radhar_cli.arrays import Levels
 from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.errors import FolderError
+from radhar_cli.numerics.arrays import Levels
 
 
 def checked_png(data: Dataset, table: Levels, map_name: str, row: int) -> bytes:

@@ -19,7 +19,7 @@ from radhar_cli.dataset.layout import CARD, CLASSES, CONFIG, Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries, number_names
-from radhar_cli.progress import Progress
+from radhar_cli.processes.progress import Progress
 
 SHARD_BYTES, SHARD_SAMPLES = 2**28, 10_000  # most of a tar file
 READING = """\

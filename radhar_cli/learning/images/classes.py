@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from radhar_cli.activity import ACTIVITIES
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config.documents import read_document
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.images.image_set import ImageSet

@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 from scipy.spatial import KDTree
 
-from radhar_cli.arrays import Float, Levels
 from radhar_cli.dataset.png import colour_table
+from radhar_cli.numerics.arrays import Float, Levels
 
 # Of Matplotlib, MATLAB and OpenCV, as far as they go from dark to bright or over a rainbow.
 KNOWN = ("viridis", "gray", "jet", "turbo", "magma", "inferno", "plasma", "cividis", "hot", "bone")

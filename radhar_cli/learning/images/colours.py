@@ -5,11 +5,11 @@ A network that learned from viridis knows nothing of the same map drawn in jet.
 
 from dataclasses import dataclass, replace
 
-from radhar_cli.arrays import Levels
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.learning.images.colour_maps import levels_behind
 from radhar_cli.learning.images.h5 import H5Pixels
 from radhar_cli.learning.images.image_set import ImageSet, Pixels, Resized
+from radhar_cli.numerics.arrays import Levels
 
 
 @dataclass(frozen=True)

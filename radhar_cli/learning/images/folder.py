@@ -8,15 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import DEFAULT_COLOUR_MAP
 from radhar_cli.dataset.files import read_bytes
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_gray, read_rgb
 from radhar_cli.dataset.layout import CLASSES, CONFIG, PNG
 from radhar_cli.errors import FolderError
+from radhar_cli.files.untrusted import refuse_outside
 from radhar_cli.learning.images.colour_maps import PICTURES_LOOKED_AT, colour_map_of, levels_behind
 from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet, repeated
-from radhar_cli.untrusted import refuse_outside
+from radhar_cli.numerics.arrays import Levels
 
 _WANTED = (
     "should be dataset.h5, a folder that `radhar generate` wrote, or a tree <class>/<image>.png or "

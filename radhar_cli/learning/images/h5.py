@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import MeasuredConfig
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
@@ -23,6 +22,7 @@ from radhar_cli.learning.images.sequences import (
     sequence_product,
 )
 from radhar_cli.learning.settings import Auto, Kind
+from radhar_cli.numerics.arrays import Levels
 
 _WHO_AND_HOW = (
     *("subject.", "motion.", "timing.", "classes.", "people."),

@@ -8,13 +8,13 @@ from typing import Any, Protocol
 import numpy as np
 from PIL import Image
 
-from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.settings import Kind, Target
-from radhar_cli.randomness import TRAINING, stream
-from radhar_cli.rounding import half_up
+from radhar_cli.numerics.arrays import Float, Index, Levels
+from radhar_cli.numerics.randomness import TRAINING, stream
+from radhar_cli.numerics.rounding import half_up
 
 SPLIT_NAMES = {"train": 0, "val": 1, "validation": 1, "valid": 1, "test": 2}
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.colours import recolour
 from radhar_cli.learning.images.image_set import Chosen, ImageSet
+from radhar_cli.numerics.arrays import Float, Index
 
 
 def joined(sets: Sequence[ImageSet]) -> ImageSet:

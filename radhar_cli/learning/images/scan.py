@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index
 from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.numerics.arrays import Float, Index
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Index
 from radhar_cli.config.schema import FRAME_MAPS
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.settings import Kind
 from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.numerics.arrays import Float, Index
 
 COLUMNS = ("x", "y", "z", "doppler", "snr", "present")
 POINTS = 64

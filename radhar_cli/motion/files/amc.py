@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.files.amc_frames import FRAME_NUMBER, amc_frames
 from radhar_cli.motion.files.frames import concatenate_blocks
 from radhar_cli.motion.files.recording import (
@@ -24,6 +23,7 @@ from radhar_cli.motion.files.recording import (
     turn,
     with_ancestors,
 )
+from radhar_cli.numerics.arrays import Float
 
 INCH = 0.0254  # m
 RATE = 120.0  # frames per second

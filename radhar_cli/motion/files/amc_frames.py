@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.files.frames import BLOCK, SHOWN, first_bad_number, parse_numbers
 from radhar_cli.motion.files.recording import motion_file_error
+from radhar_cli.numerics.arrays import Float
 
 MAX_FRAME = 2**20  # bytes of one frame; the largest skeleton allowed has about 100 kB
 FRAME_NUMBER = re.compile(rb"(?m)^[ \t]*(\d{1,9})[ \t]*\r?$")

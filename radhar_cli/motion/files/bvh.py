@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.files.frames import bvh_frames, concatenate_blocks
 from radhar_cli.motion.files.recording import (
     LONGEST_NAME,
@@ -23,6 +22,7 @@ from radhar_cli.motion.files.recording import (
     turn,
     with_ancestors,
 )
+from radhar_cli.numerics.arrays import Float
 
 MAX_HEADER = 2**20
 _CHANNELS = {

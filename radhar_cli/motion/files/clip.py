@@ -6,10 +6,10 @@ from math import atan, pi, sqrt, tan
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.files.names import HIP_JOINTS, joint_numbers
 from radhar_cli.motion.files.recording import RATES, MotionRecording, motion_file_error
 from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.numerics.arrays import Float
 
 LEG = 0.491  # thigh and shank over the stature (Winter, after Drillis and Contini)
 ANKLE = 0.039  # height of the ankle over the stature

@@ -11,10 +11,10 @@ from math import atan2, cos, floor, pi, sin
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.files.clip import Clip
 from radhar_cli.motion.files.recording import motion_file_error
 from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.numerics.arrays import Float
 
 BLEND = 0.5  # s in which one cycle fades into the next
 SHORTEST = 0.5  # least share of the section that a cycle has

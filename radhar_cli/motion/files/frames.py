@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.files.recording import MAX_FRAMES, motion_file_error
+from radhar_cli.numerics.arrays import Float
 
 BLOCK = 2**20  # bytes of text at once
 SHOWN = 30

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion import skeleton
 from radhar_cli.motion.files.clip import Clip
 from radhar_cli.motion.files.cycle import Cycle, carry, carry_between, repeated_carry
 from radhar_cli.motion.human.minimum_jerk import minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO
+from radhar_cli.numerics.arrays import Float
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline

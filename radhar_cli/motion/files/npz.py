@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.files.recording import (
     LONGEST_NAME,
     MAX_BYTES,
@@ -24,6 +23,7 @@ from radhar_cli.motion.files.recording import (
     RATES,
     motion_file_error,
 )
+from radhar_cli.numerics.arrays import Float
 
 MAX_NAMES_BYTES = 2**20
 _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # as NumPy writes; others can ask for memory

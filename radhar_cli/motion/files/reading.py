@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from radhar_cli.errors import MotionFileError
+from radhar_cli.files.untrusted import refuse_outside, regular_size
 from radhar_cli.motion.files.amc import MAX_SKELETON, read_amc
 from radhar_cli.motion.files.bvh import read_bvh
 from radhar_cli.motion.files.npz import read_npz
 from radhar_cli.motion.files.recording import MAX_BYTES, MotionRecording, motion_file_error
-from radhar_cli.untrusted import refuse_outside, regular_size
 
 SUFFIXES = (".bvh", ".amc", ".npz")
 

@@ -5,8 +5,8 @@ from typing import Protocol
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.errors import MotionFileError
+from radhar_cli.numerics.arrays import Float
 
 MAX_BYTES = 2**28  # of a file
 MAX_JOINTS = 1000

@@ -10,9 +10,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.files.names import HIP_JOINTS
 from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.numerics.arrays import Float
 
 PER_METRE = 100.0
 STIFF = 1e-8  # m; links that change less have no position channels

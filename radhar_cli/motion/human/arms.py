@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Axes
 from radhar_cli.motion.human.two_link import two_link
+from radhar_cli.numerics.arrays import Float
 
 # Directions in which elbows bend, ahead, left and up: in a guard, and with hands on the floor.
 OUTWARDS = np.concatenate([np.full((1, 2), -0.2), 0.45 * SIDES.T, np.full((1, 2), -1.0)])

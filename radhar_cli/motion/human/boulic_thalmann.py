@@ -10,7 +10,7 @@ from math import pi, radians, sqrt
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 
 HARMONICS = 8
 _SAMPLES = 256

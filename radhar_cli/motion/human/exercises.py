@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import raised_arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
@@ -25,6 +24,7 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Repetition, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.numerics.arrays import Float
 
 if TYPE_CHECKING:
     from scipy.interpolate import BPoly

@@ -6,7 +6,6 @@ from math import acos, atan2, hypot, radians, sin
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import arm_directions_near_floor
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
@@ -16,6 +15,7 @@ from radhar_cli.motion.human.planted import HAND, scale_steps
 from radhar_cli.motion.human.pose import SIDES, Pose, axes, shoulder_points
 from radhar_cli.motion.human.sitting import Seat
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.numerics.arrays import Float
 
 ON_SIDE = "lying on the side"
 CHANNELS = (

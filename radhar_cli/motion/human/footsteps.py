@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.physique import Physique
+from radhar_cli.numerics.arrays import Float
 
 DEGREE = 8
 LIFT_SHAPE = np.array([0, 0, 0, 1, -5, 10, -10, 5, -1]) / (0.375**3 * 0.625**5)  # peak 1 at 3/8

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.physique import Physique
+from radhar_cli.numerics.arrays import Float
 
 CENTRE_OF_MASS = 0.56  # height over stature
 SWAY_HZ = tuple(np.linspace(0.05, 0.9, 8).tolist())

@@ -6,7 +6,6 @@ from math import acos, inf, radians
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
@@ -15,6 +14,7 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Striking, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.numerics.arrays import Float
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.minimum_jerk import minimum_jerk
+from radhar_cli.numerics.arrays import Float
 
 DEGREE = 40  # of the integrals, which then hold to 1e-15
 

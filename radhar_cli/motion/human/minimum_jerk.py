@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Float, Index
+from radhar_cli.numerics.arrays import Bool, Float, Index
 
 FEW_STEPS = 64  # of which all are evaluated at all times, by one matrix product
 

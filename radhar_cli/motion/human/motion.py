@@ -9,7 +9,6 @@ from typing import Protocol
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion import skeleton
 from radhar_cli.motion.human.exercises import Exercise
 from radhar_cli.motion.human.idle import Idle
@@ -20,6 +19,7 @@ from radhar_cli.motion.human.planted import Planted
 from radhar_cli.motion.human.pose import Pose
 from radhar_cli.motion.human.walking import Walking
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.numerics.arrays import Float
 
 BLOCK = 4096  # instants at once: what a block needs stays in the cache
 

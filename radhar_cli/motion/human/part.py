@@ -2,9 +2,9 @@
 
 from typing import NamedTuple, Protocol
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.pose import Pose
+from radhar_cli.numerics.arrays import Float
 
 STANDING, SEATED, LYING = "standing", "seated", "lying"
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES
+from radhar_cli.numerics.arrays import Float
 
 
 def hip_joints(person: Physique, yaw: Float, roll: Float) -> Float:

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import arm_directions, arm_directions_near_floor
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, shoulder_points
+from radhar_cli.numerics.arrays import Float
 
 LEGS_AND_TRUNK = ("shank", "thigh", "trunk")
 SHOULDERS = ("right_shoulder", "left_shoulder")

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.physique import Physique
+from radhar_cli.numerics.arrays import Float
 
 SIDES = np.array([[-1.0], [1.0]])  # right, left: the sign of y
 

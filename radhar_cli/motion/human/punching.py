@@ -10,7 +10,6 @@ from math import inf, radians
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import OUTWARDS, arm_directions_to_hands, hanging_hands
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
@@ -19,6 +18,7 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Striking, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.numerics.arrays import Float
 
 REFERENCE_STATURE = 1.75  # of the lengths below
 ENTRY = {"right_foot": (0.0, 0.6), "left_foot": (0.4, 0.6), "guard": (0.0, 1.0)}

@@ -10,7 +10,6 @@ from math import radians
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
@@ -20,6 +19,7 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import scale_steps
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, turned
 from radhar_cli.motion.human.two_link import two_link
+from radhar_cli.numerics.arrays import Float
 
 RIGHT, LEFT = 0, 1
 HERE = Place()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 
 AHEAD = np.array([1.0, 0.0, 0.0])[:, None, None]  # direction in which knees bend
 

@@ -10,7 +10,6 @@ from math import inf, isinf, pi, radians
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.human import boulic_thalmann as curves
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
@@ -30,6 +29,7 @@ from radhar_cli.motion.human.planted import (
 )
 from radhar_cli.motion.human.pose import Pose, axes, turned
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.numerics.arrays import Float
 
 START_PHASE = 0.5  # of the stride: the right foot goes first
 EARLIEST_SWING = 0.3

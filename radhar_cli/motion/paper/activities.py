@@ -11,8 +11,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion.paper.progress import progress, progress_integral
+from radhar_cli.numerics.arrays import Float
 
 LYING_HEIGHT = 0.15
 

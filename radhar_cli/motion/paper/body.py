@@ -5,7 +5,6 @@ from functools import cached_property
 
 import numpy as np
 
-from radhar_cli.arrays import Float
 from radhar_cli.motion import skeleton
 from radhar_cli.motion.paper.activities import (
     LYING_HEIGHT,
@@ -16,6 +15,7 @@ from radhar_cli.motion.paper.activities import (
     Timing,
 )
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO
+from radhar_cli.numerics.arrays import Float
 
 
 @dataclass(frozen=True)

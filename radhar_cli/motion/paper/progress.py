@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.numerics.arrays import Float
 
 
 def progress(t: Float, start: float, duration: float) -> Float:

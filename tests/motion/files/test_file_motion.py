@@ -5,9 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from recorded import frames, write_npz
+from helpers.recorded import frames, write_npz
 
-from radhar_cli.arrays import Float
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import ANKLE, LEG, Clip, make_clip
 from radhar_cli.motion.files.cycle import find_cycle
@@ -16,6 +15,7 @@ from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.npz import Npz
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.numerics.arrays import Float
 
 ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
 HIP, HEAD = JOINTS.index("hip"), JOINTS.index("head")

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import pytest
 
-from radhar_cli.arrays import Float
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.names import WANTED, joint_numbers
 from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.numerics.arrays import Float
 
 
 @dataclass

@@ -4,16 +4,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers.recorded import frames, write_amc, write_bvh, write_npz
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from recorded import frames, write_amc, write_bvh, write_npz
 
 import radhar_cli.motion.files.frames
-from radhar_cli.arrays import Float
 from radhar_cli.motion.files.bvh import read_bvh
 from radhar_cli.motion.files.names import WANTED, joint_numbers
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.motion.files.recording import MotionRecording
+from radhar_cli.numerics.arrays import Float
 
 AXES = np.eye(3)
 

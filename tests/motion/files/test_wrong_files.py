@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from recorded import frames, write_amc, write_bvh, write_npz
+from helpers.recorded import frames, write_amc, write_bvh, write_npz
 
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import make_clip

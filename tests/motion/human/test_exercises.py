@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from radhar_cli.activity import EXERCISES as NAMES
+from radhar_cli.activities.activity import EXERCISES as NAMES
 from radhar_cli.motion.human.exercises import EXERCISES
 from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
 from radhar_cli.motion.human.motion import HumanMotion

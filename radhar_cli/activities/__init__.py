@@ -1,0 +1,1 @@
+"""The activities, their movements, and other words for them."""

@@ -1,0 +1,196 @@
+"""The activities: label, slug, class number and the movements of people each one consists of."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from radhar_cli.activities.vocabulary import advice_on, meaning_of
+from radhar_cli.extensions import load_extensions
+
+if TYPE_CHECKING:
+    from radhar_cli.motion.protocol import Motion
+
+
+class MovementInfo(NamedTuple):
+    """A movement of people: the states it begins and ends in, and its usual duration (s).
+
+    `like` names another movement, whose numbers of the config it depends on, too.
+    """
+
+    before: str
+    after: str
+    seconds: float | None  # usual duration, s; None for one that lasts as long as it is asked for
+    like: str | None = None
+
+
+EXERCISES = (
+    "squatting",
+    "jumping",
+    "jumping_jacks",
+    "raising_arms",
+    "raising_arms_ahead",
+    *(
+        name.format(side)
+        for side in ("right", "left")
+        for name in (
+            "{}_lunge",
+            "{}_side_lunge",
+            "raising_{}_arm",
+            "raising_{}_leg",
+            "raising_{}_arm_and_leg",
+        )
+    ),
+)
+# What sequences are made of (`classes:`).
+MOVEMENTS = {
+    "stationary": MovementInfo("standing", "standing", None),
+    "punching": MovementInfo("standing", "standing", None),
+    "kicking": MovementInfo("standing", "standing", None),
+    "grabbing": MovementInfo("standing", "standing", 2.5),
+    "sitting_down": MovementInfo("standing", "seated", 2.0),
+    "standing_up": MovementInfo("seated", "standing", 1.8),
+    "body_rotating": MovementInfo("standing", "standing", None),
+    "walking": MovementInfo("standing", "standing", None),
+    "falling": MovementInfo("standing", "lying", 1.1),
+    "falling_on_hands": MovementInfo("standing", "lying", 1.1, "falling"),
+    "falling_off_seat": MovementInfo("seated", "lying", 1.0),
+    "falling_on_rising": MovementInfo("seated", "lying", 1.7),
+    "stumbling": MovementInfo("standing", "standing", 1.3),
+    "tripping": MovementInfo("standing", "standing", None, "walking"),
+    "trying_to_get_up": MovementInfo("lying", "lying", 3.0),
+    "getting_up": MovementInfo("lying", "standing", 3.0),
+    "turning_around": MovementInfo("standing", "standing", 1.8),
+    **{name: MovementInfo("standing", "standing", None) for name in EXERCISES},
+}
+
+
+@dataclass(frozen=True)
+class Activity:
+    """One activity of people, and class of data sets."""
+
+    number: int  # 1 to 12, the paper's S number; 13 and more for user-defined classes
+    slug: str  # name used in folders and on the command line
+    # names in MOVEMENTS, one after the other; config keys say which of them use a number
+    movements: tuple[str, ...] = ()
+    # makes the motion of a `scene.Person`; None where `motion:` decides which does
+    motion: "Callable[..., Motion] | None" = None
+    # keys of `motion:` and `timing:` that such a motion depends on, besides the place
+    uses: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """Label of the activity: the paper's name, ``S1`` to ``S12``, and so on."""
+        return f"S{self.number}"
+
+    @property
+    def index(self) -> int:
+        """Number that names the activity's random streams: 0 to 11 for the twelve.
+
+        It is no label of a data set: that is a place in the config's `activities`.
+        """
+        return self.number - 1
+
+    @property
+    def walks(self) -> bool:
+        """Whether the torso moves along the motion angle."""
+        return 8 <= self.number <= 12
+
+
+ACTIVITIES: tuple[Activity, ...] = (
+    Activity(1, "stationary", ("stationary",)),
+    Activity(2, "punching", ("punching",)),
+    Activity(3, "kicking", ("kicking",)),
+    Activity(4, "grabbing", ("grabbing",)),
+    Activity(5, "sitting_down", ("sitting_down",)),
+    Activity(6, "standing_up", ("standing_up",)),
+    Activity(7, "body_rotating", ("body_rotating",)),
+    Activity(8, "walking", ("walking",)),
+    Activity(9, "sitting_to_walking", ("standing_up", "walking")),
+    Activity(10, "walking_to_sitting", ("walking", "sitting_down")),
+    Activity(11, "falling_to_walking", ("getting_up", "walking")),
+    Activity(12, "walking_to_falling", ("walking", "falling")),
+)
+
+DEFAULT = "default"  # in `per_activity`: what holds for activities that it does not name
+
+
+def _by_name(activities: Iterable[Activity]) -> dict[str, Activity]:
+    """Activities by slug, and by label in lower case."""
+    return {name: a for a in activities for name in (a.slug, a.label.lower())}
+
+
+_BY_NAME = _by_name(ACTIVITIES)
+TWELVE = {name: a.slug for name, a in _BY_NAME.items()}  # {slug or label: slug}
+_ADDED: dict[str, Activity] = {}
+
+
+def add_activity(
+    slug: str, motion: "Callable[..., Motion]", uses: tuple[str, ...] = ()
+) -> Activity:
+    """Make a class beyond the twelve known, under a slug that configs may name from then on.
+
+    A config names it in `activities`; its place there is its label.
+
+    Args:
+        slug: Lower-case letters, digits and underscores.
+        motion: Makes the motion of a `scene.Person` from their numbers. A data set built by several
+            processes needs a function that can be pickled.
+        uses: Keys of `motion:` and `timing:` beside the place; other numbers are not drawn.
+
+    Raises:
+        ValueError: The slug is taken or no slug.
+    """
+    if not is_new_slug(slug):
+        raise ValueError(f"{slug!r} should be a new name of lower-case letters, digits and _")
+    _ADDED[slug] = Activity(len(ACTIVITIES) + 1, slug, (), motion, uses)
+    return _ADDED[slug]
+
+
+def own_activities() -> tuple[Activity, ...]:
+    """Classes that `add_activity` made known, here or in a module of RADHAR_EXTENSIONS."""
+    load_extensions()
+    return tuple(_ADDED.values())
+
+
+def know_activities(activities: Iterable[Activity]) -> None:
+    """Register the user-defined classes of another process that are not known here yet."""
+    for activity in activities:
+        if activity.motion is not None and activity not in own_activities():
+            add_activity(activity.slug, activity.motion, activity.uses)
+
+
+def is_new_slug(slug: str) -> bool:
+    """Whether a user-defined class may have this name: not one of the twelve, fit for a folder."""
+    taken = slug in _BY_NAME or slug == DEFAULT
+    return not taken and slug.isascii() and slug.isidentifier() and slug == slug.lower()
+
+
+def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> Activity:
+    """Find an activity by slug or label, whatever the case.
+
+    Args:
+        name: as somebody wrote it.
+        classes: {slug: activity} of a config's own classes, known beside the twelve and those of
+            `add_activity`.
+
+    Raises:
+        ValueError: No such activity; the message suggests the nearest name, or lists them all.
+    """
+    added = {activity.slug: activity for activity in own_activities()}
+    known = _BY_NAME | added | _by_name((classes or {}).values())
+    plain_name = name.strip().lower()
+    if plain_name in known:
+        return known[plain_name]
+    slugs = list(dict.fromkeys(a.slug for a in known.values()))
+    meant = meaning_of(plain_name, (*slugs, *MOVEMENTS))
+    if meant in MOVEMENTS and meant not in slugs:
+        raise ValueError(
+            f"{name!r} is not an activity; {meant} is a movement, of which a class can be made: "
+            f"classes: {{my_class: {{sequence: [{meant}]}}}}, activities: [my_class, ...]"
+        )
+    completions = [slug for slug in slugs if len(plain_name) > 3 and slug.startswith(plain_name)]
+    list_of_slugs = "the slugs are " + ", ".join(slugs)
+    hint = advice_on(plain_name, [*slugs, *known], list_of_slugs)
+    if hint == list_of_slugs and completions:
+        hint = f"did you mean {completions[0]!r}?"
+    raise ValueError(f"{name!r} is not an activity; {hint}")

@@ -1,0 +1,1 @@
+"""Objects of physics, assembled from the numbers of a scene."""

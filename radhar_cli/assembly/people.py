@@ -1,0 +1,481 @@
+"""Motion of a person in a scene of `motion.model: human`.
+
+Numbers come from the scene's config. What differs from one repetition, stride or fidget to the next
+comes from streams named by (seed, class, index) and in sizes of the config, 0 for none.
+"""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from math import ceil, inf, pi, radians
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from radhar_cli.activities.activity import MOVEMENTS
+from radhar_cli.motion.human.falling import (
+    FallBackward,
+    FallForward,
+    OnFours,
+    Prone,
+    Sitting,
+    Supine,
+)
+from radhar_cli.motion.human.falling_from_seat import FallFromSeat
+from radhar_cli.motion.human.falling_sideways import FallingSideways, FallSideways, RiseFromSide
+from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
+from radhar_cli.motion.human.grabbing import Grab
+from radhar_cli.motion.human.idle import (
+    FIDGETS,
+    GOLDEN,
+    SWAY_HZ,
+    Breath,
+    Fidget,
+    Idle,
+    Sway,
+    Waves,
+    spread_phases,
+)
+from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.lane import Lane
+from radhar_cli.motion.human.minimum_jerk import Lags
+from radhar_cli.motion.human.motion import HumanMotion, Movement
+from radhar_cli.motion.human.part import Place
+from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.planted import ELBOWS, LEGS_AND_TRUNK, SHOULDERS
+from radhar_cli.motion.human.punching import Punch
+from radhar_cli.motion.human.repertoire import AROUND, Repertoire
+from radhar_cli.motion.human.sitting import Rise, Seat, SitDown, StandUp
+from radhar_cli.motion.human.standing import Stand
+from radhar_cli.motion.human.stepping import STUMBLES, StepTo
+from radhar_cli.motion.human.turning import Turn
+from radhar_cli.motion.human.walking import Gait
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.scene import Numbers, Person
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+Fall = FallForward | FallBackward | FallSideways
+M = TypeVar("M", bound="DataclassInstance")  # a movement with a duration
+
+RAGGED_HZ = (0.1, 0.25, 0.4)
+MIN_STRIDE_S = 0.5  # no stride is shorter
+SHUFFLE_S = 0.9  # duration of a shuffle
+STEP_S = 0.7  # duration of a step towards or from a seat, without that of its length
+STEP_LIFT = 0.06  # height of its foot, m
+# Shares of the steps before and after the movement that go ahead, the others backwards; None for
+# no step. People feel for the chair, and leave it.
+STEPS = {"sitting_down": (0.0, None), "standing_up": (None, 1.0), "grabbing": (0.8, 0.4)}
+RISING = ("sitting_to_walking", "falling_to_walking")
+SETTLING = 4  # number of fidgets around the end of such a movement
+# Gestures at a settling of size 1: channel, rad, whether after the movement's end or its beginning,
+# from when on and for how long, s. Who stands up rocks back first; what was picked up is looked at.
+GESTURES = {
+    "sitting_down": (),
+    "standing_up": (("pitch", -0.05, False, -0.6, 0.5), ("pitch", 0.0, False, -0.1, 0.5)),
+    "grabbing": (("right_elbow", 0.4, True, -1.1, 0.8), ("right_elbow", 0.0, True, 0.4, 0.8)),
+}
+# Standard deviation of a fidget of size 1, m or rad; and of a shuffle, m and rad.
+FIDGET_SIZES = {
+    "shift": 0.025,
+    "lean": radians(1),
+    "pitch": radians(3),
+    "yaw": radians(4),
+    "right_shoulder": radians(8),
+    "left_shoulder": radians(8),
+    "right_elbow": radians(12),
+    "left_elbow": radians(12),
+}
+SHUFFLE_SIZES = Place(0.04, 0.03, radians(6))
+# Sway that does not repeat: frequencies of no common measure, within 10 % of the usual ones.
+_SWAY_HZ = tuple(f * (0.9 + 0.2 * (k * GOLDEN % 1)) for k, f in enumerate(SWAY_HZ, 1))
+
+
+def human_motion(person: Person) -> HumanMotion:
+    """Motion of a person who does what the activity asks for."""
+    motion = person.motion
+    physique = Physique(person.subject.height_m, weight=person.subject.weight_kg)
+    movements, pauses = _movements_and_pauses(person)
+    return HumanMotion(
+        person=physique,
+        movements=movements,
+        start=(motion.range_m, motion.cross_range_m),
+        heading=radians(motion.angle_deg),
+        begin=_first_begin(person),
+        horizon=person.seconds,
+        idle=_idle(person, physique, movements),
+        pauses=pauses,
+    )
+
+
+def _first_begin(person: Person) -> float:
+    """When the first movement begins, s; what repeats is under way at 0 s."""
+    timing, motion = person.timing, person.motion
+    starts: dict[str, float] = {
+        "grabbing": timing.grab_start_s,
+        "sitting_down": timing.seat_start_s,
+        "standing_up": timing.seat_start_s,
+        "sitting_to_walking": timing.rise_start_s,
+        "falling_to_walking": timing.rise_start_s,
+    }
+    rates: dict[str, float] = {
+        "punching": motion.punch_hz,
+        "kicking": motion.kick_hz,
+        "body_rotating": motion.rotation_hz,
+    }
+    if timing.walk_begin_s is not None:
+        starts["walking"] = timing.walk_begin_s
+    slug = person.activity.slug
+    if slug in rates and (rate := rates[slug]):
+        phase: float = motion.cycle_phase % 1
+        return -phase / rate
+    return starts.get(slug, 0.0)
+
+
+def _movements_and_pauses(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
+    """Movements of a person, and the pause before each, s."""
+    timing, slug = person.timing, person.activity.slug
+    if slug in person.config.classes:
+        return _sequence(person)
+    seconds = {
+        "sitting_down": timing.seat_duration_s,
+        "standing_up": timing.seat_duration_s,
+        "grabbing": timing.grab_duration_s,
+        "sitting_to_walking": timing.rise_duration_s,
+        "falling_to_walking": timing.rise_duration_s,
+        "walking_to_sitting": timing.sit_duration_s,
+        "walking_to_falling": timing.fall_duration_s,
+    }
+    duration = seconds.get(slug)
+    repertoire = _repertoire(person, None if duration is None else duration)
+    movements = repertoire.activity(person.activity.number)
+    if slug == "stationary":
+        return _add_shuffles(person, (Stand(0.0),), 0.0)
+    if slug in STEPS:
+        movements = _add_steps(person, movements)
+        rest_s = _time_of_rest(movements, _first_begin(person)) if slug == "grabbing" else inf
+        return _add_shuffles(person, movements, rest_s)
+    pause = -timing.overlap_s
+    if duration is not None and slug in RISING and timing.walk_start_s is not None:
+        risen = _first_begin(person) + duration
+        pause = timing.walk_start_s - risen
+    return movements, (0.0, pause) if len(movements) > 1 else ()
+
+
+def _add_steps(person: Person, movements: tuple[Movement, ...]) -> tuple[Movement, ...]:
+    """Put a step before and after the movements, as the activity has them."""
+    length = person.motion.step_m
+    rng = person.stream("motion.step_m/ways")
+    if not length:
+        return movements
+    steps: list[tuple[Movement, ...]] = []
+    for ahead in STEPS[person.activity.slug]:
+        direction = 1 if rng.random() < (ahead or 0.0) else -1
+        sideways = np.clip(rng.normal(), -2, 2)
+        place = Place(direction * length, float(SHUFFLE_SIZES.left * sideways))
+        step = StepTo(STEP_S + 0.5 * length, place, lift=STEP_LIFT)
+        steps.append(() if ahead is None else (step,))
+    return (*steps[0], *movements, *steps[1])
+
+
+def _time_of_rest(movements: Iterable[Movement], begin: float) -> float:
+    """When movements that follow each other from `begin` (s) on have come to rest, s."""
+    for movement in movements:
+        begin = movement.part(Physique(1.7), begin, begin).end
+    return begin
+
+
+def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
+    """Movements of a class that is a sequence, and the pause before each, s."""
+    sequence = person.own_class
+    movements = list[Movement]()
+    for place, (name, duration_s) in enumerate(
+        zip(sequence.sequence, sequence.durations_s, strict=True)
+    ):
+        usual = MOVEMENTS[name].seconds
+        duration = usual if duration_s is None else duration_s
+        repertoire = _repertoire(person, duration, place)
+        (movement,) = repertoire.sequence([name], [inf if duration is None else duration])
+        if isinstance(movement, GetUp | TryToGetUp) and movements:
+            movement = _getting_up_after(movements[-1], movement)
+        movements.append(movement)
+    return tuple(movements), sequence.pauses_s
+
+
+def _getting_up_after(fall: Movement, getting_up: GetUp | TryToGetUp) -> Movement:
+    """Getting up, or trying to, from how people lie after that fall."""
+    fall_part = fall.part(Physique(1.7), 0.0, 0.0)
+    if isinstance(fall_part, FallingSideways):
+        return RiseFromSide(fall_part.fall, getting_up.duration, isinstance(getting_up, TryToGetUp))
+    return replace(getting_up, before=fall_part.after)
+
+
+def _repertoire(person: Person, duration: float | None, place: int = 0) -> Repertoire:
+    """How this person moves.
+
+    Args:
+        person: Person of the scene.
+        duration: Duration of a movement that has one, s; None for the usual one.
+        place: Place of the movement in its sequence, which names its random streams.
+    """
+    motion = person.motion
+    seat = Seat(
+        height=motion.seat_height, recline=radians(motion.recline_deg), lap=motion.hands_on_lap
+    )
+    rise = Rise(lean=radians(motion.lean_deg))
+    scale = motion.strike_scale
+    paces, sizes = _repetitions(person, ceil(3 * person.seconds) + 8, place)
+    bend = motion.bend_deg
+    lags = _lags(person, place)
+    sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
+    moving = 2.5 if duration is None else duration
+    return Repertoire(
+        gait=_gait(person, place),
+        walk=person.timing.walk_stop_s,
+        standing_first=person.timing.walk_begin_s is not None,
+        punch=Punch(
+            frequency=scale * motion.punch_hz,
+            paces=_nonzero_tuple(scale * paces),
+            sizes=_nonzero_tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
+        ),
+        kick=Kick(
+            frequency=scale * motion.kick_hz,
+            paces=_nonzero_tuple(scale * paces),
+            sizes=_nonzero_tuple(sizes),
+        ),
+        grab=Grab(
+            down=moving * 1.2 / 2.5,
+            dwell=motion.dwell_s,
+            up=moving * 1.3 / 2.5,
+            thigh=radians(-62) * bend / 72,
+            trunk=radians(bend),
+            lowering=lags[0],
+            rising=lags[1],
+        ),
+        sit_down=_with_duration(duration, sitting),
+        stand_up=_with_duration(duration, StandUp(seat=seat, rise=rise, lags=lags[1])),
+        turn=Turn(
+            frequency=motion.rotation_hz,
+            angle=radians(motion.turn_deg),
+            paces=_nonzero_tuple(paces),
+            sizes=_nonzero_tuple(sizes),
+        ),
+        fall=_fall(person, duration),
+        fall_on_hands=_fall(person, duration, caught=True),
+        fall_off_seat=_fall_off_seat(seat, person, 1.0 if duration is None else duration),
+        fall_on_rising=_fall_off_seat(seat, person, 1.7 if duration is None else duration, 0.5),
+        stumble=_with_duration(duration, _stumble(person)),
+        trip=radians(motion.stumble_deg),
+        get_up=_with_duration(duration, GetUp()),
+        try_to_get_up=_with_duration(duration, TryToGetUp()),
+        turn_around=_with_duration(duration, AROUND),
+        exercise_period=motion.exercise_period,
+        exercise_paces=_nonzero_tuple(paces),
+        exercise_sizes=_nonzero_tuple(motion.exercise_size * np.minimum(sizes, 1.05)),
+    )
+
+
+def _with_duration(duration: float | None, movement: M) -> M:
+    """Movement with another duration (s), unless that is None."""
+    return movement if duration is None else replace(movement, duration=duration)
+
+
+def _lags(person: Person, place: int) -> tuple[Lags, Lags]:
+    """Lags of the joints in going down, and in coming up."""
+    rng = person.stream(f"motion.joint_lag/{place}")
+    share, channels = person.motion.joint_lag, (*LEGS_AND_TRUNK, *SHOULDERS, *ELBOWS)
+    down, up = (
+        Lags(share, dict(zip(channels, rng.random(len(channels)).tolist(), strict=True)))
+        for _ in range(2)
+    )
+    return down, up
+
+
+def _side(person: Person) -> float:
+    """Side of a fall: 1 to the left, -1 to the right."""
+    return 1.0 if person.stream("motion.fall/side").random() < 0.5 else -1.0
+
+
+def _fall(person: Person, duration: float | None, caught: bool = False) -> Fall:
+    """Fall from standing, broken by the hands or not."""
+    motion = person.motion
+    if motion.fall == "forward":
+        prone, heels = OnFours() if caught else Prone(), radians(motion.heels_deg)
+        return _with_duration(duration, FallForward(prone=prone, heels=heels))
+    if motion.fall == "backward":
+        return _with_duration(duration, FallBackward(supine=Sitting() if caught else Supine()))
+    aside = FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)
+    return _with_duration(duration, aside)
+
+
+def _fall_off_seat(
+    seat: Seat, person: Person, total_duration: float, rising_share: float = 0.0
+) -> FallFromSeat | FallSideways:
+    """Fall off a seat.
+
+    Args:
+        seat: Seat of the person.
+        person: Person of the scene.
+        total_duration: Duration with rising, s.
+        rising_share: Share of it for which the person rises first.
+    """
+    rising, duration = rising_share * total_duration, (1 - 0.75 * rising_share) * total_duration
+    if person.motion.fall == "sideways":
+        return FallSideways(duration, _side(person), seat=seat, rising=rising)
+    return FallFromSeat(duration, person.motion.fall == "forward", rising, seat)
+
+
+def _stumble(person: Person) -> StepTo:
+    """Stumble in the direction in which the person would fall."""
+    motion = person.motion
+    stumble = STUMBLES[motion.fall]
+    pitch = radians(motion.stumble_deg)
+    if motion.fall == "forward":
+        return replace(stumble, pitch=pitch)
+    if motion.fall == "backward":
+        return replace(stumble, pitch=-0.4 * pitch)
+    side = _side(person)
+    return replace(stumble, place=Place(0.0, side * stumble.place.left), lean=side * 0.4 * pitch)
+
+
+def _gait(person: Person, place: int) -> Gait:
+    """Gait of a walk at some place in a sequence."""
+    motion = person.motion
+    strides = ceil(person.seconds / MIN_STRIDE_S) + 8
+    rng = person.stream(f"motion.speed_variation/{place}")
+    variation = motion.speed_variation
+    # The duration of a stride is the difference of two deviations.
+    jitter, widths = (
+        share * variation * rng.standard_normal(strides) for share in (8**-0.5, 1 / 3)
+    )
+    return Gait(
+        speed=motion.speed_mps,
+        period_scale=motion.period_scale,
+        phase=motion.cycle_phase,
+        arm_swing=motion.arm_swing,
+        trunk_pitch=radians(motion.trunk_pitch_deg),
+        half_width=motion.step_width / 2,
+        start=motion.speed_up,
+        ragged=_waves(motion, variation, RAGGED_HZ, 0.7),
+        jitter=_nonzero_tuple(np.clip(jitter, -0.03, 0.03)),
+        widths=_nonzero_tuple(np.clip(widths, -0.02, 0.03)),
+        lane=_lane(person, place),
+    )
+
+
+def _lane(person: Person, place: int) -> Lane | None:
+    """Lane of a walker who turns round, a part of which may lie behind them; or None."""
+    motion = person.motion
+    if not (length := motion.lane_m):
+        return None
+    to_left = person.stream(f"motion.lane_m/side/{place}").random() < 0.5
+    first = (1 - motion.lane_start) * length
+    return Lane(length, first, side=1.0 if to_left else -1.0)
+
+
+def _nonzero_tuple(numbers: Float) -> tuple[float, ...]:
+    """Numbers as a tuple, empty where all are 0."""
+    return tuple(numbers.tolist()) if numbers.any() else ()
+
+
+def _repetitions(person: Person, count: int, place: int) -> tuple[Float, Float]:
+    """Pace and size of each repetition over the usual ones, each [count]."""
+    motion = person.motion
+    tempo = person.stream(f"motion.tempo_jitter/{place}").standard_normal(count)
+    size = person.stream(f"motion.size_jitter/{place}").standard_normal(count)
+    paces = np.clip(1 + motion.tempo_jitter * tempo, 0.7, 1.4)
+    return paces, np.clip(1 + motion.size_jitter * size, 0.6, 1.15)
+
+
+def _waves(motion: Numbers, deviation: float, rates: Iterable[float], first: float) -> Waves:
+    """Low-pass waves of a standard deviation that have been going on for `motion.idle_phase_s`."""
+    f = tuple(rates)
+    phases = np.array(spread_phases(len(f), first)) + 2 * pi * np.array(f) * motion.idle_phase_s
+    return Waves.low_pass(deviation, tuple(phases % (2 * pi)), f) if deviation else Waves()
+
+
+def _idle(person: Person, physique: Physique, movements: tuple[Movement, ...]) -> Idle:
+    """Sway, breath and fidgets of a person."""
+    subject = person.subject
+    motion = person.motion
+    idle_s = motion.idle_phase_s
+    sway = Sway(
+        _waves(motion, subject.sway_ahead_m, _SWAY_HZ, 0.0),
+        _waves(motion, subject.sway_aside_m, _SWAY_HZ, 0.3),
+    )
+    breathing, pulse = subject.breathing_hz, subject.pulse_hz
+    breath = Breath(
+        chest=subject.chest_m,
+        breathing=breathing,
+        breathing_phase=2 * pi * (breathing * idle_s % 1),
+        heart=subject.heart_m,
+        pulse=pulse,
+        pulse_phase=2 * pi * (pulse * idle_s % 1),
+    )
+    return Idle(physique, sway, breath, (*_fidgets(person), *_settling_fidgets(person, movements)))
+
+
+def _poisson_instants(person: Person, rate: float, name: str, start: float) -> list[float]:
+    """Instants (s) of a Poisson process from `start` (s) to the end; the rate in Hz."""
+    rng = person.stream(name)
+    instants = []
+    instant = start
+    while rate > 0 and (instant := instant + rng.exponential() / rate) < person.seconds:
+        instants.append(instant)
+    return instants
+
+
+def _fidgets(person: Person) -> Iterable[Fidget]:
+    """Fidgets that people make all the time."""
+    motion = person.motion
+    rng = person.stream("motion.fidget_size")
+    for start_s in _poisson_instants(person, motion.fidget_hz, "motion.fidget_hz/times", -1.0):
+        yield _draw_fidget(rng, motion.fidget_size, start_s, (0.5, 1.8))
+
+
+def _settling_fidgets(person: Person, movements: tuple[Movement, ...]) -> Iterable[Fidget]:
+    """Small movements around the end of S4 to S6."""
+    motion, slug = person.motion, person.activity.slug
+    if slug not in STEPS:
+        return
+    begin = _first_begin(person)
+    if size := motion.settle_size:
+        rng = person.stream("motion.settle_size/fidgets")
+        count = next(
+            n for n, movement in enumerate(movements, 1) if not isinstance(movement, StepTo)
+        )
+        end = _time_of_rest(movements[:count], begin)
+        for channel, target, from_end, start, length in GESTURES[slug]:
+            yield Fidget(channel, size * target, (end if from_end else begin) + start, length)
+        for start_s in sorted(end + rng.uniform(-0.8, 1.2, SETTLING)):
+            yield _draw_fidget(rng, size, float(start_s), (0.4, 1.0))
+
+
+def _draw_fidget(
+    rng: np.random.Generator, size: float, start_s: float, lengths: tuple[float, float]
+) -> Fidget:
+    """Draw a fidget that begins at `start_s`, of a `size` over the usual one."""
+    channel = FIDGETS[rng.integers(len(FIDGETS))]
+    target = size * FIDGET_SIZES[channel] * np.clip(rng.standard_normal(), -2, 2)
+    if channel.endswith("elbow"):
+        target = abs(target)  # no arm bends backwards
+    return Fidget(channel, float(target), start_s, float(rng.uniform(*lengths)))
+
+
+def _add_shuffles(
+    person: Person, movements: tuple[Movement, ...], rest_s: float
+) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
+    """Put steps to other stances after movements that end standing at `rest_s`."""
+    if rest_s == inf:
+        return movements, ()
+    rng = person.stream("motion.shuffle_hz/places")
+    shuffles, pauses = [], []
+    for start_s in _poisson_instants(
+        person, person.motion.shuffle_hz, "motion.shuffle_hz/times", rest_s
+    ):
+        place = Place(*(np.array(SHUFFLE_SIZES) * np.clip(rng.standard_normal(3), -2, 2)).tolist())
+        if start_s >= rest_s:
+            shuffles.append(StepTo(SHUFFLE_S, place))
+            pauses.append(start_s - rest_s)
+            rest_s = start_s + SHUFFLE_S
+    return (*movements, *shuffles), (*[0.0] * len(movements), *pauses)

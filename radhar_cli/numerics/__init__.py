@@ -1,0 +1,1 @@
+"""Numbers: array types, constants, rounding, random streams, optional compiled libraries."""

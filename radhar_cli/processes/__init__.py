@@ -1,0 +1,1 @@
+"""Processes: interruption, time limits, progress, settings of workers."""

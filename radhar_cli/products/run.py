@@ -1,0 +1,129 @@
+"""Run a plan: make every product once, in its order, and release what is not needed any more."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from time import process_time
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.assembly import physics
+from radhar_cli.config.schema import AnyConfig
+from radhar_cli.processes.progress import NO_PROGRESS, Progress
+from radhar_cli.processing.signal import Signal
+from radhar_cli.products.plan import Plan, Product, plan
+from radhar_cli.products.table import products, products_of_signals
+from radhar_cli.scene import Scene
+
+
+@dataclass
+class Results:
+    """Products of one scene, or of one recorded signal.
+
+    Attributes:
+        products: {name: product} of those asked for.
+        seconds: {name: processor time, s} of every product that was made.
+    """
+
+    products: dict[str, Any] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.products[name]
+
+
+def run(steps: Plan, given: Mapping[str, Any], progress: Progress = NO_PROGRESS) -> Results:
+    """Make the products of a plan.
+
+    Args:
+        steps: the plan.
+        given: products that are there already, {name: product}.
+        progress: is told of every product that is made.
+    """
+    available = dict(given)
+    results = Results()
+    progress.stage("synthesis", len(steps.products), 0, "step")
+    for product in steps.products:
+        start = process_time()
+        available[product.name] = product.make(*(available[need] for need in product.needs))
+        results.seconds[product.name] = process_time() - start
+        for name in steps.released_after[product.name]:
+            del available[name]
+        progress.advance(1)
+    results.products = {name: available[name] for name in steps.asked}
+    return results
+
+
+def record(
+    scene: Scene,
+    asked: Iterable[str],
+    more: Iterable[Product] = (),
+    progress: Progress = NO_PROGRESS,
+    **given: Any,
+) -> Results:
+    """Make products of a scene, by name (`radhar_cli.products.table`).
+
+    Args:
+        scene: what is simulated.
+        asked: names of the products.
+        more: further products, or others in place of those of the same name.
+        progress: is told of every product that is made.
+        given: products that are there already: `motions=`, `antennas=`, `paths=` and so on.
+            Antennas other than the config's have noise of their own; equal ones have it by
+            `channel=1`, `channel=2`, ...
+
+    Raises:
+        RadharError: there is no product of a name.
+        SceneError: the scene cannot be simulated, as the message says.
+    """
+    table = products(scene.config) | {product.name: product for product in more}
+    given = {"scene": scene, **given}
+    return run(plan(table, asked, given), given, progress)
+
+
+def process(
+    signal: Signal,
+    config: AnyConfig,
+    asked: Iterable[str],
+    more: Iterable[Product] = (),
+    **given: Any,
+) -> Results:
+    """Make products of a recorded signal, by name; powers of its channels are added up.
+
+    Args:
+        signal: sum over range after the canceller, or range bins before it.
+        config: processing, image and maps.
+        asked: names of the products.
+        more: further products, or others in place of those of the same name.
+        given: products that are there already. Compensated maps, and a gate that follows the torso,
+            need `torso_track=`, its delay at the pulses [M], s.
+
+    Raises:
+        RadharError: a product would need a scene.
+    """
+    table = products_of_signals(config) | {product.name: product for product in more}
+    duration = signal.pulses / signal.prf
+    given = {
+        "frames": physics.frames_of(config, duration, signal.prf, signal.f0),
+        "fsst_frames": physics.fsst_frames_of(config, duration, signal.prf, signal.f0),
+        "canceller": physics.canceller_of(config, signal.prf),
+        **given,
+    }
+    if config.image.kind == "cfar":
+        given.setdefault("cfar", physics.cfar_of(config))
+    if signal.ranges is None:
+        given = {"signal": signal, **given}
+    else:
+        canceller, gated = given["canceller"], config.processing.range_sum == "gated"
+        after, track = signal.cancelled(canceller), given.get("torso_track")
+        if track is not None:
+            later = after.t + canceller.lost / 2 / signal.prf
+            given["torso_track"] = np.interp(later, signal.t, track)
+            if gated:
+                given["gate"] = physics.gate_in_windows(
+                    config, after, given["frames"], signal.t, track
+                )
+        profiles = after.columns(config.image.size_px[1])
+        signals = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
+        given = {**signals, "range_axis": signal.ranges, **given}
+    return run(plan(table, asked, given), given)

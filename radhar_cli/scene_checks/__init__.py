@@ -1,0 +1,1 @@
+"""Limits of a scene: where models end, what noise hides, which keys do nothing."""

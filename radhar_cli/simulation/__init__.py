@@ -1,1 +1,0 @@
-"""One scene with everything there is to see of it."""

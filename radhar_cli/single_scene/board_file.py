@@ -1,0 +1,91 @@
+"""Frames of a board in an HDF5 file: cube, maps, points, skeletons, and what they mean."""
+
+import hashlib
+from collections.abc import Mapping
+from typing import Any
+
+import h5py
+import numpy as np
+
+from radhar_cli.assembly.physics import kinds_of
+from radhar_cli.config.schema import Config
+from radhar_cli.processing.frame_maps import FrameMaps
+from radhar_cli.processing.points import COLUMNS, Cloud
+from radhar_cli.products.board import Skeletons
+from radhar_cli.radar.board import Board
+from radhar_cli.single_scene.single_precision import in_single
+
+AXES = "of the radar: x ahead, y left, z up, m"
+DOPPLER_SIGN = "positive approaching"
+
+
+def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, config: Config) -> None:
+    """Write /cube, /range_doppler and so on, /points, /points_start, /points_person, /skeleton.
+
+    Args:
+        file: HDF5 file, open for writing.
+        frames: {name: product} of FrameMaps, `cube`, `cloud`, `skeletons`, `points_person`,
+            `points_kind`, as far as they were made.
+        board: board that the frames are of.
+        config: config of the scene, or of the processing of a recording.
+    """
+    for name, one in frames.items():
+        if isinstance(one, FrameMaps):
+            _write_maps(file, name, one)
+        elif isinstance(one, Cloud):
+            _write_cloud(file, one, board)
+        elif isinstance(one, Skeletons):
+            _write_skeletons(file, one)
+        elif name == "cube":
+            file["cube"] = in_single(one)
+            file["cube"].attrs["axes"] = ["frame", "loop", "virtual", "sample"]
+            file["cube"].attrs["meaning"] = "raw samples for unit transmit power"
+        elif name == "points_kind":
+            file[name] = one
+            file[name].attrs["kinds"] = kinds_of(config)
+        else:
+            file[name] = one
+            file[name].attrs["meaning"] = "number of the person, -1 of none"
+    text = config.radar.cfg or ""
+    file.attrs.update(
+        {
+            "frame_times": board.middles,
+            "cfg": text,
+            "cfg_sha256": hashlib.sha256(text.encode()).hexdigest(),
+            "device": str(config.radar.device or "array"),
+            "axes": AXES,
+            "doppler_sign": DOPPLER_SIGN,
+            "position_m": np.array(board.position),
+            "yaw_deg": np.degrees(board.yaw),
+            "tilt_deg": np.degrees(board.tilt),
+            "virtual_elements": board.places,
+        }
+    )
+
+
+def _write_maps(file: h5py.File, name: str, maps: FrameMaps) -> None:
+    dataset = file.create_dataset(name, data=in_single(maps.power), compression="gzip")
+    dataset.attrs["axes"] = ["frame", maps.rows.name, maps.columns.name]
+    dataset.attrs["meaning"] = "power for unit transmit power: a steady echo of amplitude a is a^2"
+    for axis in (maps.rows, maps.columns):
+        scale = file.create_dataset(f"axes/{name}/{axis.name}", data=axis.values)
+        scale.attrs["unit"] = axis.unit
+    file.create_dataset(f"axes/{name}/time", data=maps.times).attrs["unit"] = "s"
+
+
+def _write_cloud(file: h5py.File, cloud: Cloud, board: Board) -> None:
+    file["points"], file["points_start"] = cloud.points, cloud.start
+    file["points"].attrs["columns"] = COLUMNS
+    file["points"].attrs["units"] = ["m", "m", "m", "m/s", "1", "dB", "bin", "bin"]
+    file["points"].attrs["axes"] = AXES
+    file["points"].attrs["doppler_sign"] = DOPPLER_SIGN
+    file["points_start"].attrs["meaning"] = "frame f has the points start[f] to start[f + 1] - 1"
+
+
+def _write_skeletons(file: h5py.File, skeletons: Skeletons) -> None:
+    file["skeleton"], file["skeleton_velocity"] = skeletons.positions, skeletons.velocities
+    for name, unit in (("skeleton", "m"), ("skeleton_velocity", "m/s")):
+        file[name].attrs["unit"] = unit
+        file[name].attrs["axes"] = ["frame", "person", "joint", "ahead left up"]
+        file[name].attrs["meaning"] = "in the middle of the chirps of a frame; NaN if absent"
+    file["joint_names"] = [*skeletons.names]

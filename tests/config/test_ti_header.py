@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 import pytest
+from tests.boards import CFG, MARS
 
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import CA, CASO, Cfar
-from tests.boards import CFG, MARS
 
 
 def test_what_a_cfg_says() -> None:

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.boards import MARS
 
 from radhar_cli.radar.board import DEVICES
-from tests.boards import MARS
 
 
 def test_frequencies_and_steps_of_a_known_profile() -> None:

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from radhar_cli.errors import INTERRUPTED, RadharError
-from radhar_cli.files.untrusted import shown
+from radhar_cli.files.untrusted import escaped
 from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def main() -> None:
         if interrupts.status() is not None and interrupts.tell_once():
             print(f"{how}: what was not finished is not kept", file=sys.stderr)
         if (result := interrupts.outlived()) is not None:
-            print(f"{how} after the end: {shown(result)} is complete", file=sys.stderr)
+            print(f"{how} after the end: {escaped(result)} is complete", file=sys.stderr)
         sys.exit(interrupts.status() or status)
 
 
@@ -108,7 +108,7 @@ def _report_error(error: BaseException) -> int:
     else:
         raise error
     if message:
-        print(f"radhar: {shown(message)}", file=sys.stderr)
+        print(f"radhar: {escaped(message)}", file=sys.stderr)
     return status
 
 

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import typer
 
 from radhar_cli.files.plain_json import plain
-from radhar_cli.files.untrusted import shown
+from radhar_cli.files.untrusted import escaped
 from radhar_cli.processes import interrupts
 
 Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON, for programs.")]
@@ -38,7 +38,7 @@ def tell(message: object, *, err: bool = False, nl: bool = True) -> None:
         nl: end the line.
     """
     if err or not (_output.json or _output.quiet):
-        typer.echo(shown(message), err=err, nl=nl)
+        typer.echo(escaped(message), err=err, nl=nl)
 
 
 def is_shown(message: str) -> bool:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tqdm import tqdm
 
 from radhar_cli.commands.tell import counted, is_quiet, is_shown, report, tell
-from radhar_cli.files.untrusted import Closing, shown
+from radhar_cli.files.untrusted import Closing, escaped
 from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class BarProgress(Closing):
     def say(self, message: str) -> None:
         """Print a line above the bar."""
         if is_shown(message):
-            tqdm.write(shown(message), file=sys.stderr)
+            tqdm.write(escaped(message), file=sys.stderr)
 
     def close(self) -> None:
         """Remove the bar."""

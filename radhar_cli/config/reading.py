@@ -25,7 +25,7 @@ from radhar_cli.config.schema import (
 from radhar_cli.config.units import key_in_our_unit, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
-from radhar_cli.files.untrusted import shown
+from radhar_cli.files.untrusted import escaped
 
 S = TypeVar("S", bound=Section)
 
@@ -367,13 +367,13 @@ def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> 
     of_options = of_options or (within if key not in places else [])
     if of_options:
         option = of_options[-1]
-        return option if option.endswith(f" {key}") else f"{option}: {_short(shown(key))}"
+        return option if option.endswith(f" {key}") else f"{option}: {_short(escaped(key))}"
     place = places.get(key)
     parent = key
     while place is None and "." in parent:
         parent = parent.rpartition(".")[0]
         place = places.get(parent)
-    key = _short(shown(key).replace("\n", "\\n")) + (f" ({', '.join(within)})" if within else "")
+    key = _short(escaped(key).replace("\n", "\\n")) + (f" ({', '.join(within)})" if within else "")
     return f"{place or where}: {key}"
 
 

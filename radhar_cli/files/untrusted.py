@@ -129,7 +129,7 @@ def _depth(value: Any) -> int:
     return 1 + max(map(_depth, inner), default=0)
 
 
-def shown(text: object) -> str:
+def escaped(text: object) -> str:
     """Escape whatever in a text could steer a terminal, line breaks aside.
 
     ``\\x1b[2J`` becomes ``\\\\x1b[2J``; so do bidirectional marks and bytes that are not UTF-8.

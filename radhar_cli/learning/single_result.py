@@ -18,7 +18,7 @@ from radhar_cli.figures.evaluation import (
     embeddings_png,
     reliability_png,
 )
-from radhar_cli.files.untrusted import shown as escaped
+from radhar_cli.files.untrusted import escaped
 from radhar_cli.learning import metrics
 from radhar_cli.learning.evaluation import Predictions, open_for_model, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet

@@ -5,15 +5,15 @@ import pytest
 from radhar_cli.commands.inspect import print_summary
 from radhar_cli.commands.tell import tell
 from radhar_cli.commands.terminal import BarProgress
-from radhar_cli.files.untrusted import shown
+from radhar_cli.files.untrusted import escaped
 
 HOSTILE = "a\x1b[2J\x9b31m\r\x08\x07\u202e\udcff[red]b[/] :smile:\nc"
 ESCAPED = r"a\x1b[2J\x9b31m\r\x08\x07\u202e\udcff[red]b[/] :smile:"
 
 
 def test_control_sequences_are_escaped_and_text_is_kept() -> None:
-    assert shown(HOSTILE) == ESCAPED + "\nc"
-    assert shown("Größe 漢字 █ ▁ µ λ²") == "Größe 漢字 █ ▁ µ λ²"
+    assert escaped(HOSTILE) == ESCAPED + "\nc"
+    assert escaped("Größe 漢字 █ ▁ µ λ²") == "Größe 漢字 █ ▁ µ λ²"
 
 
 @pytest.mark.parametrize("say", [tell, BarProgress().say])

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

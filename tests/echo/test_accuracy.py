@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 
 from radhar_cli.activities.activity import ACTIVITIES, Activity
 from radhar_cli.assembly.physics import motion_of

@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 
 from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config.schema import Config

@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 from scipy.signal.windows import blackmanharris
 
 from radhar_cli.echo import half_band_sum as hbs

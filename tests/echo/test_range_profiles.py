@@ -5,7 +5,7 @@ from math import floor
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 
 from radhar_cli.echo.exact import beat_at
 from radhar_cli.processing.signal import shown_pulses

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-import reference as ref
 import yaml
+from helpers import reference as ref
 from helpers.extreme_scenes import ENGINES
 from helpers.random_configs import KEYS, Document, Drawer
 from helpers.slow import slow

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 from helpers.extreme_scenes import (
     SCENE,
     config_of,

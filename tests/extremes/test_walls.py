@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 from helpers.extreme_scenes import config_of, record, relative, signal
 
 from radhar_cli.config import MAP_NAMES, Config

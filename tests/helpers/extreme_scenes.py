@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-import reference as ref
+from helpers import reference as ref
 
 from radhar_cli.activities.activity import activity_named
 from radhar_cli.assembly.physics import motion_of

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 
 from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.radar.waveform import Waveform

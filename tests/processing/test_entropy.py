@@ -4,7 +4,7 @@ from math import log2
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 
 from radhar_cli.processing.entropy import entropy_bits
 

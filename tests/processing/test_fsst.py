@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 from helpers.signals import signal
 
 from radhar_cli.processing import fsst

@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 
 from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.range_compression import range_compression

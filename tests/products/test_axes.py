@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 
 from radhar_cli.activities.activity import activity_named
 from radhar_cli.config.schema import MAP_NAMES, Config

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 from helpers.signals import signal
 from scipy.signal import butter, sosfilt
 

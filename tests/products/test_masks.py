@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 from helpers.signals import signal
 from helpers.small import SMALL, small_config
 

@@ -5,7 +5,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-import reference as ref
+from helpers import reference as ref
 from scipy.stats import expon, ks_2samp, kstest
 
 from radhar_cli.activities.activity import activity_named

@@ -11,17 +11,11 @@ import numpy as np
 
 from radhar_cli.activities.activity import Activity
 from radhar_cli.config.annotations import Mark, of_kind
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import Choice, Distribution, Number, is_fixed, nominal, quantile
 from radhar_cli.config.paths import at, changed, each_number
-from radhar_cli.config.schema import (
-    FALLS,
-    Config,
-    Falls,
-    PerActivity,
-    PersonConfig,
-    Section,
-    for_activity,
-)
+from radhar_cli.config.people import FALLS, Falls, PersonConfig
+from radhar_cli.config.section import PerActivity, Section, for_activity
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.numerics.randomness import PERSON, SCENE, stream
 

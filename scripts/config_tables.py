@@ -14,11 +14,11 @@ from typing import Any, Literal, get_args, get_origin
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic import BaseModel
 
-from radhar_cli.config import schema
 from radhar_cli.config.annotations import ByModel, Mark, Paper, People, annotations, section
-from radhar_cli.config.checks import HUMAN_LIMITS
+from radhar_cli.config.checks.people import HUMAN_LIMITS
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import MAX_NUMBER, Bounds, Choice, Normal, Uniform, Vary
-from radhar_cli.config.schema import Config, PerActivity, Section
+from radhar_cli.config.section import PerActivity, Section
 from radhar_cli.config.starting_file import as_text
 
 REFERENCE = Path(__file__).resolve().parents[1] / "docs/reference"
@@ -38,14 +38,14 @@ def written(page: str) -> str:
 
 
 def _keys(names: list[str]) -> Iterator[str]:
-    """Rows of some sections: sections of Config, others by the names of their classes."""
+    """Rows of some sections of Config; `-` is what lies in no section."""
     yield "| key | default | meaning |"
     yield "| --- | --- | --- |"
     for name in names:
-        kind, prefix = (Config, "") if name == "-" else (getattr(schema, name, None), "")
-        if kind is None:
-            kind, prefix = section(Config.model_fields[name]), f"{name}."
-        yield from _rows(kind, prefix)
+        inner = section(Config.model_fields[name]) if name != "-" else Config
+        assert inner is not None
+        assert issubclass(inner, Section)
+        yield from _rows(inner, "" if inner is Config else f"{name}.")
 
 
 def _rows(kind: type[Section], prefix: str) -> Iterator[str]:

@@ -30,7 +30,9 @@ from radhar_cli.config.annotations import (
     conditions,
     section,
 )
-from radhar_cli.config.schema import Config, PerActivity, possible_maps
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.offered_maps import possible_maps
+from radhar_cli.config.section import PerActivity
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import RadharError
 from radhar_cli.motion.human.two_link import OutOfReachError

@@ -14,8 +14,8 @@ from typer.main import get_command
 
 from radhar_cli.cli import program
 from radhar_cli.config import Config
+from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.reading import load_section
-from radhar_cli.config.schema import FilesConfig
 from radhar_cli.learning.settings import ScheduleConfig, TrainConfig
 from radhar_cli.single_scene.scene_file import write_scene
 from radhar_cli.single_scene.simulate import simulate

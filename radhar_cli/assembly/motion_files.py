@@ -5,7 +5,7 @@ from math import radians
 from pathlib import Path
 from typing import Any
 
-from radhar_cli.config.schema import FilesConfig
+from radhar_cli.config.classes import FilesConfig
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import Clip, make_clip
 from radhar_cli.motion.files.cycle import find_cycle

@@ -8,8 +8,8 @@ from math import inf, log, radians, sqrt
 import numpy as np
 
 from radhar_cli.bodies.segment_paths import Body
+from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.number import nominal, support
-from radhar_cli.config.schema import AnyConfig, Config
 from radhar_cli.motion.paper.activities import PaperGait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion

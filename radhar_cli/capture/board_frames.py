@@ -9,7 +9,8 @@ import numpy as np
 from radhar_cli.assembly.physics import board_of
 from radhar_cli.capture.chain import pulses_between
 from radhar_cli.capture.recording import Recording
-from radhar_cli.config.schema import FRAME_MAPS, Config
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.errors import CaptureError
 from radhar_cli.products.plan import plan
 from radhar_cli.products.run import run

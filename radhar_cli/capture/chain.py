@@ -14,7 +14,7 @@ from radhar_cli.assembly.physics import board_of, canceller_of, frames_of, fsst_
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
-from radhar_cli.config.schema import AnyConfig
+from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Bool, Complex
 from radhar_cli.numerics.phasor import unit_phasor

@@ -19,9 +19,9 @@ from radhar_cli.capture.chain import bins_of_part, fill_lost_pulses, pulses_betw
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import WINDOW_S, hann_in_range, track_torso, without_static
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import nominal
 from radhar_cli.config.reading import validated
-from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.numerics.arrays import Bool, Complex, Float, Index

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from radhar_cli import __version__
 from radhar_cli.capture.chain import Maps
 from radhar_cli.capture.recording import RecordingInfo
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.identity import resolved
-from radhar_cli.config.schema import Config
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.frames_panel import BoardFrames, draw_frames
 from radhar_cli.figures.maps_panel import MapsPage, draw_maps

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import Field
 
 from radhar_cli.config.number import require
-from radhar_cli.config.schema import Section
+from radhar_cli.config.section import Section
 
 Count: TypeAlias = Annotated[int, Field(ge=1, le=2**24, strict=True)]
 Above: TypeAlias = Annotated[float, Field(gt=0, le=1e15, strict=True)]

@@ -17,9 +17,10 @@ from radhar_cli.capture.board_frames import SAME
 from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.images import are_images, is_image, list_images, read_image
 from radhar_cli.capture.recording import Recording, RecordingInfo
+from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.reading import validated
-from radhar_cli.config.schema import Config, MeasuredConfig, RecordingsConfig
+from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.recorded import windows
 from radhar_cli.dataset.sample import SampleRow, Synthesised

@@ -12,7 +12,7 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
-    from radhar_cli.config.schema import AnyConfig, Config
+    from radhar_cli.config.data_set import AnyConfig, Config
     from radhar_cli.dataset.sample import RowFactory
 
 
@@ -71,8 +71,8 @@ def generate(
     """
     with resumable(f"what is finished in {out}"):
         from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part, print_plan
+        from radhar_cli.config.data_set import Config, ConfigOfRecordings
         from radhar_cli.config.reading import load_config
-        from radhar_cli.config.schema import Config, ConfigOfRecordings
         from radhar_cli.dataset.build import build
         from radhar_cli.dataset.estimate import jobs_that_pay
         from radhar_cli.dataset.layout import Rows

@@ -54,8 +54,8 @@ def process(
     from radhar_cli.capture.recording import Recording
     from radhar_cli.capture.windows import as_recorded, radar_of
     from radhar_cli.config import resolved
+    from radhar_cli.config.data_set import ConfigOfRecordings, ProcessedConfig
     from radhar_cli.config.reading import load_config, validated
-    from radhar_cli.config.schema import ConfigOfRecordings, ProcessedConfig
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.scene import nominal_scene

@@ -12,7 +12,7 @@ from radhar_cli.files.untrusted import Closing, escaped
 from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
-    from radhar_cli.config.schema import AnyConfig
+    from radhar_cli.config.data_set import AnyConfig
     from radhar_cli.dataset.build import BuildOutcome
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.learning.run_folder import Epoch
@@ -143,7 +143,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
         config: that of the data set.
         jobs: number of processes; None for as many as pay.
     """
-    from radhar_cli.config.schema import MeasuredConfig
+    from radhar_cli.config.data_set import MeasuredConfig
     from radhar_cli.dataset.estimate import DRY_RUN_S, plan_build
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings

@@ -4,7 +4,8 @@ import hashlib
 import json
 from typing import Any
 
-from radhar_cli.config.schema import AnyConfig, Section
+from radhar_cli.config.data_set import AnyConfig
+from radhar_cli.config.section import Section
 
 NOT_IDENTITY = ("output.png", "output.license")
 

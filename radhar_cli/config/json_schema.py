@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from radhar_cli.config.documents import BASE
-from radhar_cli.config.schema import Section
+from radhar_cli.config.section import Section
 
 
 def json_schema(kind: type[Section]) -> dict[str, Any]:

@@ -5,7 +5,8 @@ from glob import has_magic, iglob
 from itertools import islice, takewhile
 from pathlib import Path
 
-from radhar_cli.config.schema import MAX_FILES, MAX_PATH_LENGTH, Config, FilesConfig
+from radhar_cli.config.classes import MAX_FILES, MAX_PATH_LENGTH, FilesConfig
+from radhar_cli.config.data_set import Config
 from radhar_cli.errors import ConfigError, FolderError, MotionFileError
 from radhar_cli.files.untrusted import refuse_outside
 from radhar_cli.motion.files.reading import read_motion

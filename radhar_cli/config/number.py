@@ -308,3 +308,26 @@ Coordinate: TypeAlias = Annotated[
     Number, Bounds(-1e6, 1e6, "m", wording="within 1e6 m of the origin")
 ]
 Vector = tuple[Coordinate, Coordinate, Coordinate]
+
+Metres = Annotated[NotNegative, within(0, 1, "m")]
+
+
+Rate = Annotated[NotNegative, within(0, 20, "Hz")]
+
+
+Ratio = Annotated[NotNegative, within(0, 10)]
+
+
+Signed = Annotated[Number, within(-1, 1)]
+
+
+Speed = Annotated[NotNegative, within(0, 1e4, "m/s")]
+
+
+Frequency = Annotated[NotNegative, within(0, 1e3, "Hz")]
+
+
+Seconds = Annotated[NotNegative, within(0, 1e7, "s")]
+
+
+Share = Annotated[float, Field(ge=0, le=1, strict=True)]

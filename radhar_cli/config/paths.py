@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar, cast
 
 from radhar_cli.config.annotations import at as at
-from radhar_cli.config.schema import Section
+from radhar_cli.config.section import Section
 
 T = TypeVar("T")
 

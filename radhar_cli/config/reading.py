@@ -10,18 +10,12 @@ from typing import Any, NamedTuple, TypeAlias, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from radhar_cli.config.annotations import range_of, section
-from radhar_cli.config.checks import Problem
+from radhar_cli.config.classes import FilesConfig, SequenceConfig
+from radhar_cli.config.data_set import Config, ConfigOfRecordings
 from radhar_cli.config.documents import BASE, OTHER_NAMES, Places, cfg_text, read_on_bases
 from radhar_cli.config.motion_files import resolve_files
 from radhar_cli.config.number import FORMS
-from radhar_cli.config.schema import (
-    Config,
-    ConfigOfRecordings,
-    FilesConfig,
-    PerActivity,
-    Section,
-    SequenceConfig,
-)
+from radhar_cli.config.section import PerActivity, Problem, Section
 from radhar_cli.config.units import key_in_our_unit, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean

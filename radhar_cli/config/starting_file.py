@@ -15,6 +15,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import ValidationError
 
 from radhar_cli.config.annotations import section
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.documents import (
     BASE,
     PRESETS,
@@ -23,7 +24,8 @@ from radhar_cli.config.documents import (
     read_on_bases,
 )
 from radhar_cli.config.identity import yaml_text
-from radhar_cli.config.schema import Config, Section, possible_maps
+from radhar_cli.config.offered_maps import possible_maps
+from radhar_cli.config.section import Section
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError

@@ -16,7 +16,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
 from pydantic import AliasPath, BeforeValidator, ConfigDict, Field
 
 from radhar_cli.config.reading import validated
-from radhar_cli.config.schema import Section
+from radhar_cli.config.section import Section
 from radhar_cli.errors import CaptureError, ConfigError
 from radhar_cli.files.untrusted import read_json, text_of
 from radhar_cli.radar.detection import CA, CAGO, CASO, Cfar, Detection, ti_threshold_db

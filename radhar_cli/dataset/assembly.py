@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.assembly.physics import kinds_of
+from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.identity import as_yaml, config_hash, resolved
-from radhar_cli.config.schema import FRAME_MAPS, AnyConfig, Config
+from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.files import digest_of, unfinished_path, write_whole

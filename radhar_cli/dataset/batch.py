@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.config.schema import AnyConfig, Config, MeasuredConfig
+from radhar_cli.config.data_set import AnyConfig, Config, MeasuredConfig
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions

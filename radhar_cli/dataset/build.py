@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from radhar_cli.config.schema import AnyConfig, Config
+from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.dataset.assembly import assemble
 from radhar_cli.dataset.batch import Batch, check_scenes, run_batch
 from radhar_cli.dataset.card import write_card

@@ -9,7 +9,7 @@ import numpy as np
 import yaml
 from PIL import Image, ImageDraw, ImageFont
 
-from radhar_cli.config.schema import MeasuredConfig
+from radhar_cli.config.data_set import MeasuredConfig
 from radhar_cli.dataset.files import refuse_links, write_whole
 from radhar_cli.dataset.image_tables import hub_configs
 from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, column_axis, row_axis

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from radhar_cli.config.schema import AnyConfig
+from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.motion.phases import PHASES, phase_numbers
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Levels

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.batch import CHECKED_SCENES, check_scenes
 from radhar_cli.dataset.identity import identity, identity_hash

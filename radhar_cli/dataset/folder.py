@@ -11,7 +11,7 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from radhar_cli.config.schema import AnyConfig
+from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.dataset import layout
 from radhar_cli.dataset.files import refuse_foreign_work, refuse_links, unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity

@@ -12,7 +12,8 @@ from typing import TypeAlias
 import numpy as np
 
 from radhar_cli.activities.activity import Activity
-from radhar_cli.config.schema import MAP_NAMES, AnyConfig
+from radhar_cli.config.data_set import AnyConfig
+from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.numerics.arrays import Index
 
 # Of dataset.h5; 3: labels are 0 to C - 1 in the order of the config.

@@ -6,7 +6,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from radhar_cli.config.schema import AnyConfig
+from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.dataset.build import Build, BuildOutcome, disk_error
 from radhar_cli.dataset.files import refuse_foreign_work
 from radhar_cli.dataset.folder import folder_lock, reserve, stored_identity

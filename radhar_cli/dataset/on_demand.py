@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.activities.activity import Activity, know_activities, own_activities
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import as_config
-from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import chunked
 from radhar_cli.dataset.sample import synthesise

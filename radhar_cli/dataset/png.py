@@ -8,7 +8,7 @@ import numpy as np
 from isal import isal_zlib
 from PIL import Image
 
-from radhar_cli.config.schema import DEFAULT_COLOUR_MAP
+from radhar_cli.config.image import DEFAULT_COLOUR_MAP
 from radhar_cli.numerics.arrays import Levels
 
 _DEFAULT_TABLE = Path(__file__).with_name(f"{DEFAULT_COLOUR_MAP}.rgb")  # Matplotlib starts slowly

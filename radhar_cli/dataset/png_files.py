@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.config.schema import AnyConfig
+from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.dataset.batch import write_png_rows
 from radhar_cli.dataset.image_tables import write_missing_tables
 from radhar_cli.dataset.layout import Rows

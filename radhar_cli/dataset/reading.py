@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.config.data_set import AnyConfig, Config, MeasuredConfig
 from radhar_cli.config.reading import validated
-from radhar_cli.config.schema import AnyConfig, Config, MeasuredConfig
 from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.folder import holds_samples, stored_identity
 from radhar_cli.dataset.identity import versions

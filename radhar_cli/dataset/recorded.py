@@ -3,7 +3,8 @@
 from functools import lru_cache
 from typing import NamedTuple
 
-from radhar_cli.config.schema import MeasuredConfig, RecordedPart
+from radhar_cli.config.data_set import MeasuredConfig
+from radhar_cli.config.recordings import RecordedPart
 from radhar_cli.scene import ByIdentity
 
 

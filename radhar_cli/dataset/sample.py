@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.config.schema import Config, MeasuredConfig
+from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.dataset.column_labels import column_labels, label_names
 from radhar_cli.dataset.layout import COLUMN_LABEL, LABELS, PERSON_LABEL
 from radhar_cli.echo.direct import Accuracy

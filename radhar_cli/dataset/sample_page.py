@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from radhar_cli.activities.vocabulary import FROM_FILES, advice_on
 from radhar_cli.assembly.physics import board_of, motion_of
-from radhar_cli.config.schema import FRAME_MAPS, Config, MeasuredConfig
+from radhar_cli.config.data_set import Config, MeasuredConfig
+from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset

@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.config.schema import AnyConfig, FacesConfig, MeasuredConfig
+from radhar_cli.config.data_set import AnyConfig, MeasuredConfig
+from radhar_cli.config.room import FacesConfig
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene import FALL, Scene, file_keys, keys_of_people, number_at, numbers
 

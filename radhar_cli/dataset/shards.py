@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.config.schema import AnyConfig
+from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK, checksum_of, chunked, count_of
 from radhar_cli.dataset.png import deflate

@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from radhar_cli.config.schema import AnyConfig, FilesConfig, MeasuredConfig, SplitConfig
+from radhar_cli.config.classes import FilesConfig
+from radhar_cli.config.data_set import AnyConfig, MeasuredConfig
+from radhar_cli.config.output import SplitConfig
 from radhar_cli.dataset.layout import SPLITS, Rows
 from radhar_cli.dataset.recorded import windows
 from radhar_cli.numerics.arrays import Index, Levels

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.config.identity import config_hash
-from radhar_cli.config.schema import MAP_NAMES
+from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.dataset.folder import stored_identity
 from radhar_cli.dataset.identity import identity_hash
 from radhar_cli.dataset.layout import DATASET, SPLITS, Rows

@@ -5,8 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.number import support
-from radhar_cli.config.schema import AnyConfig, Config, for_activity
+from radhar_cli.config.section import for_activity
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset

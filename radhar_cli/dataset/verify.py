@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.motion_files import set_motion_folder
-from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.assembly import CONFIG_HEADING, SCENES_DIGEST
 from radhar_cli.dataset.column_labels import label_names

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
-from radhar_cli.config.schema import ImageConfig
+from radhar_cli.config.image import ImageConfig
 from radhar_cli.figures.maps_panel import title
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.figures.sides import Advance, Film, SideView, bones, colour_bar

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
 from radhar_cli.bodies.motion_paths import point_delay
-from radhar_cli.config.schema import ImageConfig
+from radhar_cli.config.image import ImageConfig
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.image import decibels

@@ -13,7 +13,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 from radhar_cli.bodies.motion_paths import point_delay
-from radhar_cli.config.schema import ImageConfig
+from radhar_cli.config.image import ImageConfig
 from radhar_cli.figures.frames_panel import NAMES
 from radhar_cli.figures.maps_panel import TITLES, alias_doppler
 from radhar_cli.figures.maps_panel import title as title_of

@@ -19,7 +19,7 @@ from torch import Tensor, nn
 from typing_extensions import TypedDict
 
 from radhar_cli.config.number import require, value_error
-from radhar_cli.config.schema import Section
+from radhar_cli.config.section import Section
 from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
 from radhar_cli.errors import ConfigError, ModelError, RadharError

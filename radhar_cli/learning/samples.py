@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from torch.utils.data import Dataset, get_worker_info
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import SPLITS, Rows
 from radhar_cli.dataset.on_demand import Recipe

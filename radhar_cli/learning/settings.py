@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from radhar_cli.config.number import value_error
-from radhar_cli.config.schema import Section
+from radhar_cli.config.section import Section
 
 
 def _auto_or(least: int) -> BeforeValidator:

@@ -18,7 +18,7 @@ from radhar_cli.assembly.physics import (
     ways_of,
 )
 from radhar_cli.bodies.motion_paths import point_delay
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power
 from radhar_cli.echo.direct import Accuracy

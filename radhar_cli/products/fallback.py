@@ -3,7 +3,8 @@
 from math import ceil
 from typing import NamedTuple, TypeAlias
 
-from radhar_cli.config.schema import MAX_TOLERANCE_DB, Config
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.engine import MAX_TOLERANCE_DB
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError

@@ -6,8 +6,8 @@ from functools import partial
 
 from radhar_cli.assembly.bodies import sources_of, sum_of_paths
 from radhar_cli.assembly.physics import noise_stream
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import nominal
-from radhar_cli.config.schema import Config
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Motion

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.assembly import physics
-from radhar_cli.config.schema import AnyConfig
+from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processing.signal import Signal
 from radhar_cli.products.plan import Plan, Product, plan

@@ -35,7 +35,8 @@ from radhar_cli.assembly.physics import (
     waveform_of,
 )
 from radhar_cli.bodies.motion_paths import TorsoPath
-from radhar_cli.config.schema import MAP_NAMES, AnyConfig, Config
+from radhar_cli.config.data_set import AnyConfig, Config
+from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.echo.accuracy import AccuracyError, first_aim, settings
 from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.echo.exact import beat_at, exact_echo, signal_power

@@ -16,14 +16,12 @@ from radhar_cli.config.annotations import (
     entry,
     of_kind,
 )
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import support
-from radhar_cli.config.schema import (
-    Config,
-    MotionConfig,
-    PerActivity,
-    RadarConfig,
-    WallConfig,
-)
+from radhar_cli.config.people import MotionConfig
+from radhar_cli.config.radar import RadarConfig
+from radhar_cli.config.room import WallConfig
+from radhar_cli.config.section import PerActivity
 from radhar_cli.scene import FALL, numbers
 
 _OF_PEOPLE = ("subject.", "motion.", "timing.")

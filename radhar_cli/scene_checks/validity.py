@@ -19,8 +19,8 @@ from radhar_cli.assembly.physics import (
     ways_of,
 )
 from radhar_cli.bodies.motion_paths import OfMotion, point_delay, through_wall_delay
-from radhar_cli.config.checks import timing_warnings, tone_warnings
-from radhar_cli.config.schema import Config
+from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings
+from radhar_cli.config.data_set import Config
 from radhar_cli.echo.accuracy import first_aim, settings
 from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.echo.interpolation import BEFORE

@@ -22,7 +22,8 @@ from radhar_cli.assembly.physics import (
     wall_of,
     waveform_of,
 )
-from radhar_cli.config.schema import FRAME_MAPS, MAP_NAMES, Config
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.look import noise_gain, weights
 from radhar_cli.products.noise import noise_law_of

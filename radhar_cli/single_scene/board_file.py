@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 from radhar_cli.assembly.physics import kinds_of
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import COLUMNS, Cloud
 from radhar_cli.products.board import Skeletons

@@ -6,8 +6,8 @@ import numpy as np
 
 from radhar_cli.activities.activity import Activity
 from radhar_cli.assembly.physics import motion_of
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import as_config
-from radhar_cli.config.schema import Config
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.recording import MAX_FRAMES

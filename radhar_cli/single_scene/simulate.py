@@ -11,9 +11,11 @@ import numpy as np
 from radhar_cli.activities.activity import Activity, activity_named
 from radhar_cli.assembly.bodies import sources_of
 from radhar_cli.assembly.physics import motion_of, reflectors_of
-from radhar_cli.config.checks import problems_of_maps
+from radhar_cli.config.checks.signal import problems_of_maps
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
+from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.reading import ABSENT, as_config
-from radhar_cli.config.schema import FRAME_MAPS, MAP_NAMES, Config, possible_maps
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.exact import beat_blocks

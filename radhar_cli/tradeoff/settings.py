@@ -6,8 +6,9 @@ from functools import cache
 from pathlib import Path
 
 from radhar_cli.config import load_config
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.number import nominal
-from radhar_cli.config.schema import Config, EngineConfig
 from radhar_cli.scene import Scene
 from radhar_cli.scene_checks.validity import draw_valid_scene
 

@@ -27,8 +27,8 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 from scipy.spatial import cKDTree
 
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import validated, with_overrides
-from radhar_cli.config.schema import Config
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, cross_sections
 from radhar_cli.products.run import record
 from radhar_cli.scene import Scene, draw_scene

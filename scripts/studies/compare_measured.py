@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.config import load_config
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.single_scene.simulate import simulate
 from radhar_cli.two_sample.map_statistics import DopplerMap, power_statistics

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.errors import SceneError

@@ -20,7 +20,7 @@ from matplotlib import pyplot as plt
 from PIL import Image
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene

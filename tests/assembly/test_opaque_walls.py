@@ -2,7 +2,7 @@
 
 import pytest
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.scene_checks.validity import config_warnings
 
 

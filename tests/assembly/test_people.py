@@ -10,9 +10,9 @@ import pytest
 from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, activity_named
 from radhar_cli.assembly.physics import motion_of
 from radhar_cli.config import Config, load_config
-from radhar_cli.config.checks import HUMAN_LIMITS
+from radhar_cli.config.checks.people import HUMAN_LIMITS
+from radhar_cli.config.people import FALLS
 from radhar_cli.config.reading import validated
-from radhar_cli.config.schema import FALLS
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links

@@ -8,8 +8,8 @@ from radhar_cli.activities.activity import activity_named
 from radhar_cli.assembly.physics import reflectors_of
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.identity import resolved
-from radhar_cli.config.schema import Config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.verify import verify

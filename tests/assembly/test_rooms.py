@@ -6,12 +6,12 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from tests.boards import CFG
+from helpers.boards import CFG
 
 from radhar_cli.activities.activity import activity_named
 from radhar_cli.assembly.physics import antennas_of
 from radhar_cli.config import load_config
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.scene_fields import fields
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.products.run import record

@@ -8,10 +8,10 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from helpers.boards import CFG
 from helpers.command_line import radhar
 from helpers.listener import Listener
 from helpers.small import fingerprint, full_disk_after, small_config
-from tests.boards import CFG
 
 from radhar_cli import open_dataset, simulate
 from radhar_cli.activities.activity import activity_named

@@ -7,11 +7,11 @@ import h5py
 import numpy as np
 import pytest
 import yaml
-from tests.boards import CFG
+from helpers.boards import CFG
 
 from radhar_cli.activities.activity import activity_named
 from radhar_cli.config import load_config
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.exact import signal_power
 from radhar_cli.echo.static_returns import leakage

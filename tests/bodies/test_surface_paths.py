@@ -9,7 +9,7 @@ from radhar_cli.assembly.bodies import body_paths
 from radhar_cli.assembly.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.bodies.motion_paths import leg
 from radhar_cli.bodies.surface_paths import DEPTH, FACING_DBSM, SurfacePaths, draw_surface
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.motion.protocol import cache_motion
 from radhar_cli.scene import Scene, draw_scene
 

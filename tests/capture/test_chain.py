@@ -12,7 +12,8 @@ from radhar_cli.capture.chain import Maps, maps_of
 from radhar_cli.capture.importing import import_capture, read_settings, write_simulated
 from radhar_cli.capture.recording import Label, Recording
 from radhar_cli.config import load_config
-from radhar_cli.config.schema import Config, possible_maps
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.image import decibels

@@ -11,7 +11,7 @@ from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.importing import write_simulated
 from radhar_cli.capture.recording import Label, Recording
 from radhar_cli.config import load_config, resolved
-from radhar_cli.config.schema import MeasuredConfig
+from radhar_cli.config.data_set import MeasuredConfig
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.products.table import image_of

@@ -8,7 +8,7 @@ import h5py
 from helpers.command_line import ok, radhar
 from helpers.small import small_config
 
-from radhar_cli.config.schema import MAP_NAMES
+from radhar_cli.config.maps import MAP_NAMES
 
 
 def test_simulate_writes_everything(tmp_path):

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from helpers.boards import CFG
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
-from tests.boards import CFG
 
 from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.config import (
@@ -18,22 +18,14 @@ from radhar_cli.config import (
     resolved,
     timing_warnings,
 )
+from radhar_cli.config.classes import SequenceConfig
 from radhar_cli.config.number import Uniform
-from radhar_cli.config.schema import (
-    ArrayConfig,
-    BeamConfig,
-    BoxConfig,
-    FacesConfig,
-    LayerConfig,
-    MotionConfig,
-    PersonConfig,
-    RecordingsConfig,
-    ReflectorConfig,
-    Section,
-    SequenceConfig,
-    SubjectConfig,
-    ToneConfig,
-)
+from radhar_cli.config.people import MotionConfig, PersonConfig, SubjectConfig
+from radhar_cli.config.radar import ArrayConfig, BeamConfig
+from radhar_cli.config.receiver import ToneConfig
+from radhar_cli.config.recordings import RecordingsConfig
+from radhar_cli.config.room import BoxConfig, FacesConfig, LayerConfig, ReflectorConfig
+from radhar_cli.config.section import Section
 
 
 def test_the_defaults_of_the_paper_are_its_free_space_data_set() -> None:

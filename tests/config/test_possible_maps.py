@@ -4,10 +4,12 @@ import json
 from typing import Any
 
 import pytest
-from tests.boards import CFG
+from helpers.boards import CFG
 
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
+from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.reading import load_config
-from radhar_cli.config.schema import FRAME_MAPS, MAP_NAMES, Config, possible_maps
 from radhar_cli.errors import ConfigError
 from radhar_cli.single_scene.simulate import simulate
 

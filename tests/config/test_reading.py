@@ -13,7 +13,7 @@ from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.number import Choice, Normal, Uniform, Vary
 from radhar_cli.config.reading import Override, load_section
-from radhar_cli.config.schema import for_activity
+from radhar_cli.config.section import for_activity
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.errors import ConfigError, FolderError

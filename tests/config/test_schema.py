@@ -8,7 +8,7 @@ from helpers.command_line import ROOT
 
 from radhar_cli.config import load_config
 from radhar_cli.config.reading import load_section
-from radhar_cli.config.schema import Section
+from radhar_cli.config.section import Section
 from radhar_cli.learning.settings import TrainConfig
 
 FOLDER = ROOT / "configs"

@@ -12,7 +12,8 @@ from helpers.command_line import ROOT, ok, radhar
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.documents import PRESETS, RADARS
 from radhar_cli.config.reading import load_section
-from radhar_cli.config.schema import Section, WallConfig
+from radhar_cli.config.room import WallConfig
+from radhar_cli.config.section import Section
 from radhar_cli.config.starting_file import WIDTH, as_commented_yaml, of_board, of_preset
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from tests.boards import CFG, MARS
+from helpers.boards import CFG, MARS
 
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.errors import CaptureError

@@ -5,8 +5,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from helpers.boards import CFG
 from helpers.command_line import radhar
-from tests.boards import CFG
 
 from radhar_cli.dataset.contact_sheet import over_bones
 from radhar_cli.dataset.reading import open_dataset

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from helpers.boards import CFG, CLOUDS
 from helpers.command_line import radhar
 from helpers.listener import Listener
-from tests.boards import CFG, CLOUDS
 
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.dataset.formats.clouds import (

@@ -12,8 +12,8 @@ from helpers.small import fingerprint
 
 from radhar_cli.assembly import motion_files
 from radhar_cli.config import load_config
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.motion_files import set_motion_folder
-from radhar_cli.config.schema import Config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.split import split_rows, split_warnings

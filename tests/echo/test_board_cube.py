@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helpers.boards import MARS, Straight, channels
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.boards import MARS, Straight, channels
 
 from radhar_cli.echo.accuracy import SPARE_DB, AccuracyError
 from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power, measured_db

@@ -7,7 +7,7 @@ import pytest
 from helpers import reference as ref
 
 from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.echo import exact
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.numerics.phasor import unit_phasor

@@ -5,7 +5,7 @@ import pytest
 from helpers import reference as ref
 
 from radhar_cli.activities.activity import ACTIVITIES, Activity
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene
 

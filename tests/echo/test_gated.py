@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.echo import gated
 from radhar_cli.echo.accuracy import AccuracyError, Settings
 from radhar_cli.echo.beat import beat_matrix

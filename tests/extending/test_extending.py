@@ -20,7 +20,8 @@ from radhar_cli.activities import activity
 from radhar_cli.activities.activity import activity_named, add_activity
 from radhar_cli.assembly.physics import antennas_of, impairments_of, motion_of, waveform_of
 from radhar_cli.config import Config, load_config
-from radhar_cli.config.schema import ToneConfig, possible_maps
+from radhar_cli.config.offered_maps import possible_maps
+from radhar_cli.config.receiver import ToneConfig
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.reading import open_dataset

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from helpers.signals import signal
 
-from radhar_cli.config.schema import Config, SavgolConfig
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.processing import SavgolConfig
 from radhar_cli.errors import RadharError
 from radhar_cli.processing import fsst, image
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config
-from radhar_cli.config.checks import HUMAN_LIMITS
+from radhar_cli.config.checks.people import HUMAN_LIMITS
 
 Document = dict[str, Any]
 _, MAX_SECONDS = HUMAN_LIMITS["duration_s"]

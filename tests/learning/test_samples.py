@@ -13,7 +13,7 @@ from torch.utils.data import DataLoader, DistributedSampler
 import radhar_cli as radhar
 from radhar_cli.activities import activity
 from radhar_cli.activities.activity import add_activity
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.on_demand import sample
 from radhar_cli.dataset.split import VALIDATION, split_rows

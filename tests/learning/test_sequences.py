@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from helpers.boards import CFG, CLOUDS
 from helpers.command_line import radhar
-from tests.boards import CFG, CLOUDS
 from torch.utils.data import DataLoader
 
 import radhar_cli

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.boards import MARS, cube_of
+from helpers.boards import MARS, cube_of
 
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.best_points import best_points

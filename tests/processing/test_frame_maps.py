@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.boards import MARS, channels, cube_of
+from helpers.boards import MARS, channels, cube_of
 
 from radhar_cli.echo.board_cube import exact_cube, fast_cube
 from radhar_cli.processing.best_points import best_points

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from helpers import reference as ref
 
-from radhar_cli.config.schema import Config, ProcessingConfig
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.processing.frames import Frames
 
 

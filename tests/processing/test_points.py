@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helpers.boards import MARS, cube_of
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from tests.boards import MARS, cube_of
 
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.points import COLUMNS, board_points

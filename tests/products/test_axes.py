@@ -5,7 +5,8 @@ import pytest
 from helpers import reference as ref
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.config.schema import MAP_NAMES, Config
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.products.run import Results

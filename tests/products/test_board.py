@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.boards import CFG, MARS
+from helpers.boards import CFG, MARS
 
 from radhar_cli.assembly.physics import board_of
 from radhar_cli.config import load_config
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.board_cube import exact_cube
 from radhar_cli.errors import ConfigError, SceneError

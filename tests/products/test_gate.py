@@ -9,7 +9,7 @@ from helpers.signals import signal
 from scipy.signal import butter, sosfilt
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.errors import ConfigError, RadharError
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.products.run import Results, process

@@ -13,7 +13,8 @@ import pytest
 from helpers.peak_memory import PEAK
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.config.schema import MAP_NAMES, Config
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.echo import exact as exact_module
 from radhar_cli.processing import stft as stft_module
 from radhar_cli.processing.signal import Signal
@@ -139,7 +140,7 @@ _PROGRAM = (
     + """
 import sys
 from radhar_cli.dataset.sample import synthesise
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.activities.activity import activity_named
 from radhar_cli.echo import compiled
 from radhar_cli.products.table import plan_images

@@ -7,7 +7,8 @@ import pytest
 
 from radhar_cli.activities.activity import activity_named
 from radhar_cli.bodies import motion_paths
-from radhar_cli.config.schema import MAP_NAMES, Config
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.products import table as products
 from radhar_cli.products.plan import Plan, plan

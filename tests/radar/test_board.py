@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.boards import MARS
+from helpers.boards import MARS
 
 from radhar_cli.radar.board import DEVICES
 

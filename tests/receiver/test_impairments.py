@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.numerics.randomness import NOISE, stream
 from radhar_cli.processing import look as look_module
 from radhar_cli.processing.canceller import Fir

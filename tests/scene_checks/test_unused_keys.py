@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.scene_checks.unused_keys import unused_keys
 
 PUNCHING: dict[str, Any] = {"activities": ["punching"]}

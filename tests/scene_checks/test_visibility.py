@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.boards import CFG
+from helpers.boards import CFG
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.products.run import record
 from radhar_cli.scene import nominal_scene
 from radhar_cli.scene_checks.validity import config_warnings

@@ -3,7 +3,7 @@
 import keys_by_radar as script
 import pytest
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.errors import RadharError
 
 ELSEWHERE = {"recordings"}  # of `radhar generate --recordings`

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.lib.format import open_memmap
 from numpy.typing import NDArray
 
+from radhar_cli.config.data_set import Config
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.config.schema import Config
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.reading import Dataset

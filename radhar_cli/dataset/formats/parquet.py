@@ -8,8 +8,8 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.card import card
 from radhar_cli.dataset.formats.stored_png import checked_png
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows

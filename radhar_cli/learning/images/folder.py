@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.config.schema import DEFAULT_COLOUR_MAP
+from radhar_cli.config.image import DEFAULT_COLOUR_MAP
 from radhar_cli.dataset.files import read_bytes
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_gray, read_rgb
 from radhar_cli.dataset.layout import CLASSES, CONFIG, PNG

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.config.schema import MeasuredConfig
+from radhar_cli.config.data_set import MeasuredConfig
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset

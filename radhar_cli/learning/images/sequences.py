@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.config.schema import FRAME_MAPS
+from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.settings import Kind

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from radhar_cli.assembly.people import human_motion
-from radhar_cli.config.schema import Config
+from radhar_cli.config.data_set import Config
 from radhar_cli.motion.human import minimum_jerk as steps_module
 from radhar_cli.motion.human.minimum_jerk import Course, Step, StepsInOrder
 from radhar_cli.motion.human.motion import HumanMotion

@@ -1,0 +1,1 @@
+"""Checks that span several sections of a config."""

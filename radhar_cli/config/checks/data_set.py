@@ -1,0 +1,101 @@
+"""Everything that is checked across the sections of a data set."""
+
+from collections.abc import Iterator
+
+from radhar_cli.config.checks.people import (
+    class_problems,
+    human_problems,
+    people_problems,
+    unknown_activities,
+)
+from radhar_cli.config.checks.radar import (
+    BOARD_PRODUCTS,
+    board_problems,
+    impulse_problems,
+    profile_problems,
+    step_problems,
+)
+from radhar_cli.config.checks.room import (
+    back_wall_problems,
+    room_problems,
+    tone_problems,
+    wall_problems,
+)
+from radhar_cli.config.checks.signal import processing_problems
+from radhar_cli.config.maps import MAP_NAMES
+from radhar_cli.config.request import MeasuredRequest, Request
+from radhar_cli.config.section import Problem
+
+
+def problems_of_recordings(c: Request) -> Iterator[Problem]:
+    """Find what is wrong in a request for recordings, whatever they are."""
+    radar_problems = board_problems(c) if c.radar.cfg else impulse_problems(c)
+    measured_sections = MeasuredRequest.model_fields
+    yield from (
+        problem for problem in radar_problems if problem.key.partition(".")[0] in measured_sections
+    )
+
+
+def problems_of_processing(c: Request) -> Iterator[Problem]:
+    """Find what does not go together where a recording is processed.
+
+    Windows are shortened, or refused, where its gaps are known.
+    """
+    lengths = ("duration_s", "processing.window_s", "processing.savgol.frame")
+    mistakes = (*profile_problems(c), *processing_problems(c))
+    yield from (problem for problem in mistakes if problem.key not in lengths)
+
+
+def problems(c: Request) -> Iterator[Problem]:
+    """Find what does not go together in a request with its defaults filled in."""
+    if not c.chosen_activities:
+        yield Problem("classes", {}, "should have files of each class with motion.model: file")
+        return
+    yield from unknown_activities(c)
+    if c.radar.cfg is not None:
+        yield from board_problems(c)
+    else:
+        of_boards = [name for name in c.output.products if name in BOARD_PRODUCTS]
+        if of_boards:
+            right = "should have the board that makes them: radar.cfg"
+            yield Problem("output.products", of_boards, right)
+        yield from step_problems(c)
+        yield from impulse_problems(c)
+    yield from processing_problems(c)
+    yield from wall_problems(c)
+    yield from back_wall_problems(c)
+    yield from room_problems(c)
+    yield from tone_problems(c)
+    if c.motion.model == "human":
+        yield from human_problems(c)
+    yield from class_problems(c)
+    yield from people_problems(c)
+    if c.engine.motion_in_chirp and c.engine.kind == "direct":
+        right = "should be false with engine.kind: direct, which freezes a chirp; cube can have it"
+        yield Problem("engine.motion_in_chirp", True, right)
+    split = c.split
+    fewest = min(c.chosen_activities, key=c.samples_of)
+    if split.subjects is not None and split.subjects > c.samples_of(fewest):
+        whose = "" if isinstance(c.samples_per_class, int) else f" of {fewest.slug}"
+        most = f"samples_per_class = {c.samples_of(fewest)}{whose}"
+        right = f"should be at most {most}: every person performs every activity"
+        yield Problem("split.subjects", split.subjects, right)
+
+
+def measured_problems(c: MeasuredRequest) -> Iterator[Problem]:
+    """Find what does not go together in a data set of recordings."""
+    if not c.recordings.counts:
+        right = "should be at most as long as the longest part of a recording"
+        yield Problem("recordings.window_s", c.recordings.window_s, right)
+    if others := [name for name in c.maps if name not in MAP_NAMES]:
+        right = f"should be some of {', '.join(MAP_NAMES)}; `radhar process` makes those of boards"
+        yield Problem("maps", others, right)
+    for key in ("column_labels", "slow_time", "products"):
+        if value := getattr(c.output, key):
+            yield Problem(f"output.{key}", value, "should be left out: recordings have none")
+    named = {part.person for part in c.recordings.parts}
+    if c.split.subjects is not None and (None in named or c.split.subjects != len(named)):
+        right = f"should be the number of persons, {len(named - {None})}; every part names one"
+        yield Problem("split.subjects", c.split.subjects, right)
+    yield from profile_problems(c)
+    yield from processing_problems(c)

@@ -1,0 +1,42 @@
+"""What is right but hardly meant, as sentences for the user."""
+
+from collections.abc import Iterable
+
+from radhar_cli.activities.activity import Activity
+from radhar_cli.config.number import nominal, support
+from radhar_cli.config.request import Request
+from radhar_cli.config.section import for_activity
+
+
+def tone_warnings(c: Request) -> list[str]:
+    """Say which interference tones of a config alias, a sentence for each."""
+    highest = support(c.radar.prf_hz)[0] / 2
+    return [
+        f"receiver.tones.{number}.doppler_hz reaches beyond PRF/2 = {highest:g} Hz: the tone "
+        "aliases, to that frequency less a multiple of the PRF"
+        for number, tone in enumerate(c.receiver.tones)
+        if max(map(abs, support(tone.doppler_hz))) > highest
+    ]
+
+
+def timing_warnings(c: Request, activities: Iterable[Activity] | None = None) -> list[str]:
+    """Say which movements begin after the end of the recording, a sentence for each.
+
+    Args:
+        c: the config; numbers that are drawn are taken at their middle.
+        activities: activities that are looked at; None for all of the config.
+    """
+    length = nominal(c.duration_s)
+    warnings = []
+    for activity in c.chosen_activities if activities is None else activities:
+        for key in ("seat_start_s", "walk_begin_s", "walk_start_s", "walk_stop_s"):
+            number = for_activity(getattr(c.timing, key), activity)
+            if number is None or not c.depends_on(activity, f"timing.{key}"):
+                continue
+            start = nominal(number)
+            if start >= length:
+                warnings.append(
+                    f"{activity.label} {activity.slug}: timing.{key} = {start:g} s is not before "
+                    f"the end of the recording, {length:g} s: what begins then is never seen"
+                )
+    return warnings

@@ -1,0 +1,99 @@
+"""People, classes and movements that do not fit together."""
+
+from collections.abc import Iterator
+
+from radhar_cli.activities.activity import ACTIVITIES, DEFAULT, activity_named, own_activities
+from radhar_cli.config.annotations import Limits, People, at, of_kind
+from radhar_cli.config.classes import SequenceConfig, class_activities
+from radhar_cli.config.number import MAX_NUMBER, support
+from radhar_cli.config.request import Request
+from radhar_cli.config.section import PerActivity, Problem, for_activity
+
+
+def people_problems(c: Request) -> Iterator[Problem]:
+    """Keys of `people` that other people in a scene cannot have."""
+    if c.people and c.motion.model == "paper":
+        right = "should be empty with motion.model: paper, where one person is the sample"
+        yield Problem("people", len(c.people), right)
+        return
+    for number, one in enumerate(c.people, 1):
+        key = f"people.{number - 1}"
+        if one.motion.model != "human":
+            yield Problem(f"{key}.motion.model", one.motion.model, "should be human")
+            continue
+        try:
+            activities = c.activities_of(number)
+        except ValueError as error:
+            yield Problem(f"{key}.activity", ", ".join(one.names), str(error))
+            continue
+        files = [a.slug for a in activities if c.files_of(a) is not None]
+        if files:
+            yield Problem(f"{key}.activity", files[0], "should be a movement, not motion files")
+            continue
+        slugs = tuple(a.slug for a in activities)
+        for problem in human_problems(c.of_person(number).model_copy(update={"activities": slugs})):
+            yield problem._replace(key=f"{key}.{problem.key}")
+
+
+def class_problems(c: Request) -> Iterator[Problem]:
+    """Classes that the model of motion cannot make."""
+    model = c.motion.model
+    for slug, one in c.classes.items():
+        if model != "human" and isinstance(one, SequenceConfig):
+            right = f"should have files with motion.model: {model}; sequences are of people (human)"
+            yield Problem(f"classes.{slug}", list(one.sequence), right)
+    if model != "file":
+        return
+    for activity in c.chosen_activities:
+        if activity.motion is None and activity.slug not in c.classes:
+            right = "should have files of it under classes, or motion.model: human makes it"
+            yield Problem("activities", activity.slug, right)
+
+
+def unknown_activities(c: Request) -> Iterator[Problem]:
+    """Names under `per_activity` that are neither an activity nor a user-defined class."""
+    own = class_activities(c.classes)
+    names = {DEFAULT, *(a.slug for a in (*ACTIVITIES, *own.values(), *own_activities()))}
+    keys = ["samples_per_class"]
+    of_people = [f"people.{n}." for n in range(len(c.people))]
+    keys += [
+        f"{whose}{name}.{key}"
+        for whose in ("", *of_people)
+        for name in ("motion", "timing")
+        for key in type(at(c, name)).model_fields
+    ]
+    for key in keys:
+        value = at(c, key)
+        for slug, number in value.per_activity.items() if isinstance(value, PerActivity) else ():
+            if slug in names:
+                continue
+            try:
+                advice = f"should be called {activity_named(slug, own).slug}"
+            except ValueError as error:
+                advice = str(error)
+            yield Problem(f"{key}.per_activity.{slug}", number, advice)
+
+
+# Where the motion of people holds, {key: (least, most)}; beyond, legs would be too short.
+_limits: tuple[tuple[str, Limits | People], ...] = (
+    *of_kind(Request, Limits),
+    *of_kind(Request, People),
+)
+
+
+HUMAN_LIMITS = {key: (one.low, one.high) for key, one in _limits if one.high < MAX_NUMBER}
+
+
+def human_problems(c: Request) -> Iterator[Problem]:
+    """Numbers beyond what people do, of the activities that depend on them."""
+    for key, (low, high) in HUMAN_LIMITS.items():
+        number = at(c, key)
+        users = [one for one in c.chosen_activities if c.depends_on(one, key)]
+        if number is None or not users:
+            continue
+        ends = [support(for_activity(number, one)) for one in users]
+        least, most = min(end[0] for end in ends), max(end[1] for end in ends)
+        if least < low or most > high:
+            right = f"should be from {low:g} to {high:g} with motion.model: human"
+            right = f"{right} (this one reaches from {least:g} to {most:g})"
+            yield Problem(key, number, right)

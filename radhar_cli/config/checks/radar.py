@@ -1,0 +1,198 @@
+"""Keys of the radar that do not fit together, or not with others."""
+
+from collections.abc import Iterator
+from math import ceil
+
+from radhar_cli.config.annotations import at
+from radhar_cli.config.checks.smallest_waveform import ENDS, waveform_at
+from radhar_cli.config.maps import FRAME_MAPS, OF_FRAMES, OF_POINTS
+from radhar_cli.config.number import support
+from radhar_cli.config.offered_maps import why_no_map
+from radhar_cli.config.request import AnyRequest, Request
+from radhar_cli.config.section import Problem
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.radar.board import DEVICES
+
+MAX_CUBE = 2**27  # samples of all channels
+
+
+BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, "points_kind", *OF_FRAMES, "cube")
+
+
+def step_problems(c: Request) -> Iterator[Problem]:
+    """Keys of stepped frequencies that do not fit together."""
+    radar = c.radar
+    for key in ("steps", "dwell_s"):
+        value = getattr(radar, key)
+        if (value is None) == (radar.waveform == "sfcw"):
+            right = "should be given" if value is None else "should be null"
+            yield Problem(f"radar.{key}", value, f"{right} with radar.waveform: {radar.waveform}")
+    if radar.output == "real" and radar.waveform != "cw":
+        right = f"should be iq with radar.waveform: {radar.waveform}; cw alone can be real"
+        yield Problem("radar.output", "real", right)
+    if radar.waveform == "cw":
+        if c.processing.range_sum == "gated":
+            right = "should be coherent with radar.waveform: cw, which has no range"
+            yield Problem("processing.range_sum", "gated", right)
+        right = "should be false with radar.waveform: cw, which has no chirp"
+        for key in ("radar.residual_video_phase", "engine.motion_in_chirp"):
+            if at(c, key):
+                yield Problem(key, True, right)
+    for key, number in radar.chirp_keys.items():
+        value = getattr(radar, key)
+        if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
+            gives = f"gives {number:.17g}" if radar.waveform == "sfcw" else "has none"
+            right = f"should be left out: radar.waveform: {radar.waveform} {gives}"
+            yield Problem(f"radar.{key}", value, right)
+
+
+def impulse_problems(c: Request) -> Iterator[Problem]:
+    """Keys that an impulse radar alone may have, and keys that it may not have."""
+    yield from profile_problems(c)
+    if c.radar.waveform != "impulse":
+        return
+    radar, of = c.radar, "with radar.waveform: impulse"
+    if c.engine.kind == "cube":
+        yield Problem("engine.kind", "cube", f"should be direct {of}, which has no beat")
+    if c.output.slow_time:
+        yield Problem("output.slow_time", True, f"should be false {of}: there is no sum over range")
+    if radar.residual_video_phase:
+        yield Problem("radar.residual_video_phase", True, f"should be false {of}")
+    if c.snr_db is None and c.receiver.noise_figure_db is not None:
+        right = f"should be null {of}: how many pulses its samples are means of is not said; snr_db"
+        yield Problem("receiver.noise_figure_db", c.receiver.noise_figure_db, right)
+    for key in ("receiver.noise_corner_hz", "receiver.tones"):
+        if at(c, key) not in (0, ()):
+            yield Problem(key, at(c, key), f"should be left out {of}, whose samples are real")
+
+
+def profile_problems(c: AnyRequest) -> Iterator[Problem]:
+    """Keys that do not fit range profiles, or chirps, simulated or recorded."""
+    radar, of = c.radar, "with radar.waveform: impulse"
+    if radar.waveform != "impulse":
+        if radar.profile_m is not None:
+            right = f"should be null with radar.waveform: {radar.waveform}"
+            yield Problem("radar.profile_m", list(radar.profile_m), right)
+        if c.image.kind == "signed":
+            right = "should be decibel or cfar without radar.waveform: impulse"
+            yield Problem("image.kind", "signed", right)
+        return
+    if radar.profile_m is None or not 0 <= radar.profile_m[0] < radar.profile_m[1]:
+        value = radar.profile_m and list(radar.profile_m)
+        yield Problem("radar.profile_m", value, f"should be [from, to], 0 <= from < to, {of}")
+        return
+    fc, band = support(radar.carrier_hz)[1], support(radar.bandwidth_hz)[1]
+    step = (radar.profile_m[1] - radar.profile_m[0]) / radar.profile_samples
+    finest = SPEED_OF_LIGHT / (4 * (fc + 1.5 * band))
+    if step > finest:
+        fewest = ceil((radar.profile_m[1] - radar.profile_m[0]) / finest)
+        right = f"should be {fewest} or more: steps of {step:.3g} m are coarser than {finest:.3g} m"
+        yield Problem("radar.profile_samples", radar.profile_samples, right)
+    if c.image.kind == "signed" and c.maps != ("rtm",):
+        yield Problem("maps", list(c.maps), "should be [rtm] with image.kind: signed")
+
+
+def board_problems(c: Request) -> Iterator[Problem]:
+    """Keys that a board cannot have, or that are not simulated for boards."""
+    board, radar, clutter = c.radar.header, c.radar, c.processing.clutter
+    if radar.waveform != "fmcw":
+        right = "should be left out with radar.cfg: a board sends chirps (fmcw)"
+        yield Problem("radar.waveform", radar.waveform, right)
+        return
+    if radar.elements is None:
+        right = (
+            f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
+        )
+        yield Problem("radar.device", radar.device, right)
+        return
+    tx, rx = len(radar.elements.tx), len(radar.elements.rx)
+    if max(board.order) >= tx or max(board.receivers) >= rx:
+        masks = [1 << n for n in board.order]
+        right = (
+            f"should name transmitters and receivers of the array, {tx} and {rx}: it has the "
+            f"masks {masks} and receivers {[n + 1 for n in board.receivers]}"
+        )
+        yield Problem("radar.cfg", "chirpCfg, channelCfg", right)
+        return
+    for key, number in board.numbers.items():
+        value = getattr(radar, key)
+        if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
+            yield Problem(f"radar.{key}", value, f"should be left out: radar.cfg gives {number:g}")
+    if support(c.duration_s)[0] < board.period_s:
+        right = f"should hold a frame of {board.period_s:g} s"
+        yield Problem("duration_s", c.duration_s, right)
+    chirps = support(c.duration_s)[1] / board.period_s * board.loops * len(board.order)
+    most = chirps * len(board.receivers) * board.samples
+    if most > MAX_CUBE:
+        seconds = support(c.duration_s)[1] * MAX_CUBE / most
+        right = f"should be at most {seconds:.3g} s: a cube of {MAX_CUBE} samples is held at once"
+        yield Problem("duration_s", c.duration_s, right)
+    if clutter not in ("mean", "none"):
+        right = "should be mean (of each frame) or none with radar.cfg"
+        yield Problem("processing.clutter", clutter, right)
+    if clutter == "mean" and board.loops == 1:
+        right = "should be none with frames of 1 loop (frameCfg), of which a mean leaves nothing"
+        yield Problem("processing.clutter", clutter, right)
+    if c.image.kind == "signed":
+        right = "should be decibel or cfar without radar.waveform: impulse"
+        yield Problem("image.kind", "signed", right)
+    sheets = [name for name in c.maps if name in FRAME_MAPS]
+    for key in ("power", "column_labels") if sheets else ():
+        if value := getattr(c.output, key):
+            right = (
+                f"should be left out with {', '.join(sheets)}, whose images are sheets of frames"
+            )
+            yield Problem(f"output.{key}", value, right)
+    products = [name for name in c.output.products if name in FRAME_MAPS]
+    if reasons := [why for name in products if (why := why_no_map(c, name)) is not None]:
+        yield Problem("output.products", products, f"should not have these: {reasons[0]}")
+    corner = c.receiver.noise_corner_hz
+    for name, value in (
+        ("tones", [one.model_dump(mode="json") for one in c.receiver.tones]),
+        ("noise_corner_hz", corner if support(corner)[1] > 0 else None),
+    ):
+        if value:
+            right = "should be left out with radar.cfg: it is of one channel"
+            yield Problem(f"receiver.{name}", value, right)
+    if c.engine.motion_in_chirp:
+        right = "should be false with radar.cfg: positions are frozen when a chirp begins"
+        yield Problem("engine.motion_in_chirp", True, right)
+    if c.output.slow_time:
+        right = "should be false with radar.cfg; output.products: [cube] stores raw samples"
+        yield Problem("output.slow_time", True, right)
+
+
+def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
+    radar, fft_length = c.radar, c.processing.range_fft_length
+    fewest, most = waveform_at(c).n_adc, waveform_at(c, *ENDS).n_adc
+    shortest_interval = 1 / support(radar.prf_hz)[1]
+    samples = "ADC samples per chirp (adc_rate_hz * chirp_s is"
+    key = "processing.range_fft_length"
+    if radar.waveform in ("cw", "impulse"):
+        right = f"should be left out with radar.waveform: {radar.waveform}, which has no chirp"
+        for key in ("processing.range_fft_length", "processing.range_reference"):
+            if at(c, key) not in (None, "centre"):
+                yield Problem(key, at(c, key), right)
+        return
+    if not support(radar.chirp_s)[1] < shortest_interval:
+        right = f"should be shorter than the pulse interval 1/prf_hz = {shortest_interval:g} s"
+        if radar.waveform == "sfcw":
+            right = f"{right} (steps * dwell_s is {radar.chirp_s:g} s)"
+            yield Problem("radar.steps", radar.steps, right)
+        else:
+            yield Problem("radar.chirp_s", radar.chirp_s, right)
+    if fewest < 2:
+        right = f"should give at least 2 {samples} {fewest})"
+        yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
+    if most > 2**20:
+        right = f"should give at most {2**20} {samples} {most})"
+        yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
+    if fft_length is not None and fft_length < most:
+        right = f"should be null or an even number of at least the {most} ADC samples"
+        yield Problem(key, fft_length, right)
+    if fft_length is not None and fft_length > MAX_PADDING * fewest:
+        right = f"should be null or at most {MAX_PADDING} times the {fewest} ADC samples"
+        yield Problem(key, fft_length, right)
+
+
+MAX_PADDING = 64

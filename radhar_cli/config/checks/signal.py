@@ -1,0 +1,175 @@
+"""Maps, windows, cancellers, gates and images that do not fit the signal."""
+
+from collections.abc import Iterable, Iterator
+
+from radhar_cli.config.checks.radar import MAX_PADDING, waveform_problems
+from radhar_cli.config.checks.smallest_waveform import (
+    ENDS,
+    HIGHEST_F0,
+    prf_in_words,
+    waveform_at,
+    window_pulses,
+)
+from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
+from radhar_cli.config.number import support
+from radhar_cli.config.offered_maps import why_no_map
+from radhar_cli.config.processing import MIN_WINDOW
+from radhar_cli.config.request import AnyRequest, Request
+from radhar_cli.config.section import Problem
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+
+MAX_PULSES = 2**24
+MAX_BIN_SAMPLES = 2**27  # of range bins in memory, 16 bytes each
+
+
+MIN_CUTOFF = 1e-4  # of PRF/2; below, rounding spoils a filter of order 10 in float64
+
+
+def map_problem(c: AnyRequest, names: Iterable[str]) -> Problem | None:
+    """Find the maps that the radar of a config cannot make, and say why; None if it makes all."""
+    reasons = {name: why for name in names if (why := why_no_map(c, name)) is not None}
+    if not reasons:
+        return None
+    possible = [name for name in (*MAP_NAMES, *FRAME_MAPS) if why_no_map(c, name) is None]
+    right = f"should be some of {', '.join(possible)}"
+    return Problem("maps", list(reasons), f"{right}: {'; '.join(dict.fromkeys(reasons.values()))}")
+
+
+def problems_of_maps(c: Request, names: tuple[str, ...]) -> list[Problem]:
+    """Find what keeps a config's radar and processing from making maps of other names."""
+    return list(processing_problems(c.model_copy(update={"maps": names})))
+
+
+def processing_problems(c: AnyRequest) -> Iterator[Problem]:
+    names = c.maps if isinstance(c, Request) else [one for one in c.maps if one in MAP_NAMES]
+    if (of_maps := map_problem(c, names)) is not None:
+        yield of_maps
+    if c.radar.cfg is None:
+        yield from waveform_problems(c)
+        yield from _clutter_problems(c)
+    yield from _signal_problems(c)
+    yield from _gate_problems(c)
+    yield from _image_problems(c)
+
+
+def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
+    processing, padding, board = c.processing, c.processing.stft_fft_length, c.radar.cfg is not None
+    shortest, longest = waveform_at(c, *HIGHEST_F0), waveform_at(c, "duration_s", "prf_hz")
+    pulses, most_pulses = shortest.n_pulses, longest.n_pulses
+    window, longest_window = window_pulses(c, shortest), window_pulses(c, longest)
+    usable_pulses = pulses - 1 if processing.clutter == "difference" else pulses
+    pulses_meant = "pulses there are"
+    if board:  # frames are cancelled, filtered and windowed one by one
+        usable_pulses = c.radar.header.loops
+        pulses_meant = "pulses of a frame, the loops of radar.cfg"
+    doppler = [name for name in c.maps if name != "rtm" and name not in FRAME_MAPS]
+    duration_entry: tuple[str, object] = ("duration_s", c.duration_s)
+    window_is_given = "window_s" in processing.model_fields_set and processing.window_s is not None
+    window_entry = (
+        ("processing.window_s", processing.window_s) if window_is_given else duration_entry
+    )
+    if most_pulses > MAX_PULSES and not board:
+        right = f"at most {MAX_PULSES} pulses (duration_s * prf_hz is {most_pulses})"
+        yield Problem(*duration_entry, f"should give {right}: radar.prf_hz may be {longest.prf:g}")
+    if pulses < 2 and not board:
+        yield Problem(*duration_entry, f"should hold at least 2 pulses (it holds {pulses})")
+    if doppler and window < min(MIN_WINDOW, usable_pulses if board else MIN_WINDOW):
+        right = f"the window of window_s * prf_hz at least {MIN_WINDOW} pulses (it has {window})"
+        yield Problem(*window_entry, f"should make {right}: {prf_in_words(c, shortest)}")
+    if doppler and window > usable_pulses:
+        right = (
+            f"should make the window at most the {usable_pulses} {pulses_meant} (it has {window})"
+        )
+        yield Problem(*window_entry, right)
+    if any("denoised" in name for name in doppler) and processing.savgol.frame > usable_pulses:
+        right = f"should be at most the {usable_pulses} {pulses_meant}"
+        yield Problem("processing.savgol.frame", processing.savgol.frame, right)
+    if padding is not None and padding < longest_window:
+        right = f"should be null or at least the window of {longest_window} pulses"
+        yield Problem("processing.stft_fft_length", padding, right)
+    if padding is not None and padding > MAX_PADDING * max(window, MIN_WINDOW):
+        right = f"should be null or at most {MAX_PADDING} times the window of {window} pulses"
+        yield Problem("processing.stft_fft_length", padding, right)
+
+
+def _clutter_problems(c: AnyRequest) -> Iterator[Problem]:
+    processing, prf = c.processing, support(c.radar.prf_hz)
+    cutoff_hz = processing.highpass.cutoff_hz
+    if processing.clutter == "highpass" and cutoff_hz is not None:
+        least, most = 2 * cutoff_hz / prf[1], 2 * cutoff_hz / prf[0]
+        if most >= 1 or least < MIN_CUTOFF:
+            right = (
+                f"should be from {MIN_CUTOFF:g} times PRF/2 to below PRF/2 in every scene "
+                f"(it is {least:g} to {most:g} times PRF/2)"
+            )
+            yield Problem("processing.highpass.cutoff_hz", cutoff_hz, right)
+    if "rtm" in c.maps and processing.clutter in ("mean", "highpass"):
+        yield from _bin_problems(c, "processing.clutter", processing.clutter, "the rtm")
+
+
+def _gate_problems(c: AnyRequest) -> Iterator[Problem]:
+    processing = c.processing
+    if processing.range_sum != "gated":
+        return
+    within = processing.gate_m
+    half_band = waveform_at(c, "bandwidth_hz").half_band_range  # the least
+    if c.radar.cfg is not None:  # of whose complex samples every range bin is kept
+        half_band = SPEED_OF_LIGHT * c.radar.header.adc_rate_hz / (2 * c.radar.header.slope_hz)
+    if isinstance(within, tuple):
+        if within[1] >= half_band:
+            right = f"should end before the range half-band does, at {half_band:.4g} m"
+            yield Problem("processing.gate_m", list(within), right)
+    elif 2 * within >= half_band:
+        right = f"should be less than half the range half-band of {half_band:.4g} m"
+        yield Problem("processing.gate_m", within, right)
+    if c.radar.cfg is None:
+        yield from _bin_problems(c, "processing.range_sum", "gated", "the gate")
+
+
+def _bin_problems(c: AnyRequest, key: str, value: object, what: str) -> Iterator[Problem]:
+    """A request for which more range bins of all pulses than memory allows have to be held.
+
+    Args:
+        c: the config, whose largest recording counts.
+        key: dotted key that asks for them.
+        value: its value.
+        what: what they are held for, in words.
+    """
+    w = waveform_at(c, *ENDS)
+    bins, pulses = w.n_bins, w.n_pulses
+    if bins * pulses > MAX_BIN_SAMPLES:
+        right = (
+            f"should not go with {pulses} pulses of {bins} range bins: for {what} they are held "
+            f"at once, {MAX_BIN_SAMPLES} samples at most"
+        )
+        yield Problem(key, value, right)
+
+
+def _image_problems(c: AnyRequest) -> Iterator[Problem]:
+    cfar, size = c.image.cfar, c.image.size_px
+    reach = [2 * (g + t) + 1 for g, t in zip(cfar.guard, cfar.training, strict=True)]
+    if c.image.kind == "cfar" and not any(cfar.training):
+        yield Problem("image.cfar.training", list(cfar.training), "should be 1 or more of a side")
+    if c.image.kind == "cfar" and any(r > px for r, px in zip(reach, size, strict=True)):
+        right = (
+            f"should fit into the image of {size[0]} x {size[1]} pixels: with the guard cells "
+            f"{list(cfar.guard)} on each side it takes {reach[0]} x {reach[1]}"
+        )
+        yield Problem("image.cfar.training", list(cfar.training), right)
+    limits = c.image.doppler_limits_mps
+    if limits is None or not set(c.maps) - {"rtm", *FRAME_MAPS}:
+        return
+    shortest = waveform_at(c, *HIGHEST_F0)
+    fastest = shortest.highest_speed
+    if max(-limits[0], limits[1]) > fastest * (1 + 1e-9):
+        right = (
+            f"should be within the unambiguous band, -{fastest:.6g} to {fastest:.6g} m/s "
+            f"(c prf_hz / 4 f0: {prf_in_words(c, shortest)})"
+        )
+        yield Problem("image.doppler_limits_mps", list(limits), right)
+    step = (
+        SPEED_OF_LIGHT * shortest.prf / (2 * waveform_at(c).f0 * max(window_pulses(c, shortest), 1))
+    )
+    if limits[1] - limits[0] < 2 * step:
+        right = f"should hold at least 2 Doppler bins (one has {step:.3g} m/s)"
+        yield Problem("image.doppler_limits_mps", list(limits), right)

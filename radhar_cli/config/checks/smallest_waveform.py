@@ -1,0 +1,37 @@
+"""Waveforms at the ends of what a config draws."""
+
+from radhar_cli.config.number import support
+from radhar_cli.config.request import AnyRequest
+from radhar_cli.radar.impulse import Impulse
+from radhar_cli.radar.waveform import Waveform
+
+ENDS = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz", "prf_hz", "duration_s")
+
+
+def waveform_at(c: AnyRequest, *largest: str) -> Waveform:
+    """Waveform of the smallest numbers that a config draws, and of the largest of those named."""
+    numbers = {key: c.duration_s if key == "duration_s" else getattr(c.radar, key) for key in ENDS}
+    fc, bandwidth, chirp, rate, prf, duration = (
+        support(number)[key in largest] for key, number in numbers.items()
+    )
+    processing = c.processing
+    length, centred = processing.range_fft_length, processing.range_reference == "centre"
+    parameters = fc, bandwidth, chirp, rate, prf, duration, length, centred
+    if c.radar.waveform == "impulse" and c.radar.profile_m is not None:
+        return Impulse(*parameters, profile=c.radar.profile_m, samples=c.radar.profile_samples)
+    return Waveform(*parameters)
+
+
+def window_pulses(c: AnyRequest, w: Waveform) -> int:
+    """Pulses of the STFT's window of a waveform, at most those of a board's frame."""
+    length = c.processing.window_pulses(w.duration, w.prf, w.f0)
+    return length if c.radar.cfg is None else min(length, c.radar.header.loops)
+
+
+def prf_in_words(c: AnyRequest, w: Waveform) -> str:
+    """The pulse rate of a waveform, and the key that one would change it by."""
+    board = c.radar.cfg is not None
+    return f"radar.cfg has a PRF of {w.prf:g} Hz" if board else f"radar.prf_hz may be {w.prf:g}"
+
+
+HIGHEST_F0 = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz")

@@ -1,0 +1,186 @@
+"""Classes of one's own: sequences of movements, or files of recorded motion."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
+
+from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator, model_validator
+
+from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, Activity, is_new_slug
+from radhar_cli.activities.vocabulary import advice_on
+from radhar_cli.config.number import Choice, Number, Seconds, support, uniform, value_error, within
+from radhar_cli.config.section import Section
+from radhar_cli.errors import did_you_mean
+from radhar_cli.motion.files.names import WANTED
+from radhar_cli.motion.files.reading import SUFFIXES
+
+MIN_MOVEMENT_S = 0.3
+
+
+FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
+
+
+class SequenceConfig(Section):
+    """A class of your own: movements one after the other, joined at rest."""
+
+    sequence: Annotated[tuple[str, ...], Field(min_length=1, max_length=64)]
+    """Movements of the class in order, by their names (docs/guide/motion.md)."""
+    durations_s: tuple[Seconds | None, ...] = ()
+    """Duration of each movement; null is the usual one, and of the last movement until the
+    recording ends."""
+    pauses_s: tuple[Seconds, ...] = ()
+    """Time at rest before each movement; left out, there is none."""
+
+    @model_validator(mode="after")
+    def _joined(self) -> "SequenceConfig":
+        count, last = len(self.sequence), len(self.sequence) - 1
+        if not self.durations_s:
+            object.__setattr__(self, "durations_s", (None,) * count)
+        if not self.pauses_s:
+            object.__setattr__(self, "pauses_s", (0.0,) * count)
+        if not len(self.durations_s) == len(self.pauses_s) == count:
+            raise value_error("should have as many durations_s, and pauses_s, as movements")
+        state = None
+        for n, (name, duration) in enumerate(zip(self.sequence, self.durations_s, strict=True)):
+            movement = MOVEMENTS.get(name)
+            if movement is None:
+                hint = advice_on(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
+                raise value_error(f"{name!r} is not a movement; {hint}")
+            if state not in (None, movement.before):
+                raise value_error(
+                    f"should be joined at rest: {name} begins {movement.before}, "
+                    f"{self.sequence[n - 1]} ends {state}"
+                )
+            if duration is not None and not support(duration)[0] >= MIN_MOVEMENT_S:
+                raise value_error(f"should have durations_s from {MIN_MOVEMENT_S} s on")
+            if movement.seconds is None and duration is None and n < last:
+                raise value_error(f"should have a duration of {name}, which something follows")
+            state = movement.after
+        return self
+
+
+MAX_FILES = 1500  # of all classes together
+
+
+MAX_PATH_LENGTH = 240
+
+
+Share01 = Annotated[Number, within(0, 1)]
+
+
+class FilesConfig(Section):
+    """A class whose motion is recorded: BVH, AMC or npz files; a list of them is enough."""
+
+    files: dict[str, str]
+    """Motion files {path: SHA-256}; a list of paths and patterns when a person writes it."""
+    skeleton: Annotated[str, Field(max_length=MAX_PATH_LENGTH)] | None = None
+    """ASF file of AMC files, where it is not beside them."""
+    joints: dict[str, Annotated[str, Field(min_length=1, max_length=100)]] = {}
+    """Names of joints {radhar's: the file's}, where the tables of names do not know the file's."""
+    up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None
+    """Axis of the files that points up; null finds it by the body's pose."""
+    unit_m: Annotated[float, Field(ge=1e-6, le=1e3, strict=True)] | None = None
+    """Length unit of the files; null finds it by the body's size."""
+    rate_hz: Annotated[float, Field(ge=1, le=1e4, strict=True)] | None = None
+    """Frames per second of the files, instead of what they say."""
+    section_s: tuple[FileSecond, FileSecond] | None = None
+    """Section [from, to] of each file that is used; null is all of it."""
+    low_pass_hz: Annotated[float, Field(ge=0.1, le=1e3, strict=True)] | None = 8.0
+    """Cut-off of the zero-phase low-pass of the positions; null is no filter."""
+    past_end: Literal["rest", "loop"] = "rest"
+    """What people do where a file is shorter than the recording: they come to rest, or go on in a
+    loop."""
+    file: Annotated[int, Field(ge=0, strict=True)] | None = None
+    """Number of the one file that is used, from 0; null draws one."""
+    start: Share01 = uniform(0.0, 1.0)
+    """Place in the section at which a recording begins, 0 at the earliest, 1 at the latest."""
+    playback_speed: Annotated[Number, within(0.25, 4)] = uniform(0.9, 1.1)
+    """Playback rate, seconds of the file per second of the recording."""
+    mirror: Share01 = Choice(choice=(0, 1))
+    """Whether left and right are exchanged: 1 exchanges them."""
+
+    NUMBERS: ClassVar = ("start", "playback_speed", "mirror")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _list(cls, value: Any) -> Any:
+        return {"files": value} if isinstance(value, (list, tuple)) else value
+
+    @field_validator("files", mode="before")
+    @classmethod
+    def _paths(cls, value: Any) -> Any:
+        if isinstance(value, (list, tuple)) and all(isinstance(one, str) for one in value):
+            return dict.fromkeys(value, "")
+        return value
+
+    @field_validator("files")
+    @classmethod
+    def _known(cls, value: dict[str, str]) -> dict[str, str]:
+        for path in value:
+            if not path.lower().endswith(SUFFIXES) or len(path) > MAX_PATH_LENGTH or "\0" in path:
+                raise value_error(f"should be paths of {', '.join(SUFFIXES)} files, not {path!r}")
+        if not 0 < len(value) <= MAX_FILES:
+            raise value_error(f"should have 1 to {MAX_FILES} files")
+        return value
+
+    @field_validator("joints")
+    @classmethod
+    def _ours(cls, value: dict[str, str]) -> dict[str, str]:
+        for name in value:
+            if name not in WANTED:
+                raise value_error(did_you_mean(name, WANTED, f"joints are {', '.join(WANTED)}"))
+        return value
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> "FilesConfig":
+        if self.file is not None and self.file >= len(self.files):
+            raise value_error(f"should have a file below {len(self.files)}, the number of files")
+        if self.skeleton is not None:
+            if not self.skeleton.lower().endswith(".asf"):
+                raise value_error("should have an .asf file as skeleton")
+            if not any(path.lower().endswith((".amc", "*")) for path in self.files):
+                raise value_error("should have .amc files with a skeleton")
+        if self.section_s is not None and not self.section_s[0] < self.section_s[1]:
+            raise value_error("should have a section_s that begins before it ends")
+        return self
+
+
+def _class_kind(value: Any) -> str:
+    of_files = isinstance(value, (FilesConfig, list, tuple))
+    of_files |= isinstance(value, dict) and "files" in value
+    return "<recordings>" if of_files else "<movements>"
+
+
+ClassConfig: TypeAlias = Annotated[
+    Annotated[SequenceConfig, Tag("<movements>")] | Annotated[FilesConfig, Tag("<recordings>")],
+    Discriminator(_class_kind),
+]
+
+
+def _own_classes(value: dict[str, ClassConfig]) -> dict[str, ClassConfig]:
+    twelve = {activity.slug for activity in ACTIVITIES}
+    for slug, one in value.items():
+        if not (is_new_slug(slug) or (isinstance(one, FilesConfig) and slug in twelve)):
+            raise value_error(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
+    if sum(len(one.files) for one in value.values() if isinstance(one, FilesConfig)) > MAX_FILES:
+        raise value_error(f"should have at most {MAX_FILES} files in all")
+    return value
+
+
+Classes = Annotated[dict[str, ClassConfig], Field(max_length=200), AfterValidator(_own_classes)]
+
+
+def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
+    """{slug: activity} of a config's classes: S13 and so on, or one of the twelve from files."""
+    activities: dict[str, Activity] = {}
+    twelve = {activity.slug: activity for activity in ACTIVITIES}
+    number = len(ACTIVITIES)
+    for slug, one in classes.items():
+        if slug in twelve:
+            activities[slug] = replace(twelve[slug], movements=())
+            continue
+        number += 1
+        movements = one.sequence if isinstance(one, SequenceConfig) else ()
+        movements += tuple(other for name in movements if (other := MOVEMENTS[name].like))
+        activities[slug] = Activity(number, slug, movements)
+    return activities

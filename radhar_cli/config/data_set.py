@@ -1,0 +1,64 @@
+"""The whole YAML file of a data set, checked across sections."""
+
+from collections.abc import Iterable
+from typing import TypeAlias, TypeVar
+
+from pydantic import model_validator
+from pydantic_core import PydanticCustomError
+
+from radhar_cli.config.checks.data_set import (
+    measured_problems,
+    problems,
+    problems_of_processing,
+    problems_of_recordings,
+)
+from radhar_cli.config.request import MeasuredRequest, Request
+from radhar_cli.config.section import Problem
+
+R = TypeVar("R", bound=Request | MeasuredRequest)
+
+
+def _require_none(request: R, mistakes: Iterable[Problem]) -> R:
+    """Return a request that has no mistakes across sections; pydantic collects them otherwise."""
+    if listed := list(mistakes):
+        raise PydanticCustomError("across", "{problems}", {"problems": listed})
+    return request
+
+
+class Config(Request):
+    """A data set: what to draw, what to compute, how to store it."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Config":
+        return _require_none(self, self.problems())
+
+    def problems(self) -> Iterable[Problem]:
+        """Find what does not go together in this config, once defaults by model are filled in."""
+        return problems(self.filled())
+
+
+class ConfigOfRecordings(Config):
+    """A config before its recordings are opened: sections are not checked against each other."""
+
+    def problems(self) -> Iterable[Problem]:
+        """Find what is wrong whatever the recordings are."""
+        return problems_of_recordings(self.filled())
+
+
+class ProcessedConfig(Config):
+    """A config with radar and length of the recording that it processes, and checked for that."""
+
+    def problems(self) -> Iterable[Problem]:
+        """Find what does not go together in radar and processing."""
+        return problems_of_processing(self.filled())
+
+
+class MeasuredConfig(MeasuredRequest):
+    """A data set of recordings, which `radhar generate --recordings` makes of a `Config`."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "MeasuredConfig":
+        return _require_none(self, measured_problems(self))
+
+
+AnyConfig: TypeAlias = Config | MeasuredConfig

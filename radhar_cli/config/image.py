@@ -1,0 +1,85 @@
+"""What an image of a map shows."""
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field, field_validator
+
+from radhar_cli.config.acting import SPECTRA
+from radhar_cli.config.annotations import ActsIf
+from radhar_cli.config.number import Decibel, Positive, Real, require, uniform, value_error, within
+from radhar_cli.config.section import Section
+from radhar_cli.errors import did_you_mean
+
+DEFAULT_COLOUR_MAP = "viridis"
+
+
+Pixels = Annotated[int, Field(ge=2, le=8192, strict=True)]
+
+
+Cells = Annotated[int, Field(ge=0, le=4096, strict=True)]
+
+
+class CfarConfig(Section):
+    """Cell-averaging CFAR of `image.kind: cfar`; cells are pixels, (rows, columns) on each side.
+
+    With `domain: decibel` the map's median is put at floor_db: a factor of decibels needs a zero.
+    """
+
+    guard: tuple[Cells, Cells] = (10, 2)
+    """Guard cells on each side, [rows, columns] of pixels, left out of the average."""
+    training: tuple[Cells, Cells] = (50, 10)
+    """Training cells on each side, [rows, columns] of pixels, averaged."""
+    pfa: Annotated[Positive, within(1e-12, 0.999)] = 0.31
+    """False alarm rate in exponentially distributed power, which gives the threshold."""
+    domain: Literal["power", "decibel"] = "decibel"
+    """Quantity that is averaged and compared."""
+    floor_db: Annotated[Decibel, within(0, 200, "dB"), ActsIf("image.cfar.domain", "decibel")] = (
+        uniform(10.0, 30.0)
+    )
+    """Level at which the map's median is put with `domain: decibel`: the threshold is then a factor
+    of decibels."""
+    edges: Literal["wrap", "shrink"] = "wrap"
+    """What stands for cells beyond an edge: those of the opposite edge, or none."""
+
+
+class ImageConfig(Section):
+    """Size (height, width; one number means square), what pixels show, colour map, Doppler limits.
+
+    Doppler limits are speeds, positive approaching.
+    """
+
+    size_px: Annotated[
+        tuple[Pixels, Pixels],
+        BeforeValidator(
+            lambda one: (one, one) if isinstance(one, int) else one,
+            json_schema_input_type=Pixels | tuple[Pixels, Pixels],
+        ),
+    ] = (256, 256)
+    """Image size [height, width]; one number is a square."""
+    kind: Literal["decibel", "cfar", "signed"] = "decibel"
+    """What pixels show: grey levels of decibels; cfar, binary masks of what exceeds its background;
+    or signed, the samples of an impulse radar's rtm, 0 in the middle."""
+    clipped: Annotated[float, Field(ge=0, lt=1, strict=True), ActsIf("image.kind", "signed")] = 0.02
+    """Share of the samples that are black or white."""
+    dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
+    """Range of the grey levels below the largest power (`kind: decibel`)."""
+    cfar: Annotated[CfarConfig, ActsIf("image.kind", "cfar")] = CfarConfig()
+    colour_map: str = DEFAULT_COLOUR_MAP
+    """Colour map of PNGs and figures, any Matplotlib name; dataset.h5 holds grey levels."""
+    doppler_limits_mps: Annotated[
+        tuple[Real, Real] | None,
+        require(lambda value: value[0] < value[1], "should be [low, high] with low < high"),
+        SPECTRA,
+    ] = None
+    """Speeds [low, high] that Doppler maps show, approaching positive; null is all."""
+
+    @field_validator("colour_map")
+    @classmethod
+    def _known(cls, value: str) -> str:
+        if value != DEFAULT_COLOUR_MAP:  # Matplotlib is slow to import
+            from matplotlib import colormaps
+
+            if value not in colormaps:
+                hint = did_you_mean(value, colormaps, "viridis, gray, turbo, jet are some")
+                raise value_error(f"should be a Matplotlib colour map; {hint}")
+        return value

@@ -1,0 +1,55 @@
+"""Names of the maps that a data set may hold."""
+
+from typing import Annotated
+
+from pydantic import AfterValidator
+
+from radhar_cli.config.number import value_error
+from radhar_cli.extensions import is_known, own_products
+
+MAP_NAMES = (
+    "rtm",
+    *(
+        f"{kind}{suffix}"
+        for kind in ("stft", "fsst")
+        for suffix in ("", "_denoised", "_compensated", "_compensated_denoised")
+    ),
+)
+
+
+# Maps of a board, frame by frame: data sets hold them as arrays, and sheets of frames as images.
+MIN_LOOPS = 4  # of a frame: of 2 or fewer, a Hann window keeps one
+
+
+FRAME_MAPS = ("range_doppler", "range_azimuth", "range_elevation", "points")
+
+
+# What comes with the points, and with any of these maps.
+OF_POINTS = ("points", "points_start", "points_person")
+
+
+OF_FRAMES = ("skeleton", "skeleton_velocity")
+
+
+def _known_map(name: str) -> str:
+    if name not in (*MAP_NAMES, *FRAME_MAPS) and not is_known(name):
+        names = (*MAP_NAMES, *FRAME_MAPS, *(product.name for product in own_products()))
+        right = " or ".join(filter(None, (", ".join(map(repr, names[:-1])), repr(names[-1]))))
+        raise value_error(f"should be {right}")
+    return name
+
+
+MapName = Annotated[str, AfterValidator(_known_map)]
+
+
+def _maps_in_order(value: tuple[str, ...]) -> tuple[str, ...]:
+    if not value:
+        raise value_error("should name at least 1 map")
+    if len(set(value)) != len(value):
+        raise value_error("should name each map once")
+    known = (*MAP_NAMES, *FRAME_MAPS)
+    own = [name for name in value if name not in known]
+    return (*sorted(set(value) - set(own), key=known.index), *own)
+
+
+Maps = Annotated[tuple[MapName, ...], AfterValidator(_maps_in_order)]

@@ -1,0 +1,144 @@
+"""Clutter, range compression, gate, windows, and the points of boards."""
+
+from math import sqrt
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from radhar_cli.config.acting import EVEN, NO_BOARD, SPECTRA
+from radhar_cli.config.annotations import ActsIf, OnlyMaps
+from radhar_cli.config.number import value_error
+from radhar_cli.config.section import Flag, Section
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.numerics.rounding import half_up
+
+
+class SavgolConfig(Section):
+    """The Savitzky-Golay filter of the denoised maps."""
+
+    order: Annotated[int, Field(ge=0, le=30, strict=True)] = 5
+    """Order of the polynomial."""
+    frame: Annotated[int, Field(ge=1, strict=True)] = 11
+    """Number of pulses that the polynomial is fitted to; odd, above the order."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> "SavgolConfig":
+        if self.frame % 2 == 0 or self.frame <= self.order:
+            raise value_error("should have a frame that is odd and above the order")
+        return self
+
+
+class HighpassConfig(Section):
+    """The Butterworth filter of `clutter: highpass`."""
+
+    order: Annotated[int, Field(ge=1, le=10, strict=True)] = 4
+    """Order of the filter."""
+    cutoff_hz: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
+    """Cut-off frequency; null is 0.00375 of the PRF."""
+    zero_phase: Flag = False
+    """Whether the filter runs both ways, without a delay."""
+    remove_mean: Flag = True
+    """Whether the mean is taken out first; false starts from rest as MATLAB's `filter`: static
+    echoes ring."""
+
+    def cutoff(self, prf: float) -> float:
+        """Cut-off of the filter as a fraction of PRF/2, for `prf` pulses a second."""
+        return DEFAULT_CUTOFF if self.cutoff_hz is None else 2 * self.cutoff_hz / prf
+
+
+DEFAULT_CUTOFF = 0.0075  # of PRF/2
+
+
+LIMB_ACCELERATION = 2.0  # m/s^2 along the line of sight; gait and kicks are resolved at 2 to 77 GHz
+
+
+MAX_WINDOW_SHARE = 0.25
+
+
+MIN_WINDOW = 8
+
+
+PAPER_WINDOW = 0.1  # of the recording
+
+
+_GATED = ActsIf("processing.range_sum", "gated")
+
+
+class ProcessingConfig(Section):
+    """Clutter, range compression, gate, windows and thresholds."""
+
+    clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
+    """Clutter canceller: difference is s[m + 1] - s[m], the paper's MTI; mean takes out that of the
+    recording; highpass is the filter below."""
+    highpass: Annotated[HighpassConfig, ActsIf("processing.clutter", "highpass")] = HighpassConfig()
+    range_sum: Annotated[Literal["coherent", "gated"], SPECTRA] = "coherent"
+    """What Doppler maps show: the coherent sum of the kept bins, or STFTs of those in the gate,
+    summed incoherently."""
+    gate_m: Annotated[float | tuple[float, float], _GATED] = 1.0
+    """Reach of the gate to both sides of the torso, m, or [from, to]: fixed ranges."""
+    gate_sum: Annotated[Literal["power", "magnitude"], _GATED] = "power"
+    """How the gate's bins are added up: their powers, or (sum of the magnitudes)^2."""
+    range_fft_length: Annotated[
+        Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None, NO_BOARD
+    ] = None
+    """Length of the range FFT, even, at least the samples of a chirp; null finds one."""
+    range_gain_power: Annotated[float, Field(ge=0, le=8, strict=True), OnlyMaps("rtm")] = 0.0
+    """Exponent p of the gain (R/largest R)^p of the rtm's range bins, after canceller and noise."""
+    range_reference: Annotated[Literal["centre", "start"], NO_BOARD] = "centre"
+    """Instant of the chirp at which the phase of range bins is taken."""
+    window_s: Annotated[float | None, Field(gt=0, le=1e7, strict=True), SPECTRA] = None
+    """Length of the STFT's window; null is a tenth of duration_s (paper), else by the wavelength,
+    as limbs need."""
+    overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True), SPECTRA, EVEN] = 0.9
+    """Overlap of consecutive STFT windows, as a fraction of the window."""
+    stft_fft_length: Annotated[int | None, Field(ge=8, strict=True), OnlyMaps("stft")] = None
+    """Length of the STFT's FFT, at least the window; null finds one."""
+    savgol: Annotated[SavgolConfig, OnlyMaps("denoised")] = SavgolConfig()
+    fsst_hop_pulses: Annotated[int | None, Field(ge=1, le=2**24, strict=True), OnlyMaps("fsst")] = (
+        None
+    )
+    """Hop of the fsst maps in pulses; 1 is every sample, null the STFT's."""
+    fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True), OnlyMaps("fsst")] = 1e-3
+    """Share of the fsst map's largest coefficient below which coefficients are left out."""
+
+    @field_validator("gate_m", mode="before")
+    @classmethod
+    def _distance_or_interval(cls, value: Any) -> Any:
+        numbers = value if isinstance(value, (list, tuple)) and len(value) == 2 else [value]
+        good = all(type(one) in (int, float) and 0 <= one <= 1e7 for one in numbers)
+        if not good or sorted(numbers) != list(numbers) or numbers == [0]:
+            raise value_error(
+                "should be how far (m) the gate reaches to both sides of the torso, above 0, "
+                "or [from, to], ranges with from <= to; 1e7 at most"
+            )
+        return value
+
+    def window_pulses(self, duration: float, prf: float, f0: float) -> int:
+        """Length of the STFT's window in pulses.
+
+        Where nothing gives it, T = sqrt(2 lambda/a): a limb's Doppler then crosses the main lobe of
+        Hann's window, 4/T, in T. It has MIN_WINDOW pulses or more, and at most MAX_WINDOW_SHARE of
+        the recording.
+
+        Args:
+            duration: of the recording, s.
+            prf: pulses per second.
+            f0: frequency of the Doppler, Hz.
+        """
+        if self.window_s is not None:
+            return half_up(self.window_s, prf)
+        seconds = sqrt(2 * SPEED_OF_LIGHT / f0 / LIMB_ACCELERATION)
+        return max(half_up(min(seconds, MAX_WINDOW_SHARE * duration), prf), MIN_WINDOW)
+
+
+class CloudConfig(Section):
+    """How points are found in the frames of a board (docs/guide/boards.md)."""
+
+    chain: Literal["best", "board"] = "best"
+    """Detection chain: best is what the data allow, board what TI's firmware does with the .cfg."""
+    pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), ActsIf("cloud.chain", "best")] = 1e-5
+    """Rate of false alarms of a range-Doppler cell."""
+    quantise: Annotated[Flag, ActsIf("cloud.chain", "board")] = True
+    """Whether numbers are rounded as the firmware's fixed-point ones."""
+    doppler_carrier: Literal["centre", "start"] = "centre"
+    """Frequency that the points' speeds refer to; TI's software takes that at which ramps start."""

@@ -1,0 +1,89 @@
+"""Recordings that a data set of measured data is cut from."""
+
+from functools import cached_property
+from math import floor
+from pathlib import PurePosixPath
+from typing import Annotated
+
+from pydantic import Field, field_validator, model_validator
+
+from radhar_cli.config.number import value_error
+from radhar_cli.config.section import Flag, Section
+
+MAX_WINDOWS = 1_000_000
+
+
+SLUG = r"[a-z][a-z0-9_]{0,62}"
+
+
+class RecordedPart(Section):
+    """Part of a recording in which one person does one thing.
+
+    The file is named from the manifest's folder, or below.
+    """
+
+    file: Annotated[str, Field(max_length=500)]
+    """Path of the recording, from the manifest's folder on."""
+    label: Annotated[str, Field(pattern=f"^{SLUG}$")]
+    """Class of what the person does."""
+    person: Annotated[str, Field(max_length=100)] | None = None
+    """Name or number of the person, where it is known."""
+    start_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]
+    """When the part begins."""
+    stop_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]
+    """When the part ends."""
+
+    @field_validator("file")
+    @classmethod
+    def _below(cls, value: str) -> str:
+        place = PurePosixPath(value)
+        if place.is_absolute() or ".." in place.parts or "\\" in value or not place.name:
+            raise value_error("should be a path below the manifest's folder")
+        return value
+
+
+class RecordingsConfig(Section):
+    """A data set of measured data: windows of recordings instead of scenes."""
+
+    window_s: Annotated[float, Field(gt=0, le=1e6, strict=True)] = 4.0
+    """Duration of a sample."""
+    hop_s: Annotated[float, Field(gt=0, le=1e6, strict=True)] = 4.0
+    """Time from the start of a sample to the start of the next."""
+    receiver: Annotated[int, Field(ge=0, le=2**16, strict=True)] | None = None
+    """Number of the receiver that maps are made of; null is the sum of all receivers' powers."""
+    parts: Annotated[tuple[RecordedPart, ...], Field(max_length=10_000)] = ()
+    """Parts of recordings, filled in from the manifest, in its order."""
+    sha256: dict[str, str] = {}
+    """SHA-256 of each file, filled in; the data set's bytes depend on it."""
+    rows: tuple[float, float] | None = None
+    """Lowest and highest edge of images that exist already, Hz (m of a range-time map)."""
+    packed: Flag = False
+    """Whether the columns of masks are bits."""
+
+    @model_validator(mode="after")
+    def _bounded(self) -> "RecordingsConfig":
+        if (total := sum(map(self.count, self.parts))) > MAX_WINDOWS:
+            raise value_error(f"should have at most {MAX_WINDOWS} windows; hop_s makes {total}")
+        return self
+
+    def count(self, part: RecordedPart) -> int:
+        """How many windows a part holds."""
+        room = part.stop_s - part.start_s - self.window_s
+        return floor(room / self.hop_s + 1e-9) + 1 if room >= -1e-9 else 0
+
+    def starts(self, part: RecordedPart) -> list[float]:
+        """When the windows of a part begin, s."""
+        return [part.start_s + n * self.hop_s for n in range(self.count(part))]
+
+    @cached_property
+    def counts(self) -> dict[str, int]:
+        """{label: windows}, of those that have any."""
+        found: dict[str, int] = {}
+        for part in self.parts:
+            found[part.label] = found.get(part.label, 0) + self.count(part)
+        return {label: count for label, count in found.items() if count}
+
+    @property
+    def persons(self) -> tuple[str, ...]:
+        """Names of all persons, in alphabetical order."""
+        return tuple(sorted({part.person for part in self.parts if part.person is not None}))

@@ -1,0 +1,384 @@
+"""All sections together: what a data set is asked for, not yet checked across sections."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache, cached_property, partial
+from itertools import count
+from typing import Annotated, Any, ClassVar, Literal, Self, TypeAlias
+
+from pydantic import BaseModel, Field, ValidationInfo, field_validator
+
+from radhar_cli.activities.activity import (
+    ACTIVITIES,
+    DEFAULT,
+    EXERCISES,
+    MOVEMENTS,
+    Activity,
+    activity_named,
+)
+from radhar_cli.config.annotations import (
+    GIVEN,
+    ActsIf,
+    ActsIfAny,
+    ByModel,
+    Limits,
+    OnlyMaps,
+    Paper,
+    People,
+    at,
+    conditions,
+    of_kind,
+)
+from radhar_cli.config.classes import Classes, FilesConfig, class_activities
+from radhar_cli.config.engine import EngineConfig
+from radhar_cli.config.image import ImageConfig
+from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES, OF_FRAMES, OF_POINTS, Maps
+from radhar_cli.config.number import Decibel, Positive, nominal, uniform, value_error, within
+from radhar_cli.config.output import OutputConfig, SplitConfig
+from radhar_cli.config.people import (
+    BodyConfig,
+    MotionConfig,
+    PersonConfig,
+    SubjectConfig,
+    TimingConfig,
+)
+from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
+from radhar_cli.config.radar import RadarConfig
+from radhar_cli.config.receiver import BOARD_GAIN_DBI, BOARD_NOISE_FIGURE_DB, ReceiverConfig
+from radhar_cli.config.recordings import RecordingsConfig
+from radhar_cli.config.room import RoomConfig, WallConfig
+from radhar_cli.config.section import By, PerActivity, S, Section, for_activity
+
+Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
+
+
+# Of data sets of scenes and of recordings; labels are uint8.
+Seed = Annotated[int, Field(ge=0, lt=2**63, strict=True)]
+
+
+class Request(Section):
+    """A data set: what to draw, what to compute, how to store it."""
+
+    seed: Seed = 1
+    """Seed of everything that is drawn, 0 to 2^63 - 1."""
+    samples_per_class: By[Samples] = 300
+    """Number of samples of each class; it may differ: `{per_activity: {default: 300, walking:
+    100}}`."""
+    classes: Classes = {}
+    """Classes of your own: `{name: {sequence: [...]}}` of movements, `{name: [walk/*.bvh]}` of
+    files."""
+    activities: Literal["all"] | tuple[str, ...] = "all"
+    """Classes of the data set: all is the twelve and those of `classes`; or a list of slugs or S1
+    to S12, [walking, S12]. A place in it, from 0, is a label of the data set."""
+    duration_s: Annotated[
+        Positive | None,
+        within(1e-9, 1e7, "s"),
+        Limits(0, 600),
+        ByModel(human=6.0, paper=4.0, file=4.0),
+    ] = None
+    """Duration of a recording."""
+    radar: RadarConfig = RadarConfig()
+    subject: SubjectConfig = SubjectConfig()
+    motion: MotionConfig = MotionConfig()
+    timing: TimingConfig = TimingConfig()
+    body: BodyConfig = BodyConfig()
+    people: Annotated[tuple[PersonConfig, ...], Field(max_length=7)] = ()
+    """Other people in the scene, up to seven of {activity, share, subject, motion, timing}; see
+    docs/guide/scenes.md."""
+    wall: WallConfig | None = None
+    """Wall between radar and people; null is free space."""
+    room: RoomConfig = RoomConfig()
+    snr_db: Decibel | None = 30.0
+    """SNR of a raw sample; null: thermal noise by receiver.noise_figure_db, which a board has by
+    default, or none where that is null, too."""
+    receiver: ReceiverConfig = ReceiverConfig()
+    snr_reference: Annotated[
+        Literal["free_space", "received"],
+        ActsIf("snr_db", GIVEN),
+        ActsIfAny(ActsIf("wall", GIVEN), ActsIf("radar.beam", GIVEN), ActsIf("radar.cfg", GIVEN)),
+    ] = "free_space"
+    """Echo that snr_db refers to: as it would be without the wall, in the middle of the antennas'
+    beam (free_space); or as it is received, less what the wall and the beam take."""
+    on_invalid: Annotated[
+        Literal["keep", "redraw", "error"] | None,
+        ByModel(human="redraw", paper="keep", file="redraw"),
+    ] = None
+    """What happens to a scene in which a body meets the wall or a scatterer leaves the range
+    half-band. A scene in which one comes within 5 cm of an antenna is drawn again with `redraw`,
+    and refused otherwise."""
+    processing: ProcessingConfig = ProcessingConfig()
+    cloud: Annotated[CloudConfig, OnlyMaps("points")] = CloudConfig()
+    image: ImageConfig = ImageConfig()
+    maps: Maps = ("stft",)
+    """Maps of the data set: `rtm`, `stft`, `fsst`, the latter two also with `_denoised`,
+    `_compensated`, `_compensated_denoised`; of boards also `range_doppler`, `range_azimuth`,
+    `range_elevation`, `points`."""
+    split: SplitConfig = SplitConfig()
+    engine: EngineConfig = EngineConfig()
+    output: OutputConfig = OutputConfig()
+    _places: tuple[dict[str, str], dict[str, str]] = ({}, {})  # {key: file:line}, {key: option}
+
+    recordings: RecordingsConfig | None = None
+    """How `radhar generate --recordings` cuts recordings into samples: see
+    docs/guide/measured.md."""
+
+    @field_validator("activities", mode="before")
+    @classmethod
+    def _slugs(cls, value: object, info: ValidationInfo) -> object:
+        if not isinstance(value, (list, tuple)) or "classes" not in info.data:
+            return value  # a mistake in `classes` is reported once
+        own = class_activities(info.data["classes"])
+        try:
+            chosen = [activity_named(str(name), own) for name in value]
+        except ValueError as error:
+            raise value_error(str(error)) from None
+        if not chosen or len({a.slug for a in chosen}) != len(chosen):
+            raise value_error("should name at least one activity, each once")
+        return tuple(a.slug for a in chosen)
+
+    @property
+    def stored(self) -> tuple[str, ...]:
+        """Products that a data set holds as arrays: those of `output.products` and of boards."""
+        frames = [name for name in self.maps if name in FRAME_MAPS]
+        ghosts = ("points_kind",) if self.room.faces is not None else ()
+        points = (*OF_POINTS, *ghosts) if "points" in frames else ()
+        people = OF_FRAMES if frames else ()
+        return tuple(dict.fromkeys((*frames, *points, *people, *self.output.products)))
+
+    @property
+    def has_error(self) -> bool:
+        """Whether the direct engine makes something whose error is measured."""
+        signals = set(self.maps) & set(MAP_NAMES) - {"rtm"}
+        return self.engine.kind == "direct" and bool(signals or self.radar.cfg is not None)
+
+    def filled(self) -> Self:
+        """This config, in which what is null and has a default by model takes it.
+
+        So do activities that a number by activity does not name.
+        """
+        changed = _missing_defaults(self)
+        for key, default in of_kind(Request, ByModel):
+            name, _, rest = key.rpartition(".")
+            holder = getattr(self, name) if name else self
+            if holder is not None and getattr(holder, rest) is None:
+                changed.setdefault(name, {})[rest] = default.values.get(self.motion.model)
+        wall = self.wall
+        if wall is not None and wall.layers and "size_m" not in wall.model_fields_set:
+            changed.setdefault("wall", {})["size_m"] = (None, *wall.size_m[1:])
+        if self.receiver.noise_figure_db is not None and "snr_db" not in self.model_fields_set:
+            changed.setdefault("", {})["snr_db"] = None
+        if self.radar.cfg is not None:
+            _fill_from_cfg(self, changed)
+        for key, number in self.radar.chirp_keys.items():
+            if key not in self.radar.model_fields_set:
+                changed.setdefault("radar", {})[key] = number
+        for name, value in changed.pop("", {}).items():
+            object.__setattr__(self, name, value)
+        for name, values in changed.items():
+            object.__setattr__(self, name, _with_defaults(getattr(self, name), values))
+        if self.people:
+            filled = tuple(self._filled_person(n) for n in range(1, len(self.people) + 1))
+            object.__setattr__(self, "people", filled)
+        if self.motion.model == "paper" and self.processing.window_s is None:
+            window = {"window_s": PAPER_WINDOW * nominal(self.duration_s)}
+            object.__setattr__(self, "processing", _with_defaults(self.processing, window))
+        return self
+
+    def of_person(self, number: int) -> Self:
+        """Config of one of `people`, 1 the first: with their numbers at the top level."""
+        one = self.people[number - 1]
+        theirs = {"subject": one.subject, "motion": one.motion, "timing": one.timing, "people": ()}
+        classes = self.classes if one.classes is None else one.classes
+        return self.model_copy(update={**theirs, "classes": classes})
+
+    def activities_of(self, number: int) -> tuple[Activity, ...]:
+        """What one of `people` may do.
+
+        Raises:
+            ValueError: there is no such activity.
+        """
+        own = {one.slug: one for one in self.every_class}
+        return tuple(activity_named(name, own) for name in self.people[number - 1].names)
+
+    def _filled_person(self, number: int) -> PersonConfig:
+        filled, one = self.of_person(number).filled(), self.people[number - 1]
+        motion = filled.motion
+        if "cross_range_m" not in one.motion.model_fields_set:
+            motion = motion.model_copy(update={"cross_range_m": uniform(-1.5, 1.5)})
+        return one.model_copy(update={"motion": motion, "timing": filled.timing})
+
+    def samples_of(self, activity: Activity) -> int:
+        """How many samples of an activity there are."""
+        samples: int = for_activity(self.samples_per_class, activity)
+        return samples
+
+    @property
+    def every_class(self) -> tuple[Activity, ...]:
+        """Every class that anybody may show: the chosen ones, whose place here is their label, then
+        the others of the twelve and of `classes`, which only `people` do."""
+        known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
+        return (*({a.slug: a for a in self.chosen_activities} | known).values(),)
+
+    @property
+    def chosen_activities(self) -> tuple[Activity, ...]:
+        """The activities to build, in the order of `activities`; a place here, from 0, is a label.
+
+        `activities: all` is S1 to S12, then those of `classes`; with `motion.model: file` only the
+        latter. Those of `add_activity` have the numbers after these, which name random streams.
+        """
+        own = class_activities(self.classes)
+        if self.activities == "all":
+            twelve = {} if self.motion.model == "file" else {a.slug: a for a in ACTIVITIES}
+            return (*sorted((twelve | own).values(), key=lambda a: a.number),)
+        chosen = [activity_named(slug, own) for slug in self.activities]
+        numbers = count(1 + max(a.number for a in (*ACTIVITIES, *own.values())))
+        return tuple(a if a.motion is None else replace(a, number=next(numbers)) for a in chosen)
+
+    def depends_on(self, activity: Activity, key: str) -> bool:
+        """Whether scenes of an activity depend on the number of this dotted key."""
+        value_at = partial(at, self)
+        if not all(one.holds(value_at) for one in conditions(Request, key)):
+            return False
+        if key.startswith("classes."):
+            return key.startswith(f"classes.{activity.slug}.")
+        uses = _uses().get(key)
+        if uses is None or activity.motion is not None:
+            return uses is None or key in activity.uses
+        names = uses.get(self.motion.model)
+        if names is None or self.files_of(activity) is not None:
+            return False
+        return not names or not names.isdisjoint((activity.label, *activity.movements))
+
+    def users_of(self, key: str) -> tuple[str, ...]:
+        """Movements and activities that use the number of a dotted key under the model of motion.
+
+        Empty where the model does not know it, and where everybody uses it.
+        """
+        names = set(_uses().get(key, {}).get(self.motion.model, ()))
+        if names.issuperset(EXERCISES):
+            names = names.difference(EXERCISES) | {"exercises"}
+        activities = [one.slug for one in ACTIVITIES if one.label in names]
+        return (*(name for name in (*MOVEMENTS, "exercises") if name in names), *activities)
+
+    @property
+    def has_noise(self) -> bool:
+        """Whether a receiver adds noise to the echo."""
+        return self.snr_db is not None or self.receiver.noise_figure_db is not None
+
+    def files_of(self, activity: Activity) -> FilesConfig | None:
+        """The files of an activity, None where a model makes its motion."""
+        one = self.classes.get(activity.slug)
+        return one if isinstance(one, FilesConfig) else None
+
+
+class MeasuredRequest(Section):
+    """A data set of recordings, which `radhar generate --recordings` makes of a `Config`."""
+
+    # What else data sets are asked for: here are no other people, no noise, no further products.
+    people: ClassVar[tuple[PersonConfig, ...]] = ()
+    snr_db: ClassVar[None] = None
+    has_noise: ClassVar[bool] = False
+    stored: ClassVar[tuple[str, ...]] = ()
+    engine: ClassVar[EngineConfig] = EngineConfig()
+
+    seed: Seed
+    classes: Classes
+    radar: RadarConfig
+    processing: ProcessingConfig
+    image: ImageConfig
+    maps: Maps
+    split: SplitConfig
+    output: OutputConfig
+    recordings: RecordingsConfig
+
+    @property
+    def duration_s(self) -> float:
+        """Duration of a window, s."""
+        return self.recordings.window_s
+
+    def samples_of(self, activity: Activity) -> int:
+        """How many windows of an activity there are."""
+        return self.recordings.counts.get(activity.slug, 0)
+
+    @cached_property
+    def every_class(self) -> tuple[Activity, ...]:
+        """Every class: those that have windows, whose place is their label, then the others."""
+        known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
+        new = sorted(self.recordings.counts.keys() - known.keys())
+        known |= {slug: Activity(len(known) + n, slug) for n, slug in enumerate(new, 1)}
+        return tuple(sorted(known.values(), key=lambda one: not self.samples_of(one)))
+
+    @property
+    def chosen_activities(self) -> tuple[Activity, ...]:
+        """Classes that have windows: of the twelve, of `classes`, then new ones by the alphabet."""
+        return tuple(filter(self.samples_of, self.every_class))
+
+
+AnyRequest: TypeAlias = Request | MeasuredRequest
+
+
+def _with_defaults(section: S, values: Mapping[str, Any]) -> S:
+    """A section with defaults of other keys' making, which do not count as given."""
+    filled = section.model_copy(update=dict(values))
+    object.__setattr__(filled, "__pydantic_fields_set__", set(section.model_fields_set))
+    return filled
+
+
+def _missing_defaults(c: Request) -> dict[str, dict[str, Any]]:
+    """{section: {key: number}} of numbers by activity that have no default: that of the key."""
+    by_model, changed = dict(of_kind(Request, ByModel)), dict[str, dict[str, Any]]()
+    for name in ("", "motion", "timing"):
+        holder: BaseModel = getattr(c, name) if name else c
+        for key, field in type(holder).model_fields.items():
+            value = getattr(holder, key)
+            if not isinstance(value, PerActivity) or DEFAULT in value.per_activity:
+                continue
+            dotted = f"{name}.{key}" if name else key
+            usual = field.get_default(call_default_factory=False)
+            if dotted in by_model:
+                usual = by_model[dotted].values.get(c.motion.model)
+            if isinstance(usual, PerActivity):
+                numbers = {**usual.per_activity, **value.per_activity}
+            elif usual is not None:
+                numbers = {DEFAULT: usual, **value.per_activity}
+            else:  # of no use to this model
+                numbers = {DEFAULT: next(iter(value.per_activity.values())), **value.per_activity}
+            changed.setdefault(name, {})[key] = PerActivity(numbers)
+    return changed
+
+
+def _fill_from_cfg(c: Request, changed: dict[str, dict[str, Any]]) -> None:
+    """Note what the .cfg of a board gives, and the defaults of boards, of what was not given."""
+    from radhar_cli.errors import CaptureError
+
+    try:
+        board = c.radar.header
+    except CaptureError as error:
+        raise value_error(str(error)) from None
+    radar = {
+        key: value for key, value in board.numbers.items() if key not in c.radar.model_fields_set
+    }
+    if "antenna_gain_dbi" not in c.radar.model_fields_set:
+        radar["antenna_gain_dbi"] = BOARD_GAIN_DBI
+    changed.setdefault("radar", {}).update(radar)
+    if "snr_db" not in c.model_fields_set:
+        changed.setdefault("", {})["snr_db"] = None
+    if "noise_figure_db" not in c.receiver.model_fields_set:
+        changed.setdefault("receiver", {})["noise_figure_db"] = BOARD_NOISE_FIGURE_DB
+    if "clutter" not in c.processing.model_fields_set:
+        clutter = "mean" if board.detection.remove_mean else "none"
+        changed.setdefault("processing", {})["clutter"] = clutter
+    if "range_sum" not in c.processing.model_fields_set:
+        changed.setdefault("processing", {})["range_sum"] = "gated"
+
+
+@cache
+def _uses() -> dict[str, dict[str, frozenset[str]]]:
+    """{dotted key: {model: who uses it}} of the keys that not everybody uses."""
+    found = dict[str, dict[str, frozenset[str]]]()
+    for key, one in of_kind(Request, People):
+        names = one.names.replace("exercises", " ".join(EXERCISES)).split()
+        found.setdefault(key, {})["human"] = frozenset(names)
+    for key, other in of_kind(Request, Paper):
+        found.setdefault(key, {})["paper"] = frozenset(other.names.split())
+    return found

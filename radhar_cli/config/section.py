@@ -1,0 +1,110 @@
+"""A section of a config, a number that differs by activity, and a mistake across keys."""
+
+import ast
+import inspect
+from dataclasses import dataclass
+from itertools import pairwise
+from textwrap import dedent
+from typing import Annotated, Any, Generic, NamedTuple, TypeAlias, TypeVar
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
+
+from radhar_cli.activities.activity import DEFAULT, TWELVE, Activity
+from radhar_cli.config.number import Number, value_error
+
+Flag: TypeAlias = Annotated[bool, Field(strict=True)]
+
+
+class Section(BaseModel):
+    """Base of all config models."""
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
+    )
+
+    @classmethod
+    def descriptions(cls) -> dict[str, str]:
+        """What stands under each field in the source; Pydantic would read it at every start."""
+        texts: dict[str, str] = {}
+        for kind in reversed(cls.__mro__):
+            if kind is not Section and issubclass(kind, Section):
+                texts |= _texts_below_fields(kind)
+        return texts
+
+
+def _texts_below_fields(kind: type[Section]) -> dict[str, str]:
+    """{field: text below it in the source} of the fields that a class itself defines."""
+    body = ast.parse(dedent(inspect.getsource(kind))).body[0]
+    assert isinstance(body, ast.ClassDef)
+    return {
+        ast.unparse(field.target): inspect.cleandoc(text.value.value)
+        for field, text in pairwise(body.body)
+        if isinstance(field, ast.AnnAssign)
+        and isinstance(text, ast.Expr)
+        and isinstance(text.value, ast.Constant)
+        and isinstance(text.value.value, str)
+    }
+
+
+T = TypeVar("T")
+
+
+S = TypeVar("S", bound=Section)
+
+
+def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
+    numbers = dict[str, Any]()
+    for name, number in value.items():
+        slug = TWELVE.get(name.strip().lower(), name)
+        if slug in numbers:
+            raise value_error(f"should name {slug} once")
+        numbers[slug] = number
+    if not numbers:
+        raise value_error("should name one activity or more, or `default`")
+    return numbers
+
+
+@dataclass(frozen=True)
+class PerActivity(Generic[T]):
+    """``{per_activity: {default: 2.0, walking: 1.0, S9: 1.0}}``: a number by activity.
+
+    Without a default, the activities that are not named keep that of the key, or of its model.
+    Names that are none of the twelve's are a config's own classes, which `Config` knows.
+    """
+
+    per_activity: Annotated[dict[str, T], AfterValidator(_by_slug)]
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+
+def _kind(value: Any) -> str:
+    several = "per_activity" in value if isinstance(value, dict) else isinstance(value, PerActivity)
+    return "<per_activity>" if several else "<same>"
+
+
+# A number that may also differ by activity.
+By: TypeAlias = Annotated[
+    Annotated[T, Tag("<same>")] | Annotated[PerActivity[T], Tag("<per_activity>")],
+    Discriminator(_kind),
+]
+
+
+def by_activity(default: Number, **others: Number) -> PerActivity[Number]:
+    """A number for every activity, and others for those named."""
+    return PerActivity({DEFAULT: default, **others})
+
+
+def for_activity(value: Any, activity: Activity) -> Any:
+    """Return the number that holds for one activity."""
+    if isinstance(value, PerActivity):
+        numbers = value.per_activity
+        return numbers[activity.slug if activity.slug in numbers else DEFAULT]
+    return value
+
+
+class Problem(NamedTuple):
+    """A mistake that spans several keys: dotted key, its value, and what would be right."""
+
+    key: str
+    value: object
+    right: str

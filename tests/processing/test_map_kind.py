@@ -1,8 +1,8 @@
 """Kinds of maps, and the names that configs and files have for them."""
 
 import pytest
-
 from radhar_cli.config.schema import MAP_NAMES
+
 from radhar_cli.processing.map_kind import (
     DOPPLER_TIME_KINDS,
     MAP_KINDS,

@@ -23,7 +23,7 @@ import re
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from math import inf
 from pathlib import Path
@@ -38,7 +38,7 @@ BEGIN, END = "<!-- tables: scripts/reproduce_paper.py -->", "<!-- end of tables 
 SCENARIOS = {"free_space": "free space", "through_wall": "through the wall"}
 FRESH_SEED = 20261121
 SUBJECTS = 20
-PAPER_EPOCHS = 20
+PAPER_EPOCHS, PAPER_RATE = 20, 0.00147
 PAGE_SCALES = ("cpu", "full")
 PAPER_TRAINING, ROBUST = (
     ROOT / "configs" / "train" / name for name in ("paper.yaml", "robust.yaml")
@@ -82,13 +82,16 @@ PAPER_BY_SNR = {
     ("through_wall", -10): "65 to 75; the network fails",
 }
 RIVALS = tuple(dict.fromkeys(model for _, model in PAPER if model != "fftnet"))
+# Those that the paper's learning rate is high for, from fresh weights, and a common lower rate.
+LARGE, LOWER_RATE = RIVALS[2:], 1e-4
 
 
 @dataclass(frozen=True)
 class Training:
     """One run: a scenario, an SNR, a network, its settings, and how the data are split.
 
-    An SNR of None is drawn for each map, uniformly within DRAWN_SNR.
+    An SNR of None is drawn for each map, uniformly within DRAWN_SNR. The seed is that of the
+    training; the data stay.
     """
 
     scenario: str
@@ -96,11 +99,21 @@ class Training:
     model: str = "fftnet"
     epochs: int = 20
     by_subject: bool = False
+    learning_rate: float = PAPER_RATE
+    seed: int = 1
 
     @property
     def settings(self) -> list[str]:
         """Overrides of the paper's training config."""
-        return [] if self.epochs == PAPER_EPOCHS else [f"epochs={self.epochs}"]
+        values = {"epochs": self.epochs, "learning_rate": self.learning_rate, "seed": self.seed}
+        plain = {"epochs": PAPER_EPOCHS, "learning_rate": PAPER_RATE, "seed": 1}
+        return [f"{key}={value}" for key, value in values.items() if value != plain[key]]
+
+    @property
+    def named_settings(self) -> list[str]:
+        """Settings that are part of the name, in words: the learning rate and the seed."""
+        rate = [] if self.learning_rate == PAPER_RATE else [f"rate {self.learning_rate:g}"]
+        return rate + ([] if self.seed == 1 else [f"seed {self.seed}"])
 
 
 @dataclass(frozen=True)
@@ -151,7 +164,8 @@ SCALES = {
         ),
         train=("batch_size=32",),
     ),
-    # Two cores, a night: the paper's protocol with maps of half its size.
+    # Two cores, a night, and the large networks for a GPU: the paper's protocol with maps of half
+    # its size.
     "cpu": Scale(
         size_px=128,
         per_class=300,
@@ -160,8 +174,8 @@ SCALES = {
             *(Training(s, n) for n in (30, -10, 10, 20, 0) for s in ("through_wall", "free_space")),
             *(Training(s, None) for s in ("free_space", "through_wall")),
             *(Training(s, 30, by_subject=True) for s in ("through_wall", "free_space")),
-            *(Training(s, 30, "mobilenetv2_100") for s in ("through_wall", "free_space")),
-            Training("free_space", 30, "resnet50"),
+            *(Training(s, 30, m) for m in RIVALS for s in ("through_wall", "free_space")),
+            *(Training(s, 30, m, learning_rate=LOWER_RATE) for m in LARGE for s in SCENARIOS),
         ),
     ),
     # The paper's protocol, for a GPU.
@@ -173,6 +187,8 @@ SCALES = {
             *(Training(s, n) for n in (30, 20, 10, 0, -10, None) for s in SCENARIOS),
             *(Training(s, 30, by_subject=True) for s in SCENARIOS),
             *(Training(s, 30, m) for m in RIVALS for s in SCENARIOS),
+            *(Training(s, 30, m, learning_rate=LOWER_RATE) for m in LARGE for s in SCENARIOS),
+            *(Training(s, 30, seed=n) for n in (2, 3) for s in SCENARIOS),
         ),
         on_gpu=True,
     ),
@@ -252,11 +268,13 @@ class Reproduction:
             *(["--tsne"] if training.snr_db == 30 and plain else []),
             *(["--in-place-vs-moving"] if training.model == "fftnet" else []),
         )
+        if training.snr_db is None:
+            snrs = [*DRAWN_TESTED]
+        else:
+            snrs = tested_snrs(self.scale, training.scenario) if plain else [training.snr_db]
         fresh: dict[int, Path] = {}
         others: dict[str, Any] = {}
-        if plain:
-            drawn = training.snr_db is None
-            snrs = DRAWN_TESTED if drawn else tested_snrs(self.scale, training.scenario)
+        if not training.by_subject:
             fresh = {snr: self.generate(training.scenario, snr, "fresh") for snr in snrs}
             others = self._eval(run, "fresh", list(fresh.values()))
         self.results.mkdir(parents=True, exist_ok=True)
@@ -369,7 +387,8 @@ def run_name(scale: Scale, training: Training) -> str:
     """Name of a run's folder and of its record."""
     kind = "_subjects" if training.by_subject else ""
     stem = f"{training.scenario}_{snr_name(training.snr_db)}_{scale.size_px}px{kind}"
-    return f"{stem}_{training.model}"
+    settings = "".join(f"_{words.replace(' ', '')}" for words in training.named_settings)
+    return f"{stem}_{training.model}{settings}"
 
 
 def snr_name(snr_db: int | None) -> str:
@@ -389,7 +408,7 @@ def tested_snrs(scale: Scale, scenario: str) -> list[int]:
 
 
 def _plain(training: Training) -> bool:
-    return training.model == "fftnet" and not training.by_subject
+    return training.model == "fftnet" and not training.by_subject and not training.named_settings
 
 
 def _kind(training: Training) -> str:
@@ -522,6 +541,11 @@ def _number(value: float | None, form: str = ".0f", factor: float = 1.0) -> str:
     return UNKNOWN if value is None else f"{factor * value:{form}}"
 
 
+def _milliseconds(seconds: float | None) -> str:
+    """Seconds in ms, below 10 ms with a decimal."""
+    return _number(seconds, ".0f" if seconds is None or seconds >= 0.01 else ".1f", 1e3)
+
+
 def _epochs(record: dict[str, Any]) -> str:
     return f"{record['epochs']}{' (reduced)' if record['reduced'] else ''}"
 
@@ -536,9 +560,12 @@ def _commit(record: dict[str, Any]) -> str:
 
 
 def _hours(record: dict[str, Any]) -> str:
+    """Core hours of a training; of one on a GPU its seconds."""
     training = record["training"]
-    on_gpu = " on a GPU" if training["device"] not in ("cpu", None) else ""
-    return _number(training["core_hours"], ".2f") + on_gpu
+    if training["device"] in ("cpu", None):
+        return _number(training["core_hours"], ".2f")
+    gpu = (training["machine"] or {}).get("gpu")
+    return f"{_number(training['seconds'])} s on {gpu or 'a GPU'}"
 
 
 def table(head: list[str], rows: list[list[str]]) -> list[str]:
@@ -570,8 +597,15 @@ def rows_of(name: str, scale: Scale, records: dict[str, dict[str, Any]]) -> list
     """The runs of a scale in its order, then what else has a record."""
     trainings = {run_name(scale, training): training for training in scale.trainings}
     for key, record in records.items():
-        other = Training(record["scenario"], record["snr_db"], record["model"])
-        trainings.setdefault(key, replace(other, by_subject=record["subjects"] is not None))
+        other = Training(
+            record["scenario"],
+            record["snr_db"],
+            record["model"],
+            by_subject=record["subjects"] is not None,
+            learning_rate=record["config"]["learning_rate"],
+            seed=record["config"]["seed"],
+        )
+        trainings.setdefault(key, other)
     return [
         Row(training, key, records.get(key), f"{FOLDER}/{name}/{key}.json")
         for key, training in trainings.items()
@@ -734,6 +768,7 @@ def _networks(rows: list[Row]) -> list[str]:
         "epochs",
         "validation",
         "paper",
+        "fresh seed",
         "parameters (M)",
         "paper (M)",
         "one image (ms)",
@@ -750,20 +785,19 @@ def _networks(rows: list[Row]) -> list[str]:
             if paper
             else ["not given"] * 3
         )
-        cells = [SCENARIOS[t.scenario], t.model]
+        cells = [SCENARIOS[t.scenario], ", ".join([t.model, *t.named_settings])]
         if record is None:
             body.append(
-                [*cells, NOT_RUN, "", theirs[0], "", theirs[1], "", "", theirs[2], "", "", ""]
+                [*cells, NOT_RUN, "", theirs[0], "", "", theirs[1], "", "", theirs[2], "", "", ""]
             )
             continue
         speed = record["speed"] or {}
         load = record["evaluation"].get("load")
         busy = " (busy)" if load and load > record["evaluation"]["machine"]["cores"] else ""
         cells += [_epochs(record), percent(record["validation"]), theirs[0]]
+        cells.append(percent(record["fresh"].get(str(t.snr_db))))
         cells += [_number(record["parameters"], ".2f", 1e-6), theirs[1]]
-        cells += [
-            _number(speed.get(key), ".0f", 1e3) + busy for key in ("image_s", "load_and_image_s")
-        ]
+        cells += [_milliseconds(speed.get(key)) + busy for key in ("image_s", "load_and_image_s")]
         body.append([*cells, theirs[2], *row.ending()])
     return table(head, body)
 
@@ -774,7 +808,12 @@ def _snr_order(snr_db: int | None) -> float:
 
 
 def _shown_part(record: dict[str, Any]) -> dict[str, Any] | None:
-    """The result on the fresh seed whose confusion matrix is shown, if mistakes are to be seen."""
+    """The result on the fresh seed whose confusion matrix is shown, if mistakes are to be seen.
+
+    Of the paper's network alone.
+    """
+    if record["model"] != "fftnet":
+        return None
     drawn = record["snr_db"] is None
     snr = DRAWN_SHOWN[record["scenario"]] if drawn else record["snr_db"]
     part: dict[str, Any] | None = record["fresh"].get(str(snr))
@@ -843,7 +882,8 @@ def page_text(scales: tuple[str, ...], results: Path) -> str:
         f"in docs/records/{FOLDER}. Accuracy in per cent with Wilson's 95 % interval. The epoch is "
         "chosen by the validation maps, so their accuracy is optimistic; no choice was made on the "
         "fresh seed. Core hours: seconds of all epochs times threads, with what else the machine "
-        "did meanwhile. Commit: of the training. Networks are tested in float32, the best epoch is "
+        "did meanwhile; on a GPU the seconds, of which several runs at a time had their share. "
+        "Commit: of the training. Networks are tested in float32, the best epoch is "
         "chosen in the precision of the training. Latency is marked busy where more processes ran "
         "than there are cores.",
         "",

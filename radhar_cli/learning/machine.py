@@ -42,6 +42,9 @@ def choose_device(name: str) -> torch.device:
     if not is_available[name]:
         listed = ", ".join(device for device, is_there in is_available.items() if is_there)
         raise MachineError(f'device = "{name}": is not on this machine; it has {listed}')
+    if name == "cuda":
+        # Or convolutions of float32 would have TF32's 11 bits.
+        torch.backends.cudnn.allow_tf32 = False
     return torch.device(name)
 
 

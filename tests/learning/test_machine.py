@@ -29,3 +29,14 @@ def test_float32_is_computed_in_float32():
     for precision in (torch.float32, torch.bfloat16):
         with autocast(CPU, precision):
             assert (torch.ones(2, 2) @ torch.ones(2, 2)).dtype == precision
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="needs a GPU")
+def test_convolutions_of_float32_have_its_bits_on_a_gpu():
+    """TF32, which PyTorch would take, is off by some 3e-4."""
+    device = choose_device("cuda")
+    torch.manual_seed(1)
+    x, kernel = torch.randn(4, 64, 32, 32), torch.randn(64, 64, 3, 3)
+    exact = torch.nn.functional.conv2d(x.double(), kernel.double())
+    found = torch.nn.functional.conv2d(x.to(device), kernel.to(device)).cpu()
+    assert float((found - exact).norm() / exact.norm()) < 1e-5

@@ -19,7 +19,25 @@ from radhar_cli.motion.segments import SOFTNESS, Segment, SegmentPositions, segm
 from radhar_cli.numerics.accelerators import machine_code
 from radhar_cli.numerics.arrays import Bool, Float, Index
 from radhar_cli.radar import ellipsoid
-from radhar_cli.radar.ellipsoid import Frame, View, square_height
+from radhar_cli.radar.ellipsoid import (
+    ABOVE,
+    ALONG,
+    ASIDE,
+    CENTRE,
+    EARLIER,
+    FRAME_ROWS,
+    PER_STRENGTH,
+    PRODUCT_ROWS,
+    RX,
+    SQUARE,
+    SQUARED_LEFT,
+    SQUARED_SPAN,
+    STRENGTH,
+    TX,
+    Frame,
+    View,
+    square_height,
+)
 from radhar_cli.radar.propagation import Antennas, amplitude, leg
 from radhar_cli.radar.room import Point
 from radhar_cli.radar.transmission import pass_wall
@@ -33,7 +51,11 @@ RATE_STEP_S = 1e-3
 RATES_PER_SECOND, MAX_RATES = 25.0, 8192
 BLOCK = 2048  # times per block, which then fits the cache
 EVERY = slice(None)
-SQUARES = [0, 1, 2, 3, 8, 9], [4, 5, 6, 7, 8, 9]  # rows of what is seen, for both legs
+# Rows of products that the squared delay of each leg is made of, in the order of a point's factors.
+SQUARES = [
+    [antenna + row for row in (SQUARE, ALONG, ASIDE, ABOVE)] + [SQUARED_SPAN, SQUARED_LEFT]
+    for antenna in (TX, RX)
+]
 
 
 class Points(NamedTuple):
@@ -100,11 +122,11 @@ class Body:
             Distances [S, M], m; below 0 inside of a segment.
         """
         frame = frame_of(self.at(t))
-        seen = ellipsoid.seen_from(frame, antenna)
-        aside = seen.aside / seen.distance
-        view = View(seen.along / (seen.distance * frame.length), aside, np.ones(1))
+        sight = ellipsoid.line_of_sight(frame, antenna)
+        aside = sight.aside / sight.distance
+        view = View(sight.along / (sight.distance * frame.length), aside, np.ones(1))
         height = square_height(view, self.radii, 0.5 * frame.length, self.flatness)
-        clear: Float = seen.distance - np.sqrt(height)
+        clear: Float = sight.distance - np.sqrt(height)
         return clear
 
 
@@ -221,7 +243,7 @@ class SegmentPaths(OfMotion):
         return x, y, z
 
     def _seen_at(self, place: Point) -> tuple[Float, float, float]:
-        """What `ellipsoid.see` has of the scene where shadows are seen from a place (m)."""
+        """Scene of `ellipsoid.fill_products` in which shadows are seen from a place (m)."""
         places = np.array([self.antennas.tx, self.antennas.rx, place]).T.copy()
         return places, SPEED_OF_LIGHT / self.fc, SOFTNESS
 
@@ -231,15 +253,16 @@ class SegmentPaths(OfMotion):
         return [o for o, one in enumerate(self.body.segments) if one.occludes and self.shadowing]
 
     def _seen(self, placed: SegmentPositions, place: Point) -> tuple[Float, Float]:
-        """Frames [11, S, M], and how they are seen [12, S, M], with shadows seen from a place."""
+        """Frames [11, S, M] and products [12, S, M], with shadows seen from a place."""
         block, scene = np.concatenate(placed), self._seen_at(place)
-        frames, seen = np.empty((11, *block.shape[1:])), np.empty((12, *block.shape[1:]))
-        ellipsoid.see(block, scene, self._sizes, frames, seen, EVERY)
+        frames = np.empty((FRAME_ROWS, *block.shape[1:]))
+        products = np.empty((PRODUCT_ROWS, *block.shape[1:]))
+        ellipsoid.fill_products(block, scene, self._sizes, frames, products, EVERY)
         for o in self._occluders:
-            own, radius = seen[10, o].copy(), self.body.radii[o, 0]
-            ellipsoid.shade(frames, seen, frames[:, o], radius, scene[1], EVERY)
-            seen[10, o] = own
-        return frames, seen
+            unshaded, radius = products[STRENGTH, o].copy(), self.body.radii[o, 0]
+            ellipsoid.shade(frames, products, frames[:, o], radius, scene[1], EVERY)
+            products[STRENGTH, o] = unshaded
+        return frames, products
 
     def _fill(
         self,
@@ -251,20 +274,21 @@ class SegmentPaths(OfMotion):
     ) -> None:
         """Fill in delays and amplitudes [I, block] of all points, and angles at a layered wall."""
         if self.antennas.legs[0] == self.antennas.legs[1]:
-            frames, seen = self._seen(placed, self._middle)
+            frames, products = self._seen(placed, self._middle)
         else:
-            frames, seen = self._seen(placed, self.antennas.tx)
-            seen[10] = np.sqrt(seen[10] * self._seen(placed, self.antennas.rx)[1][10])
-        if (field := self.antennas.field(frames[:3])) is not None:
-            seen[10] *= field
+            frames, products = self._seen(placed, self.antennas.tx)
+            behind = self._seen(placed, self.antennas.rx)[1][STRENGTH]
+            products[STRENGTH] = np.sqrt(products[STRENGTH] * behind)
+        if (field := self.antennas.field(frames[CENTRE : CENTRE + 3])) is not None:
+            products[STRENGTH] *= field
         frame = frame_of(placed) if self.wall is not None else None
         for s in self.kept:
             some = slice(self._first[s], self._first[s + 1])
-            at = seen[:, s, :1] if still[s] else seen[:, s]
-            seconds = [self._table[some, :6] @ at[rows] for rows in SQUARES]
+            rows = products[:, s, :1] if still[s] else products[:, s]
+            seconds = [self._table[some, :PER_STRENGTH] @ rows[leg] for leg in SQUARES]
             tx, rx = (np.sqrt(np.maximum(one, 0, out=one), out=one) for one in seconds)
-            np.subtract(tx + rx, seen[11, s], out=delay[some])
-            np.multiply(self._table[some, 6:], seen[10, s], out=strength[some])
+            np.subtract(tx + rx, products[EARLIER, s], out=delay[some])
+            np.multiply(self._table[some, PER_STRENGTH:], products[STRENGTH, s], out=strength[some])
             if self.wall is not None and frame is not None:
                 p, given = positions(frame, s, self.points[s]), (self.antennas, self.wall, self.fc)
                 angles = pass_wall(p, *given, delay[some], strength[some])
@@ -281,7 +305,7 @@ def frame_of(placed: SegmentPositions) -> Frame:
 def positions(frame: Frame, s: int, points: Points) -> Float:
     """Positions [3, n, M] (m) of the points of segment s."""
     x, (y, z) = points.along[:, None], points.across[:, :, None]
-    axes = zip(frame.centre, frame.way, frame.left, frame.up, strict=True)
+    axes = zip(frame.centre, frame.span, frame.left, frame.up, strict=True)
     return np.stack([c[s] + x * along[s] + y * left[s] + z * up[s] for c, along, left, up in axes])
 
 

@@ -27,6 +27,20 @@ BEHIND, BEHIND_WIDTH = 0.06, 0.03  # start of a shadow behind its occluder, and 
 FORWARD, SMALLEST = 1e-9, 1e-30
 BLOCK = 128  # instants at once in `fill_paths`: a processor's SIMD lanes many times over
 
+# Rows of frames [FRAME_ROWS, ...]: centre (m, 3 rows), axis (3 rows), line of sight from between
+# the antennas (m, 3 rows) and its length (m), length of the ellipsoid (m).
+CENTRE, AXIS, SIGHT, SIGHT_LENGTH, LENGTH, FRAME_ROWS = 0, 3, 6, 9, 10, 11
+# Rows of products [PRODUCT_ROWS, ...]: of the line of sight from the transmitter, then from the
+# receiver, four rows each: squared distance, products with the frame's span, left and up.
+SQUARE, ALONG, ASIDE, ABOVE = 0, 1, 2, 3
+TX, RX = 0, 4
+# Then squares of the frame's span and of its left; the strength sqrt(sigma)/(R_tx R_rx) of the echo
+# for |Gamma| = 1, 1/m; and how much earlier it is than from the centre, s.
+SQUARED_SPAN, SQUARED_LEFT, STRENGTH, EARLIER, PRODUCT_ROWS = 8, 9, 10, 11, 12
+# Columns of points [I, 7]: factors of SQUARE to ABOVE, then of SQUARED_SPAN and
+# SQUARED_LEFT, whose sum is a leg's squared delay (s^2); the factor from strength to amplitude.
+PER_SQUARED_SPAN, PER_SQUARED_LEFT, PER_STRENGTH = 4, 5, 6
+
 Number: TypeAlias = Any  # or an array of them
 Vector: TypeAlias = tuple[Number, Number, Number]
 
@@ -36,22 +50,22 @@ class Frame(NamedTuple):
     other, as long as each other."""
 
     centre: Vector  # m
-    way: Vector  # from start to end, m
-    length: Number  # of the way, m
-    axis: Vector  # unit vector along the way
+    span: Vector  # from start to end, m
+    length: Number  # of the span, m
+    axis: Vector  # unit vector along the span
     left: Vector
     up: Vector
 
 
-class Seen(NamedTuple):
-    """The way from an antenna to the centre of an ellipsoid, and products with it, m and m^2."""
+class LineOfSight(NamedTuple):
+    """Vector from an antenna to the centre of an ellipsoid, and products with it, m and m^2."""
 
-    way: Vector
-    distance: Number
-    square: Number  # of the distance
-    along: Number  # of the way and the frame's
-    aside: Number  # of the way and left
-    above: Number  # of the way and up
+    vector: Vector
+    distance: Number  # length of the vector
+    square: Number  # square of the distance
+    along: Number  # product of the vector and the frame's span
+    aside: Number  # product of the vector and the frame's left
+    above: Number  # product of the vector and the frame's up
 
 
 class View(NamedTuple):
@@ -71,39 +85,50 @@ def dot(a: Vector, b: Vector) -> Number:
 
 
 def frame_of(start: Vector, end: Vector, beside: Vector, softness: float) -> Frame:
-    """The frame of an ellipsoid between two ends (m), its left the side that `beside` is on.
+    """Frame of an ellipsoid between two ends, its left the side that `beside` is on.
 
     Left fades, as v/sqrt(|v|^2 + softness^2), where that direction is along the ellipsoid.
+
+    Args:
+        start: Where the ellipsoid begins, m.
+        end: Where it ends, m.
+        beside: Direction beside it, of any length.
+        softness: Length of `beside` across the axis below which left fades.
     """
-    way = end[0] - start[0], end[1] - start[1], end[2] - start[2]
-    length = np.sqrt(dot(way, way) + SMALLEST)
-    axis = x, y, z = way[0] / length, way[1] / length, way[2] / length
+    span = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+    length = np.sqrt(dot(span, span) + SMALLEST)
+    axis = x, y, z = span[0] / length, span[1] / length, span[2] / length
     part = dot(beside, axis)
     left = beside[0] - part * x, beside[1] - part * y, beside[2] - part * z
     size = np.sqrt(dot(left, left) + softness * softness)
     left = u, v, w = left[0] / size, left[1] / size, left[2] / size
-    centre = start[0] + 0.5 * way[0], start[1] + 0.5 * way[1], start[2] + 0.5 * way[2]
-    return Frame(centre, way, length, axis, left, (y * w - z * v, z * u - x * w, x * v - y * u))
+    centre = start[0] + 0.5 * span[0], start[1] + 0.5 * span[1], start[2] + 0.5 * span[2]
+    return Frame(centre, span, length, axis, left, (y * w - z * v, z * u - x * w, x * v - y * u))
 
 
-def seen_from(frame: Frame, antenna: Vector) -> Seen:
-    """The way from an antenna at a position (m) to an ellipsoid, and products with it."""
-    at = frame.centre
-    way = at[0] - antenna[0], at[1] - antenna[1], at[2] - antenna[2]
-    square, along = dot(way, way), dot(way, frame.way)
+def line_of_sight(frame: Frame, antenna: Vector) -> LineOfSight:
+    """Line of sight from an antenna at a position (m) to an ellipsoid, and products with it."""
+    x, y, z = frame.centre
+    sight = x - antenna[0], y - antenna[1], z - antenna[2]
+    square, along = dot(sight, sight), dot(sight, frame.span)
     distance = np.sqrt(square + SMALLEST)
-    return Seen(way, distance, square, along, dot(way, frame.left), dot(way, frame.up))
+    return LineOfSight(sight, distance, square, along, dot(sight, frame.left), dot(sight, frame.up))
 
 
 def echo_of(
-    frame: Frame, tx: Seen, rx: Seen, radius: Number, flatness: Number, parts: Number
+    frame: Frame,
+    tx: LineOfSight,
+    rx: LineOfSight,
+    radius: Number,
+    flatness: Number,
+    parts: Number,
 ) -> tuple[Number, Number]:
     """Echo of an ellipsoid from two antennas, by the bisector of the legs.
 
     Args:
         frame: Frame of the ellipsoid.
-        tx: The way from the transmitter.
-        rx: The way from the receiver.
+        tx: Line of sight from the transmitter.
+        rx: Line of sight from the receiver.
         radius: Mean radius r across, m.
         flatness: Ratio f; the semi-axes across are r f and r/f.
         parts: Number n of parts along the axis, each with a point of its own.
@@ -116,7 +141,7 @@ def echo_of(
     view = View(
         (tx.along / tx.distance + rx.along / rx.distance) / frame.length,
         tx.aside / tx.distance + rx.aside / rx.distance,
-        2 + FORWARD + 2 * dot(tx.way, rx.way) / legs,
+        2 + FORWARD + 2 * dot(tx.vector, rx.vector) / legs,
     )
     half = 0.5 * frame.length
     height = square_height(view, radius, half, flatness) / view.square
@@ -156,27 +181,27 @@ def cross_section(
 
 
 def clearance(
-    end: Vector, way: Vector, distance: Number, occluder: tuple[Vector, Vector, Number, Number]
+    end: Vector, sight: Vector, distance: Number, occluder: tuple[Vector, Vector, Number, Number]
 ) -> Number:
     """Clearance of a ray: (distance from an occluder's centre over that of its surface there)^2.
 
     Args:
         end: End of the ray, m.
-        way: Way from the antenna to the end, m.
-        distance: Length of the way, m.
+        sight: Vector from the antenna to the end, m.
+        distance: Length of that vector, m.
         occluder: Centre (m), axis, length and radius (m).
 
     Returns:
         1 where the ray touches the occluder, less where it passes through.
     """
-    at, axis, length, radius = occluder
-    apart = at[0] - end[0], at[1] - end[1], at[2] - end[2]
+    (x, y, z), axis, length, radius = occluder
+    apart = x - end[0], y - end[1], z - end[2]
     # In lengths in which the occluder is a ball of radius 1.
     across = 1 / (radius * radius)
     stretch = 4 / (length * length) - across
-    ray, gap = dot(way, axis), dot(apart, axis)
+    ray, gap = dot(sight, axis), dot(apart, axis)
     long = distance * distance * across + ray * ray * stretch
-    near = dot(apart, way) * across + ray * gap * stretch
+    near = dot(apart, sight) * across + ray * gap * stretch
     return dot(apart, apart) * across + gap * gap * stretch - near * near / long
 
 
@@ -231,12 +256,12 @@ def fill_paths(
         sizes: Radius (m), flatness and number of parts [S, 3].
         occluders: Numbers of the ellipsoids that throw shadows.
         first: Number of the first point of each ellipsoid, and I [S + 1].
-        points: Factors [I, 7]: six that make squared delays (s^2) of the products that `Seen` has,
-            and one that makes amplitudes of sqrt(sigma)/(R_tx R_rx).
+        points: Factors [I, 7] that make squared delays and amplitudes of products.
         paths: Delays (s) and amplitudes [I, M], which are filled in.
     """
     # Loops are over whole blocks, so that every instant is computed in the same way.
-    frames, seen = np.empty((first.size - 1, 11, BLOCK)), np.empty((first.size - 1, 12, BLOCK))
+    frames = np.empty((first.size - 1, FRAME_ROWS, BLOCK))
+    products = np.empty((first.size - 1, PRODUCT_ROWS, BLOCK))
     block = np.empty((9, BLOCK))
     for start in range(0, ends[0].shape[2], BLOCK):
         count = min(BLOCK, ends[0].shape[2] - start)
@@ -246,87 +271,99 @@ def fill_paths(
                 block[row, count:] = block[row, count - 1]
             size = sizes[s, 0], sizes[s, 1], sizes[s, 2]
             for m in range(BLOCK):
-                see(block, scene, size, frames[s], seen[s], m)
+                fill_products(block, scene, size, frames[s], products[s], m)
         for s in range(first.size - 1):
             for o in occluders:
                 if o != s and first[s] < first[s + 1]:
                     for m in range(BLOCK):
-                        shade(frames[s], seen[s], frames[o], sizes[o, 0], scene[1], m)
+                        shade(frames[s], products[s], frames[o], sizes[o, 0], scene[1], m)
             for i in range(first[s], first[s + 1]):
-                _spread(seen[s], points[i], block)
+                _fill_point(products[s], points[i], block)
                 paths[0][i, start : start + count] = block[0, :count]
                 paths[1][i, start : start + count] = block[1, :count]
 
 
-def see(
+def fill_products(
     block: Float,
     scene: tuple[Float, float, float],
     size: Number,
     frames: Float,
-    seen: Float,
+    products: Float,
     m: int | slice,
 ) -> None:
-    """Fill in frames and products of ellipsoids at instants m.
+    """Fill in frames of ellipsoids, and products of lines of sight with them, at instants m.
 
     Args:
         block: Starts, ends, and directions beside them [9, ...], m.
         scene: As in `fill_paths`.
         size: Radius (m), flatness and number of parts.
-        frames: Rows [11, ...] to fill in: centre (m), axis, way from between the antennas (m), its
-            length (m), length of the ellipsoid (m).
-        seen: Rows [12, ...] to fill in: squared distance, and products of the way with the frame's
-            along, left and up, of the transmitter and then of the receiver; squares of the frame's
-            length and of its left; sqrt(sigma)/(R_tx R_rx), 1/m; how much earlier the echo is, s.
+        frames: Rows [FRAME_ROWS, ...] to fill in.
+        products: Rows [PRODUCT_ROWS, ...] to fill in.
         m: Instants.
     """
-    frame = frame_of(_at(block, m), _at(block[3:], m), _at(block[6:], m), scene[2])
-    tx, rx = seen_from(frame, _at(scene[0], 0)), seen_from(frame, _at(scene[0], 1))
-    both = seen_from(frame, _at(scene[0], 2))
-    seen[0, m], seen[1, m], seen[2, m], seen[3, m] = tx.square, tx.along, tx.aside, tx.above
-    seen[4, m], seen[5, m], seen[6, m], seen[7, m] = rx.square, rx.along, rx.aside, rx.above
-    seen[8, m], seen[9, m] = frame.length * frame.length, dot(frame.left, frame.left)
-    seen[10, m], nearer = echo_of(frame, tx, rx, size[0], size[1], size[2])
-    seen[11, m] = nearer / SPEED_OF_LIGHT
-    frames[0, m], frames[1, m], frames[2, m] = frame.centre
-    frames[3, m], frames[4, m], frames[5, m] = frame.axis
-    frames[6, m], frames[7, m], frames[8, m] = both.way
-    frames[9, m], frames[10, m] = both.distance, frame.length
+    frame = frame_of(_vector(block, m), _vector(block[3:], m), _vector(block[6:], m), scene[2])
+    tx = line_of_sight(frame, _vector(scene[0], 0))
+    rx = line_of_sight(frame, _vector(scene[0], 1))
+    middle = line_of_sight(frame, _vector(scene[0], 2))
+    products[TX + SQUARE, m], products[TX + ALONG, m] = tx.square, tx.along
+    products[TX + ASIDE, m], products[TX + ABOVE, m] = tx.aside, tx.above
+    products[RX + SQUARE, m], products[RX + ALONG, m] = rx.square, rx.along
+    products[RX + ASIDE, m], products[RX + ABOVE, m] = rx.aside, rx.above
+    products[SQUARED_SPAN, m] = frame.length * frame.length
+    products[SQUARED_LEFT, m] = dot(frame.left, frame.left)
+    products[STRENGTH, m], nearer = echo_of(frame, tx, rx, size[0], size[1], size[2])
+    products[EARLIER, m] = nearer / SPEED_OF_LIGHT
+    frames[CENTRE, m], frames[CENTRE + 1, m], frames[CENTRE + 2, m] = frame.centre
+    frames[AXIS, m], frames[AXIS + 1, m], frames[AXIS + 2, m] = frame.axis
+    frames[SIGHT, m], frames[SIGHT + 1, m], frames[SIGHT + 2, m] = middle.vector
+    frames[SIGHT_LENGTH, m], frames[LENGTH, m] = middle.distance, frame.length
 
 
 def shade(
-    frames: Float, seen: Float, occluder: Float, radius: float, wavelength: float, m: int | slice
+    frames: Float,
+    products: Float,
+    occluder: Float,
+    radius: float,
+    wavelength: float,
+    m: int | slice,
 ) -> None:
     """Weaken echoes of ellipsoids where another is in their way, at instants m.
 
     Args:
-        frames: Rows of `see` of the ellipsoids that are seen.
-        seen: Their products, whose row 10 is weakened.
-        occluder: Rows of `see` of the one in their way.
+        frames: Frames [FRAME_ROWS, ...] of the ellipsoids that may be hidden.
+        products: Their products [PRODUCT_ROWS, ...], whose row STRENGTH is weakened.
+        occluder: Frame [FRAME_ROWS, ...] of the ellipsoid in their way.
         radius: Its radius, m.
         wavelength: Wavelength of the carrier, m.
         m: Instants.
     """
-    body = _at(occluder, m), _at(occluder[3:], m), occluder[10, m], radius
-    clear = clearance(_at(frames, m), _at(frames[6:], m), frames[9, m], body)
-    seen[10, m] *= shadow(clear, frames[9, m] - occluder[9, m], radius, wavelength)
+    body = _vector(occluder[CENTRE:], m), _vector(occluder[AXIS:], m), occluder[LENGTH, m], radius
+    sight, distance = _vector(frames[SIGHT:], m), frames[SIGHT_LENGTH, m]
+    clear = clearance(_vector(frames[CENTRE:], m), sight, distance, body)
+    behind = distance - occluder[SIGHT_LENGTH, m]
+    products[STRENGTH, m] *= shadow(clear, behind, radius, wavelength)
 
 
-def _spread(seen: Float, point: Float, paths: Float) -> None:
+def _fill_point(products: Float, point: Float, paths: Float) -> None:
     """Fill in delays (s) and amplitudes of a point [2, BLOCK]."""
-    c0, c1, c2, c3 = point[0], point[1], point[2], point[3]
-    c4, c5, share = point[4], point[5], point[6]
+    square, along, aside, above = point[SQUARE], point[ALONG], point[ASIDE], point[ABOVE]
+    span, left, share = point[PER_SQUARED_SPAN], point[PER_SQUARED_LEFT], point[PER_STRENGTH]
     for m in range(BLOCK):
-        same = c4 * seen[8, m] + c5 * seen[9, m]
-        a = c0 * seen[0, m] + c1 * seen[1, m] + c2 * seen[2, m] + c3 * seen[3, m] + same
-        b = c0 * seen[4, m] + c1 * seen[5, m] + c2 * seen[6, m] + c3 * seen[7, m] + same
-        paths[0, m] = np.sqrt(max(a, 0.0)) + np.sqrt(max(b, 0.0)) - seen[11, m]
-        paths[1, m] = share * seen[10, m]
+        # What the squared delays of both legs have in common.
+        common = span * products[SQUARED_SPAN, m] + left * products[SQUARED_LEFT, m]
+        tx = square * products[TX + SQUARE, m] + along * products[TX + ALONG, m]
+        tx = tx + aside * products[TX + ASIDE, m] + above * products[TX + ABOVE, m] + common
+        rx = square * products[RX + SQUARE, m] + along * products[RX + ALONG, m]
+        rx = rx + aside * products[RX + ASIDE, m] + above * products[RX + ABOVE, m] + common
+        paths[0, m] = np.sqrt(max(tx, 0.0)) + np.sqrt(max(rx, 0.0)) - products[EARLIER, m]
+        paths[1, m] = share * products[STRENGTH, m]
 
 
-def _at(rows: Float, m: int | slice) -> Vector:
+def _vector(rows: Float, m: int | slice) -> Vector:
+    """First three rows [3, ...] at instants m."""
     return rows[0, m], rows[1, m], rows[2, m]
 
 
-_SAME: tuple[Any, ...] = (dot, frame_of, seen_from, echo_of, square_height, cross_section)
-_SAME += (clearance, shadow, see, shade, _spread, _at)
+_SAME: tuple[Any, ...] = (dot, frame_of, line_of_sight, echo_of, square_height, cross_section)
+_SAME += (clearance, shadow, fill_products, shade, _fill_point, _vector)
 CALLED = (*zip(_SAME, _SAME, strict=True), (rise, rise_of_number))  # by `fill_paths`

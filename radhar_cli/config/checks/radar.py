@@ -163,6 +163,7 @@ def board_problems(c: Request) -> Iterator[Problem]:
 
 
 def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
+    """Find what does not fit the pulses: chirps that are too long, FFTs that are too short."""
     radar, fft_length = c.radar, c.processing.range_fft_length
     fewest, most = waveform_at(c).n_adc, waveform_at(c, *ENDS).n_adc
     shortest_interval = 1 / support(radar.prf_hz)[1]

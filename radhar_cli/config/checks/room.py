@@ -11,6 +11,7 @@ from radhar_cli.config.section import Problem, for_activity
 
 
 def wall_problems(c: Request) -> Iterator[Problem]:
+    """Find what does not fit the wall: its layers, and antennas inside of it."""
     if c.wall is None:
         return
     yield from _layer_problems(c, c.wall)
@@ -56,6 +57,7 @@ def _layer_problems(c: Request, wall: WallConfig) -> Iterator[Problem]:
 
 
 def back_wall_problems(c: Request) -> Iterator[Problem]:
+    """Find what does not fit the back wall: another wall, or a place in front of people."""
     key, wall = "room.back_wall_m", c.room.back_wall_m
     if wall is None:
         return
@@ -137,6 +139,7 @@ def room_problems(c: Request) -> Iterator[Problem]:
 
 
 def tone_problems(c: Request) -> Iterator[Problem]:
+    """Find what of the receiver needs noise that there is not."""
     extra = {"tones": c.receiver.tones, "noise_corner_hz": support(c.receiver.noise_corner_hz)[1]}
     for key in [key for key, is_used in extra.items() if is_used and not c.has_noise]:
         right = (

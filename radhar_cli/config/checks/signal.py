@@ -41,6 +41,7 @@ def problems_of_maps(c: Request, names: tuple[str, ...]) -> list[Problem]:
 
 
 def processing_problems(c: AnyRequest) -> Iterator[Problem]:
+    """Find what of the processing does not fit the radar or the maps."""
     names = c.maps if isinstance(c, Request) else [one for one in c.maps if one in MAP_NAMES]
     if (of_maps := map_problem(c, names)) is not None:
         yield of_maps

@@ -1,22 +1,23 @@
 """Settings of the direct engine for an error that is allowed, and the error that they made.
 
 As FINUFFT turns eps into a kernel width, `settings` turns decibels into the spacing of knots, the
-size of a table and a precision; `measured_db` then compares the signal with the exact beat at some
+size of a table and a precision; `measured_db` then compares the signal with the exact sum at some
 pulses.
 """
 
 from collections.abc import Callable
 from math import ceil, inf, log10
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from radhar_cli.echo.beat import BLOCK_SAMPLES
 from radhar_cli.echo.exact import beat_at
-from radhar_cli.echo.half_band_sum import MAX_CELLS
-from radhar_cli.echo.knots import Spacing
+from radhar_cli.echo.half_band_sum import MAX_CELLS, reference_table
+from radhar_cli.echo.knots import EVEN, Roughness, Spacing
 from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.arrays import Complex, Float, Index
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller, Fir
 from radhar_cli.processing.look import weights
 from radhar_cli.radar.waveform import Waveform
@@ -29,11 +30,17 @@ PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.1, 0.05
 TABLE_DB = -48.0
 SINGLE_DB = -115.0  # error of the recurrence in float32
 CUBIC_DB = -140.0  # of a cubic phase over 20 pulses, which may err by -120 dB in a few places
-# Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
-MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 30.0, -220.0
-COARSEST_DB = -60.0  # tolerance above which farther knots save no time (docs/results/tradeoff.md)
-PROBES = 48
-ROUGH = 0.25  # share of the probes that lie where interpolation is likely to err most
+# Settings aim below the tolerance, and are taken if the stated error is below it by SPARE: as much
+# as the true error may be worse.
+MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 3.0, 30.0, -220.0
+REFUSAL_ROOM_DB = 10.0  # of the limit that a refusal names above the error reached: others err more
+COARSEST_DB = -80.0  # tolerance above which farther knots save no time (docs/physics/engines.md)
+PROBES = 96
+ROUGH = 0.4  # share of the probes that lie where interpolation is likely to err most
+DEVIATIONS = 2.0  # standard errors by which the stated error lies above the estimate
+GOLDEN = 0.6180339887498949
+MAX_REFERENCE_SAMPLES, BLOCK = 2**14, 2**14  # of a chirp whose G is tabulated; values at work
+Values = TypeVar("Values", float, Float)
 
 
 class Settings(NamedTuple):
@@ -90,13 +97,12 @@ def measured_db(
     waveform: Waveform,
     canceller: Canceller,
     unit: float,
-    likely: Float | None = None,
+    roughness: Roughness = EVEN,
 ) -> float:
-    """Relative L2 error (dB) of a signal after a canceller, measured at some pulses.
+    """Bound of the relative L2 error (dB) of a signal after a canceller, from some pulses.
 
-    Pulses are chosen by `probed_pulses`. The estimate of
-    sum |e|^2 divides each |e|^2 by the density of the pulses; sum |x|^2 is known. e is the error
-    after a `Fir`, and before another canceller, behind which it is no larger.
+    e is the error after a `Fir`, and before another canceller, behind which it is no larger;
+    sum |x|^2 is known.
 
     Args:
         y: Signal [M] before the canceller, in units of `unit`.
@@ -104,57 +110,67 @@ def measured_db(
         waveform: The radar.
         canceller: The canceller.
         unit: Amplitude in which y is given.
-        likely: How large |e|^2 may be [M or more], up to a factor.
+        roughness: Where interpolation is likely to err.
     """
-    shown = canceller if isinstance(canceller, Fir) else NO_CANCELLER
-    probes, density, total = probed_pulses(_power(y, canceller), likely)
-    if total == 0:
+    taps = canceller.taps if isinstance(canceller, Fir) else NO_CANCELLER.taps
+    probes = choose_probes(_power(y, canceller), roughness)
+    if probes.total == 0:
         return -inf
-    error = _exact(source, waveform, probes, shown.taps) / unit - sum(
-        c * y[probes + lag] for lag, c in enumerate(shown.taps)
-    )
-    return relative_db(error.real**2 + error.imag**2, density, total)
+    error = exact_sum(source, waveform, probes.pulses, taps) / unit
+    for lag, tap in enumerate(taps):
+        error -= tap * y[probes.pulses + lag]
+    return probes.bound_db(error.real**2 + error.imag**2)
 
 
-def probed_pulses(power: Float, likely: Float | None = None) -> tuple[Index, Float, float]:
-    """Choose pulses at which a signal is compared with the exact one.
+class Probes(NamedTuple):
+    """Pulses at which a signal is compared with the exact one."""
 
-    A share `ROUGH` of them lies where the error is likely to be large, so that few milliseconds
-    which hold most of it are among them; of the others half are spread evenly, half by the power,
-    so that a jump which holds most of that, as of a limb that crosses a wall's face, is.
+    pulses: Index  # numbers of the pulses [P]; a pulse may be there several times
+    density: Float  # expected count of each pulse [P]
+    total: float  # sum of |x|^2 over all pulses
+
+    def bound_db(self, squares: Float) -> float:
+        """Bound of the relative error (dB) from the squared errors |e|^2 [P] at the pulses.
+
+        Each |e|^2 over its density estimates P/sum |e|^2; the bound lies DEVIATIONS standard
+        errors of the mean above it.
+        """
+        estimates = squares / self.density
+        spread = estimates.std() * np.sqrt(estimates.size)
+        relative = float(estimates.sum() + DEVIATIONS * spread) / self.total
+        return 10 * log10(relative) if relative > 0 else -inf
+
+
+def choose_probes(power: Float, roughness: Roughness = EVEN) -> Probes:
+    """Choose PROBES pulses at which a signal is compared with the exact one.
+
+    A share `ROUGH` of them lies where interpolation is likely to err most, so that few milliseconds
+    which hold most of the error are among them; of the others half are spread evenly, half by the
+    power, so that a jump which holds most of that, as of a limb that crosses a wall's face, is.
 
     Args:
         power: |x|^2 [M].
-        likely: How large |e|^2 may be [M or more], up to a factor; None or zeros where nothing is
-            known of it.
-
-    Returns:
-        Numbers of the pulses, expected count of each among them, and the sum of the power.
+        roughness: How large |e|^2 may be in each segment, up to a factor.
     """
-    total = float(power.sum())
+    step = roughness.step
+    starts = np.arange(0, power.size, step)
+    powers = np.add.reduceat(power, starts) if step > 1 and starts.size else power
+    total = float(powers.sum())
     if total == 0:
-        return np.empty(0, np.intp), np.empty(0), 0.0
-    share = power * (0.5 / total) + 0.5 / power.size
-    expected = 0.0 if likely is None else float(likely[: power.size].sum())
-    if likely is not None and expected > 0:
+        return Probes(np.empty(0, np.intp), np.empty(0), 0.0)
+    lengths = np.diff(starts, append=power.size)
+    share = powers * (0.5 / total) + lengths * (0.5 / power.size)
+    rough = roughness.squares[: starts.size]
+    if (expected := float(rough.sum())) > 0:
         share *= 1 - ROUGH
-        share += likely[: power.size] * (ROUGH / expected)
-    place = (np.arange(PROBES) + np.arange(PROBES) * 0.6180339887498949 % 1) / PROBES
-    pulses = np.searchsorted(np.cumsum(share), place).clip(max=power.size - 1)
-    probes, times = np.unique(pulses, return_counts=True)
-    return probes, share[probes] * PROBES / times, total
-
-
-def relative_db(squares: Float, density: Float, total: float) -> float:
-    """Relative error (dB) of a signal from squared errors at some pulses.
-
-    Args:
-        squares: |e|^2 at the pulses [P].
-        density: Expected count of each pulse [P].
-        total: Sum of |x|^2 over all pulses.
-    """
-    relative = float((squares / density).sum()) / total
-    return 10 * log10(relative) if relative > 0 else -inf
+        share += rough * (ROUGH / expected)
+    place = (np.arange(PROBES) + np.arange(PROBES) * GOLDEN % 1) / PROBES
+    ends = np.cumsum(share)
+    segment = np.searchsorted(ends, place).clip(max=starts.size - 1)
+    within = (place - ends[segment]) / share[segment] + 1
+    length = lengths[segment]
+    offset = (within * length).astype(np.intp).clip(0, length - 1)
+    return Probes(starts[segment] + offset, share[segment] * (PROBES / length), total)
 
 
 def _power(y: Complex, canceller: Canceller) -> Float:
@@ -171,17 +187,56 @@ def _power(y: Complex, canceller: Canceller) -> Float:
     return power
 
 
-def _exact(
-    source: Callable[[Float], Paths],
-    waveform: Waveform,
-    pulses: Index,
-    canceller: tuple[float, ...],
+def exact_sum(
+    source: Callable[[Float], Paths], waveform: Waveform, pulses: Index, taps: tuple[float, ...]
 ) -> Complex:
-    """Exact x [pulses] at some pulses by way of the beat, a few of them at a time."""
-    d, length = weights(waveform), max(1, BLOCK_SAMPLES // waveform.n_adc)
-    return np.concatenate(
-        [
-            d @ beat_at(source, waveform, pulses[start : start + length], canceller)
-            for start in range(0, pulses.size, length)
-        ]
-    )
+    """Exact signal x [P] at some pulses after a `Fir` of some taps: the coherent sum over range.
+
+    G is that of `reference_table`, phases f0 tau are not rounded; chirps that are too long for a
+    table are summed sample by sample.
+    """
+    if waveform.n_adc > MAX_REFERENCE_SAMPLES:
+        length = max(1, BLOCK_SAMPLES // waveform.n_adc)
+        parts = [pulses[start : start + length] for start in range(0, pulses.size, length)]
+        beats = (beat_at(source, waveform, part, taps) for part in parts)
+        return np.concatenate([weights(waveform) @ beat for beat in beats])
+    needed = np.unique(pulses + np.arange(len(taps))[:, None])
+    paths, table = source(waveform.times(needed.astype(float))), reference_table(waveform)
+    y, length = np.empty(needed.size, complex), max(1, BLOCK // max(1, len(paths.delay)))
+    for start in range(0, needed.size, length):  # so that it stays in the cache
+        block = slice(start, start + length)
+        delay, amplitude = paths.delay[:, block], paths.amplitude[:, block]
+        g = table(waveform.slope / waveform.adc_rate * delay)
+        g *= amplitude
+        turning = unit_phasor(_exact_phase(delay, waveform))
+        y[block] = np.einsum("im,im->m", turning, g)
+    x: Complex = np.zeros(pulses.size, complex)
+    for lag, tap in enumerate(taps):
+        x += tap * y[np.searchsorted(needed, pulses + lag)]
+    return x
+
+
+def _exact_phase(delay: Float, waveform: Waveform) -> Float:
+    """Phases [...] (cycles) of delays [...] (s) at f0, less whole turns, without rounding f0 tau.
+
+    The product in two parts is that of T. J. Dekker, "A floating-point technique for extending the
+    available precision", Numerische Mathematik 18, 1971.
+    """
+    f0, f0_high = waveform.f0, _high(waveform.f0)
+    product, high = f0 * delay, _high(delay)
+    low = delay - high
+    rounding = f0_high * high - product
+    rounding += f0_high * low
+    rounding += (f0 - f0_high) * high
+    rounding += (f0 - f0_high) * low
+    product -= np.rint(product)
+    product += rounding
+    if waveform.residual_video_phase:
+        product -= 0.5 * waveform.slope * delay * delay
+    return product
+
+
+def _high(x: Values) -> Values:
+    """Upper 26 bits of the 53 of a number."""
+    scaled = 134217729.0 * x  # 2^27 + 1
+    return scaled - (scaled - x)

@@ -7,6 +7,7 @@ too, which a processor computes for eight paths or more at once.
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -52,17 +53,44 @@ def interpolated_sum(
     Returns:
         The sum [segments * step].
     """
-    w, shape = table.waveform, (paths.delay.shape[1], some.size)
-    cycles, real, imag = np.empty(shape), *np.empty((2, *shape), table.cubics[0].real.dtype)
-    square = 0.5 * w.slope if w.residual_video_phase else 0.0
-    scale = (w.f0, square, w.slope / w.adc_rate, 1 / unit, bool(w.n0 % 1))
-    machine_code(_at_knots)(*paths[:2], some, scale, table.cubics, cycles, real, imag)
+    shape, real_type = (paths.delay.shape[1], some.size), table.polynomials[0].real.dtype
+    cycles, real, imag = np.empty(shape), *np.empty((2, *shape), real_type)
+    scale = _scale(table, unit)
+    machine_code(_at_knots)(*paths[:2], some, scale, table.polynomials, cycles, real, imag)
     total = np.zeros(shift.size * step, dtype=complex)
     to_phase, x = _cubics(step)
-    given = (part.astype(real.dtype) for part in (to_phase, x))
-    series = (tuple(part.astype(real.dtype)) for part in (SINE, COSINE))
+    given = (part.astype(real_type) for part in (to_phase, x))
+    series = _series(real_type)
     machine_code(_add)(cycles, real, imag, shift, to_phase, *given, *series, total)
     return total
+
+
+def sum_at(paths: Paths, some: Index, unit: float, table: HalfBandTable) -> Complex:
+    """Sum of A_i G_i exp(-j 2 pi f0 tau_i) over paths at the times of the paths [M].
+
+    Args:
+        paths: Paths at M times.
+        some: Numbers of the paths that are summed.
+        unit: Amplitude in which the result is given.
+        table: Table of G.
+    """
+    total = np.zeros(paths.delay.shape[1], dtype=complex)
+    series = _series(table.polynomials[0].real.dtype)
+    machine_code(_add_at)(*paths[:2], some, _scale(table, unit), table.polynomials, *series, total)
+    return total
+
+
+def _scale(table: HalfBandTable, unit: float) -> tuple[float, float, float, float, bool]:
+    """Factors of tau and tau^2 in a phase, of tau in u, of amplitudes; whether G changes sign."""
+    w = table.waveform
+    square = 0.5 * w.slope if w.residual_video_phase else 0.0
+    return w.f0, square, w.slope / w.adc_rate, 1 / unit, bool(w.n0 % 1)
+
+
+def _series(real_type: np.dtype[Any]) -> tuple[tuple[np.floating, ...], ...]:
+    """Coefficients of the sine and of the cosine, in some precision."""
+    sine, cosine = (tuple(part.astype(real_type)) for part in (SINE, COSINE))
+    return sine, cosine
 
 
 def _fitted(function: Callable[[Float], Float], power: int) -> Float:
@@ -120,6 +148,41 @@ def _at_knots(
             g = value[cell] + s * (slope[cell] + s * (curve[cell] + s * cube[cell]))
             real[k, i] = a * g.real
             imag[k, i] = a * g.imag
+
+
+def _add_at(
+    delay: Float,
+    amplitude: Float,
+    some: Index,
+    scale: tuple[float, float, float, float, bool],
+    table: tuple[Complex, ...],
+    sine: tuple[np.floating, ...],
+    cosine: tuple[np.floating, ...],
+    total: Complex,
+) -> None:
+    """Add the sum over paths at the times of the paths."""
+    f0, square, turn, per_unit, alternating = scale
+    value, slope, curve, cube = table
+    s0, s1, s2, s3, s4, s5, s6 = sine
+    c0, c1, c2, c3, c4, c5, c6 = cosine
+    one = s0 / s0
+    for i in range(some.size):
+        for k in range(delay.shape[1]):
+            tau = delay[some[i], k]
+            cycles = f0 * tau - square * tau * tau
+            whole = np.floor(turn * tau)
+            place = (turn * tau - whole) * value.size
+            cell = min(max(int(place), 0), value.size - 1)
+            t = one * (place - cell)
+            a = amplitude[some[i], k] * per_unit
+            if alternating and whole % 2 != 0:
+                a = -a
+            g = value[cell] + t * (slope[cell] + t * (curve[cell] + t * cube[cell]))
+            r = cycles - np.rint(cycles)
+            u = r * r
+            s = r * (s0 + u * (s1 + u * (s2 + u * (s3 + u * (s4 + u * (s5 + u * s6))))))
+            c = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * (c5 + u * c6)))))
+            total[k] += a * complex(g.real * c + g.imag * s, g.imag * c - g.real * s)
 
 
 def _add(

@@ -17,6 +17,7 @@ from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import (
     MIN_AIM_DB,
     REFINE_DB,
+    REFUSAL_ROOM_DB,
     SINGLE_DB,
     SPARE_DB,
     AccuracyError,
@@ -97,7 +98,7 @@ class DirectEcho:
                 y *= unit
                 return y, Accuracy(motion.step, chosen.table_oversampling, chosen.single, error)
             if aim == MIN_AIM_DB:
-                raise AccuracyError(best + SPARE_DB)
+                raise AccuracyError(best + REFUSAL_ROOM_DB)
             aim = max(aim - max(REFINE_DB, error - self.tolerance_db), MIN_AIM_DB)
             chosen = self._settings(aim)._replace(single=False)
             motion = self._resolved(chosen.spacing)
@@ -116,8 +117,8 @@ class DirectEcho:
 
     def _error(self, y: Complex, motion: PathsAtKnots, unit: float) -> float:
         """Measured relative L2 error (dB) of y, in units of `unit`, after the canceller."""
-        exact, likely = self._exact(motion), motion.likely_error
-        return measured_db(y, exact, self.waveform, self.canceller, unit, likely)
+        exact = self._exact(motion)
+        return measured_db(y, exact, self.waveform, self.canceller, unit, motion.roughness)
 
     def _exact(self, motion: PathsAtKnots) -> Callable[[Float], Paths]:
         """The paths that are summed, at times of pulses."""
@@ -171,12 +172,12 @@ class DirectEcho:
                 dense = compiled.interpolated_sum(
                     knots.paths, some, unit, table, knots.shift, knots.step
                 )
+                exact = compiled.sum_at(knots.exact, some, unit, table)
             else:
                 terms = self._terms(knots.paths, some, unit, chosen)
                 dense = _interpolated_sum(*terms, knots.shift, knots.step, chosen.cubic)
-            if knots.exact_pulses.size:
-                exact = self._terms(knots.exact, some, unit, chosen)
-                dense[knots.exact_pulses - knots.pulses[0]] = _phasor_sum(*exact)
+                exact = _phasor_sum(*self._terms(knots.exact, some, unit, chosen))
+            dense[knots.exact_pulses - knots.pulses[0]] = exact
             y += dense[: y.size]
 
     def _terms(

@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from radhar_cli.echo.accuracy import Settings, probed_pulses, relative_db
+from radhar_cli.echo.accuracy import Settings, choose_probes
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.chebyshev import coefficients
 from radhar_cli.echo.direct import CUBIC, DirectEcho
@@ -170,20 +170,20 @@ class GatedEcho(DirectEcho):
         inside = (low <= k) & (k < high)
         pairs = np.where(inside, self.canceller(y), 0).view(float)
         power = np.einsum("km,km->m", pairs, pairs).reshape(-1, 2).sum(axis=1)
-        probes, density, total = probed_pulses(power, motion.likely_error)
-        if total == 0:
+        probes = choose_probes(power, motion.roughness)
+        if probes.total == 0:
             return -inf
         centred = replace(w, centred=True)
         right = (
             range_compression(
-                beat_at(self._exact(motion), w, probes, shown.taps), centred, self.bins
+                beat_at(self._exact(motion), w, probes.pulses, shown.taps), centred, self.bins
             )
             / unit
         )
         for lag, c in enumerate(shown.taps):
-            right -= c * y[:, probes + lag]
-        right *= inside[:, probes]
-        return relative_db((right.real**2 + right.imag**2).sum(axis=0), density, total)
+            right -= c * y[:, probes.pulses + lag]
+        right *= inside[:, probes.pulses]
+        return probes.bound_db((right.real**2 + right.imag**2).sum(axis=0))
 
 
 def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[Any]) -> Float:

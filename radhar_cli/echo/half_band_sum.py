@@ -15,51 +15,49 @@ from radhar_cli.processing.look import weights
 from radhar_cli.radar.waveform import Waveform
 
 MAX_CELLS = 2**22  # size of a table; a cell has 64 bytes
+REFERENCE_OVERSAMPLING = 32  # of quintics, which then err by -245 dB or less
 
 
 @dataclass(frozen=True, eq=False)
 class HalfBandTable:
-    """G tabulated over one period, read by cubic Hermite interpolation."""
+    """G tabulated over one period, read by Hermite interpolation."""
 
     waveform: Waveform  # the radar
-    # table points per fast-time sample; the root-mean-square relative error is about -48, -71, -95,
-    # -118 dB for 4, 8, 16, 32
+    # table points per fast-time sample; the root-mean-square relative error of cubics is about -48,
+    # -71, -95, -118 dB for 4, 8, 16, 32
     oversampling: int
     single: bool = False  # whether values are complex64; places in the table are float64
-    # coefficients of the cubic in each cell, lowest power first, an array for each
-    cubics: tuple[Complex, ...] = field(init=False, repr=False)
+    quintic: bool = False  # whether cells hold quintics, of G, G' and G'' at both ends, not cubics
+    # coefficients of the polynomial in each cell, lowest power first, an array for each
+    polynomials: tuple[Complex, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         dtype = np.complex64 if self.single else np.complex128
-        cubics = tuple(part.astype(dtype) for part in self._tabulate())
-        object.__setattr__(self, "cubics", cubics)
+        between = _quintics if self.quintic else _cubics
+        polynomials = between(self._derivatives(3 if self.quintic else 2))
+        object.__setattr__(self, "polynomials", tuple(part.astype(dtype) for part in polynomials))
 
-    def _tabulate(self) -> tuple[Complex, ...]:
+    def _derivatives(self, count: int) -> Complex:
+        """G and its derivatives by cells [count, cells + 1] at the ends of the cells."""
         waveform, size = self.waveform, self.oversampling * self.waveform.n_adc
         n = np.arange(waveform.n_adc) - waveform.n0
-        d = weights(waveform)
+        terms = weights(waveform) * (-2j * np.pi * n / size) ** np.arange(count)[:, None]
         # exp(-j 2 pi (n - n0) u) = exp(+j 2 pi n0 u) exp(-j 2 pi n u)
         reference = np.exp(2j * np.pi * waveform.n0 * np.arange(size) / size)
-        value = np.fft.fft(d, size) * reference
-        slope = np.fft.fft(-2j * np.pi * n * d, size) * reference / size
-        sign = np.exp(2j * np.pi * waveform.n0)
-        value_next, slope_next = np.roll(value, -1), np.roll(slope, -1)
-        value_next[-1] *= sign
-        slope_next[-1] *= sign
-        rise = value_next - value
-        square = 3 * rise - 2 * slope - slope_next
-        cube = slope + slope_next - 2 * rise
-        return value, slope, square, cube
+        derivatives = np.fft.fft(terms, size) * reference
+        after = derivatives[:, :1] * np.exp(2j * np.pi * waveform.n0)
+        return np.concatenate([derivatives, after], axis=1)
 
     def __call__(self, u: Float) -> Complex:
         """Interpolate G(u) [...] at beat frequencies u [...], cycles per sample."""
         turns = np.floor(u)
-        size = self.cubics[0].size
+        size = self.polynomials[0].size
         place = (u - turns) * size
         cell = np.minimum(place.astype(np.intp), size - 1)
-        part = (place - cell).astype(self.cubics[0].real.dtype)
-        value: Complex = self.cubics[3].take(cell, mode="clip")  # which is faster than "raise"
-        for coefficients in self.cubics[2::-1]:
+        part = (place - cell).astype(self.polynomials[0].real.dtype)
+        # mode="clip" is faster than "raise"
+        value: Complex = self.polynomials[-1].take(cell, mode="clip")
+        for coefficients in self.polynomials[-2::-1]:
             value *= part
             value += coefficients.take(cell, mode="clip")
         if self.waveform.n0 % 1:
@@ -67,7 +65,40 @@ class HalfBandTable:
         return value
 
 
+def _cubics(derivatives: Complex) -> tuple[Complex, ...]:
+    """Coefficients [cells] of the cubics with G and G' [2, cells + 1] at the ends of each cell."""
+    (value, slope), (next_value, next_slope) = derivatives[:, :-1], derivatives[:, 1:]
+    rise = next_value - value
+    return value, slope, 3 * rise - 2 * slope - next_slope, slope + next_slope - 2 * rise
+
+
+def _quintics(derivatives: Complex) -> tuple[Complex, ...]:
+    """Coefficients [cells] of the quintics with G, G' and G'' [3, cells + 1] at the ends."""
+    value, slope, curve = derivatives[:, :-1]
+    # what the parabola at the first end leaves at the other one
+    rise, turn, bend = derivatives[:, 1:] - (
+        value + slope + curve / 2,
+        slope + curve,
+        curve,
+    )
+    return (
+        value,
+        slope,
+        curve / 2,
+        10 * rise - 4 * turn + bend / 2,
+        -15 * rise + 7 * turn - bend,
+        6 * rise - 3 * turn + bend / 2,
+    )
+
+
 @lru_cache(maxsize=4)
 def half_band_table(waveform: Waveform, oversampling: int, single: bool = False) -> HalfBandTable:
     """Table of G of a radar, computed once."""
     return HalfBandTable(waveform, oversampling, single)
+
+
+@lru_cache(maxsize=4)
+def reference_table(waveform: Waveform) -> HalfBandTable:
+    """Table of G that is exact to some 1e-12, against which sums are measured."""
+    finest = max(1, MAX_CELLS // waveform.n_adc)
+    return HalfBandTable(waveform, min(REFERENCE_OVERSAMPLING, finest), quintic=True)

@@ -1,6 +1,7 @@
 """Paths at knots, from which those at all other pulses are interpolated."""
 
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from math import inf
 from typing import NamedTuple
 
@@ -22,7 +23,8 @@ from radhar_cli.radar.waveform import Waveform
 
 CHUNK_KNOTS, BLOCK = 32768, 2**15
 MIN_KNOTS = 64  # per recording
-SEEN = 64  # of many paths some are compared from knot to knot: neighbours move alike
+COMPARED = 64  # of many paths some are compared from knot to knot: neighbours move alike
+PROJECTIONS = 4  # sums of paths with random signs, whose curvature stands for that of all
 POWER_CHANGE = 0.1  # of amplitudes from knot to knot, where the mean power is all that is asked for
 # Of an amplitude, relative to its root mean square: below which it passes zero, as that of a bounce
 # at Brewster's angle; and of which its changes are then fractions at least.
@@ -80,6 +82,16 @@ class Spacing(NamedTuple):
     phase_change: float
 
 
+class Roughness(NamedTuple):
+    """How large the squared error of interpolation is in each segment of pulses."""
+
+    step: int  # number of pulses of a segment
+    squares: Float  # up to a factor [segments]; empty where nothing is interpolated
+
+
+EVEN = Roughness(1, np.empty(0))
+
+
 class PathsAtKnots(NamedTuple):
     """Knots that resolve the motion of a recording, and what they show."""
 
@@ -88,18 +100,11 @@ class PathsAtKnots(NamedTuple):
     power: float  # mean over the pulses of sum_i A_i^2
     largest: float  # amplitude
     kept: Knots | None  # the knots, where one chunk of them is all
-    # how large the squared error of interpolation is in each segment, up to a factor; empty where
-    # nothing is interpolated
-    roughness: Float
+    roughness: Roughness  # where interpolation is likely to err
 
     def knots(self, source: PathSource, waveform: Waveform) -> Iterator[Knots]:
         """The knots of the whole recording."""
         return iter([self.kept]) if self.kept else all_knots(source, waveform, self.step)
-
-    @property
-    def likely_error(self) -> Float:
-        """How large the squared error is at each pulse, up to a factor; empty where it is even."""
-        return np.repeat(self.roughness, self.step)
 
     def at_pulses(self, source: PathSource, waveform: Waveform) -> Callable[[Float], Paths]:
         """The source at times of pulses; where all of them are kept, they are looked up."""
@@ -118,7 +123,7 @@ def resolve(
     while True:
         step = step if source.smooth and step >= least else 1
         first, kept, moving, power, largest = None, None, np.zeros(1, bool), 0.0, 0.0
-        rough: list[Float] = [np.empty(0)]
+        squares: list[Float] = [EVEN.squares]
         for knots in all_knots(source, waveform, step):
             if step > 1 and (excess := _excess(knots.paths, waveform, spacing)) > 1:
                 step = min(step - 1, int(step / excess))
@@ -128,10 +133,11 @@ def resolve(
             power += knots.power()
             largest = max(largest, float(knots.paths.amplitude.max(initial=0.0)))
             if step > 1:
-                rough.append(_roughness(knots, waveform))
+                squares.append(_rough_squares(knots, waveform))
         else:
             mean = power / waveform.n_pulses
-            return PathsAtKnots(step, moving, mean, largest, kept, np.concatenate(rough))
+            roughness = Roughness(step, np.concatenate(squares))
+            return PathsAtKnots(step, moving, mean, largest, kept, roughness)
 
 
 def widest_step(waveform: Waveform, per_second: float) -> int:
@@ -157,54 +163,77 @@ def mean_power(source: PathSource, waveform: Waveform, per_second: float) -> flo
 
 def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
     """The largest change from one knot to the next, in units of what the spacing allows."""
-    moved, least, few = 0.0, 1.0, max(1, len(paths.delay) // SEEN)
-    rows = few * max(1, BLOCK // paths.delay.shape[1])
+    moved, least, every = 0.0, 1.0, max(1, len(paths.delay) // COMPARED)
+    rows = every * max(1, BLOCK // paths.delay.shape[1])
     for start in range(0, len(paths.delay), rows):  # so that it stays in the cache
-        delay, a = (part[start : start + rows : few] for part in paths[:2])
+        delay, a = (part[start : start + rows : every] for part in paths[:2])
         delay = np.diff(delay, axis=1)
         moved = max(moved, float(delay.max(initial=0.0)), -float(delay.min(initial=0.0)))
-        size = np.sqrt(np.mean(a * a, axis=1))
-        through_zero = np.abs(a).min(axis=1, initial=inf) < NEAR_ZERO * size
-        through_zero |= (a < 0).any(axis=1) & (a > 0).any(axis=1)
-        if through_zero.any():
-            # A zero passed smoothly is no edge, however large the relative change.
-            some, floor = np.abs(a[through_zero]), SMALL * size[through_zero, None]
-            largest = np.maximum(np.maximum(some[:, 1:], some[:, :-1]), floor)
-            change = np.abs(np.diff(a[through_zero], axis=1)) / largest
-            least = min(least, 1 - float(change.max(initial=0.0)))
-            a = a[~through_zero]
-        with np.errstate(invalid="ignore"):  # 0/0 is no change
-            kept = np.minimum(a[:, 1:], a[:, :-1]) / np.maximum(a[:, 1:], a[:, :-1])
-        least = float(np.fmin.reduce(kept, axis=None, initial=least))
+        least = min(least, _least_left(a))
     return max(
         (1 - least) / spacing.amplitude_change, _fastest_cycles(w) * moved / spacing.phase_change
     )
 
 
-def _roughness(knots: Knots, w: Waveform) -> Float:
-    """Sum over the paths of the squared sixth differences of 2 pi f0 tau A and of A [segments].
+def _least_left(a: Float) -> float:
+    """Least fraction of amplitudes [I, knots] that is left from one knot to the next.
 
-    Six-point interpolation errs by 5/1024 of them. Those across a breakpoint do not count; where
-    the stencil is shifted, the error is as much larger as `upsample` says.
+    Of those that pass zero changes are fractions of their usual size: a zero passed smoothly is no
+    edge, however large the relative change.
     """
-    delay, amplitude = knots.paths.delay, knots.paths.amplitude
-    few, count = max(1, len(delay) // SEEN), delay.shape[1] - TAPS
-    squares = np.zeros(count)
-    rows = few * max(1, BLOCK // delay.shape[1])
-    for start in range(0, len(delay), rows):  # so that it stays in the cache
-        tau, a = (part[start : start + rows : few] for part in (delay, amplitude))
-        phase = 2 * np.pi * w.f0 * np.diff(tau, TAPS, axis=1) * a[:, TAPS // 2 : -TAPS // 2]
-        size = np.diff(a, TAPS, axis=1)
-        squares += np.einsum("im,im->m", phase, phase) + np.einsum("im,im->m", size, size)
-    broken = np.pad(knots.shift == EXACT, (BEFORE, AFTER - 1))
-    windows = np.lib.stride_tricks.sliding_window_view(broken, TAPS)
-    squares[windows.any(axis=1)] = 0.0
-    segment, shift = np.arange(knots.shift.size), np.where(knots.shift == EXACT, 0, knots.shift)
+    least, low, high = 1.0, a.min(axis=1), a.max(axis=1)
+    size = np.sqrt(np.einsum("im,im->i", a, a) / a.shape[1])
+    through_zero = (low < NEAR_ZERO * size) & (high > -NEAR_ZERO * size)
+    if through_zero.any():
+        crossing, floor = np.abs(a[through_zero]), SMALL * size[through_zero, None]
+        largest = np.maximum(np.maximum(crossing[:, 1:], crossing[:, :-1]), floor)
+        change = np.abs(np.diff(a[through_zero], axis=1)) / largest
+        least = 1 - float(change.max(initial=0.0))
+    away = ~through_zero & (size > 0)
+    a = a if away.all() else a[away]
+    ratio = a[:, 1:] / a[:, :-1]
+    return min(least, float(ratio.min(initial=1.0)), 1 / float(ratio.max(initial=1.0)))
+
+
+def _rough_squares(knots: Knots, w: Waveform) -> Float:
+    """Estimate the squared error of interpolation in each segment [segments], up to a factor.
+
+    Six-point interpolation errs by 5/1024 of the sixth differences of 2 pi f0 tau A and of A. Those
+    of the paths add with the phases of the paths; here they add with PROJECTIONS random signs.
+    Those across a breakpoint do not count; where the stencil is shifted, the error is as much
+    larger as `upsample` says.
+    """
+    every = max(1, len(knots.paths.delay) // COMPARED)
+    delay, amplitude = (part[::every] for part in knots.paths[:2])
+    size = np.sqrt(np.einsum("im,im->i", amplitude, amplitude) / amplitude.shape[1])
+    of_delay, of_amplitude = _signs(len(delay))
+    mixed = (of_delay * (2 * np.pi * w.f0 * size)) @ delay + of_amplitude @ amplitude
+    differences = np.diff(mixed, TAPS, axis=1)
+    squares: Float = np.einsum("pm,pm->m", differences, differences)
+    broken = knots.shift == EXACT
+    if broken.any():
+        windows = np.lib.stride_tricks.sliding_window_view(
+            np.pad(broken, (BEFORE, AFTER - 1)), TAPS
+        )
+        squares[windows.any(axis=1)] = 0.0
+    # Higher differences matter where a limb passes something within few knots: each counts for
+    # its neighbours, too.
+    squares = np.convolve(squares, (1.0, 1.0, 1.0), "same")
+    segment, shift = np.arange(knots.shift.size), np.where(broken, 0, knots.shift)
     first = segment + shift + BEFORE - REACH - 1
-    largest = np.maximum(squares[first.clip(0)], squares[(first + 1).clip(max=count - 1)])
+    last = squares.size - 1
+    largest = np.maximum(squares[first.clip(0)], squares[(first + 1).clip(max=last)])
     rough: Float = largest * np.array(SHIFTED_BY)[np.abs(shift)] ** 2
-    rough[knots.shift == EXACT] = 0.0
+    rough[broken] = 0.0
     return rough
+
+
+@lru_cache(maxsize=16)
+def _signs(count: int) -> tuple[Float, Float]:
+    """Random signs of delays and of amplitudes of `count` paths [PROJECTIONS, count] each."""
+    words = np.random.SeedSequence(0).generate_state(2 * PROJECTIONS * count)
+    delay, amplitude = 1.0 - 2.0 * (words & 1).reshape(2, PROJECTIONS, count)
+    return delay, amplitude
 
 
 def _fastest_cycles(w: Waveform) -> float:

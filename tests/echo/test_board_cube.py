@@ -11,8 +11,8 @@ from helpers.boards import MARS, Straight, channels
 from hypothesis import given
 from hypothesis import strategies as st
 
-from radhar_cli.echo.accuracy import SPARE_DB, AccuracyError
-from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power, measured_db
+from radhar_cli.echo.accuracy import AccuracyError
+from radhar_cli.echo.board_cube import SPARE_DB, exact_cube, fast_cube, mean_power, measured_db
 from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT

@@ -71,7 +71,7 @@ class TestSum:
         found = compiled.interpolated_sum(paths, every, 0.5, table, shift, step)
         exact = np.repeat(shift == EXACT, step)
         assert not found[exact].any()
-        size = 2 * paths.amplitude.max() * np.abs(table.cubics[0]).max() * len(paths.delay)
+        size = 2 * paths.amplitude.max() * np.abs(table.polynomials[0]).max() * len(paths.delay)
         gap = np.abs(found - by_numpy(*scene, single))[~exact]
         assert gap.max(initial=0) < 3e-5 * size
 
@@ -88,7 +88,7 @@ class TestSum:
         chosen = Settings(Spacing(1, 1, 1), OVERSAMPLING, False, False)
         terms = echo._terms(paths, np.arange(3), 0.5, chosen)
         right = direct._interpolated_sum(*terms, shift, 11, False)
-        assert least < np.abs(found - right).max() / (6 * np.abs(table.cubics[0]).max()) < most
+        assert least < np.abs(found - right).max() / (6 * np.abs(table.polynomials[0]).max()) < most
 
     def test_only_the_given_paths_are_summed(self):
         waveform = Waveform(77e9, 4e9, 40e-6, 1e6, 1e3, 1.0)

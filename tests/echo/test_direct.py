@@ -255,8 +255,12 @@ class TestKnots:
         assert self.asked(self.swinging(0.5), RADAR) < 0.1 * RADAR.times.size
 
     def test_a_tighter_tolerance_needs_more_knots(self):
-        asked = [self.asked(self.swinging(1.0), RADAR, db) for db in (-40, -80, -120)]
+        asked = [self.asked(self.swinging(1.0), RADAR, db) for db in (-80, -100, -120)]
         assert asked == sorted(set(asked))
+
+    def test_a_looser_tolerance_than_the_default_has_its_knots(self):
+        asked = {self.asked(self.swinging(1.0), RADAR, db) for db in (-20, -60, -80)}
+        assert len(asked) == 1
 
     def test_a_low_prf_evaluates_each_pulse_once(self):
         source, radar = ref.Points(walk), ref.Radar(2e9, 1e9, adc_rate=1e6, prf=128, duration=0.5)

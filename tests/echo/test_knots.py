@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from radhar_cli.echo.accuracy import probed_pulses
-from radhar_cli.echo.knots import Spacing, resolve
+from radhar_cli.echo.accuracy import choose_probes
+from radhar_cli.echo.knots import Roughness, Spacing, resolve
 from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.waveform import Waveform
@@ -77,15 +77,28 @@ def test_probes_lie_where_interpolation_errs() -> None:
             return Paths((1.3e-8 + 1e-13 * np.tanh(x))[None], np.ones((1, t.size)))
 
     found = resolve(Bent([]), RADAR, SPACING)
-    likely = found.likely_error
-    assert likely.size >= RADAR.n_pulses
-    t = RADAR.times(np.arange(float(likely.size)))
+    rough = found.roughness.squares
+    t = RADAR.times(found.step * (np.arange(rough.size) + 0.5))
     near = np.abs(t - 0.25) < 0.05
-    assert likely[near].sum() > 0.99 * likely.sum()
-    probes, density, _ = probed_pulses(np.ones(RADAR.n_pulses), likely)
-    assert np.abs(RADAR.times(probes.astype(float)) - 0.25).min() < 0.01
+    assert rough[near].sum() > 0.99 * rough.sum()
+    probes = choose_probes(np.ones(RADAR.n_pulses), found.roughness)
+    assert np.abs(RADAR.times(probes.pulses.astype(float)) - 0.25).min() < 0.01
     # Unbiased: what is spread in any way is counted once.
-    assert np.sum(1 / density) == pytest.approx(RADAR.n_pulses, rel=0.25)
+    assert np.sum(1 / probes.density) == pytest.approx(RADAR.n_pulses, rel=0.25)
+
+
+def test_probes_count_every_pulse_once_whatever_the_segments() -> None:
+    """The last segment is shorter; powers and roughness differ."""
+    rng = np.random.default_rng(5)
+    for size, step in ((1003, 7), (50, 7), (3, 7), (400, 1)):
+        counts = np.zeros(size)
+        for _ in range(100):
+            power, rough = rng.exponential(size=size), rng.exponential(size=-(-size // step))
+            probes = choose_probes(power, Roughness(step, rough))
+            assert probes.total == pytest.approx(power.sum())
+            np.add.at(counts, probes.pulses, 1 / probes.density / 100)
+        assert counts.sum() == pytest.approx(size, rel=0.05)
+        assert counts[-size // 3 :].mean() == pytest.approx(1, abs=0.2)
 
 
 def test_a_breakpoint_is_not_rough_where_the_stencil_avoids_it() -> None:
@@ -98,6 +111,7 @@ def test_a_breakpoint_is_not_rough_where_the_stencil_avoids_it() -> None:
             delay = 1.3e-8 + 1e-12 * np.maximum(t - 0.2503, 0.0) + 1e-13 * np.sin(30 * t)
             return Paths(delay[None], np.ones((1, t.size)))
 
-    likely = resolve(Kinked([]), RADAR, SPACING).likely_error
-    t = RADAR.times(np.arange(float(likely.size)))
-    assert likely[np.abs(t - 0.25) < 0.05].max() < 100 * np.median(likely)
+    found = resolve(Kinked([]), RADAR, SPACING)
+    rough = found.roughness.squares
+    t = RADAR.times(found.step * (np.arange(rough.size) + 0.5))
+    assert rough[np.abs(t - 0.25) < 0.05].max() < 100 * np.median(rough)

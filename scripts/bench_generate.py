@@ -29,7 +29,7 @@ from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.png import colour_table, encode_png
-from radhar_cli.dataset.sample import Synthesised, synthesise
+from radhar_cli.dataset.sample import SampleRow, StoredSample, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.exact import beat_at
@@ -108,14 +108,13 @@ class Sink:
         self.table = colour_table(config.image.colour_map)
         self.values = scene_fields.values(scene(config, 0), scene_fields.fields(config))
 
-    def write(self, samples: list[Synthesised]) -> None:
+    def write(self, samples: list[StoredSample]) -> None:
         for sample in samples:
             for name, image in sample.images.items():
                 data = encode_png(image.levels, self.table, self.config.output.png_level)
                 write_whole(self.folder, self.folder / "png" / f"{name}.png", data)
-        values = np.tile(self.values, (len(samples), 1))
-        flags = np.zeros(len(samples), np.uint8)
-        data = encode_shard(self.config, self.whose, 0, samples, values, flags)
+        rows = [SampleRow(sample, self.values) for sample in samples]
+        data = encode_shard(self.config, self.whose, 0, rows)
         write_shard(self.folder, 0, len(samples), data)
 
 
@@ -139,11 +138,11 @@ class Floor:
         look = Look("", RangeBins(w), shown, canceller.taps)
         return signal_of_look(look.fast(beat), look)
 
-    def sample(self, ready: dict[str, Any]) -> Synthesised:
+    def sample(self, ready: dict[str, Any]) -> StoredSample:
         """The image alone, as a sample."""
         self.plan = self.plan or plan(self.table, [f"image:{self.name}"], ready)
         image = run(self.plan, ready)[f"image:{self.name}"]
-        return Synthesised({self.name: image}, np.nan, False, {})
+        return StoredSample({self.name: image})
 
 
 def rows(rounds: int) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.dataset.sample import SampleRow, Synthesised
+from radhar_cli.dataset.sample import SampleRow, StoredSample
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import refuse_outside, text_of
 from radhar_cli.processing.entropy import entropy_bits
@@ -281,13 +281,13 @@ class WindowFactory:
             columns = replace(power_map.columns, values=power_map.columns.values - start)
             images[name] = image_of(config, replace(power_map, columns=columns))
         confidence = nan if results.track is None else float(results.track.confidence.mean())
-        return SampleRow(Synthesised(images, nan, False, {}), np.array([number, start, confidence]))
+        return SampleRow(StoredSample(images), np.array([number, start, confidence]))
 
-    def _image(self, config: MeasuredConfig, file: str) -> Synthesised:
+    def _image(self, config: MeasuredConfig, file: str) -> StoredSample:
         """Read the sample of an existing image."""
         recorded = config.recordings
         assert recorded.rows is not None
         levels = read_image(self.folder, file, config.image.size_px, recorded.packed)
         extent = (0.0, recorded.window_s, *recorded.rows)
         image = MapImage(levels, entropy_bits(levels.astype(float)), extent)
-        return Synthesised({config.maps[0]: image}, nan, False, {})
+        return StoredSample({config.maps[0]: image})

@@ -16,7 +16,7 @@ from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
 from radhar_cli.dataset.layout import IDENTITY, WORK, Rows
 from radhar_cli.dataset.png import encode_png
-from radhar_cli.dataset.sample import RowFactory, SampleRow, synthesise
+from radhar_cli.dataset.sample import RowFactory, SampleRow, StoredSample, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.dataset.workers import NO_PARENT
@@ -27,7 +27,7 @@ from radhar_cli.processes.time_limit import time_limit
 from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.validity import FLAG_TYPE, Flags, draw_valid_scene, warnings
+from radhar_cli.scene_checks.validity import Flags, draw_valid_scene, warnings
 
 CHECKED_SCENES = 24  # before a build; each is checked as it is made
 
@@ -98,24 +98,28 @@ def run_batch(batch: Batch) -> int:
 
 def _write_batch(batch: Batch) -> int:
     """Write the PNG files of a batch, then its shard; return the number of samples."""
-    config, count, rows = batch.config, batch.stop - batch.start, Rows.of(batch.config)
-    samples = []
-    values = np.empty((count, len(scene_fields.fields(config))))
-    flags = np.empty(count, dtype=FLAG_TYPE)
-    for number, (row, row_flags) in enumerate(_make_rows(batch)):
-        sample = row.sample
+    config, rows = batch.config, Rows.of(batch.config)
+    made_rows = []
+    for number, row in enumerate(_make_rows(batch)):
         if batch.table is not None:
-            for name, image in sample.images.items():
+            for name, image in row.sample.images.items():
                 data = encode_png(image.levels, batch.table, config.output.png_level)
                 path = rows.png_path(name, int(batch.split[number]), batch.start + number)
                 write_whole(batch.folder, batch.folder / path, data)
-        samples.append(sample)
-        values[number] = row.values
-        black = not all(image.levels.any() for image in sample.images.values())
-        flags[number] = row_flags | Flags.FALLBACK * sample.fell_back | Flags.BLACK * black
-    data = encode_shard(config, batch.identity_hash, batch.start, samples, values, flags)
+        made_rows.append(row._replace(flags=row.flags | _flags_of_sample(row.sample)))
+    data = encode_shard(config, batch.identity_hash, batch.start, made_rows)
     write_shard(batch.folder, batch.start, batch.stop, data)
-    return count
+    return batch.stop - batch.start
+
+
+def _flags_of_sample(sample: StoredSample) -> Flags:
+    """Flags that are known of a sample once it is made: the cube made it, a map is black."""
+    flags = Flags(0)
+    if sample.fell_back:
+        flags |= Flags.FALLBACK
+    if not all(image.levels.any() for image in sample.images.values()):
+        flags |= Flags.BLACK
+    return flags
 
 
 def _check_machine(batch: Batch) -> None:
@@ -130,8 +134,8 @@ def _check_machine(batch: Batch) -> None:
         raise MachineError(f"the worker on {platform.node()} does not see {batch.folder}")
 
 
-def _make_rows(batch: Batch) -> Iterator[tuple[SampleRow, int]]:
-    """Make each row of a batch; yield it and its Flags."""
+def _make_rows(batch: Batch) -> Iterator[SampleRow]:
+    """Make each row of a batch; its flags are those of its scene."""
     config, rows = batch.config, Rows.of(batch.config)
     if isinstance(config, Config):
         plan, columns = plan_images(config), scene_fields.fields(config)
@@ -139,11 +143,12 @@ def _make_rows(batch: Batch) -> Iterator[tuple[SampleRow, int]]:
         leave_if_orphaned(batch.parent_pid)
         if isinstance(config, MeasuredConfig):
             assert batch.factory is not None
-            yield batch.factory(config, row), 0
+            yield batch.factory(config, row)
             continue
         scene, flags = draw_valid_scene(config, *rows[row])
         sample = synthesise(scene, plan, config)
-        yield SampleRow(sample, scene_fields.values(scene, columns, sample.error_db)), flags
+        values = scene_fields.values(scene, columns, sample.error_db)
+        yield SampleRow(sample, values, flags)
 
 
 def write_png_rows(

@@ -6,24 +6,21 @@ from math import inf
 from time import perf_counter, process_time
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.batch import CHECKED_SCENES, check_scenes
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table, encode_png
-from radhar_cli.dataset.sample import Synthesised, synthesise
+from radhar_cli.dataset.sample import SampleRow, synthesise
 from radhar_cli.dataset.shards import encode_shard
 from radhar_cli.dataset.workers import cores
 from radhar_cli.errors import RadharError
-from radhar_cli.numerics.arrays import Float
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processes.time_limit import time_limit
 from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.products.table import plan_images
-from radhar_cli.scene_checks.validity import FLAG_TYPE, draw_valid_scene
+from radhar_cli.scene_checks.validity import draw_valid_scene
 
 PROBES = 24
 PROBE_SECONDS = 8.0
@@ -112,8 +109,7 @@ def _paid_jobs(samples: int, seconds: float) -> int:
 class _Probe(NamedTuple):
     """Sample that was made to be timed."""
 
-    sample: Synthesised
-    scene_values: Float  # [fields]
+    row: SampleRow
     png_bytes: int
     seconds: float
 
@@ -136,15 +132,15 @@ def estimate(
     progress.stage("timing samples", len(places), 0)
     with time_limit(seconds):
         # Imports, tables and caches are not part of a sample: the first counts if it is the only.
-        for number, row in enumerate([places[0], *places]):
+        for number, place in enumerate([places[0], *places]):
             start = perf_counter()
-            scene, _ = draw_valid_scene(config, *rows[row])
+            scene, _ = draw_valid_scene(config, *rows[place])
             sample, png_bytes = synthesise(scene, plan, config), 0
             values = scene_fields.values(scene, columns, sample.error_db)
             if table is not None:
                 level, images = config.output.png_level, sample.images.values()
                 png_bytes = sum(len(encode_png(image.levels, table, level)) for image in images)
-            probes.append(_Probe(sample, values, png_bytes, perf_counter() - start))
+            probes.append(_Probe(SampleRow(sample, values), png_bytes, perf_counter() - start))
             progress.advance(int(number > 0))
             if sum(probe.seconds for probe in probes[1:]) > PROBE_SECONDS:
                 break
@@ -152,13 +148,9 @@ def estimate(
     probe_count = len(probes)
     if not probes:
         return Estimate(len(rows), 0, None, None, None, None)
-    start, flags = perf_counter(), np.zeros(probe_count, FLAG_TYPE)
-    samples, scene_values = (
-        [probe.sample for probe in probes],
-        np.stack([p.scene_values for p in probes]),
-    )
+    start = perf_counter()
     hash_of_identity = identity_hash(identity(config))
-    shard = encode_shard(config, hash_of_identity, 0, samples, scene_values, flags)
+    shard = encode_shard(config, hash_of_identity, 0, [probe.row for probe in probes])
     per_sample = (sum(probe.seconds for probe in probes) + perf_counter() - start) / probe_count
     if config.output.png:
         per_sample += FILE_WRITE_S * len(config.maps)

@@ -106,7 +106,7 @@ class Dataset(Closing):
         named = (f"scene/{field.name}" for field in self.fields)
         self.small = small | dict(zip(named, self.scene.values(), strict=False))
         self.products = {
-            name: Ragged(
+            name: ProductArrays(
                 file.samples(f"products/{name}", may_be_empty=True),
                 small[layout.count_of(name)][:],
             )
@@ -212,7 +212,7 @@ class Dataset(Closing):
         self.file.close()
 
 
-class Ragged:
+class ProductArrays:
     """Arrays of the samples, which one array holds one after the other along axis 0.
 
     Attributes:

@@ -23,14 +23,16 @@ from radhar_cli.products.run import run
 from radhar_cli.scene import Scene
 
 
-class Synthesised(NamedTuple):
-    """One sample: images of a scene, and all that is stored with them."""
+class StoredSample(NamedTuple):
+    """One sample: the images of a scene, and all that a data set stores with them."""
 
     images: dict[str, MapImage]  # {map name: image}, in the order of the config
-    error_db: float  # measured error of the direct engine; NaN where it made nothing that could err
-    fell_back: bool  # the cube made the signal, as the direct engine could not (`engine.fallback`)
+    # measured error of the direct engine; NaN where it made nothing that could err
+    error_db: float = nan
+    # the cube made the signal, as the direct engine could not (`engine.fallback`)
+    fell_back: bool = False
     # {map name: [width]}, where asked for (`output.column_labels`)
-    column_labels: dict[str, Levels]
+    column_labels: Mapping[str, Levels] = MappingProxyType({})
     # x[m] after the canceller, where it is stored (`output.slow_time`)
     slow_time: Complex | None = None
     # {name: array}, where they are stored (`output.products`)
@@ -66,17 +68,18 @@ class Synthesised(NamedTuple):
 
 
 class SampleRow(NamedTuple):
-    """A sample and its scene numbers, which are one row of a data set."""
+    """One row of a data set: a sample, the numbers of its scene, and what there is to warn of."""
 
-    sample: Synthesised
+    sample: StoredSample
     values: Float  # numbers of `scene_fields.fields` [field]
+    flags: int = 0  # `Flags`
 
 
 # Makes a row of a data set that is not simulated; what it holds can be pickled.
 RowFactory: TypeAlias = Callable[[MeasuredConfig, int], SampleRow]
 
 
-def synthesise(scene: Scene, plan: Plan, config: Config) -> Synthesised:
+def synthesise(scene: Scene, plan: Plan, config: Config) -> StoredSample:
     """Run the plan of a data set on one scene.
 
     Args:
@@ -106,7 +109,7 @@ def synthesise(scene: Scene, plan: Plan, config: Config) -> Synthesised:
     products = {
         name: storable_array(recording[name], name, deepest) for name in scene.config.stored
     }
-    return Synthesised(
+    return StoredSample(
         images, error_db, fell_back, labels, slow_time, products, labels_of(scene, config)
     )
 

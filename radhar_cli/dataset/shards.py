@@ -13,15 +13,14 @@ from typing import NamedTuple, TypeAlias
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK, checksum_of, chunked, count_of
 from radhar_cli.dataset.png import deflate
-from radhar_cli.dataset.sample import Synthesised
+from radhar_cli.dataset.sample import SampleRow
 from radhar_cli.errors import SceneError, UnfinishedError
-from radhar_cli.numerics.arrays import Float
+from radhar_cli.scene_checks.validity import FLAG_TYPE
 
 USER_BLOCK = 512
 RUNS_NAMED = 10
@@ -43,6 +42,11 @@ class Shard(NamedTuple):
     start: int
     stop: int
     folder: Path
+
+    @property
+    def rows(self) -> range:
+        """Rows of the data set that the shard holds."""
+        return range(self.start, self.stop)
 
     @property
     def path(self) -> Path:
@@ -94,9 +98,7 @@ def encode_shard(
     config: AnyConfig,
     identity_hash: str,
     start: int,
-    samples: Sequence[Synthesised],
-    scene_values: Float,
-    flags: NDArray[np.uint16],
+    rows: Sequence[SampleRow],
 ) -> bytes:
     """Encode the rows from `start` on as a shard; a full disk is then one failed write.
 
@@ -104,14 +106,13 @@ def encode_shard(
         config: that of the data set.
         identity_hash: hash of its identity.
         start: first row.
-        samples: samples of the rows.
-        scene_values: numbers of the scenes [row, field].
-        flags: `Flags` of each row: what there is to warn of.
+        rows: the rows, at least one.
 
     Raises:
         SceneError: arrays of a product differ in more than their first axis.
     """
     buffer, level = io.BytesIO(), config.output.hdf5_level
+    samples = [row.sample for row in rows]
     # Not libver="latest", whose groups hold the time at which they were made.
     with h5py.File(buffer, "w", userblock_size=USER_BLOCK) as file:
         for name, (dtype, shape) in chunked(config).items():
@@ -131,8 +132,8 @@ def encode_shard(
                 raise SceneError(f"output.products: {name}: should differ in its first axis alone")
             file[f"products/{name}"] = np.concatenate(arrays)
             file[count_of(name)] = np.array([len(array) for array in arrays])
-        file["scene"] = scene_values
-        file["flags"] = flags
+        file["scene"] = np.stack([row.values for row in rows])
+        file["flags"] = np.array([row.flags for row in rows], FLAG_TYPE)
     stop = start + len(samples)
     with buffer.getbuffer() as data:
         checksum = _checksum(identity_hash, start, stop, data[USER_BLOCK:])

@@ -19,11 +19,11 @@ from hypothesis import strategies as st
 
 from radhar_cli.activities.activity import Activity
 from radhar_cli.config import Config, load_config
-from radhar_cli.dataset import assembly as assembly_module
 from radhar_cli.dataset import batch as batch_module
+from radhar_cli.dataset import column_writers
 from radhar_cli.dataset import verify as verify_module
 from radhar_cli.dataset.build import build
-from radhar_cli.dataset.sample import Synthesised
+from radhar_cli.dataset.sample import StoredSample
 from radhar_cli.dataset.shards import list_shards, shard_folder
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import UnfinishedError
@@ -36,7 +36,7 @@ def stub_draw(config: Config, activity: Activity, index: int) -> tuple[Scene, Fl
     return draw_scene(config, activity, index, index % 3), Flags(0)
 
 
-def stub_synthesise(scene: Scene, plan: object, config: Config) -> Synthesised:
+def stub_synthesise(scene: Scene, plan: object, config: Config) -> StoredSample:
     assert config.maps == scene.config.maps
 
     def image(name: str) -> MapImage:
@@ -45,7 +45,7 @@ def stub_synthesise(scene: Scene, plan: object, config: Config) -> Synthesised:
         levels = rng.integers(0, 256, config.image.size_px, dtype=np.uint8)
         return MapImage(levels, float(rng.random()), (0.0, 1.0, *sorted(rng.random(2))))
 
-    return Synthesised({name: image(name) for name in config.maps}, -100.0 - scene.index, False, {})
+    return StoredSample({name: image(name) for name in config.maps}, -100.0 - scene.index)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -151,7 +151,7 @@ def test_chunk_layout_does_not_depend_on_the_shards(
     config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With more rows than a run of chunks or of columns, on both sides of their borders."""
-    monkeypatch.setattr(assembly_module, "COLUMN_RUN", 20)
+    monkeypatch.setattr(column_writers, "COLUMN_RUN", 20)
     many = config.model_copy(
         update={
             "samples_per_class": 50,

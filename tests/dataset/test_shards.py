@@ -12,7 +12,7 @@ from helpers.small import small_config
 from radhar_cli.config import load_config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import identity, identity_hash
-from radhar_cli.dataset.sample import Synthesised
+from radhar_cli.dataset.sample import SampleRow, StoredSample
 from radhar_cli.dataset.shards import (
     ForeignShardError,
     Shard,
@@ -38,10 +38,10 @@ def stub(config, start, stop):
     size = config.image.size_px
     levels = (np.full(size, row, np.uint8) for row in range(start, stop))
     images = (MapImage(each, float(each[0, 0]), (0.0, 1.0, 2.0, 3.0)) for each in levels)
-    samples = [Synthesised({"stft": image}, -100.0, False, {}) for image in images]
-    values = np.full((stop - start, len(scene_fields.fields(config))), float(start))
-    flags = np.arange(start, stop, dtype=np.uint8)
-    return encode_shard(config, whose(config), start, samples, values, flags)
+    samples = (StoredSample({"stft": image}, -100.0) for image in images)
+    values = np.full(len(scene_fields.fields(config)), float(start))
+    rows = [SampleRow(sample, values, row) for row, sample in enumerate(samples, start)]
+    return encode_shard(config, whose(config), start, rows)
 
 
 def whose(config):

@@ -4,9 +4,9 @@ import numpy as np
 
 from radhar_cli.dataset import scene_fields, shards
 from radhar_cli.dataset.batch import Batch
-from radhar_cli.dataset.sample import Synthesised
+from radhar_cli.dataset.sample import SampleRow, StoredSample
 from radhar_cli.processing.power_map import MapImage
-from radhar_cli.scene_checks.validity import FLAG_TYPE, Flags
+from radhar_cli.scene_checks.validity import Flags
 
 
 def stub_shard(batch: Batch, size: int, made: dict[int, bytes]) -> int:
@@ -20,10 +20,10 @@ def stub_shard(batch: Batch, size: int, made: dict[int, bytes]) -> int:
     count = batch.stop - batch.start
     if count not in made:
         image = MapImage(np.zeros((size, size), np.uint8), 0.0, (0.0, 1.0, -1.0, 1.0))
-        samples = [Synthesised({"stft": image}, -100.0, False, {})] * count
-        values = np.zeros((count, len(scene_fields.fields(batch.config))))
-        flags = np.full(count, Flags.ALIASING, FLAG_TYPE)
-        made[count] = shards.encode_shard(batch.config, "0" * 64, 0, samples, values, flags)
+        sample = StoredSample({"stft": image}, -100.0)
+        values = np.zeros(len(scene_fields.fields(batch.config)))
+        rows = [SampleRow(sample, values, Flags.ALIASING)] * count
+        made[count] = shards.encode_shard(batch.config, "0" * 64, 0, rows)
     content = made[count][shards.USER_BLOCK :]
     whose, start, stop = batch.identity_hash, batch.start, batch.stop
     checksum = shards._checksum(whose, start, stop, memoryview(content))

@@ -1,0 +1,155 @@
+"""What dataset.h5 says of itself: labels, splits and keys, and the attributes of all datasets."""
+
+import json
+from typing import Any
+
+import h5py
+import numpy as np
+
+from radhar_cli.assembly.physics import kinds_of
+from radhar_cli.config.data_set import AnyConfig, Config
+from radhar_cli.config.identity import config_hash, resolved
+from radhar_cli.config.maps import FRAME_MAPS
+from radhar_cli.dataset import layout, scene_fields
+from radhar_cli.dataset.column_labels import label_names
+from radhar_cli.dataset.identity import identity, versions
+from radhar_cli.dataset.layout import SPLITS, TIME, Rows
+from radhar_cli.dataset.split import persons, split_rows
+from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.processing.points import COLUMNS
+
+BLOCK = 4096  # rows of a column read at once
+CFAR_TEXT = (
+    "255 where a pixel exceeds its threshold over the mean of the training cells around it, else 0 "
+    "(image.cfar in the config)"
+)
+LEVELS_TEXT = (
+    "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
+    "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
+)
+SHEET_TEXT = "frames side by side, row by row, evenly spread over the sample; edges are a frame's"
+SLOW_TIME_TEXT = (
+    "x[m] after receiver and canceller, for unit transmit power; NaN after the last pulse of "
+    "a recording that is shorter than others"
+)
+
+
+def create_sample_columns(file: h5py.File, config: AnyConfig) -> None:
+    """Write the datasets of labels, splits and keys, and the empty ones of /scene."""
+    rows = Rows.of(config)
+    count = len(rows)
+    file["label"] = rows.label.astype(np.uint8)
+    file["label"].attrs["names"] = rows.names
+    file["label"].attrs["meaning"] = "place in names: the order of `activities` in the config"
+    file["split"] = split_rows(config)
+    file["split"].attrs["meaning"] = ", ".join(f"{i} {name}" for i, name in enumerate(SPLITS))
+    keys = file.create_dataset("sample_key", (count, 2), np.int64)
+    keys.attrs["columns"] = ["label", "index"]
+    if (person := persons(config)) is not None:
+        subject = file.create_dataset("scene/subject", (count,), np.int64, data=person)
+        subject.attrs["unit"] = "1"
+    keys[:, 0] = rows.label
+    keys[:, 1] = np.concatenate([np.arange(number) for number in rows.counts])
+    for field in scene_fields.fields(config):
+        dataset = file.create_dataset(f"scene/{field.name}", (count,), np.float64)
+        dataset.attrs["unit"] = field.unit
+        dataset.attrs["config_key"] = field.key
+
+
+def describe_columns(file: h5py.File, config: AnyConfig) -> None:
+    """Write the attributes of the filled datasets: of maps, products, labels and slow time."""
+    for name in config.maps:
+        _describe_map(file, config, name)
+        _describe_columns_of_map(file, config, name)
+    if isinstance(config, Config):
+        _describe_products(file, config)
+
+
+def _describe_map(file: h5py.File, config: AnyConfig, name: str) -> None:
+    """Write the attributes of a map, and of its edges and entropy."""
+    extent = _common_extent(file[f"extent/{name}"])
+    left, right, bottom, top = extent or (np.nan,) * 4
+    row_quantity, row_unit = layout.row_axis(name)
+    column_quantity, column_unit = layout.column_axis(name)
+    image, is_decibel = config.image, config.image.kind == "decibel"
+    column_name = "time" if column_quantity == TIME[0] else column_quantity
+    attributes = {
+        "axes": ["sample", f"{row_quantity} (row 0 is the highest)", column_name],
+        "row_quantity": row_quantity,
+        "row_unit": row_unit,
+        "row_top": top,
+        "row_bottom": bottom,
+        "column_quantity": column_quantity,
+        "column_unit": column_unit,
+        "column_left": left,
+        "column_right": right,
+        "kind": image.kind,
+        **({"dynamic_range_db": image.dynamic_range_db} if is_decibel else {}),
+        "levels": LEVELS_TEXT if is_decibel else CFAR_TEXT,
+        **({"sheet": SHEET_TEXT} if name in FRAME_MAPS else {}),
+        **({"edges": "differ from sample to sample: see /extent"} if extent is None else {}),
+    }
+    file[f"maps/{name}"].attrs.update(attributes)
+    edges = [f"{column_name} left ({column_unit})", f"{column_name} right ({column_unit})"]
+    edges += [f"{row_quantity} bottom ({row_unit})", f"{row_quantity} top ({row_unit})"]
+    file[f"extent/{name}"].attrs["columns"] = edges
+    file[f"entropy/{name}"].attrs["unit"] = "bit"
+
+
+def _common_extent(extents: h5py.Dataset) -> tuple[float, float, float, float] | None:
+    """Edges (left, right, bottom, top) of a map, of [N, 4]; None where samples differ in them."""
+    first = extents[0]
+    for start in range(0, len(extents), BLOCK):
+        if (extents[start : start + BLOCK] != first).any():
+            return None
+    left, right, bottom, top = first.tolist()
+    return left, right, bottom, top
+
+
+def _describe_columns_of_map(file: h5py.File, config: AnyConfig, name: str) -> None:
+    """Write the attributes of what is stored of a map besides its levels: power, column labels."""
+    if config.output.power is not None:
+        file[f"power/{name}"].attrs["unit"] = f"dB below /largest_db/{name}"
+        file[f"power/{name}"].attrs["meaning"] = "resized power, not clipped; rows as in /maps"
+        file[f"largest_db/{name}"].attrs["unit"] = "dB for unit transmit power"
+    if config.output.column_labels:
+        labels = file[f"{layout.COLUMN_LABEL}/{name}"].attrs
+        labels["names"] = label_names(config)
+        labels["meaning"] = "number in names of what is under way at the middle of each column"
+
+
+def _describe_products(file: h5py.File, config: Config) -> None:
+    """Write the attributes of products, labels of people and slow time."""
+    if "products/points" in file:
+        file["products/points"].attrs["columns"] = [*COLUMNS]
+    recorded = any(config.files_of(activity) is not None for activity in config.chosen_activities)
+    if "products/points_kind" in file:
+        file["products/points_kind"].attrs["kinds"] = kinds_of(config)
+    if "products/skeleton" in file and not recorded:
+        file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
+    if config.people:
+        file[layout.LABELS].attrs["class_slugs"] = [
+            activity.slug for activity in config.every_class
+        ]
+        meaning = "place in class_slugs of /labels, the sample's main person first; -1 absent"
+        file[layout.PERSON_LABEL].attrs["meaning"] = meaning
+    if config.output.slow_time:
+        file["slow_time"].attrs.update({"axes": ["sample", "pulse"], "meaning": SLOW_TIME_TEXT})
+
+
+def describe_file(file: h5py.File, config: AnyConfig, messages: list[dict[str, Any]]) -> None:
+    """Write the attributes of the file itself; `messages` are its warnings."""
+    named = identity(config)
+    named = {part: named[part] for part in ("keys", "versions", "hash")}
+    described = {
+        "schema_version": layout.SCHEMA_VERSION,
+        "config": json.dumps(resolved(config)),
+        "config_hash": config_hash(config),
+        "identity": json.dumps(named, sort_keys=True),
+        "seed": config.seed,
+        "class_names": [activity.label for activity in config.chosen_activities],
+        "class_slugs": [activity.slug for activity in config.chosen_activities],
+        "warnings": json.dumps(messages),
+        **{f"{library}_version": version for library, version in versions().items()},
+    }
+    file.attrs.update(described)

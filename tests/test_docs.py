@@ -8,6 +8,7 @@ import command_pages
 import config_tables
 import h5py
 import pytest
+import ti_command_table
 from helpers.documents import DOCS, PAGES, Row, commands, leaves, rows, value_at, written
 from pydantic import BaseModel
 from typer.main import get_command
@@ -81,6 +82,12 @@ def test_tables_of_keys_are_those_of_the_schema(page: str) -> None:
     """`python scripts/config_tables.py` writes them."""
     text = PAGE[page].read_text()
     assert config_tables.written(text) == text
+
+
+def test_page_of_ti_commands_is_made_of_the_parsers_table() -> None:
+    """`python scripts/ti_command_table.py` writes it."""
+    text = ti_command_table.PAGE.read_text()
+    assert ti_command_table.fill_table(text) == text
 
 
 def test_pages_of_commands_are_those_of_the_program() -> None:

@@ -19,9 +19,9 @@ from radhar_cli.capture.recording import (
 )
 from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import Parts, Source
+from radhar_cli.capture.ti_header import read_ti_settings
 from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
-from radhar_cli.config.ti_header import read_header
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.radar.impulse import Impulse
@@ -47,7 +47,7 @@ def read_settings(header: Path | None, overrides: Sequence[str]) -> CaptureSetti
     document: dict[str, Any] = {}
     if header is not None:
         ti = header.suffix.lower() in TI_HEADERS
-        document = read_header(header) if ti else read_document(header)[0]
+        document = read_ti_settings(header) if ti else read_document(header)[0]
     where = str(header) if header else "--set"
     return validated(CaptureSettings, with_overrides(document, overrides), where, {})
 

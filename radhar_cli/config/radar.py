@@ -1,6 +1,6 @@
 """The radar: its waveform, antennas and board."""
 
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
@@ -9,9 +9,7 @@ from radhar_cli.config.annotations import GIVEN, ActsIf, ActsIfAny, ByModel
 from radhar_cli.config.number import Angle, Decibel, NotNegative, Positive, Real, Vector, within
 from radhar_cli.config.section import Flag, Section
 from radhar_cli.radar.board import DEVICES, EVEN, Array
-
-if TYPE_CHECKING:
-    from radhar_cli.config.ti_header import BoardHeader
+from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
 
 Place: TypeAlias = tuple[Real, Real]
 
@@ -138,16 +136,14 @@ class RadarConfig(Section):
         return {"adc_rate_hz": 1 / self.dwell_s, "chirp_s": self.steps * self.dwell_s}
 
     @property
-    def header(self) -> "BoardHeader":
+    def header(self) -> BoardHeader:
         """Header of the board that `cfg` describes.
 
         Raises:
             CaptureError: `cfg` cannot be read.
         """
-        from radhar_cli.config.ti_header import board_header  # which knows this schema
-
         assert self.cfg is not None
-        return board_header(self.cfg)
+        return parse_ti_cfg(self.cfg)
 
     @property
     def frames_apart(self) -> bool:

@@ -26,10 +26,10 @@ from radhar_cli.config.documents import (
 from radhar_cli.config.identity import yaml_text
 from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.section import Section
-from radhar_cli.config.ti_header import board_header
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.radar.ti_cfg import parse_ti_cfg
 
 WIDTH = 100
 MAPS_OF_BOARDS = ("stft", "range_doppler", "range_azimuth", "points")
@@ -140,7 +140,7 @@ def of_board(cfg: str, folder: Path) -> str:
         CaptureError: the .cfg is not one that boards of radhar can run.
     """
     text = cfg_text(cfg, Path(), "--radar")
-    board = board_header(text, cfg)
+    board = parse_ti_cfg(text, cfg)
     device = "IWR6843ISK" if board.start_hz < 70e9 else "IWR1443BOOST"
     path = os.path.relpath(Path(cfg).resolve(), folder.resolve())
     if cfg.lower() in RADARS:

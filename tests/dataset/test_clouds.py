@@ -11,7 +11,6 @@ from helpers.boards import CFG, CLOUDS
 from helpers.command_line import radhar
 from helpers.listener import Listener
 
-from radhar_cli.config.ti_header import board_header
 from radhar_cli.dataset.formats.clouds import (
     MARS_JOINTS,
     clouds_of,
@@ -23,6 +22,7 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.radar.ti_cfg import parse_ti_cfg
 
 
 @pytest.fixture(scope="module", params=["board", "best"])
@@ -141,7 +141,7 @@ def test_mars_needs_the_joints_of_people(place, tmp_path, monkeypatch):
 
 def test_axes_and_signs_of_the_formats(place):
     with open_dataset(place / "set") as data:
-        loops = board_header(data.config.radar.cfg).loops
+        loops = parse_ti_cfg(data.config.radar.cfg).loops
         products = {
             row: (data.products["points"][row], data.products["skeleton"][row][:, 0])
             for row in range(len(data))
@@ -182,7 +182,7 @@ def test_records_of_ros_are_yaml_with_the_fields_of_the_message(place):
     stamps = [record["header"]["stamp"] for record in records]
     seconds = np.array([stamp["secs"] + 1e-9 * stamp["nsecs"] for stamp in stamps])
     with open_dataset(place / "set") as data:
-        period = board_header(data.config.radar.cfg).period_s
+        period = parse_ti_cfg(data.config.radar.cfg).period_s
         frames = len(data.products["points_start"][0]) - 1
     np.testing.assert_allclose(seconds % period, 0, atol=1e-9)
     assert 0 <= seconds.min() <= seconds.max() <= (frames - 1) * period + 1e-9

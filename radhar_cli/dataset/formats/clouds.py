@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.config.ti_header import board_header
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
@@ -26,6 +25,7 @@ from radhar_cli.motion.segments import cross, unit
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processes.progress import Progress
+from radhar_cli.radar.ti_cfg import parse_ti_cfg
 
 SIDE = 8  # MARS: 64 points of a frame as a square
 MARS_SPLITS = ("train", "validate", "test")  # in its file names
@@ -172,7 +172,7 @@ def _new_array(path: Path, kind: np.dtype[Any], shape: tuple[int, ...]) -> NDArr
 
 def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <Split>/<class>/<sample>.txt of messages RadarScan, a record a point."""
-    header = board_header(data.config.radar.cfg or "")
+    header = parse_ti_cfg(data.config.radar.cfg or "")
     middle = 2 ** (header.loops - 1).bit_length() // 2
     rows = Rows.of(data.config)
     for split in data.present_splits:

@@ -1,0 +1,489 @@
+"""The header of a TI radar: what its .cfg, or mmWave Studio's JSON, says of chirps and frames.
+
+A chirp takes idle time + ramp end time. Transmitters that take turns have PRF = 1/(n T_c) each. The
+ADC starts later than the ramp: carrier = start frequency + slope times that. Masks of transmitters
+that repeat within a loop are further loops, as the firmware counts them (`mmwdemo_rfparser.c`).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum
+from functools import lru_cache
+
+from radhar_cli.errors import CaptureError
+from radhar_cli.radar.detection import Detection
+from radhar_cli.radar.ti_commands import CfgLine, Effect, split_lines
+from radhar_cli.radar.ti_detection import read_detection
+
+MAX_CFG = 2**16  # characters
+MAX_CHIRPS = 512  # of a frame
+_ROUNDING = 1 + 1e-6  # of times that a file states in decimals
+
+
+class Sampling(IntEnum):
+    """Samples of a chirp, by TI's number adcOutputFmt."""
+
+    REAL = 0
+    COMPLEX = 1  # complex 1x
+    COMPLEX_2X = 2  # with the image band
+
+
+@dataclass(frozen=True)
+class ChirpProfile:
+    """Ramp of a chirp and the samples that are taken in it, in TI's units.
+
+    Attributes:
+        start_ghz: Frequency at which the ramp starts.
+        idle_us: Time before the ramp.
+        adc_start_us: Time from the start of the ramp to the first sample.
+        ramp_end_us: Time from the start of the ramp to its end.
+        slope_mhz_per_us: Slope of the ramp.
+        samples: Number of samples.
+        rate_ksps: Sampling rate.
+        place: Line or key that messages name.
+    """
+
+    start_ghz: float
+    idle_us: float
+    adc_start_us: float
+    ramp_end_us: float
+    slope_mhz_per_us: float
+    samples: int
+    rate_ksps: float
+    place: str = field(default="", compare=False)
+
+    @property
+    def slope_hz(self) -> float:
+        """Slope of the ramp, Hz per second."""
+        return self.slope_mhz_per_us * 1e12
+
+    @property
+    def carrier_hz(self) -> float:
+        """Frequency at the first sample, Hz."""
+        return self.start_ghz * 1e9 + self.slope_hz * self.adc_start_us * 1e-6
+
+    @property
+    def adc_rate_hz(self) -> float:
+        """Sampling rate, Hz."""
+        return self.rate_ksps * 1e3
+
+    @property
+    def slot_s(self) -> float:
+        """Time from the start of a chirp to that of the next, s."""
+        return (self.idle_us + self.ramp_end_us) * 1e-6
+
+    def require_samples_within_ramp(self) -> None:
+        """Raise CaptureError if the ramp ends before the last sample."""
+        sampled_us = self.ramp_end_us - self.adc_start_us
+        if self.samples / self.adc_rate_hz > sampled_us * 1e-6 * _ROUNDING:
+            fitting = max(int(sampled_us * self.adc_rate_hz / 1e6), 0)
+            raise CaptureError(
+                f"{self.place} numAdcSamples = {self.samples}: should be at most {fitting}: at "
+                f"{self.adc_rate_hz:g} Hz they end after the ramp ({self.ramp_end_us:g} us)"
+            )
+
+
+@dataclass(frozen=True)
+class ChirpRange:
+    """Chirps `first` to `last`, which are alike.
+
+    Attributes:
+        first: Index of the first.
+        last: Index of the last.
+        profile: Number of their profile.
+        mask: Transmitters, bit n for transmitter n.
+        place: Line or key that messages name.
+    """
+
+    first: int
+    last: int
+    profile: int
+    mask: int
+    place: str
+
+
+@dataclass(frozen=True)
+class FrameTiming:
+    """The chirps of a frame by their indices, and the time between frames.
+
+    Attributes:
+        first: Index of the first chirp of a loop.
+        last: Index of the last.
+        loops: Number of loops of a frame.
+        frames: Number of frames of a recording; 0 is as many as there is time for.
+        period_ms: Time from frame to frame.
+        place: Line or key that messages name.
+    """
+
+    first: int
+    last: int
+    loops: int
+    frames: int
+    period_ms: float
+    place: str
+
+
+@dataclass(frozen=True)
+class FrameHeader:
+    """What a TI radar sends, and the samples that it takes: all that a raw capture tells.
+
+    Attributes:
+        profile: Ramp and samples of every chirp.
+        masks: Transmitters of the chirps of a loop, until they repeat; bit n is transmitter n.
+        loops: Number of loops of a frame.
+        frames: Number of frames of a recording; 0 is as many as there is time for.
+        period_s: Time from frame to frame, s.
+        receivers: Numbers of the receivers that are on, from 0 on.
+        sampling: Kind of the samples.
+        adc_bits: Number of bits of a sample.
+    """
+
+    profile: ChirpProfile
+    masks: tuple[int, ...]
+    loops: int
+    frames: int
+    period_s: float
+    receivers: tuple[int, ...]
+    sampling: Sampling
+    adc_bits: int
+
+    @property
+    def start_hz(self) -> float:
+        """Frequency at which a ramp starts, Hz."""
+        return self.profile.start_ghz * 1e9
+
+    @property
+    def carrier_hz(self) -> float:
+        """Frequency at the first sample that is kept, Hz."""
+        return self.profile.carrier_hz
+
+    @property
+    def slope_hz(self) -> float:
+        """Slope of a ramp, Hz per second."""
+        return self.profile.slope_hz
+
+    @property
+    def adc_rate_hz(self) -> float:
+        """Sampling rate, Hz."""
+        return self.profile.adc_rate_hz
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of a chirp."""
+        return self.profile.samples
+
+    @property
+    def slot_s(self) -> float:
+        """Time from chirp to chirp, s."""
+        return self.profile.slot_s
+
+    @property
+    def bandwidth_hz(self) -> float:
+        """Frequency swept while the samples are taken, Hz."""
+        return self.slope_hz * self.samples / self.adc_rate_hz
+
+    @property
+    def prf_hz(self) -> float:
+        """Chirps of one transmitter per second, within a frame."""
+        return 1 / (len(self.masks) * self.slot_s)
+
+
+@dataclass(frozen=True)
+class BoardHeader(FrameHeader):
+    """What a .cfg says of a board that is simulated, whichever device it runs on.
+
+    Attributes:
+        detection: Detection of its points.
+        unknown: Commands that radhar does not know.
+        not_simulated: Commands that switch on what is not simulated.
+    """
+
+    detection: Detection
+    unknown: tuple[str, ...]
+    not_simulated: tuple[str, ...]
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Numbers of the transmitters in their order within a loop, from 0 on."""
+        return tuple(mask.bit_length() - 1 for mask in self.masks)
+
+    @property
+    def frames_apart(self) -> bool:
+        """Whether there is time between the last chirp of a frame and the next frame."""
+        chirps_s = self.loops * len(self.order) * self.slot_s
+        return abs(self.period_s - chirps_s) >= 1e-9 * self.period_s
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """{key of `radar`: number} of all that the .cfg gives."""
+        chirp_s = self.samples / self.adc_rate_hz
+        return {
+            "carrier_hz": self.carrier_hz,
+            "bandwidth_hz": self.slope_hz * chirp_s,
+            "prf_hz": 1 / (self.slot_s * len(self.order)),
+            "adc_rate_hz": self.adc_rate_hz,
+            "chirp_s": chirp_s,
+        }
+
+
+@lru_cache(maxsize=16)
+def parse_ti_cfg(text: str, where: str = "radar.cfg") -> BoardHeader:
+    """Parse the .cfg of a board that is to be simulated.
+
+    Args:
+        text: Lines of the .cfg.
+        where: File or key that messages name.
+
+    Raises:
+        CaptureError: A line cannot be read, or asks for what boards of radhar cannot do.
+    """
+    lines = _Lines(text, where)
+    for line in lines.with_effect(Effect.NOT_SIMULATED):
+        raise CaptureError(f"{line.place}: {line.name}: {line.command and line.command.reason}")
+    header = _read_frames(lines)
+    _require_simulated(header, lines)
+    channels, bins = (
+        len(header.masks) * len(header.receivers),
+        1 << (header.samples - 1).bit_length(),
+    )
+    return BoardHeader(
+        **vars(header),
+        detection=read_detection(lines.with_effect(Effect.POINTS), channels, bins),
+        unknown=tuple(dict.fromkeys(line.name for line in lines.lines if not line.command)),
+        not_simulated=tuple(dict.fromkeys(filter(None, map(_name_if_said, lines.lines)))),
+    )
+
+
+def parse_frames(text: str, where: str) -> tuple[FrameHeader, Sequence[CfgLine]]:
+    """Parse chirps, frames and samples of a .cfg, as a raw capture needs them.
+
+    Args:
+        text: Lines of the .cfg.
+        where: File that messages name.
+
+    Returns:
+        The header, and all lines, in which other readers find their own.
+
+    Raises:
+        CaptureError: A line on chirps, frames or samples cannot be read.
+    """
+    lines = _Lines(text, where)
+    return _read_frames(lines), lines.lines
+
+
+def frame_header(
+    profiles: Mapping[int, ChirpProfile],
+    chirps: Sequence[ChirpRange],
+    timing: FrameTiming,
+    receiver_mask: int,
+    sampling: Sampling,
+    adc_bits: int,
+) -> FrameHeader:
+    """Make a header of what a file states.
+
+    Args:
+        profiles: {number: profile}.
+        chirps: Chirps; of those with the same index the last holds.
+        timing: Chirps of a frame and time between frames.
+        receiver_mask: Receivers that are on, bit n for receiver n.
+        sampling: Kind of the samples.
+        adc_bits: Number of bits of a sample.
+
+    Raises:
+        CaptureError: The statements do not fit together; names the first and what would be right.
+    """
+    loop = _chirps_of_loop(chirps, timing)
+    profile = _single_profile(loop, profiles)
+    profile.require_samples_within_ramp()
+    busy_s = timing.loops * len(loop) * profile.slot_s
+    if busy_s > timing.period_ms * 1e-3 * _ROUNDING:
+        raise CaptureError(
+            f"{timing.place} framePeriodicity = {timing.period_ms:g}: should be at least "
+            f"{busy_s * 1e3:.6g} ms, {timing.loops} loops of {len(loop)} chirps of "
+            f"{profile.slot_s * 1e6:g} us"
+        )
+    masks = [chirp.mask for chirp in loop]
+    turns = count_turns(masks)
+    return FrameHeader(
+        profile=profile,
+        masks=tuple(masks[:turns]),
+        loops=timing.loops * len(masks) // turns,
+        frames=timing.frames,
+        period_s=timing.period_ms * 1e-3,
+        receivers=tuple(n for n in range(4) if receiver_mask >> n & 1),
+        sampling=sampling,
+        adc_bits=adc_bits,
+    )
+
+
+def count_turns(masks: Sequence[int]) -> int:
+    """Count the chirps after which a sequence of transmitters repeats."""
+    count = len(masks)
+    return next(
+        n
+        for n in range(1, count + 1)
+        if count % n == 0 and all(masks[k] == masks[k % n] for k in range(count))
+    )
+
+
+def _chirps_of_loop(chirps: Sequence[ChirpRange], timing: FrameTiming) -> list[ChirpRange]:
+    """Find the chirps of a loop, in order."""
+    by_index = {
+        index: chirp
+        for chirp in chirps
+        for index in range(chirp.first, min(chirp.last, MAX_CHIRPS - 1) + 1)
+    }
+    indices = range(timing.first, min(timing.last, MAX_CHIRPS) + 1)
+    loop = [by_index[index] for index in indices if index in by_index]
+    if not loop or len(loop) < len(indices):
+        raise CaptureError(
+            f"{timing.place} chirpStartIdx chirpEndIdx = {timing.first} {timing.last}: should be "
+            f"chirps that are all defined (chirpCfg), at most {MAX_CHIRPS}"
+        )
+    return loop
+
+
+def _single_profile(
+    loop: Sequence[ChirpRange], profiles: Mapping[int, ChirpProfile]
+) -> ChirpProfile:
+    """Return the profile of all chirps of a loop; profiles that are equal are one."""
+    for chirp in loop:
+        if chirp.profile not in profiles:
+            known = ", ".join(map(str, sorted(profiles)))
+            raise CaptureError(
+                f"{chirp.place} profileId = {chirp.profile}: should be one that is defined "
+                f"(profileCfg): {known}"
+            )
+    profile = profiles[loop[0].profile]
+    for chirp in loop:
+        if profiles[chirp.profile] != profile:
+            raise CaptureError(
+                f"{chirp.place} profileId = {chirp.profile}: should be {loop[0].profile}: a frame "
+                "has chirps of one profile, or of equal ones"
+            )
+    return profile
+
+
+class _Lines:
+    """The lines of a .cfg with a command."""
+
+    def __init__(self, text: str, where: str) -> None:
+        self.where = where
+        self.lines = tuple(split_lines(text, where))
+
+    def with_effect(self, effect: Effect) -> list[CfgLine]:
+        """Return the lines of commands with an effect."""
+        return [line for line in self.lines if line.command and line.command.effect is effect]
+
+    def all(self, name: str, example: str) -> list[CfgLine]:
+        """Return the lines of a command that cannot be missing, such as `example`."""
+        lines = [line for line in self.lines if line.name == name]
+        if not lines:
+            raise CaptureError(f"{self.where}: {name} is missing; a line that would do: {example}")
+        return lines
+
+
+def _read_frames(lines: _Lines) -> FrameHeader:
+    """Read all that the lines say of chirps, frames and samples."""
+    for line in lines.with_effect(Effect.NOT_READ):
+        raise CaptureError(f"{line.place}: {line.name}: {line.command and line.command.reason}")
+    receivers = lines.all("channelCfg", "channelCfg 15 7 0")[-1]
+    adc = lines.all("adcCfg", "adcCfg 2 1")[-1]
+    profiles = lines.all("profileCfg", "profileCfg 0 77 10 6 48 0 0 70 1 128 3200 0 0 30")
+    chirps = lines.all("chirpCfg", "chirpCfg 0 0 0 0 0 0 0 1")
+    frame = lines.all("frameCfg", "frameCfg 0 0 64 0 50 1 0")[-1]
+    for line in lines.with_effect(Effect.SIGNAL):
+        line.numbers()  # also of lines that do not hold
+    adc_numbers = adc.numbers()
+    header = frame_header(
+        dict(map(_read_profile, profiles)),
+        [_read_chirp(line) for line in chirps],
+        _read_frame(frame),
+        int(receivers.numbers()["rxChannelEn"]),
+        Sampling(int(adc_numbers["adcOutputFmt"])),
+        12 + 2 * int(adc_numbers["numADCBits"]),
+    )
+    samples = frame.numbers().get("numAdcSamples", header.samples)
+    if samples != header.samples:
+        raise frame.refusal("numAdcSamples", samples, f"{header.samples}, as profileCfg has it")
+    return header
+
+
+def _read_profile(line: CfgLine) -> tuple[int, ChirpProfile]:
+    """Read a line profileCfg as a number and its profile."""
+    numbers = line.numbers()
+    return int(numbers["profileId"]), ChirpProfile(
+        start_ghz=numbers["startFreq"],
+        idle_us=numbers["idleTime"],
+        adc_start_us=numbers["adcStartTime"],
+        ramp_end_us=numbers["rampEndTime"],
+        slope_mhz_per_us=numbers["freqSlopeConst"],
+        samples=int(numbers["numAdcSamples"]),
+        rate_ksps=numbers["digOutSampleRate"],
+        place=f"{line.place}: {line.name}",
+    )
+
+
+def _read_chirp(line: CfgLine) -> ChirpRange:
+    """Read a line chirpCfg."""
+    numbers = line.numbers()
+    return ChirpRange(
+        first=int(numbers["startIdx"]),
+        last=int(numbers["endIdx"]),
+        profile=int(numbers["profileId"]),
+        mask=int(numbers["txEnable"]),
+        place=f"{line.place}: {line.name}",
+    )
+
+
+def _read_frame(line: CfgLine) -> FrameTiming:
+    """Read a line frameCfg."""
+    numbers = line.numbers()
+    return FrameTiming(
+        first=int(numbers["chirpStartIdx"]),
+        last=int(numbers["chirpEndIdx"]),
+        loops=int(numbers["numLoops"]),
+        frames=int(numbers["numFrames"]),
+        period_ms=numbers["framePeriodicity"],
+        place=f"{line.place}: {line.name}",
+    )
+
+
+def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
+    """Raise CaptureError for chirps and samples that boards of radhar do not have."""
+    adc = lines.all("adcCfg", "")[-1]
+    if header.adc_bits != 16:
+        raise adc.refusal("numADCBits", (header.adc_bits - 12) // 2, "2 (16 bits)")
+    if header.sampling is not Sampling.COMPLEX:
+        raise adc.refusal(
+            "adcOutputFmt", header.sampling, "1: complex samples of which no image is kept"
+        )
+    channels = lines.all("channelCfg", "")[-1]
+    if not header.receivers:
+        raise channels.refusal("rxChannelEn", channels.words[0], "1 to 15: a receiver that is on")
+    for line in lines.all("chirpCfg", ""):
+        mask = _read_chirp(line).mask
+        if mask in header.masks and mask.bit_count() != 1:
+            right = "a mask of one transmitter: they take turns, chirp by chirp"
+            raise line.refusal("txEnable", mask, right)
+    if len(set(header.masks)) < len(header.masks):
+        raise lines.all("chirpCfg", "")[-1].refusal(
+            "txEnable",
+            " ".join(map(str, header.masks)),
+            "each transmitter once, and again in the same order",
+        )
+
+
+def _name_if_said(line: CfgLine) -> str | None:
+    """Name of a line's command if it switches on what neither a cube nor its points have."""
+    command = line.command
+    if command is None:
+        return None
+    if command.name == "profileCfg":  # lower transmit power, and turned phases
+        numbers = line.numbers()
+        return command.name if numbers["txOutPower"] or numbers["txPhaseShifter"] else None
+    if command.effect is not Effect.SAID:
+        return None
+    is_readable = bool(command.arguments) and len(line.words) in command.counts
+    is_on = line.numbers().get("enabled", 1) if is_readable else 1
+    return command.name if is_on else None

@@ -1,0 +1,503 @@
+"""Commands of the .cfg of a TI board: their arguments, and what radhar makes of each.
+
+The names are TI's. Sources: mmWave SDK user guide, "Configuration (.cfg) File Format"; the command
+lines of TI's demos, SDK 1 to 4 and MMWAVE-L-SDK, and of its people counting and tracking. The page
+docs/reference/ti_commands.md is made of this table.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from math import isfinite
+from types import MappingProxyType
+
+from radhar_cli.errors import CaptureError
+
+ALL_SUBFRAMES = -1
+COUNT = 2**32 - 1  # largest whole number
+LARGEST = 1e9  # of every other number
+
+
+class Effect(Enum):
+    """What a command does here."""
+
+    SIGNAL = "describes the chirps, frames and samples: simulated, and read of captures"
+    POINTS = "sets the detection of points: simulated"
+    SAID = "is not simulated, which is said"
+    SILENT = "changes nothing here"
+    NOT_SIMULATED = "is refused as radar.cfg"
+    NOT_READ = "is refused"
+
+
+class Subframe(Enum):
+    """Whether the number of a subframe stands in front of a command's arguments."""
+
+    NEVER = ""
+    OPTIONAL = "[subFrameIdx]"
+    ALWAYS = "subFrameIdx"
+
+
+class Family(Enum):
+    """Software whose .cfg has a command; `ANY` where all that have it agree."""
+
+    ANY = "all"
+    SDK_1_TO_3 = "SDK 1 to 3"
+    SDK_1 = "SDK 1"
+    SDK_2 = "SDK 2"
+    SDK_3 = "SDK 3"
+    MCU_PLUS = "MCU+ SDK"
+    L_SDK = "MMWAVE-L-SDK"
+    PEOPLE = "people counting"
+    PEOPLE_3D = "3D people tracking"
+
+
+@dataclass(frozen=True)
+class Argument:
+    """One number of a command.
+
+    Attributes:
+        name: TI's name.
+        low: Smallest number that is right.
+        high: Largest number that is right.
+        is_whole: Whether only whole numbers are right.
+        meaning: What the numbers stand for, in messages; "" where the limits say all.
+        is_optional: Whether a line may end before it.
+    """
+
+    name: str
+    low: float = -LARGEST
+    high: float = LARGEST
+    is_whole: bool = False
+    meaning: str = ""
+    is_optional: bool = False
+
+    @property
+    def right(self) -> str:
+        """What is right, as in "should be ..."."""
+        return self._limits + f" ({self.meaning})" * bool(self.meaning)
+
+    @property
+    def _limits(self) -> str:
+        if self.is_whole and self.high - self.low <= 3:
+            *choices, last = map(str, range(int(self.low), int(self.high) + 1))
+            return f"{', '.join(choices)} or {last}" if choices else last
+        if self.low == self.high:
+            return f"{self.low:g}"
+        kind = "a whole number" if self.is_whole else "a number"
+        if self.high == (COUNT if self.is_whole else LARGEST):
+            return kind if self.low < 0 else f"{kind} from {self.low:g}"
+        return f"{kind} from {self.low:g} to {self.high:.10g}"
+
+    def parse(self, word: str, place: str) -> float:
+        """Parse a word, decimal or 0x.
+
+        Args:
+            word: The number as text.
+            place: FILE:LINE and command, which messages name.
+
+        Raises:
+            CaptureError: The word is no number, or not one that is right.
+        """
+        try:
+            value = float(int(word, 16) if word[:2].lower() == "0x" else float(word))
+        except (ValueError, OverflowError):
+            value = float("nan")
+        if not isfinite(value):
+            raise CaptureError(
+                f"{place} {self.name} = {word[:40]}: should be a number, decimal or 0x"
+            )
+        if not self.low <= value <= self.high or (self.is_whole and value != int(value)):
+            raise CaptureError(f"{place} {self.name} = {word[:40]}: should be {self.right}")
+        return value
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command, as one family of software has it.
+
+    Attributes:
+        name: TI's name.
+        effect: What it does here.
+        arguments: Its numbers in order, without the number of a subframe; empty where nothing
+            is made of them.
+        family: Software that has it so.
+        subframe: Whether the number of a subframe stands in front.
+        reason: What is wrong and what would be right, of a command that is refused.
+    """
+
+    name: str
+    effect: Effect
+    arguments: tuple[Argument, ...] = ()
+    family: Family = Family.ANY
+    subframe: Subframe = Subframe.NEVER
+    reason: str = ""
+
+    @property
+    def usage(self) -> str:
+        """The command with the names of its arguments, as in a user guide."""
+        names = [f"[{a.name}]" if a.is_optional else a.name for a in self.arguments]
+        if len(names) > 16:
+            names = [*names[:5], "..."]
+        return " ".join(filter(None, (self.name, self.subframe.value, *names)))
+
+    @property
+    def counts(self) -> range:
+        """How many numbers a line may have."""
+        required = sum(not argument.is_optional for argument in self.arguments)
+        least = required + (self.subframe is Subframe.ALWAYS)
+        return range(least, len(self.arguments) + (self.subframe is not Subframe.NEVER) + 1)
+
+    def parse(self, words: Sequence[str], place: str) -> dict[str, float]:
+        """Parse the words behind the command.
+
+        Args:
+            words: As many as `counts` has.
+            place: FILE:LINE, which messages name.
+
+        Returns:
+            {argument: number} of those that are there, and subFrameIdx, -1 for all subframes.
+
+        Raises:
+            CaptureError: A word is not what its argument asks for.
+        """
+        arguments = self.arguments
+        has_subframe = self.subframe is Subframe.ALWAYS or (
+            self.subframe is Subframe.OPTIONAL and len(words) > len(arguments)
+        )
+        if has_subframe:
+            arguments = (SUBFRAME, *arguments)
+        numbers = {SUBFRAME.name: float(ALL_SUBFRAMES)}
+        for argument, word in zip(arguments, words, strict=False):
+            numbers[argument.name] = argument.parse(word, f"{place}: {self.name}")
+        return numbers
+
+
+@dataclass(frozen=True)
+class CfgLine:
+    """A line of a .cfg.
+
+    Attributes:
+        name: Its command.
+        words: The words behind it.
+        place: FILE:LINE, which messages name.
+    """
+
+    name: str
+    words: tuple[str, ...]
+    place: str
+
+    @property
+    def command(self) -> Command | None:
+        """The command, of the family that has so many numbers; None for one that is not known."""
+        commands = COMMANDS.get(self.name, ())
+        fitting = (command for command in commands if len(self.words) in command.counts)
+        return next(fitting, commands[0] if commands else None)
+
+    def numbers(self) -> dict[str, float]:
+        """Parse the line into {argument: number}.
+
+        Raises:
+            CaptureError: There are too few or too many numbers, or one is wrong.
+        """
+        command = self.command
+        assert command is not None
+        if len(self.words) not in command.counts:
+            families = COMMANDS[self.name]
+            usages = " or ".join(
+                one.usage + f" ({one.family.value})" * (len(families) > 1) for one in families
+            )
+            raise CaptureError(
+                f"{self.place}: {self.name} has {len(self.words)} numbers: should be {usages}"
+            )
+        return command.parse(self.words, self.place)
+
+    def refusal(self, argument: str, value: float | str, right: str) -> CaptureError:
+        """Error that names the line, an argument, its value and what would be right."""
+        value = value if isinstance(value, str) else f"{value:.10g}"
+        return CaptureError(f"{self.place}: {self.name} {argument} = {value}: should be {right}")
+
+
+def split_lines(text: str, where: str) -> Iterator[CfgLine]:
+    """Split a .cfg into its lines with a command; what follows a % is a comment.
+
+    Args:
+        text: Text of the .cfg.
+        where: File or key that messages name.
+    """
+    for number, line in enumerate(text.splitlines(), 1):
+        name, *words = line.partition("%")[0].split() or [""]
+        if name:
+            yield CfgLine(name, tuple(words), f"{where}:{number}")
+
+
+def _wholes(*names: str, low: float = 0, high: float = COUNT) -> tuple[Argument, ...]:
+    return tuple(Argument(name, low, high, is_whole=True) for name in names)
+
+
+def _flags(*names: str) -> tuple[Argument, ...]:
+    return _wholes(*names, high=1)
+
+
+def _optional(*names: str) -> tuple[Argument, ...]:
+    return tuple(Argument(name, is_optional=True) for name in names)
+
+
+def _positive(name: str, meaning: str) -> Argument:
+    return Argument(name, 1e-3, 1e6, meaning=meaning)
+
+
+SUBFRAME = Argument("subFrameIdx", -1, 3, True, "-1 for all subframes")
+_SIGNAL = (
+    Command(
+        "dfeDataOutputMode",
+        Effect.SIGNAL,
+        (Argument("modeType", 1, 1, True, "frames of frameCfg; others are not read"),),
+    ),
+    Command(
+        "channelCfg",
+        Effect.SIGNAL,
+        (
+            Argument("rxChannelEn", 0, COUNT, True, "a mask of receivers"),
+            Argument("txChannelEn", 0, COUNT, True, "a mask of transmitters", True),
+            Argument("cascading", 0, 0, True, "a single device; cascades are not read", True),
+            *_optional("ethOscClkEn", "driveStrength"),
+        ),
+    ),
+    Command(
+        "adcCfg",
+        Effect.SIGNAL,
+        (
+            Argument("numADCBits", 0, 2, True, "12, 14 and 16 bits"),
+            Argument("adcOutputFmt", 0, 2, True, "real, complex 1x and complex 2x"),
+        ),
+    ),
+    Command(
+        "profileCfg",
+        Effect.SIGNAL,
+        (
+            *_wholes("profileId"),
+            _positive("startFreq", "GHz"),
+            Argument("idleTime", 0, 1e6, meaning="us"),
+            Argument("adcStartTime", 0, 1e6, meaning="us"),
+            _positive("rampEndTime", "us"),
+            *_wholes("txOutPower", "txPhaseShifter"),
+            _positive("freqSlopeConst", "MHz/us"),
+            Argument("txStartTime", meaning="us"),
+            *_wholes("numAdcSamples", low=2, high=2**16),
+            _positive("digOutSampleRate", "ksps"),
+            *_optional("hpfCornerFreq1", "hpfCornerFreq2", "rxGain"),
+        ),
+    ),
+    Command(
+        "chirpCfg",
+        Effect.SIGNAL,
+        (
+            *_wholes("startIdx", "endIdx", "profileId"),
+            *(
+                Argument(name, 0, 0, meaning="chirps that differ are not read")
+                for name in ("startFreqVar", "freqSlopeVar", "idleTimeVar", "adcStartTimeVar")
+            ),
+            Argument("txEnable", 1, COUNT, True, "a mask of transmitters"),
+        ),
+    ),
+    Command(
+        "frameCfg",
+        Effect.SIGNAL,
+        (
+            *_wholes("chirpStartIdx", "chirpEndIdx"),
+            *_wholes("numLoops", low=1),
+            *_wholes("numFrames"),
+            _positive("framePeriodicity", "ms"),
+            *_optional("triggerSelect", "frameTriggerDelay"),
+        ),
+        Family.SDK_1_TO_3,
+    ),
+    Command(
+        "frameCfg",
+        Effect.SIGNAL,
+        (
+            *_wholes("chirpStartIdx", "chirpEndIdx"),
+            *_wholes("numLoops", low=1),
+            *_wholes("numFrames"),
+            *_wholes("numAdcSamples", low=2, high=2**16),
+            _positive("framePeriodicity", "ms"),
+            Argument("triggerSelect"),
+            Argument("frameTriggerDelay"),
+        ),
+        Family.MCU_PLUS,
+    ),
+)
+_CFAR = (
+    *_flags("procDirection"),
+    Argument("averageMode", 0, 2, True, "CA, CAGO and CASO"),
+    *_wholes("winLen", low=1, high=1024),
+    *_wholes("guardLen", high=1024),
+    *_wholes("noiseDiv"),
+    *_flags("cyclicMode"),
+    Argument("thresholdScale", 0, 1e6),
+)
+CHANNELS = 16  # most virtual channels of compRangeBiasAndRxChanPhase
+_POINTS = (
+    Command("cfarCfg", Effect.POINTS, _CFAR, Family.SDK_1),
+    Command("cfarCfg", Effect.POINTS, _CFAR, Family.SDK_2, Subframe.ALWAYS),
+    Command(
+        "cfarCfg", Effect.POINTS, (*_CFAR, *_flags("peakGroupingEn")), Family.SDK_3, Subframe.ALWAYS
+    ),
+    Command(
+        "peakGrouping",
+        Effect.POINTS,
+        (
+            *_wholes("groupingMode"),
+            *_flags("rangeDimEn", "dopplerDimEn"),
+            *_wholes("startRangeIdx", "endRangeIdx", high=2**16),
+        ),
+        subframe=Subframe.OPTIONAL,
+    ),
+    Command(
+        "multiObjBeamForming",
+        Effect.POINTS,
+        (*_flags("enabled"), Argument("threshold", 0, 1)),
+        subframe=Subframe.OPTIONAL,
+    ),
+    Command("clutterRemoval", Effect.POINTS, _flags("enabled"), subframe=Subframe.OPTIONAL),
+    Command(
+        "compRangeBiasAndRxChanPhase",
+        Effect.POINTS,
+        (
+            Argument("rangeBias", -100, 100, meaning="m"),
+            Argument("Re1"),
+            Argument("Im1"),
+            *_optional(*(f"{part}{n}" for n in range(2, CHANNELS + 1) for part in ("Re", "Im"))),
+        ),
+    ),
+    Command(
+        "aoaFovCfg",
+        Effect.POINTS,
+        tuple(
+            Argument(name, -180, 180, meaning="degree")
+            for name in ("minAzimuthDeg", "maxAzimuthDeg", "minElevationDeg", "maxElevationDeg")
+        ),
+        subframe=Subframe.OPTIONAL,
+    ),
+    Command(
+        "cfarFovCfg",
+        Effect.POINTS,
+        (
+            Argument("procDirection", 0, 1, True, "range in m, speed in m/s"),
+            Argument("min"),
+            Argument("max"),
+        ),
+        subframe=Subframe.OPTIONAL,
+    ),
+)
+_SAID = (
+    Command(
+        "bpmCfg",
+        Effect.SAID,
+        _wholes("enabled", "chirp0Idx", "chirp1Idx"),
+        subframe=Subframe.OPTIONAL,
+    ),
+    Command("extendedMaxVelocity", Effect.SAID, _wholes("enabled"), subframe=Subframe.OPTIONAL),
+    Command(
+        "nearFieldCfg",
+        Effect.SAID,
+        _wholes("enabled", "startRangeIdx", "endRangeIdx"),
+        subframe=Subframe.OPTIONAL,
+    ),
+    Command(
+        "calibDcRangeSig",
+        Effect.SAID,
+        (
+            *_wholes("enabled"),
+            Argument("negativeBinIdx"),
+            *_wholes("positiveBinIdx", "numAvgFrames"),
+        ),
+        subframe=Subframe.OPTIONAL,
+    ),
+    Command(
+        "measureRangeBiasAndRxChanPhase",
+        Effect.SAID,
+        (*_wholes("enabled"), Argument("targetDistance"), Argument("searchWin")),
+    ),
+    *(
+        Command(name, Effect.SAID, family=Family.PEOPLE_3D)
+        for name in (
+            *("dynamicRACfarCfg", "staticRACfarCfg", "dynamicRangeAngleCfg", "dynamic2DAngleCfg"),
+            *("dopplerCfarCfg", "staticRangeAngleCfg", "fineMotionCfg", "fovCfg"),
+            *("antGeometry0", "antGeometry1", "antPhaseRot", "sensorPosition"),
+        )
+    ),
+    Command("doaCfg", Effect.SAID, family=Family.PEOPLE),
+)
+# Control of the demo, tracker, presence, vital signs: nothing of them is in a cube or its points.
+_SILENT = {
+    Family.ANY: (
+        *("sensorStart", "sensorStop", "flushCfg", "lowPower", "guiMonitor", "dataLogger"),
+        *("analogMonitor", "CQRxSatMonitor", "CQSigImgMonitor", "calibData", "configDataPort"),
+        *("baudRate", "queryDemoStatus", "pmicCfg", "idlePowerCycle", "adcDataDitherCfg"),
+        *("gpAdcMeasConfig", "apllFreqShiftEn", "runtimeCalibCfg", "adcDataSource", "adcLogging"),
+        *("lowPowerCfg", "compressionCfg", "intfMitigCfg", "localMaxCfg", "rangeProcCfg"),
+        *("antennaCalibParams", "enetStreamCfg", "spreadSpectrumConfig", "subDataFrameCfg"),
+    ),
+    Family.PEOPLE: (
+        *("SceneryParam", "GatingParam", "StateParam", "AllocationParam", "VariationParam"),
+        *("AccelerationParam", "PointCloudEn"),
+    ),
+    Family.PEOPLE_3D: (
+        *("boundaryBox", "staticBoundaryBox", "presenceBoundaryBox", "gatingParam", "stateParam"),
+        *("allocationParam", "maxAcceleration", "trackingCfg", "classifierCfg", "vitalsign"),
+        *("VSRangeIdxCfg", "VSTargetId", "mpdBoundaryBox", "clusterCfg", "majorStateCfg"),
+        *("minorStateCfg", "microDopplerCfg", "profileSwitchCfg"),
+    ),
+}
+_ADVANCED_FRAMES = "advanced frames are not read; should be frameCfg"
+_L_SDK = "files of the MMWAVE-L-SDK (xWRL boards) are not read; should be one of SDK 1 to 4"
+_DDMA = "DDMA is not simulated; should be one transmitter a chirp (the TDM demo's profile)"
+_REFUSED = (
+    Command("advFrameCfg", Effect.NOT_READ, reason=_ADVANCED_FRAMES),
+    Command("subFrameCfg", Effect.NOT_READ, reason=_ADVANCED_FRAMES),
+    *(
+        Command(
+            name, Effect.NOT_READ, reason="is not read; should be profileCfg, chirpCfg, frameCfg"
+        )
+        for name in ("contModeCfg", "advChirpCfg", "LUTDataCfg")
+    ),
+    Command("chirpComnCfg", Effect.NOT_READ, family=Family.L_SDK, reason=_L_SDK),
+    Command("chirpTimingCfg", Effect.NOT_READ, family=Family.L_SDK, reason=_L_SDK),
+    Command("ddmPhaseShiftAntOrder", Effect.NOT_SIMULATED, family=Family.MCU_PLUS, reason=_DDMA),
+    Command(
+        "bpmCfgAdvanced",
+        Effect.NOT_SIMULATED,
+        reason="is not simulated; should be one transmitter a chirp",
+    ),
+)
+_CAPTURES = (  # of the words of a raw capture
+    Command(
+        "adcbufCfg",
+        Effect.SILENT,
+        _wholes("adcOutputFmt", "SampleSwap", "ChanInterleave", "ChirpThreshold"),
+        subframe=Subframe.OPTIONAL,
+    ),
+    Command(
+        "lvdsStreamCfg",
+        Effect.SILENT,
+        _wholes("enableHeader", "dataFmt", "enableSW"),
+        subframe=Subframe.ALWAYS,
+    ),
+)
+
+
+def _by_name() -> Mapping[str, tuple[Command, ...]]:
+    """The table: {name: the command as each family has it}."""
+    silent = (
+        Command(name, Effect.SILENT, family=family)
+        for family, names in _SILENT.items()
+        for name in names
+    )
+    commands = dict[str, tuple[Command, ...]]()
+    for command in (*_SIGNAL, *_POINTS, *_SAID, *_CAPTURES, *silent, *_REFUSED):
+        commands[command.name] = (*commands.get(command.name, ()), command)
+    return MappingProxyType(commands)
+
+
+COMMANDS = _by_name()

@@ -1,0 +1,202 @@
+"""The board that a .cfg describes: what is read, honoured, refused."""
+
+from dataclasses import replace
+
+import pytest
+from helpers.boards import CFG, MARS
+
+from radhar_cli.errors import CaptureError
+from radhar_cli.radar.detection import CA, CASO, Cfar
+from radhar_cli.radar.ti_cfg import parse_ti_cfg
+
+
+def test_what_a_cfg_says() -> None:
+    board = parse_ti_cfg(CFG)
+    assert (board.start_hz, board.carrier_hz, board.slope_hz) == (77e9, 77.7e9, 100e12)
+    assert (board.samples, board.adc_rate_hz) == (80, 2.499e6)
+    assert board.slot_s == pytest.approx(57e-6)
+    assert (board.order, board.receivers) == (MARS.order, MARS.receivers)
+    assert (board.loops, board.frames, board.period_s) == (32, 0, pytest.approx(0.1))
+    assert board.unknown == ()
+    detection = board.detection
+    assert detection.along_range == Cfar(CASO, 8, 4, False, pytest.approx(17.717, abs=1e-3))
+    assert (detection.first_bin, detection.last_bin, detection.grouping) == (1, 114, (False, False))
+    assert (detection.second_peak, detection.remove_mean) == (0.5, True)
+
+
+def test_newer_sdks_have_decibels_and_sub_frames() -> None:
+    lines = """
+cfarCfg -1 0 0 8 4 4 1 15.0 1
+cfarCfg -1 1 0 4 2 3 1 12.5 0
+multiObjBeamForming -1 1 0.4
+clutterRemoval -1 0
+aoaFovCfg -1 -60 60 -30 30
+cfarFovCfg -1 0 0.5 6
+cfarFovCfg -1 1 -3 3
+"""
+    detection = parse_ti_cfg(CFG + lines).detection
+    assert detection.along_range == Cfar(CA, 8, 4, True, 15.0)
+    assert detection.along_doppler == Cfar(CA, 4, 2, True, 12.5)
+    assert detection.grouping == (True, False)
+    assert (detection.second_peak, detection.remove_mean) == (0.4, False)
+    assert (detection.azimuth_deg, detection.elevation_deg) == ((-60, 60), (-30, 30))
+    assert (detection.range_m, detection.doppler_mps) == ((0.5, 6), (-3, 3))
+
+
+def test_calibration_of_the_channels() -> None:
+    pairs = " ".join(f"{n} 0.5" for n in range(12))
+    detection = parse_ti_cfg(f"{CFG}compRangeBiasAndRxChanPhase 0.07 {pairs}").detection
+    assert detection.bias == 0.07
+    assert detection.coefficients[:2] == (0.5j, 1 + 0.5j)
+    same = parse_ti_cfg(f"{CFG}compRangeBiasAndRxChanPhase 0.0 {'1 0 ' * 12}").detection
+    assert same == replace(same, coefficients=())
+
+
+def test_lines_that_nobody_knows_are_named() -> None:
+    header = parse_ti_cfg(CFG + "quantumCfg 1 2 3\nsensorStart\n% a comment\n")
+    assert header.unknown == ("quantumCfg",)
+
+
+@pytest.mark.parametrize(
+    ("off", "on"),
+    [
+        ("extendedMaxVelocity -1 0", "extendedMaxVelocity -1 1"),
+        ("extendedMaxVelocity 0", "extendedMaxVelocity 1"),
+        ("bpmCfg -1 0 0 1", "bpmCfg -1 1 0 1"),
+        ("nearFieldCfg -1 0 0 0", "nearFieldCfg -1 1 0 0"),
+        ("calibDcRangeSig -1 0 -5 8 256", "calibDcRangeSig -1 1 -5 8 256"),
+        ("measureRangeBiasAndRxChanPhase 0 1.5 0.2", "measureRangeBiasAndRxChanPhase 1 1.5 0.2"),
+    ],
+)
+def test_what_is_switched_on_and_not_simulated_is_named_once(off: str, on: str) -> None:
+    assert parse_ti_cfg(f"{CFG}{off}\n").not_simulated == ()
+    header = parse_ti_cfg(f"{CFG}{on}\n{on}\n")
+    assert (header.not_simulated, header.unknown) == ((on.split()[0],), ())
+
+
+def test_less_power_than_the_transmitters_have_is_named() -> None:
+    less = CFG.replace("7 40 0 0 100", "7 40 6 0 100")
+    assert parse_ti_cfg(less).not_simulated == ("profileCfg",)
+    assert parse_ti_cfg(CFG).not_simulated == ()
+
+
+WRONG = [
+    ("adcCfg 2 1", "adcCfg 2 2", "3: adcCfg adcOutputFmt = 2: should be 1: complex samples"),
+    ("adcCfg 2 1", "adcCfg 1 1", "3: adcCfg numADCBits = 1: should be 2 (16 bits)"),
+    ("adcCfg 2 1", "adcCfg 3 1", "numADCBits = 3: should be 0, 1 or 2 (12, 14"),
+    ("adcCfg 2 1", "adcCfg 2", "3: adcCfg has 1 numbers: should be adcCfg numADCBits adcOutputFmt"),
+    (
+        "chirpCfg 1 1 0 0 0 0 0 4",
+        "chirpCfg 1 1 0 0 0 0 0 5",
+        "txEnable = 5: should be a mask of one",
+    ),
+    ("chirpCfg 2 2 0 0 0 0 0 2", "chirpCfg 2 2 0 0 0 0 0 4", "= 1 4 4: should be each transmitter"),
+    (
+        "chirpCfg 2 2 0 0 0 0 0 2",
+        "chirpCfg 2 2 0 0 1 0 0 2",
+        "8: chirpCfg freqSlopeVar = 1: should be 0",
+    ),
+    (
+        "chirpCfg 2 2 0 0 0 0 0 2",
+        "chirpCfg 2 2 7 0 0 0 0 2",
+        "8: chirpCfg profileId = 7: should be one",
+    ),
+    (
+        "frameCfg 0 2 32 0 100 1 0",
+        "frameCfg 0 3 32 0 100 1 0",
+        "9: frameCfg chirpStartIdx chirpEndIdx = 0 3",
+    ),
+    ("frameCfg 0 2 32 0 100 1 0", "frameCfg 0 2 32 0 5 1 0", "= 5: should be at least 5.472 ms"),
+    (
+        "frameCfg 0 2 32 0 100 1 0",
+        "frameCfg 0 2 32 0 90 100 1 0",
+        "numAdcSamples = 90: should be 80",
+    ),
+    (
+        "frameCfg 0 2 32 0 100 1 0",
+        "frameCfg 0 2 32",
+        "9: frameCfg has 3 numbers: should be frameCfg",
+    ),
+    ("frameCfg 0 2 32 0 100 1 0", "", "frameCfg is missing; a line that would do: frameCfg 0 0"),
+    ("frameCfg 0 2 32 0 100 1 0", "advFrameCfg 2 0 0 1 0", "9: advFrameCfg: advanced frames"),
+    ("channelCfg 15 7 0", "channelCfg 0 7 0", "2: channelCfg rxChannelEn = 0: should be 1 to 15"),
+    ("channelCfg 15 7 0", "channelCfg 15 7 1", "cascading = 1: should be 0"),
+    (
+        "cfarCfg 0 2 8 4 3 0 1130",
+        "cfarCfg 0 2 8",
+        "10: cfarCfg has 3 numbers: should be cfarCfg proc",
+    ),
+    (
+        "cfarCfg 0 2 8 4 3 0 1130",
+        "cfarCfg 0 7 8 4 3 0 1130",
+        "averageMode = 7: should be 0, 1",
+    ),
+    (
+        "cfarCfg 0 2 8 4 3 0 1130",
+        "cfarCfg 0 2 90 4 3 0 1130",
+        "winLen = 90: should be less: 94 cells",
+    ),
+    ("clutterRemoval 1", "clutterRemoval on", "clutterRemoval enabled = on: should be a number"),
+    (
+        "clutterRemoval 1",
+        "clutterRemoval 1e999",
+        "enabled = 1e999: should be a number, decimal or 0x",
+    ),
+    (
+        "clutterRemoval 1",
+        "compRangeBiasAndRxChanPhase 0 1 0 1 0",
+        "should be 12 pairs of Re and Im",
+    ),
+    ("clutterRemoval 1", "ddmPhaseShiftAntOrder 0 1", "13: ddmPhaseShiftAntOrder: DDMA is not"),
+    ("clutterRemoval 1", "dfeDataOutputMode 2", "13: dfeDataOutputMode modeType = 2: should be 1"),
+    (
+        "profileCfg 0 77 17",
+        "profileCfg 0 77 -17",
+        "5: profileCfg idleTime = -17: should be a number",
+    ),
+    (
+        "1 80 2499",
+        "1 84 2499",
+        "5: profileCfg numAdcSamples = 84: should be at most 82: at 2.499e+06",
+    ),
+    ("7 40 0 0 100", "7 1e308 0 0 100", "rampEndTime = 1e308: should be a number from 0.001 to"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "message"), WRONG)
+def test_what_cannot_be_is_refused_in_a_line(old: str, new: str, message: str) -> None:
+    with pytest.raises(CaptureError, match=r"^board\.cfg") as caught:
+        parse_ti_cfg(CFG.replace(old, new), "board.cfg")
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_equal_profiles_are_one() -> None:
+    (profile,) = (line for line in CFG.splitlines() if line.startswith("profileCfg"))
+    twice = CFG.replace(profile, f"{profile}\n{profile.replace('profileCfg 0', 'profileCfg 1')}")
+    twice = twice.replace("chirpCfg 1 1 0", "chirpCfg 1 1 1")
+    assert parse_ti_cfg(twice) == parse_ti_cfg(CFG)
+    with pytest.raises(CaptureError, match="chirpCfg profileId = 1: should be 0: a frame"):
+        parse_ti_cfg(twice.replace("profileCfg 1 77 17", "profileCfg 1 77 18"))
+
+
+def test_masks_that_repeat_are_further_loops() -> None:
+    """As mmwdemo_rfparser.c counts them: C numLoops/n_TX chirps, n_TX slots apart."""
+    alone = CFG.replace("0 0 0 0 4\n", "0 0 0 0 1\n").replace("2 2 0 0 0 0 0 2", "2 2 0 0 0 0 0 1")
+    board = parse_ti_cfg(alone)
+    assert (board.order, board.loops, board.period_s) == ((0,), 96, pytest.approx(0.1))
+    assert board.slot_s == pytest.approx(57e-6)
+    in_turn = CFG.replace("frameCfg 0 2 32", "chirpCfg 3 3 0 0 0 0 0 4\nframeCfg 0 3 32")
+    in_turn = in_turn.replace("2 2 0 0 0 0 0 2", "2 2 0 0 0 0 0 1")
+    board = parse_ti_cfg(in_turn)
+    assert (board.order, board.loops) == ((0, 2), 64)
+
+
+def test_frame_of_the_mcu_plus_sdk_repeats_the_number_of_samples() -> None:
+    newer = CFG.replace("frameCfg 0 2 32 0 100 1 0", "frameCfg 0 2 32 0 80 100 1 0")
+    assert parse_ti_cfg(newer) == parse_ti_cfg(CFG)
+
+
+def test_lines_of_other_subframes_do_not_count() -> None:
+    lines = "clutterRemoval 1 0\ncfarCfg 1 0 0 8 4 4 1 15.0 1\n"
+    assert parse_ti_cfg(CFG + lines).detection == parse_ti_cfg(CFG).detection

@@ -24,6 +24,7 @@ from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate, around, interval
 from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.stft import Stft
+from radhar_cli.processing.track import Track
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.impulse import Impulse
@@ -32,7 +33,7 @@ from radhar_cli.radar.materials import permittivity
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.room import FACES, Box, Face, Leg, names_of, reflected_legs
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.flicker import FlickerNoise
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.interference import InterferenceLine
@@ -323,20 +324,17 @@ def gate_of(config: AnyConfig, ranges: Float, torso: Float | None) -> Gate:
     return around(torso, within, ranges)
 
 
-def gate_in_windows(c: AnyConfig, after: Signal, frames: Frames, t: Float, track: Float) -> Gate:
+def gate_in_windows(c: AnyConfig, after: Signal, frames: Frames, track: Track) -> Gate:
     """Make the gate of a config for every window of a signal.
 
     Args:
         c: config whose `processing.gate_m` counts.
         after: range bins after the canceller.
         frames: windows of the signal.
-        t: times of the pulses before the canceller [M], s.
-        track: delay of the torso at those times [M], s.
+        track: track of the torso.
     """
     assert after.ranges is not None
-    middle = np.interp(Stft(after, frames).time.values, t, range(track.size))
-    torso = track[np.rint(np.round(middle, 6)).astype(np.intp)] * (SPEED_OF_LIGHT / 2)
-    return gate_of(c, after.ranges, torso)
+    return gate_of(c, after.ranges, track.range_at(Stft(after, frames).time.values))
 
 
 def max_samples(config: AnyConfig) -> int:

@@ -23,10 +23,11 @@ from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal, nearest
+from radhar_cli.processing.track import StandingTrack
 from radhar_cli.products.run import process
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Numbers
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once
@@ -117,13 +118,11 @@ def maps_of(
     doppler = [name for name in names if name != "rtm"]
     if doppler:
         signal, (frames, fine) = _windows(signal, canceller, config, doppler, recording, notes)
+        inputs: dict[str, Any] = {"frames": frames, "fsst_frames": fine}
         if signal.ranges is None:
             signal = signal.cancelled(canceller)
-            tau = None
         else:
-            far = np.full(signal.pulses, signal.ranges.mean() * 2 / SPEED_OF_LIGHT)
-            tau = track.delays(signal.t) if track else far
-        inputs: dict[str, Any] = {"torso_track": tau, "frames": frames, "fsst_frames": fine}
+            inputs["torso_track"] = track or StandingTrack(float(signal.ranges.mean()))
         maps = process(signal, config, doppler, canceller=canceller, **inputs)
         maps_by_name |= {name: _even(maps[name]) for name in doppler}
     return Maps(

@@ -186,7 +186,7 @@ def _part(moving: Complex, segments: PulseTimes, w: Waveform) -> Estimates:
     track = track_torso(moving[None], segments, w)
     if track is None or not nobody.noise > 0:
         return nobody
-    range_of_frame = track.ranges(segments.times(middle))
+    range_of_frame = track.range_at(segments.times(middle))
     near = np.abs(w.range_axis() - range_of_frame[:, None]) <= REACH_M + 2 * w.range_step
     # Curtains and fans move slowly, and would be mistaken for a person.
     slowest_hz = (

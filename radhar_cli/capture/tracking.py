@@ -16,6 +16,7 @@ from scipy.ndimage import maximum_filter, uniform_filter
 from scipy.special import gammainccinv
 
 from radhar_cli.numerics.arrays import Complex, Float, Index
+from radhar_cli.processing.track import Track
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
@@ -45,7 +46,7 @@ class Peaks(NamedTuple):
 
 
 @dataclass(frozen=True)
-class TorsoTrack:
+class TorsoTrack(Track):
     """Track of the torso through a recording."""
 
     time: Float  # middles of the frames [F], s
@@ -55,7 +56,7 @@ class TorsoTrack:
     # track; 0 in a frame that was bridged
     confidence: Float
 
-    def ranges(self, t: Float) -> Float:
+    def range_at(self, t: Float) -> Float:
         """Range (m) at times t (s): cubic between frames, straight beyond them."""
         from scipy.interpolate import CubicHermiteSpline
 
@@ -66,9 +67,9 @@ class TorsoTrack:
         edge = np.where(t < self.time[0], self.velocity[0], self.velocity[-1])
         return np.asarray(position + edge * (t - inside), dtype=float)
 
-    def delays(self, t: Float) -> Float:
+    def delay_at(self, t: Float) -> Float:
         """Two-way delay (s) at times t (s)."""
-        return self.ranges(t) * (2 / SPEED_OF_LIGHT)
+        return self.range_at(t) * (2 / SPEED_OF_LIGHT)
 
 
 def without_static(bins: Complex) -> Complex:

@@ -35,6 +35,7 @@ from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.points import Cloud, board_points
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
+from radhar_cli.processing.track import PulseTrack
 from radhar_cli.products.fallback import EchoAccuracy, fall_back
 from radhar_cli.products.noise import noise_products, snr_of_other_paths, snr_paths
 from radhar_cli.products.plan import Product
@@ -180,7 +181,9 @@ def board_products(c: Config) -> Iterator[Product]:
         yield Product(
             "gate",
             of_gate,
-            lambda after, frames, track: gate_in_windows(c, after, frames, after.t, track),
+            lambda after, frames, track: gate_in_windows(
+                c, after, frames, PulseTrack(after.t, track)
+            ),
             "range bins of each window",
         )
     for name in ("range_doppler", "range_azimuth", "range_elevation"):

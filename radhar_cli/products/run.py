@@ -5,8 +5,6 @@ from dataclasses import dataclass, field
 from time import process_time
 from typing import Any
 
-import numpy as np
-
 from radhar_cli.assembly import physics
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
@@ -96,7 +94,7 @@ def process(
         asked: names of the products.
         more: further products, or others in place of those of the same name.
         given: products that are there already. Compensated maps, and a gate that follows the torso,
-            need `torso_track=`, its delay at the pulses [M], s.
+            need `torso_track=`, its `Track`.
 
     Raises:
         RadharError: a product would need a scene.
@@ -111,18 +109,15 @@ def process(
     }
     if config.image.kind == "cfar":
         given.setdefault("cfar", physics.cfar_of(config))
+    canceller, track = given["canceller"], given.get("torso_track")
+    after = signal if signal.ranges is None else signal.cancelled(canceller)
+    if track is not None:
+        given["torso_track"] = track.delay_at(after.t + canceller.lost / 2 / signal.prf)
     if signal.ranges is None:
         given = {"signal": signal, **given}
     else:
-        canceller, gated = given["canceller"], config.processing.range_sum == "gated"
-        after, track = signal.cancelled(canceller), given.get("torso_track")
-        if track is not None:
-            later = after.t + canceller.lost / 2 / signal.prf
-            given["torso_track"] = np.interp(later, signal.t, track)
-            if gated:
-                given["gate"] = physics.gate_in_windows(
-                    config, after, given["frames"], signal.t, track
-                )
+        if track is not None and config.processing.range_sum == "gated":
+            given["gate"] = physics.gate_in_windows(config, after, given["frames"], track)
         profiles = after.columns(config.image.size_px[1])
         signals = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
         given = {**signals, "range_axis": signal.ranges, **given}

@@ -213,7 +213,7 @@ def test_a_dca1000_capture_gives_the_maps_of_its_scene(
     assert track is not None
     t = np.linspace(0.1, 1.9, 50)
     place = body(config).torso(t)[:, 0] - np.array([[0.0], [0.05], [1.2]])
-    assert np.sqrt(np.mean((track.ranges(t) - np.linalg.norm(place, axis=0)) ** 2)) < 0.15
+    assert np.sqrt(np.mean((track.range_at(t) - np.linalg.norm(place, axis=0)) ** 2)) < 0.15
     assert track.confidence.mean() > 0.8
 
 

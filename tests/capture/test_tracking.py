@@ -38,7 +38,7 @@ def times(w: Waveform = WAVEFORM) -> Float:
 
 
 def rms(found: TorsoTrack, t: Float, true: Float) -> float:
-    return float(np.sqrt(np.mean((found.ranges(t) - true) ** 2)))
+    return float(np.sqrt(np.mean((found.range_at(t) - true) ** 2)))
 
 
 @pytest.mark.parametrize("speed", [-1.5, -0.4, 0.7, 2.0])
@@ -50,7 +50,7 @@ def test_a_point_is_followed(speed: float) -> None:
     assert rms(found, t, r) < 0.03, "a fifth of a range bin"
     assert np.abs(found.velocity - speed).max() < 0.08, "two cells of velocity"
     assert found.confidence.mean() > 0.9
-    assert np.allclose(found.delays(t), 2 * found.ranges(t) / SPEED_OF_LIGHT)
+    assert np.allclose(found.delay_at(t), 2 * found.range_at(t) / SPEED_OF_LIGHT)
 
 
 def test_limbs_do_not_divert_the_track() -> None:
@@ -122,6 +122,6 @@ def test_a_person_who_leaves_is_not_found_elsewhere() -> None:
     found = track(bins_of(np.stack([r, ghost]), np.stack([gone, later]), noise=0.02))
     assert found is not None
     before = t < 2.4
-    assert np.abs(found.ranges(t[before]) - r[before]).max() < 0.1
+    assert np.abs(found.range_at(t[before]) - r[before]).max() < 0.1
     assert np.abs(found.velocity).max() < 3
     assert (found.confidence[found.time > 2.8] == 0).all()

@@ -34,6 +34,7 @@ from radhar_cli.processing.look import Look
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
+from radhar_cli.processing.track import StandingTrack
 from radhar_cli.products.plan import Product
 from radhar_cli.products.run import process, record
 from radhar_cli.products.table import plan_images
@@ -293,7 +294,7 @@ def test_recorded_range_bins_and_a_gate() -> None:
     bins[20], bins[50] = (np.exp(2j * np.pi * f * t) for f in (120, -200))
     recorded = signal(bins, prf, 24e9, 0.25)
     gated = CONFIG.processing.model_copy(update={"range_sum": "gated", "gate_m": 1.0})
-    torso = np.full(t.size, 2 * 5.0 / C)
+    torso = StandingTrack(5.0)
     config = CONFIG.model_copy(update={"processing": gated})
     found = process(recorded, config, ["stft"], torso_track=torso)
     assert np.all(np.abs(ridge(found["stft"]) - 120) <= 2.5)

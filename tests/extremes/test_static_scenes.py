@@ -13,6 +13,7 @@ from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
+from radhar_cli.processing.track import PulseTrack
 from radhar_cli.products.run import process
 from radhar_cli.products.run import record as record_scene
 from radhar_cli.products.table import SIGNALS
@@ -62,9 +63,9 @@ def maps_of(beat: np.ndarray, config: Config) -> dict[str, np.ndarray]:
     x = RangeSum(waveform)(moving)[None]
     times = PulseTimes.even(moving.shape[1], waveform.prf, canceller.delay / waveform.prf)
     doppler = [name for name in MAP_NAMES if name != "rtm"]
-    found = process(
-        Signal(x, times, waveform.f0), config, doppler, torso_track=given["torso_track"]
-    )
+    t = np.arange(given["torso_track"].size) / waveform.prf
+    track = PulseTrack(t, given["torso_track"])
+    found = process(Signal(x, times, waveform.f0), config, doppler, torso_track=track)
     return {"rtm": np.abs(range_compression(moving, waveform)) ** 2} | {
         name: found[name].power for name in doppler
     }

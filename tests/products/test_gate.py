@@ -12,6 +12,7 @@ from radhar_cli.activities.activity import activity_named
 from radhar_cli.config.data_set import Config
 from radhar_cli.errors import ConfigError, RadharError
 from radhar_cli.processing.look import Look, RangeBins
+from radhar_cli.processing.track import PulseTrack
 from radhar_cli.products.run import Results, process
 from radhar_cli.products.run import record as record_scene
 from radhar_cli.products.table import plan_images
@@ -137,7 +138,7 @@ class TestRecording:
         w = found["waveform"]
         bins = compressed(beat_of(scene), w.n_fft)
         signals = signal(bins, w.prf, w.f0, w.range_step)
-        track = found["torso_track"]
+        track = PulseTrack(signals.t, found["torso_track"])
         again = process(signals, scene.config, ["stft", "image:stft"], torso_track=track)
         right = found["stft"].power
         assert again["stft"].power == pytest.approx(right, rel=1e-6, abs=1e-9 * right.max())

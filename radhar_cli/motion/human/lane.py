@@ -6,6 +6,8 @@ the walker is at a (int cos(pi S), int sin(pi S)) from its beginning; after it a
 
 from dataclasses import dataclass
 from functools import lru_cache
+from math import ceil
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import Chebyshev
@@ -25,6 +27,42 @@ class Lane:
     radius: float = 0.5  # mean radius of the half turns, m
     side: float = 1.0  # side to which all half turns go: 1 to the left, -1 to the right
     slow: float = 0.45  # by how much a walker slows down in half turns, fraction of the speed
+
+
+class WalkTimes(NamedTuple):
+    """When a walk begins and ends, and how long its changes take, s."""
+
+    begin: float
+    end: float  # when it begins to stop; of a walk that goes on, the end of the recording
+    stops: bool  # whether it ends
+    start_up: float  # time in which it gains its speed, 0 for a walk under way
+    ramp: float  # time in which it changes its speed
+    stride: float
+
+
+def place_half_turns(lane: Lane, speed: float, arc: float, walk: WalkTimes) -> Float:
+    """Place the half turns of a walk to and fro.
+
+    Args:
+        lane: Straight way between turns, way before the first, loss of speed in a turn.
+        speed: Walking speed on the straight, m/s.
+        arc: Length of a half turn, m.
+        walk: Times of the walk.
+
+    Returns:
+        Distance at which each turn begins [K], m, rising. A walk that stops ends on a straight: a
+        turn that would not be over one ramp before its end is left out.
+    """
+    lost = arc * lane.slow / (1 - lane.slow)  # way lost in a turn, walked at (1 - slow) speed
+    spacing = arc + max(lane.length, speed * walk.ramp)
+    first = max(lane.first, speed * walk.start_up)
+    if walk.stops:
+        reach = speed * (walk.end - walk.ramp - walk.begin) - (arc + lost)
+    else:
+        reach = speed * (walk.end + walk.stride - walk.begin)
+    count = max(0, ceil((reach - first) / (spacing + lost)))
+    starts: Float = first + spacing * np.arange(count)
+    return starts
 
 
 @lru_cache(maxsize=1)

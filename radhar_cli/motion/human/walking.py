@@ -7,13 +7,19 @@ can reach, trunk and arms follow Boulic and Thalmann's curves.
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isinf, pi, radians
+from typing import NamedTuple
 
 import numpy as np
 
 from radhar_cli.motion.human import boulic_thalmann as curves
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
-from radhar_cli.motion.human.lane import Lane, position_along_lane
+from radhar_cli.motion.human.lane import (
+    Lane,
+    WalkTimes,
+    place_half_turns,
+    position_along_lane,
+)
 from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_height, hip_joints, hip_point_with_sway
@@ -91,6 +97,47 @@ class Walk:
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Walking":
         """Place a walk in time: from `begin` (s) on, with steps until `horizon` (s)."""
         return Walking(person, self.gait, begin, begin + self.duration, self.from_rest, horizon)
+
+
+class BodyChannels(NamedTuple):
+    """Hip and angles of a walker at M instants; angles in rad.
+
+    Attributes:
+        hip: Hip ahead and to the left of the path [2, M], m.
+        pelvis_yaw: Turn of the pelvis to the left [M].
+        pelvis_roll: Lean of the pelvis to the left [M].
+        pitch: Lean of the trunk ahead [M].
+        twist: Turn of the trunk to the left [M].
+        lean: Lean of the trunk to the left [M].
+        shoulders: Flexion of the right and left shoulder [2, M].
+        elbows: Flexion of the right and left elbow [2, M].
+        hands: How far the hands are on the floor, how far ahead and beside (m), each [M].
+    """
+
+    hip: Float
+    pelvis_yaw: Float
+    pelvis_roll: Float
+    pitch: Float
+    twist: Float
+    lean: Float
+    shoulders: Float
+    elbows: Float
+    hands: tuple[Float, Float, Float]
+
+
+class Stance(NamedTuple):
+    """What a stance adds to the channels of a walk at M instants, named as in `BodyChannels`.
+
+    `sway` is the displacement of the hip [3, M] (m) by posture and sway of the legs.
+    """
+
+    sway: Float
+    pitch: Float
+    twist: Float
+    lean: Float
+    shoulders: Float
+    elbows: Float
+    hands: tuple[Float, Float, Float]
 
 
 @dataclass(frozen=True)
@@ -191,21 +238,17 @@ class Walking:
     @cached_property
     def _turn_starts(self) -> Float:
         """Distances at which half turns begin [K], m."""
-        lane, v = self.gait.lane, self.gait.speed
-        starts: list[float] = []
-        if lane is None:
-            return np.array(starts)
-        ramp_distance = v * self.ramp  # to change speed between turns
-        distance = max(lane.first, v * self.start if self.from_rest else 0.0)
-        # Way of who does not slow down: a turn begins in it when the walker is slow.
-        lost = lane.slow / (1 - lane.slow) * self._arc
-        time_limit, turn_distance = max(self.horizon, self.begin) + self.stride, 0.0
-        if self.stops:  # no walk ends in a turn
-            time_limit, turn_distance = self.stop - self.ramp, self._arc + lost
-        while (distance + len(starts) * lost + turn_distance) / v < time_limit - self.begin:
-            starts.append(distance)
-            distance += self._arc + max(lane.length, ramp_distance)
-        return np.array(starts)
+        if self.gait.lane is None:
+            return np.empty(0)
+        times = WalkTimes(
+            begin=self.begin,
+            end=self.stop if self.stops else max(self.horizon, self.begin),
+            stops=self.stops,
+            start_up=self.start if self.from_rest else 0.0,
+            ramp=self.ramp,
+            stride=self.stride,
+        )
+        return place_half_turns(self.gait.lane, self.gait.speed, self._arc, times)
 
     @cached_property
     def _slow_spans(self) -> Float:
@@ -403,7 +446,7 @@ class Walking:
 
     @cached_property
     def _curves(self) -> Float:
-        """Coefficients [9, 17] in the harmonics of the stride, of the rows that `pose` names."""
+        """Coefficients [9, 17] in the harmonics of the stride, of the rows of `_gait_channels`."""
         gait, rv = self.gait, self.relative_speed
         cycle = gait.speed * self.stride / (2 * pi)
         surge = sum(
@@ -446,58 +489,100 @@ class Walking:
             ) - distance
         return channels
 
+    def _gait_channels(self, u: Float, g: Float) -> BodyChannels:
+        """Channels of a walk at phases u [M] of the stride, scaled by its share g [M]."""
+        rows = self._curves @ curves.basis(u)
+        rows *= g
+        surge, aside, yaw, roll, twist, *arms = rows
+        nothing = np.zeros(u.size)
+        return BodyChannels(
+            hip=np.array([surge, aside]),
+            pelvis_yaw=yaw,
+            pelvis_roll=roll,
+            pitch=self.gait.trunk_pitch * g,
+            twist=twist,
+            lean=nothing,
+            shoulders=np.array(arms[:2]),
+            elbows=np.array(arms[2:]) + self.person.elbow,
+            hands=(nothing, nothing, nothing),
+        )
+
+    def _stance(self, t: Float, distance: Float, idle: IdleState, share: Float) -> Stance:
+        """Channels of the stance before and after the walk.
+
+        Args:
+            t: Times [M], s.
+            distance: Distance that the walker, from whom the hands are seen, has gone [M], m.
+            idle: The body's own movements at these times.
+            share: Share of standing [M]: 1 at rest, 0 where only the walk is left.
+        """
+        body, planted = self.person, self._planted_channels(t, distance)
+        standing, upright = share * planted["standing"], share * planted["upright"]
+        lean, roll = standing * idle.lean, standing * idle.legs_roll
+        _, sway = legs(body, planted["shank"], planted["thigh"], lean, roll)
+        sway[2] -= body.rest_height - body.ankle
+        elbows = np.array([planted[channel] for channel in ELBOWS]) - body.elbow
+        return Stance(
+            sway=sway,
+            pitch=planted["trunk"] + upright * idle.pitch,
+            twist=upright * idle.yaw,
+            lean=upright * idle.roll,
+            shoulders=upright * idle.shoulders + np.array([planted[c] for c in SHOULDERS]),
+            elbows=upright * idle.elbows + elbows,
+            hands=(planted["hands"], planted["hands_ahead"], planted["hands_beside"]),
+        )
+
+    def _ankles(self, t: Float, x: Float, y: Float, heading: Float | None) -> Float:
+        """Ankles [3, 2, M] (m) at times t [M] (s), seen by the walker at x, y (m) and heading."""
+        ankles = np.stack([track(t) for track in self._foot_tracks], axis=1)
+        ankles[0] -= x
+        ankles[1] -= y
+        return ankles if heading is None else turned(ankles, -heading)
+
+    def _trip_pitch(self, t: Float, g: Float) -> Float | float:
+        """Angle (rad) by which a trip pitches the trunk ahead at times t [M] (s), 0 without one."""
+        if not self.gait.trip or self._jitter is None:
+            return 0.0
+        upset: Float = self.gait.trip * g * self._jitter(t)[1]
+        return upset
+
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """Pose at times t [M] (s): worked out as seen by the walker, then put in its place."""
         body, g = self.person, self.drive(t)
         lead = self._lead(t, g)
         distance = self.path(t, lead)
         x, y, heading = self._position_at(distance)
-        rows = self._curves @ curves.basis(self.phase(t, lead))
-        rows *= g
-        (surge, side, yaw, roll, twist), arms = rows[:5], rows[5:].reshape(2, 2, t.size)
-        joint_offsets = hip_joints(body, yaw, roll)
-        ankles = np.stack([track(t) for track in self._foot_tracks], axis=1)
-        ankles[0] -= x
-        ankles[1] -= y
-        if heading is not None:
-            ankles = turned(ankles, -heading)
-        hip_xy = np.array([surge, side])
-        standing = body.tallest - self.gait.sink * body.stature * g
+        channels = self._gait_channels(self.phase(t, lead), g)
+        ankles = self._ankles(t, x, y, heading)
+        joint_offsets = hip_joints(body, channels.pelvis_yaw, channels.pelvis_roll)
+        height = body.tallest - self.gait.sink * body.stature * g
         softness = body.softness + (self.gait.softness - body.softness) * g
-        pitch, lean = self.gait.trunk_pitch * g, np.zeros(t.size)
-        arms[1] += body.elbow
-        hands: tuple[Float, Float, Float] = (np.zeros(t.size),) * 3
         if self.from_rest or self.stops:
-            rest_share = 1 - g
-            planted = self._planted_channels(t, distance)
-            idle_share = rest_share * planted["standing"]
-            _, sway = legs(
-                body,
-                planted["shank"],
-                planted["thigh"],
-                idle_share * idle.lean,
-                idle_share * idle.legs_roll,
+            stance = self._stance(t, distance, idle, 1 - g)
+            hip = hip_point_with_sway(
+                body, height, channels.hip, joint_offsets, ankles, softness, stance.sway
             )
-            sway[2] -= body.rest_height - body.ankle
-            hip = hip_point_with_sway(body, standing, hip_xy, joint_offsets, ankles, softness, sway)
-            idle_share = rest_share * planted["upright"]
-            pitch += planted["trunk"] + idle_share * idle.pitch
-            twist += idle_share * idle.yaw
-            lean = idle_share * idle.roll
-            arms += idle_share * np.array([idle.shoulders, idle.elbows])
-            arms[0] += np.array([planted[channel] for channel in SHOULDERS])
-            arms[1] += np.array([planted[channel] for channel in ELBOWS]) - body.elbow
-            hands = planted["hands"], planted["hands_ahead"], planted["hands_beside"]
+            channels = blend(channels, stance)
         else:
-            hip = np.array(
-                [*hip_xy, hip_height(body, standing, hip_xy, joint_offsets, ankles, softness)]
-            )
-        if self.gait.trip and self._jitter is not None:
-            upset = self.gait.trip * g * self._jitter(t)[1]
-            pitch, arms = pitch + upset, arms + 1.5 * upset
-        trunk = axes(pitch, twist, lean)
-        upper, fore = arms_of_posture(body, hip, trunk, (arms[0], arms[1]), *hands)
+            z = hip_height(body, height, channels.hip, joint_offsets, ankles, softness)
+            hip = np.array([*channels.hip, z])
+        upset = self._trip_pitch(t, g)
+        trunk = axes(channels.pitch + upset, channels.twist, channels.lean)
+        flexion = channels.shoulders + 1.5 * upset, channels.elbows + 1.5 * upset
+        upper, fore = arms_of_posture(body, hip, trunk, flexion, *channels.hands)
         joints = hip[:, None] + joint_offsets
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         pose = Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
         return pose.at(x, y, heading)
+
+
+def blend(walk: BodyChannels, stance: Stance) -> BodyChannels:
+    """Channels of a walk and of the stance it begins or ends in, each with its share, together."""
+    return walk._replace(
+        pitch=walk.pitch + stance.pitch,
+        twist=walk.twist + stance.twist,
+        lean=walk.lean + stance.lean,
+        shoulders=walk.shoulders + stance.shoulders,
+        elbows=walk.elbows + stance.elbows,
+        hands=stance.hands,
+    )

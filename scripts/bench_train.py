@@ -32,6 +32,7 @@ from torch.nn.functional import cross_entropy
 from radhar_cli.learning import machine
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.models.fftnet import GlobalFilter
+from radhar_cli.learning.models.outputs import Outputs
 from radhar_cli.processes.worker_process import keep_memory
 name, px, batch, steps, *changes = sys.argv[1:]
 px, batch, steps = int(px), int(batch), int(steps)
@@ -48,7 +49,7 @@ precision = machine.choose_precision("auto", device)
 if "precision" in changes:
     precision = torch.float32 if precision == torch.bfloat16 else torch.bfloat16
 torch.manual_seed(0)
-model = build_model(name, 12, (px, px)).to(device)
+model = build_model(name, Outputs(12), (px, px)).to(device)
 optimiser = torch.optim.Adam(model.parameters(), 1e-3)
 x = torch.randn(batch, 3, px, px, device=device)
 y = torch.randint(12, (batch,), device=device)

@@ -64,19 +64,15 @@ def adapt(
     if mix and epochs == 0:
         raise ConfigError("--mix: needs --epochs, during which its data are used")
     refuse_output_inside_data(out, [data, *(mix or [])])
-    adapted = adaptation.adapt(
-        run,
-        data,
-        out,
-        choose_device(device),
-        map_,
-        check_split_name(split),
-        resize,
-        overwrite,
-        epochs,
-        tuple(mix or ()),
-        BarProgress(),
+    options = adaptation.AdaptOptions(
+        map=map_,
+        split=check_split_name(split),
+        resize=resize,
+        overwrite=overwrite,
+        epochs=epochs,
+        mix=tuple(mix or ()),
     )
+    adapted = adaptation.adapt(run, data, out, choose_device(device), options, BarProgress())
     passes = int(adapted.work["adapted_epochs"])
     report(folder=out, run=run, data=data, epochs=passes)
     more = f", after {counted(passes, 'epoch')} without labels" if passes else ""

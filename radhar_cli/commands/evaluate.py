@@ -11,8 +11,6 @@ from radhar_cli.commands.tell import report, tell
 from radhar_cli.errors import FolderError
 from radhar_cli.files.untrusted import read_json
 
-SCORES = ("accuracy", "mean_average_precision", "mpjpe_cm")
-
 
 def evaluate(
     paths: Annotated[
@@ -72,12 +70,18 @@ def evaluate(
     from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.report import evaluate as evaluate_runs
-    from radhar_cli.learning.single_result import EvalOptions
+    from radhar_cli.learning.tasks.predictions import EvalOptions
 
     runs, data = split_runs_and_data(paths)
-    names = read_classes(classes)
     options = EvalOptions(
-        check_split_name(split), map_, tsne, in_place_vs_moving, batch, resize, names, filters
+        split=check_split_name(split),
+        map=map_,
+        tsne=tsne,
+        in_place_vs_moving=in_place_vs_moving,
+        batch=batch,
+        resize=resize,
+        names=read_classes(classes),
+        filters=filters,
     )
     inside = runs[0] if runs[0].is_dir() else runs[0].parent
     folder = out or inside / "eval"
@@ -90,12 +94,8 @@ def evaluate(
         evaluation = evaluate_runs(runs, data, options, choose_device(device), bars)
     evaluation.numbers |= inputs
     evaluation.write(folder)
-    scores: dict[str, dict[str, dict[str, float]]] = {}
-    for run, about in evaluation.numbers["runs"].items():
-        for tested, numbers in about["data"].items():
-            score = next(key for key in SCORES if key in numbers)
-            scores.setdefault(score, {}).setdefault(run, {})[tested] = numbers[score]
-    report(page=folder / "report.html", numbers=folder / "report.json", **scores)
+    files = {"page": folder / "report.html", "numbers": folder / "report.json"}
+    report(**files, **evaluation.scores)
     tell(f"{folder / 'report.html'}: {len(evaluation.figures)} figures; numbers in report.json")
 
 

@@ -81,11 +81,15 @@ def train(
     overrides = [Override(key, value, f"--{key}") for key, value in named.items() if value]
     settings = load_section(TrainConfig, config, [*(set_ or []), *overrides])
     refuse_output_inside_data(out, [*data, *([init] if init else [])])
-    names = read_classes(classes)
+    options = training.TrainOptions(
+        names=read_classes(classes),
+        start=init,
+        resize=resize,
+        overwrite=overwrite,
+        tensorboard=tensorboard,
+    )
     with resumable(f"the last finished epoch in {out}"), TrainingView() as view:
-        outcome = training.train(
-            settings, data, out, view, overwrite, names, init, resize, tensorboard
-        )
+        outcome = training.train(settings, data, out, view, options)
         interrupts.complete(str(out))
     best = outcome.best
     report(

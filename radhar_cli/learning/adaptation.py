@@ -14,7 +14,6 @@ from pathlib import Path
 
 import torch
 from torch import Tensor, nn
-from torch.nn.functional import cross_entropy
 from torch.nn.modules.batchnorm import _BatchNorm
 
 from radhar_cli.dataset.files import read_bytes, write_whole
@@ -28,12 +27,13 @@ from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.machine import use_deterministic_algorithms
-from radhar_cli.learning.run_files import TRAINED_ON
+from radhar_cli.learning.run_files import TRAINED_ON, RunError
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
 from radhar_cli.learning.starting_point import is_of_last_layer
+from radhar_cli.learning.tasks.categories import Classifier, require_classifier
 from radhar_cli.numerics.arrays import Index
 from radhar_cli.numerics.randomness import TRAINING, stream
-from radhar_cli.processes.progress import Messages
+from radhar_cli.processes.progress import NO_PROGRESS, Messages
 from radhar_cli.processes.worker_process import keep_memory
 
 MIN_IMAGES, BATCH = 16, 96
@@ -52,7 +52,7 @@ class Mixed:
     def batches(
         self, metadata: RunMetadata, epoch: int, count: int
     ) -> Iterator[tuple[Tensor, Tensor]]:
-        """Yield `count` batches (uint8 [MIXED, 3, H, W], labels [MIXED]), augmented as in training.
+        """Yield `count` batches (uint8 [MIXED, C, H, W], labels [MIXED]), augmented as in training.
 
         Args:
             metadata: description of the network, with its augmentation and classes.
@@ -70,18 +70,28 @@ class Mixed:
         yield from Reader(self.images.pixels, labels, augmentation)(list(batch_rows), epoch)
 
 
+@dataclass(frozen=True)
+class AdaptOptions:
+    """How a run is adapted."""
+
+    map: str | None = None  # of a data set; None is the one of the training
+    split: str = "all"  # of the images, where they have any
+    resize: bool = False  # bring images to the model's size
+    overwrite: bool = False  # replace another run in the folder of the copy
+    # passes over the images in which the network learns; None is none where there is batch norm
+    # and nothing to mix, else EPOCHS
+    epochs: int | None = None
+    # labelled data sets that are shown as well, those that the run learned from
+    mix: Sequence[Path] | Mixed = ()
+
+
 def adapt(
     run: Path,
     data: Path | tuple[ImageSet, Index],
     folder: Path,
     device: torch.device,
-    map_name: str | None = None,
-    split: str = "all",
-    resize: bool = False,
-    overwrite: bool = False,
-    epochs: int | None = None,
-    mix: Sequence[Path] | Mixed = (),
-    progress: Messages | None = None,
+    options: AdaptOptions | None = None,
+    progress: Messages = NO_PROGRESS,
 ) -> RunMetadata:
     """Write a copy of a run whose network has learned from unlabelled images.
 
@@ -94,43 +104,30 @@ def adapt(
         data: a data set, or some rows of images that are open already.
         folder: folder of the copy.
         device: where the network runs.
-        map_name: map of a data set; None is the one of the training.
-        split: split of `data`, where it has any.
-        resize: bring images to the model's size.
-        overwrite: replace another run in `folder`.
-        epochs: passes over the images in which the network learns; None is none where there is
-            batch norm and nothing to mix, else EPOCHS.
-        mix: labelled data sets that are shown as well, those that the run learned from.
+        options: how it is adapted; None takes the defaults.
         progress: receives messages.
 
     Returns:
         Metadata of the copy.
 
     Raises:
-        ConfigError: fewer than MIN_IMAGES images, a network of another target, or nothing to adapt.
+        ConfigError: fewer than MIN_IMAGES images, a network of another task, or nothing to adapt.
         RunError: `run` is no folder of a run, `folder` holds something else, or a loss is not
             finite.
         FolderError: data that cannot be used.
     """
+    options = options or AdaptOptions()
     metadata, model = load_best(run)
-    epochs = _epochs(run, metadata, model, epochs, bool(mix))
-    if isinstance(data, Path):
-        images = open_for_model(metadata, data, map_name, labelled=False, resize=resize)
-        rows, _ = rows_of(images, split)
-    else:
-        images, rows = data
-    labelled_images: Mixed | None = None
-    if isinstance(mix, Mixed):
-        labelled_images = mix
-    elif mix:
-        labelled_images = Mixed(joined([training_images(metadata, path) for path in mix]))
+    classifier = require_classifier(run, metadata.task)
+    epochs = _choose_epochs(metadata, model, options)
+    images, rows = _open_unlabelled(metadata, data, options)
+    mixed = _open_mixed(metadata, options.mix)
     if not run.is_dir():
-        raise run_folder.RunError(f"{run}: should be the folder of a run")
+        raise RunError(f"{run}: should be the folder of a run")
     if run.resolve() == folder.resolve():
-        raise run_folder.RunError(f"{folder}: is the run itself; -o should name another folder")
-    if progress is not None:
-        for note in images.notes:
-            progress.say(note)
+        raise RunError(f"{folder}: is the run itself; -o should name another folder")
+    for note in images.notes:
+        progress.say(note)
     history = run_folder.read_history(run)
     if rows.size < MIN_IMAGES:
         raise ConfigError(
@@ -139,50 +136,82 @@ def adapt(
     use_deterministic_algorithms(device)
     if device.type == "cpu":
         keep_memory()
-    learner = _Learner(model.to(device), metadata, images, rows, device)
+    learner = _Learner(model.to(device), classifier, metadata, images, rows, device)
     learner.adapt_batch_norm()
     if epochs:
-        learner.maximise_information(epochs, labelled_images, progress)
+        learner.maximise_information(epochs, mixed, progress)
         learner.adapt_batch_norm()
-    digest = content_hash(images, rows)
-    work = {**metadata.work, "adapted_to": digest, "adapted_epochs": epochs}
-    if labelled_images is not None:
-        work["adapted_with"] = content_hash(
-            labelled_images.images, labelled_images.images.rows("train")
-        )
-    metadata = metadata.model_copy(update={"work": work})
+    adapted = _describe_copy(metadata, images, rows, epochs, mixed)
     with folder_lock(folder):
-        run_folder.reserve_run(folder, metadata, overwrite)
+        run_folder.reserve_run(folder, adapted, options.overwrite)
         best = run_folder.best_epoch(history)
-        run_folder.write_best(folder, metadata, best, model.state_dict())
+        run_folder.write_best(folder, adapted, best, model.state_dict())
         run_folder.write_history(folder, history)
         if (run / TRAINED_ON).exists():
             write_whole(folder, folder / TRAINED_ON, read_bytes(run / TRAINED_ON, MAX_TABLE))
-    return metadata
+    return adapted
 
 
-def _epochs(
-    run: Path,
-    metadata: RunMetadata,
-    model: nn.Module,
-    epochs: int | None,
-    has_labelled_images: bool,
-) -> int:
-    """Number of passes over the images, for a network that can be adapted.
+def _choose_epochs(metadata: RunMetadata, model: nn.Module, options: AdaptOptions) -> int:
+    """Number of passes over the images.
 
     Raises:
-        ConfigError: the network does not tell classes apart, one for each image; or would stay as
-            it is, having no batch norm.
+        ConfigError: the network would stay as it is, having no batch norm.
     """
-    run_folder.refuse_other_targets(run, metadata)
     has_batch_norm = any(isinstance(layer, _BatchNorm) for layer in model.modules())
-    if epochs == 0 and not has_batch_norm:
+    if options.epochs == 0 and not has_batch_norm:
         raise ConfigError(
             f"epochs = 0: should be at least 1 for {metadata.model}, which has no batch norm"
         )
-    if epochs is None:
-        return 0 if has_batch_norm and not has_labelled_images else EPOCHS
-    return epochs
+    if options.epochs is None:
+        return 0 if has_batch_norm and not options.mix else EPOCHS
+    return options.epochs
+
+
+def _open_unlabelled(
+    metadata: RunMetadata, data: Path | tuple[ImageSet, Index], options: AdaptOptions
+) -> tuple[ImageSet, Index]:
+    """Images whose labels are not looked at, and the rows of them that are learned from."""
+    if not isinstance(data, Path):
+        return data
+    images = open_for_model(metadata, data, options.map, labelled=False, resize=options.resize)
+    return images, rows_of(images, options.split)[0]
+
+
+def _open_mixed(metadata: RunMetadata, mix: Sequence[Path] | Mixed) -> Mixed | None:
+    """Labelled images that are shown as well; None where there are none."""
+    if isinstance(mix, Mixed):
+        return mix
+    if not mix:
+        return None
+    return Mixed(joined([training_images(metadata, path) for path in mix]))
+
+
+def _describe_copy(
+    metadata: RunMetadata, images: ImageSet, rows: Index, epochs: int, mixed: Mixed | None
+) -> RunMetadata:
+    """Metadata of a run that was adapted to some rows of images."""
+    work = {
+        **metadata.work,
+        "adapted_to": content_hash(images, rows),
+        "adapted_epochs": epochs,
+    }
+    if mixed is not None:
+        work["adapted_with"] = content_hash(mixed.images, mixed.images.rows("train"))
+    return metadata.model_copy(update={"work": work})
+
+
+@dataclass(frozen=True)
+class _Information:
+    """Entropies of a batch of predictions, nats; their difference is the mutual information."""
+
+    entropy: Tensor  # mean entropy of a prediction
+    entropy_of_mean: Tensor  # entropy of the mean prediction
+
+    @property
+    def loss(self) -> Tensor:
+        """Mutual information of images and predictions, negated."""
+        return self.entropy - self.entropy_of_mean
 
 
 @dataclass(frozen=True)
@@ -190,6 +219,7 @@ class _Learner:
     """A network on its device, and the rows of an image set that it is fitted to."""
 
     model: nn.Module
+    classifier: Classifier
     metadata: RunMetadata
     images: ImageSet
     rows: Index
@@ -213,13 +243,11 @@ class _Learner:
             layer.reset_running_stats()
             layer.momentum = None  # the plain average over all batches
         with torch.inference_mode():
-            for levels in self._levels(self._batches(0)):
-                self.model(levels)
+            for inputs in self._inputs(self._batches(0)):
+                self.model(inputs)
         self.model.eval()
 
-    def maximise_information(
-        self, epochs: int, mixed: Mixed | None, progress: Messages | None
-    ) -> None:
+    def maximise_information(self, epochs: int, mixed: Mixed | None, progress: Messages) -> None:
         """Train all layers but the last to raise the mutual information of images and predictions.
 
         The loss is the mean entropy of the predictions less the entropy of their mean. Batch norm
@@ -234,43 +262,42 @@ class _Learner:
         Raises:
             RunError: a loss is not finite.
         """
-        model, metadata = self.model, self.metadata
         parameters = [
-            p for name, p in model.named_parameters() if not is_of_last_layer(name, model)
+            p for name, p in self.model.named_parameters() if not is_of_last_layer(name, self.model)
         ]
         optimiser = torch.optim.Adam(parameters)
-        smoothing = metadata.settings.label_smoothing
         for epoch in range(1, epochs + 1):
             for layer in self.norms:
                 layer.train()
             batches = self._batches(epoch)
-            labelled = mixed.batches(metadata, epoch, len(batches)) if mixed else None
-            for step, levels in enumerate(self._levels(batches)):
+            labelled = mixed.batches(self.metadata, epoch, len(batches)) if mixed else None
+            for step, inputs in enumerate(self._inputs(batches)):
                 share_done = (epoch - 1 + step / len(batches)) / epochs
                 optimiser.param_groups[0]["lr"] = RATE * (1 + cos(pi * share_done)) / 2
-                probabilities = model(levels).softmax(1)
-                entropy, entropy_of_mean = (
-                    _entropy(probabilities).mean(),
-                    _entropy(probabilities.mean(0)),
-                )
-                loss = entropy - entropy_of_mean
+                information = self._information(inputs)
+                loss = information.loss
                 if labelled is not None:
-                    labelled_levels, label = (part.to(self.device) for part in next(labelled))
-                    logits = model(metadata.normalisation(labelled_levels))
-                    loss = loss + cross_entropy(logits, label, label_smoothing=smoothing)
+                    loss = loss + self._labelled_loss(*next(labelled))
                 if not loss.isfinite():
-                    raise run_folder.RunError(
-                        f"epoch {epoch} of --epochs: the loss is {loss.item()}"
-                    )
+                    raise RunError(f"epoch {epoch} of --epochs: the loss is {loss.item()}")
                 optimiser.zero_grad()
                 loss.backward()  # type: ignore[no-untyped-call]
                 optimiser.step()
-            if progress is not None:
-                progress.say(
-                    f"epoch {epoch}/{epochs}  entropy of a prediction {entropy:.3f}, of their mean "
-                    f"{entropy_of_mean:.3f}"
-                )
-        model.eval()
+            progress.say(
+                f"epoch {epoch}/{epochs}  entropy of a prediction {information.entropy:.3f}, "
+                f"of their mean {information.entropy_of_mean:.3f}"
+            )
+        self.model.eval()
+
+    def _information(self, inputs: Tensor) -> "_Information":
+        """Entropies of the predictions of inputs [B, C, H, W]."""
+        probabilities = self.classifier.predict(self.model(inputs))  # [B, classes]
+        return _Information(_entropy(probabilities).mean(), _entropy(probabilities.mean(0)))
+
+    def _labelled_loss(self, levels: Tensor, labels: Tensor) -> Tensor:
+        """Mean loss of labelled images [B, C, H, W], as in training."""
+        logits = self.model(self.metadata.normalisation(levels.to(self.device)))
+        return self.classifier.loss(logits, labels.to(self.device)).mean()
 
     def _batches(self, epoch: int) -> list[Index]:
         """Rows in nearly equal batches, in the order of an epoch."""
@@ -279,8 +306,8 @@ class _Learner:
         order = self.rows[rng.permutation(self.rows.size)]
         return batches_in_order(order, -(-order.size // max(1, order.size // BATCH)))
 
-    def _levels(self, batches: list[Index]) -> Iterator[Tensor]:
-        """Yield the network's input [B, 3, H, W] of each batch."""
+    def _inputs(self, batches: list[Index]) -> Iterator[Tensor]:
+        """Yield the network's input [B, C, H, W] of each batch."""
         for levels, _ in Reader(self.images.pixels, None)(batches):
             yield self.metadata.normalisation(levels.to(self.device))
 

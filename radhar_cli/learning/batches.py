@@ -71,27 +71,27 @@ def epoch_batches(order: Index, size: int) -> list[Index]:
     return [order[start:stop] for start, stop in zip(starts, [*starts[1:], count], strict=True)]
 
 
-class Labels(Protocol):
-    """Target of every row: the number of its class, or an array."""
+class Targets(Protocol):
+    """What is to be learned of every row of a set: a number, or an array."""
 
     def __getitem__(self, row: int, /) -> ArrayLike: ...
 
 
 class _Rows(Dataset[tuple[Tensor, Tensor]]):
-    """Rows read on demand; `labels` in the model's numbering, 0 for all without."""
+    """Rows read on demand, with their targets; these are 0 for all without."""
 
     def __init__(
-        self, pixels: Pixels, labels: Labels | None, augmentation: Augmentation | None
+        self, pixels: Pixels, targets: Targets | None, augmentation: Augmentation | None
     ) -> None:
-        self.pixels, self.labels, self.augmentation = pixels, labels, augmentation
+        self.pixels, self.targets, self.augmentation = pixels, targets, augmentation
 
     def __getitem__(self, item: tuple[int, int]) -> tuple[Tensor, Tensor]:
         row, epoch = item
         values = self.pixels.read(row)
         if self.augmentation is not None and epoch >= 0:
             values = repeated(self.augmentation(values[..., 0], row, epoch))
-        label = torch.as_tensor(0 if self.labels is None else self.labels[row])
-        return torch.from_numpy(np.ascontiguousarray(values.transpose(2, 0, 1))), label
+        target = torch.as_tensor(0 if self.targets is None else self.targets[row])
+        return torch.from_numpy(np.ascontiguousarray(values.transpose(2, 0, 1))), target
 
 
 class Reader:
@@ -103,7 +103,7 @@ class Reader:
     def __init__(
         self,
         pixels: Pixels,
-        labels: Labels | None,
+        targets: Targets | None,
         augmentation: Augmentation | None = None,
         workers: int = 0,
         pin: bool = False,
@@ -112,14 +112,14 @@ class Reader:
 
         Args:
             pixels: images or sequences by row.
-            labels: target of every row; None gives 0 for all.
+            targets: what is to be learned of every row; None gives 0 for all.
             augmentation: changes of training images; None leaves all as they are stored.
             workers: number of processes that read; 0 reads in this one.
             pin: keep batches in memory from which CUDA copies without waiting.
         """
         self._batches: list[list[tuple[int, int]]] = []
         self._loader = DataLoader(
-            _Rows(pixels, labels, augmentation),
+            _Rows(pixels, targets, augmentation),
             batch_sampler=self._batches,
             num_workers=workers,
             persistent_workers=workers > 0,
@@ -131,7 +131,7 @@ class Reader:
     def __call__(
         self, batches: Sequence[Index], epoch: int = AS_STORED
     ) -> Iterator[tuple[Tensor, Tensor]]:
-        """Yield (inputs [B, C, H, W], labels [B, ...]) for every batch of row numbers.
+        """Yield (inputs [B, C, H, W], targets [B, ...]) for every batch of row numbers.
 
         Args:
             batches: row numbers of each batch.

@@ -15,15 +15,16 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.split import TRAIN
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Reader, batches_in_order
-from radhar_cli.learning.images.classes import keep_known_classes, refuse_mistyped
 from radhar_cli.learning.images.colours import recolour
 from radhar_cli.learning.images.folder import image_files, is_image, open_pictures
-from radhar_cli.learning.images.image_set import ImageSet, Pixels, labels_for, resized
+from radhar_cli.learning.images.image_set import ImageSet, Pixels, resized
 from radhar_cli.learning.images.opening import is_h5, is_tree, open_inputs
 from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.models.build import features_and_logits
-from radhar_cli.learning.run_files import is_run
-from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
+from radhar_cli.learning.run_files import RunError, is_run
+from radhar_cli.learning.run_folder import RunMetadata, load_best
+from radhar_cli.learning.tasks.categories import Categories
+from radhar_cli.learning.tasks.predictions import ClassPredictions, Predictions
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 
@@ -33,23 +34,6 @@ SPEEDS = (
     *("load_s", "image_s", "load_and_image_s"),
     *("batch", "images_per_s", "images_per_s_with_loading"),
 )
-
-
-@dataclass(frozen=True)
-class Predictions:
-    """Probabilities and features of N rows of an image set, and their true classes."""
-
-    images: ImageSet
-    rows: Index  # [N] rows of the set
-    truth: Index  # [N] true classes, in the model's numbering
-    probabilities: Float  # [N, classes]
-    features: Float  # [N, F], input of the last layer
-
-    @property
-    def predicted(self) -> Index:
-        """Likeliest class of each row [N], in the model's numbering."""
-        winners: Index = self.probabilities.argmax(1)
-        return winners
 
 
 def open_for_model(
@@ -70,8 +54,7 @@ def open_for_model(
         metadata: description of the model.
         path: data set, or tree of images.
         map_name: map or product to open; None takes the one of the training.
-        labelled: keep the classes that the model knows, and no other; of a model that finds joints,
-            all are kept.
+        labelled: bring classes to those that the model knows, as its task matches them.
         resize: bring images to the model's size.
         names: {class of the data: class of the model, or None to leave it out}.
 
@@ -91,18 +74,21 @@ def open_for_model(
             f"{path}: images are {images.shape}; the model was trained on {metadata.shape}{cure}"
         )
     images = recolour(images, metadata.colours)
-    if metadata.finds_joints:
-        return images.renamed(names or {})
-    if labelled:
-        refuse_mistyped(names or {}, metadata.classes)
-        images = images.renamed(names or {}).learned_as(metadata.settings.target)
-        images = keep_known_classes(images, metadata.classes)
-        if images.split is None:
-            with suppress(FolderError):
-                cut = images.cut(metadata.settings.validation_share, metadata.settings.seed)
-                rows = np.concatenate([cut.rows("train"), cut.rows("val")])
-                if content_hash(cut, rows) == metadata.data["hash"]:
-                    return cut
+    if not labelled:
+        return images
+    images = metadata.task.match(images, metadata, names or {})
+    return _with_split_of_training(images, metadata)
+
+
+def _with_split_of_training(images: ImageSet, metadata: RunMetadata) -> ImageSet:
+    """Images with the split that a run has cut, where they are those; else as they are."""
+    if images.split is not None:
+        return images
+    with suppress(FolderError):
+        cut = images.cut(metadata.settings.validation_share, metadata.settings.seed)
+        rows = np.concatenate([cut.rows("train"), cut.rows("val")])
+        if content_hash(cut, rows) == metadata.data["hash"]:
+            return cut
     return images
 
 
@@ -141,8 +127,8 @@ def predict_batches(
     rows: Index,
     device: torch.device,
     batch: int,
-) -> Iterator[tuple[Float, Float]]:
-    """Yield (probabilities [B, classes], features [B, F]) of some rows, batch by batch.
+) -> Iterator[Float]:
+    """Yield predictions [B, ...] of some rows, batch by batch: probabilities, or joints in m.
 
     Everything is computed in float32, whatever the model was trained in.
 
@@ -155,21 +141,18 @@ def predict_batches(
         batch: rows at a time.
 
     Raises:
-        RunError: a logit is not finite.
+        RunError: an output is not finite.
     """
-    reader = Reader(pixels, None)
     with torch.inference_mode():
-        for levels, _ in reader(batches_in_order(rows, batch)):
-            features, logits = features_and_logits(model, metadata.normalisation(levels.to(device)))
-            if not logits.isfinite().all():
+        for levels, _ in Reader(pixels, None)(batches_in_order(rows, batch)):
+            outputs = model(metadata.normalisation(levels.to(device)))
+            if not outputs.isfinite().all():
                 raise RunError(
-                    f"the network {metadata.model} trained on {metadata.data['path']}: its logits "
-                    "are not finite; its weights or its mean and sd are damaged"
+                    f"the network {metadata.model} trained on {metadata.data['path']}: its "
+                    f"{metadata.task.outputs_name} are not finite; its weights or its mean and sd "
+                    "are damaged"
                 )
-            probabilities = (
-                logits.sigmoid() if metadata.settings.target == "labels" else logits.softmax(1)
-            )
-            yield probabilities.cpu().numpy(), features.cpu().numpy()
+            yield metadata.task.predict(outputs).cpu().numpy()
 
 
 def predict(
@@ -193,16 +176,44 @@ def predict(
         progress: receives the number of rows done.
     """
     batches = []
-    for prediction in predict_batches(model, metadata, images.pixels, rows, device, batch):
-        batches.append(prediction)
-        progress.advance(len(prediction[0]))
-    return Predictions(
-        images=images,
-        rows=rows,
-        truth=labels_for(images, metadata.classes)[rows],
-        probabilities=np.concatenate([batch_probabilities for batch_probabilities, _ in batches]),
-        features=np.concatenate([features for _, features in batches]),
-    )
+    for values in predict_batches(model, metadata, images.pixels, rows, device, batch):
+        batches.append(values)
+        progress.advance(len(values))
+    return Predictions(images, rows, metadata.task.names(metadata), np.concatenate(batches))
+
+
+def predict_classes(
+    model: nn.Module,
+    metadata: RunMetadata,
+    images: ImageSet,
+    rows: Index,
+    device: torch.device,
+    batch: int,
+) -> ClassPredictions:
+    """Predictions, as of `predict`, of a model whose outputs are classes."""
+    predictions = predict(model, metadata, images, rows, device, batch)
+    return ClassPredictions(**vars(predictions))
+
+
+def last_features(
+    model: nn.Module, metadata: RunMetadata, images: ImageSet, rows: Index, device: torch.device
+) -> Float:
+    """Input [len(rows), F] of a network's last layer, in float32.
+
+    Args:
+        model: network in evaluation mode, on the device.
+        metadata: description of the model.
+        images: images by row.
+        rows: rows that are read.
+        device: where the network is.
+    """
+    reader = Reader(images.pixels, None)
+    batches = list[Float]()
+    with torch.inference_mode():
+        for levels, _ in reader(batches_in_order(rows, PREDICT_BATCH)):
+            inputs = metadata.normalisation(levels.to(device))
+            batches.append(features_and_logits(model, inputs)[0].cpu().numpy())
+    return np.concatenate(batches)
 
 
 @dataclass(frozen=True)
@@ -236,12 +247,14 @@ def predict_paths(
         say: receives what was done to make the images fit.
 
     Raises:
-        RunError: the run is damaged, or finds joints.
+        RunError: the run is damaged, or finds no classes.
         FolderError: no such data, or images of another size.
     """
     metadata, model = load_best(run)
-    if metadata.finds_joints:
-        raise RunError(f"{run}: finds joints, no classes; `-o joints.npz` writes them to a file")
+    if not isinstance(metadata.task, Categories):
+        raise RunError(
+            f"{run}: finds {metadata.task.finds}, no classes; `-o joints.npz` writes them to a file"
+        )
     model.to(device)
     for path in paths:
         inputs = open_unlabelled(metadata, path, map_name, split, resize)
@@ -252,7 +265,7 @@ def predict_paths(
         batches = predict_batches(
             model, metadata, inputs.pixels, inputs.rows, device, PREDICT_BATCH
         )
-        for probabilities, _ in batches:
+        for probabilities in batches:
             for shares in probabilities.tolist():
                 yield next(image_names), dict(zip(metadata.classes, shares, strict=True))
 

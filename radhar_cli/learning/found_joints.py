@@ -11,12 +11,12 @@ from torch import nn
 
 from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.files.replacing import replacing
-from radhar_cli.learning.batches import Reader, batches_in_order
-from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled
-from radhar_cli.learning.images.image_set import Pixels
+from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled, predict_batches
 from radhar_cli.learning.images.sequences import SequenceReader
 from radhar_cli.learning.report_folder import csv_text
-from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
+from radhar_cli.learning.run_files import RunError
+from radhar_cli.learning.run_folder import RunMetadata, load_best
+from radhar_cli.learning.tasks.skeleton import Skeleton
 from radhar_cli.numerics.arrays import Float, Index
 
 SUFFIXES = (".npz", ".csv")
@@ -81,37 +81,6 @@ def check_joints_file(path: Path) -> None:
         raise ConfigError(f"-o {path}: should end in {' or '.join(SUFFIXES)}")
 
 
-def joint_batches(
-    model: nn.Module,
-    metadata: RunMetadata,
-    pixels: Pixels,
-    rows: Index,
-    device: torch.device,
-    batch: int,
-) -> Iterator[Float]:
-    """Yield joints [B, T, joint, 3] (m, radar's axes) of some rows, batch by batch.
-
-    Everything is computed in float32, whatever the model was trained in.
-
-    Args:
-        model: network in evaluation mode, on the device.
-        metadata: description of the model.
-        pixels: sequences by row.
-        rows: rows that are read.
-        device: where the network is.
-        batch: rows at a time.
-
-    Raises:
-        RunError: a coordinate is not finite.
-    """
-    with torch.inference_mode():
-        for values, _ in Reader(pixels, None)(batches_in_order(rows, batch)):
-            joints = model(metadata.normalisation(values.to(device))).cpu().numpy()
-            if not np.isfinite(joints).all():
-                raise RunError(f"the network {metadata.model}: finds joints that are not finite")
-            yield joints
-
-
 def find_joints(
     metadata: RunMetadata,
     model: nn.Module,
@@ -135,7 +104,7 @@ def find_joints(
         inputs = open_unlabelled(metadata, path, map_name, split, resize=False)
         reader = inputs.pixels
         assert isinstance(reader, SequenceReader)
-        batches = joint_batches(model, metadata, reader, inputs.rows, device, PREDICT_BATCH)
+        batches = predict_batches(model, metadata, reader, inputs.rows, device, PREDICT_BATCH)
         joints.append(np.concatenate(list(batches)))
         for sequence, row in zip(joints[-1], inputs.rows.tolist(), strict=True):
             start, count = reader.span(row)
@@ -153,9 +122,9 @@ def predict_joints(
     """Joints that a run finds in data sets.
 
     Raises:
-        RunError: the run puts images into classes.
+        RunError: the run finds no joints.
     """
     metadata, model = load_best(run)
-    if not metadata.finds_joints:
-        raise RunError(f"{run}: finds classes; -o: is for networks that find joints")
+    if not isinstance(metadata.task, Skeleton):
+        raise RunError(f"{run}: finds {metadata.task.finds}; -o: is for networks that find joints")
     return find_joints(metadata, model.to(device), paths, device, map_name, split)

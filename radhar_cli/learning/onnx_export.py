@@ -14,7 +14,8 @@ from radhar_cli.errors import FolderError
 from radhar_cli.files.replacing import replacing
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.images.sequences import COLUMNS
-from radhar_cli.learning.run_folder import RunError, RunMetadata, first_line, load_best
+from radhar_cli.learning.run_files import RunError
+from radhar_cli.learning.run_folder import RunMetadata, first_line, load_best
 
 TOLERANCE = 1e-4
 INPUTS = {"rgb": "pixels", "gray": "pixels", "frames": "frames", "clouds": "clouds"}
@@ -56,10 +57,7 @@ def export(run: Path, path: Path) -> float:
 
     metadata, network = load_best(run)
     model = _FromInputs(network, metadata.normalisation).eval()
-    input_name, output_name = (
-        INPUTS[metadata.input],
-        "joints" if metadata.finds_joints else "logits",
-    )
+    input_name, output_name = INPUTS[metadata.input], metadata.task.outputs_name
     inputs = _trial(2, metadata)
     try:
         with warnings.catch_warnings(), torch.no_grad():
@@ -115,7 +113,7 @@ def export(run: Path, path: Path) -> float:
 
 def _names(metadata: RunMetadata) -> dict[str, tuple[str, ...]]:
     """Names of what the outputs of a network stand for: joints, or classes."""
-    return {"joints": metadata.joints} if metadata.finds_joints else {"classes": metadata.classes}
+    return {metadata.task.names_key: metadata.task.names(metadata)}
 
 
 def _trial(count: int, metadata: RunMetadata) -> Tensor:

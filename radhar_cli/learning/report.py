@@ -3,6 +3,7 @@
 import json
 import platform
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +16,19 @@ from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robust
 from radhar_cli.learning.evaluation import SPEEDS, measure_speed
 from radhar_cli.learning.filter_weights import filter_magnitudes, filter_table
 from radhar_cli.learning.images.classes import left_out_message
-from radhar_cli.learning.report_files import Report
+from radhar_cli.learning.report_files import Report, ResultPage
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import RunMetadata, best_epoch
 from radhar_cli.learning.single_result import (
-    EvalOptions,
+    EvalSet,
     Run,
     check_options,
-    evaluate_one,
+    evaluate_run,
     open_eval_set,
     open_run,
 )
-from radhar_cli.learning.targets import LOSSES, SCORES
+from radhar_cli.learning.tasks.categories import Classifier
+from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.processes.progress import Progress
 
 NETWORK = ("model", "parameters", "multiply_adds", "best_epoch")
@@ -60,84 +62,123 @@ def evaluate(
         for run in open_runs
         for name, path in named_data.items()
     }
-    report = Report(
-        {
-            "split": options.split,
-            "batch": options.batch,
-            "resize": options.resize,
-            "device": device.type,
-            "machine": platform.machine(),
-            "threads": torch.get_num_threads(),
-            "runs": {},
-        },
-        title=f"{', '.join(run.name for run in open_runs)} on {', '.join(named_data)}",
-        about=(
-            f"radhar eval {build_version()}, split {options.split}; on {device.type}, "
-            f"threads: {torch.get_num_threads()}, float32. Intervals are Wilson's, 95 %."
-        ),
-    )
-
-    def say(line: str) -> None:
-        progress.say(line)
-        report.line(line)
-
-    for note in dict.fromkeys(
-        note for eval_set in eval_sets.values() for note in eval_set.images.notes
-    ):
-        say(note)
-    for message in dict.fromkeys(
-        left_out_message(eval_set.images, options.names) for eval_set in eval_sets.values()
-    ):
-        if message:
-            say(f"warning: {message}")
-    accuracies: dict[str, list[Point]] = {}
+    report = _begin_report([run.name for run in open_runs], [*named_data], options, device)
+    evaluation = _Evaluation(report, options, device, progress)
+    evaluation.say_notes(list(eval_sets.values()))
+    is_single = len(eval_sets) == 1
     for run in open_runs:
-        say(f"{run.name}: {run.metadata.model}, {run.metadata.answers}")
-        results = {}
+        evaluation.say(f"{run.name}: {run.metadata.model}, {run.metadata.outputs_in_words}")
         for data_name in named_data:
-            is_single = len(open_runs) == len(named_data) == 1
-            file_stem = "" if is_single else f"_{run.name}__{data_name}"
-            eval_set = eval_sets[run.name, data_name]
-            report.section(f"{run.name} on {data_name}, {eval_set.split}")
-            numbers = evaluate_one(
-                report, run, data_name, eval_set, file_stem, options, device, progress
-            )
-            results[data_name] = numbers
-            say(f"  {data_name}, {numbers['split']}: {_result_in_words(numbers)}")
-            if "accuracy" in numbers:
-                interval = numbers["accuracy_95"]
-                point = Point(data_name, eval_set.images.snr_db, numbers["accuracy"], *interval)
-                accuracies.setdefault(run.name, []).append(point)
-            if run.metadata.settings.target == "labels" and eval_set.images.person_classes is None:
-                say(f"  warning: {data_name} says of one person alone what they do")
-            trained_on = numbers["seen_in_training"]
-            if any(trained_on.values()):
-                say(
-                    f"  warning: {trained_on['images']} of these {numbers['images']} images, and "
-                    f"the person and motion of {trained_on['scenes']}, were trained on: this does "
-                    "not test on unseen data"
-                )
-        first_set = eval_sets[run.name, next(iter(named_data))]
-        speeds = measure_speed(
-            run.folder, first_set.images, int(first_set.rows[0]), device, options.batch
-        )
-        report.numbers["runs"][run.name] = _describe_run(run) | {"speed": speeds, "data": results}
-    run_numbers = report.numbers["runs"].items()
-    networks = (
-        [name, *(numbers[key] for key in NETWORK), *numbers["speed"].values()]
-        for name, numbers in run_numbers
-    )
-    report.section("Networks" if len(open_runs) > 1 else "Network")
-    rows = [*networks]
-    report.table("networks.csv", ["run", *NETWORK, *SPEEDS], rows)
-    _show_networks(report, rows)
-    _add_curves(report, open_runs, accuracies)
+            stem = "" if is_single else f"_{run.name}__{data_name}"
+            evaluation.add(run, data_name, eval_sets[run.name, data_name], stem)
+        evaluation.add_speed(run, eval_sets[run.name, next(iter(named_data))])
+    _list_networks(report)
+    _add_curves(report, open_runs, evaluation.accuracies)
     if options.filters:
         _show_filters(report, open_runs)
     report.section("How they were trained")
     for run in open_runs:
         report.details(run.name, _training_as_json(run.metadata))
     return report
+
+
+def _begin_report(
+    runs: Sequence[str], data: Sequence[str], options: EvalOptions, device: torch.device
+) -> Report:
+    """Report on some runs and data sets, by name, in which nothing is found yet."""
+    threads = torch.get_num_threads()
+    return Report(
+        {
+            "split": options.split,
+            "batch": options.batch,
+            "resize": options.resize,
+            "device": device.type,
+            "machine": platform.machine(),
+            "threads": threads,
+            "runs": {},
+        },
+        title=f"{', '.join(runs)} on {', '.join(data)}",
+        about=(
+            f"radhar eval {build_version()}, split {options.split}; on {device.type}, "
+            f"threads: {threads}, float32. Intervals are Wilson's, 95 %."
+        ),
+    )
+
+
+@dataclass
+class _Evaluation:
+    """Evaluation under way: what is found goes to a report, run by run and set by set."""
+
+    report: Report
+    options: EvalOptions
+    device: torch.device
+    progress: Progress
+    # {run: its accuracy on each data set}, of classifiers
+    accuracies: dict[str, list[Point]] = field(default_factory=dict)
+
+    def say(self, line: str) -> None:
+        """Show a line, and add it to the top of the page."""
+        self.progress.say(line)
+        self.report.line(line)
+
+    def say_notes(self, eval_sets: Sequence[EvalSet]) -> None:
+        """Say what was done to make the images fit, and which were left out, each once."""
+        for note in dict.fromkeys(note for s in eval_sets for note in s.images.notes):
+            self.say(note)
+        left_out = (left_out_message(s.images, self.options.names) for s in eval_sets)
+        for message in dict.fromkeys(left_out):
+            if message:
+                self.say(f"warning: {message}")
+
+    def add(self, run: Run, data: str, eval_set: EvalSet, stem: str) -> None:
+        """Evaluate a run on a data set.
+
+        Args:
+            run: network.
+            data: name of the data set.
+            eval_set: its images.
+            stem: end of the names of files.
+        """
+        title = f"{run.name} on {data}, {eval_set.split}"
+        self.report.section(title)
+        page = ResultPage(self.report, stem, title)
+        numbers = evaluate_run(run, eval_set, page, self.options, self.device, self.progress)
+        runs = self.report.numbers["runs"]
+        runs.setdefault(run.name, _describe_run(run) | {"data": {}})["data"][data] = numbers
+        task = run.metadata.task
+        self.report.add_score(task.main_number, run.name, data, numbers[task.main_number])
+        self.say(f"  {data}, {eval_set.split}: {task.summarise(numbers)}")
+        if isinstance(task, Classifier):
+            interval = numbers["accuracy_95"]
+            point = Point(data, eval_set.images.snr_db, numbers["accuracy"], *interval)
+            self.accuracies.setdefault(run.name, []).append(point)
+        for warning in task.evaluation_warnings(eval_set.images, data):
+            self.say(f"  {warning}")
+        trained_on = numbers["seen_in_training"]
+        if any(trained_on.values()):
+            self.say(
+                f"  warning: {trained_on['images']} of these {numbers['images']} images, and "
+                f"the person and motion of {trained_on['scenes']}, were trained on: this does "
+                "not test on unseen data"
+            )
+
+    def add_speed(self, run: Run, eval_set: EvalSet) -> None:
+        """Time a run on the first image of a data set."""
+        images, row = eval_set.images, int(eval_set.rows[0])
+        speeds = measure_speed(run.folder, images, row, self.device, self.options.batch)
+        self.report.numbers["runs"][run.name]["speed"] = speeds
+
+
+def _list_networks(report: Report) -> None:
+    """Add the table of networks, and its file."""
+    run_numbers = report.numbers["runs"].items()
+    rows = [
+        [name, *(numbers[key] for key in NETWORK), *numbers["speed"].values()]
+        for name, numbers in run_numbers
+    ]
+    report.section("Networks" if len(rows) > 1 else "Network")
+    report.table("networks.csv", ["run", *NETWORK, *SPEEDS], rows)
+    _show_networks(report, rows)
 
 
 def _show_networks(report: Report, rows: Sequence[Sequence[object]]) -> None:
@@ -181,28 +222,6 @@ def _describe_run(run: Run) -> dict[str, Any]:
     }
 
 
-def _result_in_words(numbers: Mapping[str, Any]) -> str:
-    """Result of a run on a data set, as a line for people."""
-    if "mpjpe_cm" in numbers:
-        in_place = numbers["mpjpe_of_the_mean_pose_in_place_cm"]
-        return (
-            f"mean absolute error {numbers['mean_absolute_error_cm']:.2f} cm, MPJPE "
-            f"{numbers['mpjpe_cm']:.2f} cm (the mean pose in its place {in_place:.2f} cm), "
-            f"{numbers['frames']} frames"
-        )
-    if "mean_average_precision" in numbers:
-        return (
-            f"mean average precision {100 * numbers['mean_average_precision']:.2f} %, all labels "
-            f"right in {100 * numbers['exact_match']:.2f} % of {numbers['images']}"
-        )
-    low, high = numbers["accuracy_95"]
-    return (
-        f"{100 * numbers['accuracy']:.2f} % ({100 * low:.2f} to {100 * high:.2f} %) of "
-        f"{numbers['images']}, macro F1 {numbers['macro_f1']:.4f}, calibration error "
-        f"{numbers['calibration_error']:.4f}"
-    )
-
-
 def _add_curves(
     report: Report, runs: Sequence[Run], accuracies: Mapping[str, Sequence[Point]]
 ) -> None:
@@ -210,10 +229,9 @@ def _add_curves(
     with_history = {run.name: run.history for run in runs if run.history}
     if with_history:
         best = {name: best_epoch(rows).epoch for name, rows in with_history.items()}
-        targets = dict.fromkeys(run.metadata.settings.target for run in runs if run.history)
-        score, loss = (
-            " or ".join(names[target] for target in targets) for names in (SCORES, LOSSES)
-        )
+        tasks = [run.metadata.task for run in runs if run.history]
+        score = " or ".join(dict.fromkeys(task.score_name for task in tasks))
+        loss = " or ".join(dict.fromkeys(task.loss_name for task in tasks))
         png = curves_png(with_history, best, score, loss)
         report.figure("curves.png", "Training curves.", png)
     if any(len(points) > 1 for points in accuracies.values()):

@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment
-
 from radhar_cli.dataset.files import write_result
 from radhar_cli.learning.report_folder import csv_text, write_report
 
@@ -38,8 +36,8 @@ pre { background: #f6f8fa; padding: .8rem; overflow-x: auto; font-size: 13px; }
 {% endif %}{% for part in section.parts %}{% if part.kind == "line" %}
 <p{% if part.warning %} class="warning"{% endif %}>{{ part.text }}</p>
 {% elif part.kind == "table" %}<h3>{{ part.title }}</h3>
-<div class="scroll"><table><tr>{% for one in part.head %}<th>{{ one }}</th>{% endfor %}</tr>
-{% for row in part.rows %}<tr>{% for one in row %}<td>{{ one }}</td>{% endfor %}</tr>
+<div class="scroll"><table><tr>{% for cell in part.head %}<th>{{ cell }}</th>{% endfor %}</tr>
+{% for row in part.rows %}<tr>{% for cell in row %}<td>{{ cell }}</td>{% endfor %}</tr>
 {% endfor %}</table></div>
 {% elif part.kind == "details" %}<details><summary>{{ part.title }}</summary>
 <pre>{{ part.text }}</pre></details>
@@ -71,6 +69,12 @@ class Report:
     figures: list[tuple[str, str, bytes]] = field(default_factory=list)
     tables: list[tuple[str, Sequence[object], list[list[object]]]] = field(default_factory=list)
     sections: list[ReportSection] = field(default_factory=lambda: [ReportSection("")])
+    # {score: {run: {data set: value}}}, by which a program sums up what was found
+    scores: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)
+
+    def add_score(self, score: str, run: str, data: str, value: float) -> None:
+        """Add the number by which a run on a data set is summed up."""
+        self.scores.setdefault(score, {}).setdefault(run, {})[data] = value
 
     def section(self, title: str) -> None:
         """Begin a part of the page, below whose heading the next parts are added."""
@@ -127,6 +131,8 @@ class Report:
         Raises:
             FolderError: a file cannot be written.
         """
+        from jinja2 import Environment
+
         files = {name: png for name, _, png in self.figures}
         for name, header, rows in self.tables:
             files[name] = csv_text(header, rows).encode("utf-8", "surrogateescape")
@@ -135,6 +141,29 @@ class Report:
         text = page.render(title=self.title, about=self.about, sections=sections)
         write_result(folder, folder / PAGE, text.encode("utf-8", "backslashreplace"))
         write_report(folder, files, self.numbers)
+
+
+@dataclass(frozen=True)
+class ResultPage:
+    """Part of a report about one run on one data set; the names of its files end alike."""
+
+    report: Report
+    stem: str  # end of the names of its files
+    title: str  # of its figures
+
+    def figure(self, name: str, caption: str, png: bytes) -> None:
+        """Add a figure: name without its end, caption, and content of the PNG."""
+        self.report.figure(f"{name}{self.stem}.png", caption, png)
+
+    def table(
+        self,
+        name: str,
+        header: Sequence[object],
+        rows: Iterable[Iterable[object]],
+        title: str | None = None,
+    ) -> None:
+        """Add a table, as `Report.table` does; `name` is without its end."""
+        self.report.table(f"{name}{self.stem}.csv", header, rows, title)
 
 
 def _as_people_read(value: object) -> object:

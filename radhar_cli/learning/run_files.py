@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from radhar_cli.errors import RadharError
+
 ABOUT = "run.json"
 BEST = "best.safetensors"
 LAST = "last.ckpt"
@@ -11,6 +13,10 @@ METRICS = "metrics.json"
 TRAINED_ON = "trained_on.csv"
 TENSORBOARD, EVENTS = "tensorboard", "events.out.tfevents.*"  # folder, and files in it
 ALL = (ABOUT, BEST, LAST, HISTORY, CURVES, METRICS, TRAINED_ON)
+
+
+class RunError(RadharError):
+    """A run folder, or a file of it, that cannot be used."""
 
 
 def is_run(path: Path) -> bool:

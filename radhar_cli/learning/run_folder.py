@@ -8,6 +8,7 @@ import warnings
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,9 +23,10 @@ from radhar_cli.config.number import require, value_error
 from radhar_cli.config.section import Section
 from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
-from radhar_cli.errors import ConfigError, ModelError, RadharError
+from radhar_cli.errors import ModelError
 from radhar_cli.files.untrusted import regular_size
 from radhar_cli.learning.batches import Normalisation
+from radhar_cli.learning.choices import Kind
 from radhar_cli.learning.images.image_set import shape_in_words
 from radhar_cli.learning.models.build import Cost, build_model, cost
 from radhar_cli.learning.report_folder import csv_text
@@ -37,8 +39,10 @@ from radhar_cli.learning.run_files import (
     LAST,
     TENSORBOARD,
     TRAINED_ON,
+    RunError,
 )
-from radhar_cli.learning.settings import Kind, TrainConfig
+from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.tasks.task import Task, create_task
 
 MAX_CLASSES = 10_000
 MAX_HEADER = 2**24  # bytes
@@ -46,10 +50,6 @@ MAX_TABLE = 2**28
 Name = Annotated[str, Field(min_length=1, max_length=255)]
 Side = Annotated[int, Field(ge=1, le=2**14)]
 Spread = Annotated[float, Field(gt=0)]
-
-
-class RunError(RadharError):
-    """A run folder, or a file of it, that cannot be used."""
 
 
 class LearnedFrom(TypedDict):
@@ -95,26 +95,29 @@ class RunMetadata(Section):
     def _fits(self) -> "RunMetadata":
         if not len(self.mean) == len(self.sd) in (1, self.channels):
             raise value_error("should have a mean and an sd for each channel")
-        if self.model != self.settings.model or (self.finds_joints and not self.joints):
+        if self.model != self.settings.model or not self.task.names(self):
             raise value_error("should be that of its config")
         return self
 
-    @property
+    @cached_property
     def settings(self) -> TrainConfig:
         """Config of the run."""
         return TrainConfig.model_validate(self.config)
 
-    @property
-    def finds_joints(self) -> bool:
-        """Whether the network finds joints, not classes."""
-        return self.settings.target == "skeleton"
+    @cached_property
+    def task(self) -> Task:
+        """What the network has learned."""
+        return create_task(self.settings)
 
     @property
-    def answers(self) -> str:
+    def reads_pictures(self) -> bool:
+        """Whether the network takes images, not sequences."""
+        return self.input in ("rgb", "gray")
+
+    @property
+    def outputs_in_words(self) -> str:
         """Outputs of the network, in words."""
-        if self.finds_joints:
-            return f"{len(self.joints)} joints"
-        return f"{len(self.classes)} {'labels' if self.settings.target == 'labels' else 'classes'}"
+        return self.task.describe(self)
 
     @property
     def shape(self) -> str:
@@ -127,34 +130,17 @@ class RunMetadata(Section):
         Raises:
             ModelError: it cannot be built.
         """
-        return build_model(self.model, self._outputs, self.size, self.finds_joints)
+        return build_model(self.model, self.task.outputs(self), self.size)
 
     @property
     def cost(self) -> Cost:
         """Parameters and multiply-adds of the network."""
-        return cost(self.model, self._outputs, self.size, self.finds_joints, self.channels)
-
-    @property
-    def _outputs(self) -> int:
-        return 3 * len(self.joints) if self.finds_joints else len(self.classes)
+        return cost(self.model, self.task.outputs(self), self.size, self.channels)
 
     @property
     def normalisation(self) -> Normalisation:
         """Normalisation from levels to the network's input."""
         return Normalisation(self.mean, self.sd)
-
-
-def refuse_other_targets(run: Path, metadata: RunMetadata) -> None:
-    """Refuse a network that does not put each input into one class.
-
-    Raises:
-        ConfigError: it finds several labels, or joints.
-    """
-    finds = {"labels": "several labels at a time", "skeleton": "joints"}
-    if metadata.settings.target in finds:
-        raise ConfigError(
-            f"{run}: finds {finds[metadata.settings.target]}; should be a run of classes"
-        )
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,21 @@
 """The YAML file of `radhar train`: model, optimisation, augmentation, machine."""
 
 from math import log2
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PlainSerializer,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
 
 from radhar_cli.config.number import value_error
 from radhar_cli.config.section import Section
+from radhar_cli.extensions import load_extensions
+from radhar_cli.learning.choices import TASKS, Kind, sequences_of
 
 
 def _auto_or(least: int) -> BeforeValidator:
@@ -24,13 +33,26 @@ def _auto_or(least: int) -> BeforeValidator:
 STEPS_AN_EPOCH, SMALLEST_BATCH, LARGEST_BATCH = 24, 4, 128  # of batch_size: auto
 
 Auto = Literal["auto"] | int
-Target = Literal["classes", "labels", "count", "skeleton"]
-Kind = Literal["rgb", "gray", "frames", "clouds"]
-KIND_OF_SEQUENCES: dict[str, Kind] = {"framenet": "frames", "cloudnet": "clouds"}
 Count = Annotated[int, Field(ge=1, le=1_000_000, strict=True)]
 Rate = Annotated[float, Field(gt=0, le=1e3, strict=True)]
 Weight = Annotated[float, Field(ge=0, le=1000, strict=True)]
 Share = Annotated[float, Field(gt=0, lt=1, strict=True)]
+
+
+if TYPE_CHECKING:
+    TaskName: TypeAlias = str
+else:
+    TaskName = Literal[tuple(TASKS)]  # which messages, schemas and tables list
+
+
+def _added_task(value: Any, check: ValidatorFunctionWrapHandler) -> Any:
+    """Accept a task that an extension has added since; have any other value checked."""
+    load_extensions()
+    return value if isinstance(value, str) and value in TASKS else check(value)
+
+
+# Its serializer knows no list of names: pydantic's own warns of one that an extension has added.
+Target = Annotated[TaskName, WrapValidator(_added_task), PlainSerializer(str, return_type=str)]
 
 
 class ScheduleConfig(Section):
@@ -154,15 +176,15 @@ class TrainConfig(Section):
     @property
     def input_kind(self) -> Kind:
         """Kind of input of the model: frames or clouds for networks of sequences, else images."""
-        return KIND_OF_SEQUENCES.get(self.model, self.input)
+        return sequences_of(self.model) or self.input
 
     @model_validator(mode="after")
     def _fits(self) -> "TrainConfig":
         if self.warmup_epochs > self.epochs:
             raise value_error("should have warmup_epochs of at most epochs")
-        if self.target == "skeleton" and self.model not in KIND_OF_SEQUENCES:
-            raise value_error("should have model: cloudnet or framenet for target: skeleton")
-        if self.augment != AugmentConfig() and self.model in KIND_OF_SEQUENCES:
+        if TASKS[self.target].of_sequences and sequences_of(self.model) is None:
+            raise value_error(f"should have model: cloudnet or framenet for target: {self.target}")
+        if self.augment != AugmentConfig() and sequences_of(self.model) is not None:
             raise value_error("should have no augment, which is of images")
         if self.augment != AugmentConfig() and self.input != "gray":
             raise value_error("should have input: gray for augment, which changes grey levels")

@@ -56,7 +56,7 @@ def start_from(run: Path, model: nn.Module, config: TrainConfig, images: ImageSe
     for name, tensor in weights.items():
         digest.update(name.encode() + tensor.numpy().tobytes())
     notes: tuple[str, ...] = ()
-    if metadata.classes != images.classes and not metadata.finds_joints:
+    if metadata.task.names(metadata) != metadata.task.names(images):
         last_layer = {
             name for name, weight in model.state_dict().items() if is_of_last_layer(name, model)
         }

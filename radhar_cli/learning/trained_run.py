@@ -11,7 +11,9 @@ from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled, predi
 from radhar_cli.learning.found_joints import FoundJoints, find_joints
 from radhar_cli.learning.images.image_set import check_split_name
 from radhar_cli.learning.machine import choose_device
-from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
+from radhar_cli.learning.run_files import RunError
+from radhar_cli.learning.run_folder import RunMetadata, load_best
+from radhar_cli.learning.tasks.skeleton import Skeleton
 from radhar_cli.numerics.arrays import Float
 
 
@@ -51,7 +53,7 @@ class TrainedRun:
     @property
     def joints(self) -> tuple[str, ...]:
         """Names of the joints that it finds, in the order of the outputs; empty for classes."""
-        return self.metadata.joints if self.metadata.finds_joints else ()
+        return self.metadata.joints if isinstance(self.metadata.task, Skeleton) else ()
 
     def __call__(self, inputs: Tensor) -> Tensor:
         """Probabilities [B, classes], or joints [B, T, joint, 3] in m, of a batch of inputs.
@@ -62,10 +64,7 @@ class TrainedRun:
         """
         with torch.inference_mode():
             outputs: Tensor = self.network(self.metadata.normalisation(inputs.to(self.device)))
-        if self.metadata.finds_joints:
-            return outputs
-        finds_labels = self.metadata.settings.target == "labels"
-        return outputs.sigmoid() if finds_labels else outputs.softmax(1)
+            return self.metadata.task.predict(outputs)
 
     def predict(
         self,
@@ -86,17 +85,17 @@ class TrainedRun:
             FolderError: no such data, or images of another size.
         """
         where, part = Path(path), check_split_name(split)
-        if self.metadata.finds_joints:
+        if isinstance(self.metadata.task, Skeleton):
             return find_joints(self.metadata, self.network, [where], self.device, map, part)
         inputs = open_unlabelled(self.metadata, where, map, part, resize)
         reading = (inputs.pixels, inputs.rows, self.device, PREDICT_BATCH)
         batches = predict_batches(self.network, self.metadata, *reading)
-        probabilities = np.concatenate([batch for batch, _ in batches])
+        probabilities = np.concatenate(list(batches))
         return FoundClasses(inputs.names, self.classes, probabilities)
 
     def __repr__(self) -> str:
         about = self.metadata
-        return f"<TrainedRun: {about.model}, {about.answers}, of {about.shape}>"
+        return f"<TrainedRun: {about.model}, {about.outputs_in_words}, of {about.shape}>"
 
 
 def load_run(path: str | Path, device: str = "auto") -> TrainedRun:

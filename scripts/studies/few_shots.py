@@ -26,16 +26,18 @@ import torch
 from radhar_cli.config.reading import with_overrides
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.split import TRAIN, VALIDATION
-from radhar_cli.learning.adaptation import Mixed
+from radhar_cli.learning.adaptation import AdaptOptions, Mixed
 from radhar_cli.learning.adaptation import adapt as adapt_run
-from radhar_cli.learning.evaluation import predict, training_images
+from radhar_cli.learning.evaluation import predict_classes, training_images
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.metrics import wilson
-from radhar_cli.learning.run_folder import Epoch, RunMetadata, load_best, refuse_other_targets
+from radhar_cli.learning.run_folder import Epoch, RunMetadata, load_best
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.single_result import EvalOptions, EvalSet, open_eval_set, open_run
-from radhar_cli.learning.training import train
+from radhar_cli.learning.single_result import EvalSet, open_eval_set, open_run
+from radhar_cli.learning.tasks.categories import require_classifier
+from radhar_cli.learning.tasks.predictions import EvalOptions
+from radhar_cli.learning.training import TrainOptions, train
 from radhar_cli.numerics.arrays import Index
 from radhar_cli.numerics.randomness import TRAINING, stream
 
@@ -141,7 +143,7 @@ def few_shots(
     """
     device = torch.device("cpu")
     opened = open_run(run.name, run, device)
-    refuse_other_targets(run, opened.metadata)
+    require_classifier(run, opened.metadata.task)
     own = TrainConfig.model_validate(opened.metadata.config)
     document = {**own.model_dump(mode="json"), "device": "cpu"}
     scratch = TrainConfig.model_validate(with_overrides(document, settings))
@@ -152,7 +154,7 @@ def few_shots(
 
     def tested(one: Path, draw: Draw) -> float:
         about, model = load_best(one)
-        found = predict(model, about, measured.images, draw.tested, device, 128)
+        found = predict_classes(model, about, measured.images, draw.tested, device, 128)
         return float((found.predicted == found.truth).mean())
 
     def learned(k: int, repeat: int, draw: Draw) -> dict[str, Path]:
@@ -163,13 +165,13 @@ def few_shots(
         if k:
             images, weights = learned_from(opened.metadata, labelled, mixed, MAX_SHOWN)
             chosen = tuned.model_copy(update={"data_weights": weights, "seed": seed})
-            train(chosen, images, ways[TUNED], Silent(), start=run)
+            train(chosen, images, ways[TUNED], Silent(), TrainOptions(start=run))
             beside = Mixed(images, weights)
         if adapt:
             ways[ADAPTED] = here / "adapted"
             unlabelled, kept = (measured.images, measured.rows), beside or ()
-            where = (run, unlabelled, ways[ADAPTED], device)
-            adapt_run(*where, overwrite=True, epochs=adapt, mix=kept)
+            options = AdaptOptions(overwrite=True, epochs=adapt, mix=kept)
+            adapt_run(run, unlabelled, ways[ADAPTED], device, options)
         if k:
             ways[SCRATCH] = here / "from_scratch"
             images, weights = learned_from(opened.metadata, labelled, [], SHOWN)

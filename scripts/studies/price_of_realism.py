@@ -26,10 +26,12 @@ from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
-from radhar_cli.learning.evaluation import predict
+from radhar_cli.learning.evaluation import predict_classes
 from radhar_cli.learning.images.opening import open_images
-from radhar_cli.learning.settings import Target, TrainConfig
-from radhar_cli.learning.single_result import EvalOptions, open_eval_set, open_run
+from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.single_result import open_eval_set, open_run
+from radhar_cli.learning.tasks.predictions import EvalOptions
+from radhar_cli.learning.tasks.task import create_task
 from radhar_cli.learning.training import train
 from radhar_cli.tradeoff.measures import time_setting
 from radhar_cli.tradeoff.settings import BEAM, Scenes, Setting
@@ -66,7 +68,7 @@ class Row(NamedTuple):
     base: tuple[str, ...]
     added: tuple[str, ...]
     map: str = "stft"
-    target: Target = "classes"
+    target: str = "classes"
     learned: bool = True
 
 
@@ -105,11 +107,11 @@ class Study(NamedTuple):
             run = self.out / "runs" / f"{digest(learned)}_{row.map}_{row.target}_{seed}"
             if not (run / "done").exists():
                 settings = TrainConfig(target=row.target, map=row.map, seed=seed, **FIXED)
-                train(settings, images.learned_as(row.target), run, Silent())
+                train(settings, create_task(settings).relabel(images), run, Silent())
                 (run / "done").touch()
             opened, cpu = open_run("run", run, torch.device("cpu")), torch.device("cpu")
             data = open_eval_set(opened, self.data(on, "tested"), EvalOptions("all"))
-            made = predict(opened.model, opened.metadata, data.images, data.rows, cpu, 64)
+            made = predict_classes(opened.model, opened.metadata, data.images, data.rows, cpu, 64)
             shown = data.images.multi_hot(opened.metadata.classes) > 0
             each = [(made.predicted == made.truth).mean()]
             if row.target == "labels":

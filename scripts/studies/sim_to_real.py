@@ -39,7 +39,7 @@ from radhar_cli.capture.images import list_images, read_image
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.two_samples import Picture, pictures_png
-from radhar_cli.learning.evaluation import open_for_model, predict
+from radhar_cli.learning.evaluation import open_for_model, predict_classes
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import load_best
@@ -224,7 +224,7 @@ class Measured:
         """What a run makes of them."""
         metadata, model = load_best(run)
         images = open_for_model(metadata, self.folder, None)
-        result = predict(
+        result = predict_classes(
             model, metadata, images, images.rows("all"), torch.device("cpu"), batch=128
         )
         return Predicted(images, result.truth, result.probabilities, metadata.classes)

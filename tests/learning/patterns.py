@@ -13,7 +13,7 @@ from safetensors.torch import load_file
 
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.evaluation import open_for_model, predict
+from radhar_cli.learning.evaluation import last_features, open_for_model, predict_classes
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import train
 
@@ -108,10 +108,11 @@ def plant(out, data, margin=5.0):
     """
     metadata, model = run.load_best(out)
     images = open_for_model(metadata, data, None)
-    found = predict(model, metadata, images, images.rows("all"), torch.device("cpu"), 8)
-    middle = found.features.mean(axis=0)
+    found = predict_classes(model, metadata, images, images.rows("all"), torch.device("cpu"), 8)
+    features = last_features(model, metadata, images, found.rows, torch.device("cpu"))
+    middle = features.mean(axis=0)
     wanted = margin * (np.eye(len(metadata.classes))[found.truth] - 1 / len(metadata.classes))
-    weight = (np.linalg.pinv(found.features - middle) @ wanted).T
+    weight = (np.linalg.pinv(features - middle) @ wanted).T
     head: Any = model.head
     head.weight.data = torch.tensor(weight, dtype=torch.float32)
     head.bias.data = torch.tensor(-weight @ middle, dtype=torch.float32)

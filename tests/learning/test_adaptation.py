@@ -9,8 +9,8 @@ from torch import nn
 
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning import adaptation
-from radhar_cli.learning.adaptation import Mixed, adapt
-from radhar_cli.learning.evaluation import open_for_model, predict, training_images
+from radhar_cli.learning.adaptation import AdaptOptions, Mixed, adapt
+from radhar_cli.learning.evaluation import open_for_model, predict_classes, training_images
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.run_folder import RunError, load_best
 
@@ -20,7 +20,7 @@ CPU = torch.device("cpu")
 def accuracy(run, data):
     metadata, model = load_best(run)
     images = open_for_model(metadata, data, None)
-    found = predict(model, metadata, images, np.arange(len(images)), CPU, 32)
+    found = predict_classes(model, metadata, images, np.arange(len(images)), CPU, 32)
     return float((found.predicted == found.truth).mean())
 
 
@@ -67,7 +67,7 @@ def test_statistics_restore_accuracy_at_another_contrast(normed, tmp_path):
 def test_without_batch_norm_there_is_nothing_but_learning(learned, tmp_path):
     measured = tree(tmp_path / "measured", seed=5)
     with pytest.raises(ConfigError, match="epochs = 0: should be at least 1 for smallnet"):
-        adapt(learned, measured, tmp_path / "adapted", CPU, epochs=0)
+        adapt(learned, measured, tmp_path / "adapted", CPU, AdaptOptions(epochs=0))
 
 
 def test_defaults_learn_where_statistics_alone_would_change_nothing(
@@ -76,7 +76,9 @@ def test_defaults_learn_where_statistics_alone_would_change_nothing(
     monkeypatch.setattr(adaptation, "EPOCHS", 2)
     measured = tree(tmp_path / "measured", seed=5)
     for run, mix, epochs in ((learned, (), 2), (normed, (), 0), (normed, (data,), 2)):
-        found = adapt(run, measured, tmp_path / "adapted", CPU, mix=mix, overwrite=True)
+        found = adapt(
+            run, measured, tmp_path / "adapted", CPU, AdaptOptions(mix=mix, overwrite=True)
+        )
         assert found.work["adapted_epochs"] == epochs
 
 
@@ -98,7 +100,7 @@ def information(run, data):
     """Mutual information of images and predictions: entropy of the mean less mean entropy, nats."""
     metadata, model = load_best(run)
     images = open_for_model(metadata, data, None)
-    p = predict(model, metadata, images, np.arange(len(images)), CPU, 32).probabilities
+    p = predict_classes(model, metadata, images, np.arange(len(images)), CPU, 32).probabilities
     entropy = -(p * np.log(p)).sum(1).mean()
     return float(-(p.mean(0) * np.log(p.mean(0))).sum() - entropy)
 
@@ -106,7 +108,7 @@ def information(run, data):
 def test_epochs_raise_the_information_of_predictions_and_lose_no_accuracy(learned, tmp_path):
     measured = tree(tmp_path / "measured", seed=5)
     watched = Watched()
-    adapt(learned, measured, tmp_path / "epochs", CPU, epochs=6, progress=watched)
+    adapt(learned, measured, tmp_path / "epochs", CPU, AdaptOptions(epochs=6), watched)
     assert len(watched.messages) == 6
     assert information(tmp_path / "epochs", measured) > information(learned, measured)
     assert accuracy(tmp_path / "epochs", measured) > 0.9
@@ -117,7 +119,7 @@ def test_epochs_leave_the_last_layer_and_do_not_look_at_labels(learned, tmp_path
     for number, name in enumerate(("kicking", "punching", "walking")):  # the order stays
         (other / name).rename(other / f"class_{number}")
     for data in (one, other):
-        adapt(learned, data, data.parent / "adapted", CPU, epochs=2)
+        adapt(learned, data, data.parent / "adapted", CPU, AdaptOptions(epochs=2))
     before, after, blind = (
         load_best(run)[1].state_dict()
         for run in (learned, tmp_path / "one/adapted", tmp_path / "other/adapted")
@@ -135,7 +137,11 @@ def test_mixed_images_teach_their_labels(learned, tmp_path):
     loss, work = [], []
     for mix in ((), (other,)):
         metadata = adapt(
-            learned, measured, tmp_path / "adapted", CPU, epochs=30, mix=mix, overwrite=True
+            learned,
+            measured,
+            tmp_path / "adapted",
+            CPU,
+            AdaptOptions(epochs=30, mix=mix, overwrite=True),
         )
         loss.append(cross_entropy(tmp_path / "adapted", other))
         work.append(metadata.work.get("adapted_with"))
@@ -161,7 +167,9 @@ def test_mixed_sets_are_drawn_by_their_weights(learned, tmp_path):
 def test_adaptation_is_reproducible(learned, data, tmp_path, epochs, mix):
     measured = tree(tmp_path / "measured", seed=5)
     for name in ("one", "two"):
-        adapt(learned, measured, tmp_path / name, CPU, epochs=epochs, mix=(data,) * mix)
+        adapt(
+            learned, measured, tmp_path / name, CPU, AdaptOptions(epochs=epochs, mix=(data,) * mix)
+        )
     # Not the files' bytes: safetensors writes its metadata in any order.
     (about, one), (again, two) = (load_best(tmp_path / name) for name in ("one", "two"))
     assert about == again
@@ -171,17 +179,17 @@ def test_adaptation_is_reproducible(learned, data, tmp_path, epochs, mix):
 def test_another_adapted_run_is_not_replaced(learned, data, tmp_path):
     measured = tree(tmp_path / "measured", size=32, seed=5)
     for _ in range(2):  # the same once more is no other run
-        adapt(learned, measured, tmp_path / "adapted", CPU, epochs=1)
+        adapt(learned, measured, tmp_path / "adapted", CPU, AdaptOptions(epochs=1))
     before = (tmp_path / "adapted/best.safetensors").read_bytes()
     with pytest.raises(RunError, match="adapted_epochs: 1 there, 2 here"):
-        adapt(learned, measured, tmp_path / "adapted", CPU, epochs=2)
+        adapt(learned, measured, tmp_path / "adapted", CPU, AdaptOptions(epochs=2))
     assert (tmp_path / "adapted/best.safetensors").read_bytes() == before
-    adapt(learned, measured, tmp_path / "adapted", CPU, epochs=2, overwrite=True)
+    adapt(learned, measured, tmp_path / "adapted", CPU, AdaptOptions(epochs=2, overwrite=True))
 
 
 def test_what_cannot_be_adapted_is_refused(learned, data, tmp_path):
     few = tree(tmp_path / "few", classes=("walking",))
     with pytest.raises(ConfigError, match="has 8 images; should have at least 16"):
-        adapt(learned, few, tmp_path / "no", CPU, epochs=1)
+        adapt(learned, few, tmp_path / "no", CPU, AdaptOptions(epochs=1))
     with pytest.raises(RunError, match="is the run itself"):
         adapt(learned, data, learned, CPU)

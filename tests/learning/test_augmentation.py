@@ -185,11 +185,11 @@ def test_workers_change_images_in_the_same_way(data, tmp_path):
 def test_init_starts_from_the_weights_and_normalisation_of_a_run(data, run_dir, tmp_path):
     from learning.patterns import Watched, best_weights
 
-    from radhar_cli.learning.training import train
+    from radhar_cli.learning.training import TrainOptions, train
 
     still = settings(learning_rate=1e-12, weight_decay=0.0, epochs=1, optimiser="sgd")
     other = split_tree(tmp_path / "other", seed=5)
-    train(still, other, tmp_path / "out", Watched(), start=run_dir)
+    train(still, other, tmp_path / "out", Watched(), TrainOptions(start=run_dir))
     metadata, _ = load_best(tmp_path / "out")
     assert metadata.normalisation == load_best(run_dir)[0].normalisation
     learned, before = best_weights(tmp_path / "out"), best_weights(run_dir)
@@ -201,18 +201,20 @@ def test_init_starts_from_the_weights_and_normalisation_of_a_run(data, run_dir, 
 def test_init_with_other_classes_learns_the_last_layer_anew(run_dir, tmp_path):
     from learning.patterns import Watched
 
-    from radhar_cli.learning.training import train
+    from radhar_cli.learning.training import TrainOptions, train
 
     other = split_tree(tmp_path / "other", classes=("walking", "wave"))
     watched = Watched()
-    train(settings(epochs=1), other, tmp_path / "out", watched, start=run_dir)
+    train(settings(epochs=1), other, tmp_path / "out", watched, TrainOptions(start=run_dir))
     assert any("last layer" in message for message in watched.messages)
 
 
 def test_init_of_another_model_is_refused(run_dir, data, tmp_path):
     from learning.patterns import Watched
 
-    from radhar_cli.learning.training import train
+    from radhar_cli.learning.training import TrainOptions, train
 
     with pytest.raises(ConfigError, match=r"--init .*: its input is rgb, here it is gray"):
-        train(settings(input="gray"), data, tmp_path / "out", Watched(), start=run_dir)
+        train(
+            settings(input="gray"), data, tmp_path / "out", Watched(), TrainOptions(start=run_dir)
+        )

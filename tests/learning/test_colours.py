@@ -10,11 +10,11 @@ from PIL import Image
 import radhar_cli
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.errors import ConfigError
-from radhar_cli.learning.evaluation import open_for_model, predict
+from radhar_cli.learning.evaluation import open_for_model, predict_classes
 from radhar_cli.learning.images.colour_maps import KNOWN, colour_map_of, levels_behind
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.run_folder import load_best
-from radhar_cli.learning.training import train
+from radhar_cli.learning.training import TrainOptions, train
 
 CPU = torch.device("cpu")
 
@@ -52,7 +52,7 @@ def viridis(tmp_path_factory):
 def accuracy(run, data, **more):
     metadata, model = load_best(run)
     images = open_for_model(metadata, data, None, **more)
-    found = predict(model, metadata, images, np.arange(len(images)), CPU, 8)
+    found = predict_classes(model, metadata, images, np.arange(len(images)), CPU, 8)
     return float((found.predicted == found.truth).mean()), images
 
 
@@ -115,11 +115,13 @@ def test_fine_tuning_on_pictures_of_another_size_and_colour_map(viridis, tmp_pat
     source, run = viridis
     data = drawn(source, tmp_path / "jet", "jet", size=(48, 40))
     with clear_line(ConfigError, "(32, 32)", "(48, 40)", "--resize"):
-        train(settings(epochs=1), data, tmp_path / "no", Watched(), start=run)
+        train(settings(epochs=1), data, tmp_path / "no", Watched(), TrainOptions(start=run))
     with clear_line(ConfigError, "--resize: needs --init"):
-        train(settings(epochs=1), data, tmp_path / "no", Watched(), resize=True)
+        train(settings(epochs=1), data, tmp_path / "no", Watched(), TrainOptions(resize=True))
     watched = Watched()
-    train(settings(epochs=1), data, tmp_path / "tuned", watched, start=run, resize=True)
+    train(
+        settings(epochs=1), data, tmp_path / "tuned", watched, TrainOptions(start=run, resize=True)
+    )
     assert any("recoloured to viridis" in line for line in watched.messages)
     about = load_best(tmp_path / "tuned")[0]
     assert (about.size, about.colours) == ((32, 32), "viridis")

@@ -18,12 +18,18 @@ from PIL import Image
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import FolderError, RadharError
-from radhar_cli.learning.evaluation import measure_speed, open_for_model, predict, predict_paths
+from radhar_cli.learning.evaluation import (
+    last_features,
+    measure_speed,
+    open_for_model,
+    predict_classes,
+    predict_paths,
+)
 from radhar_cli.learning.onnx_export import export
 from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import load_best
-from radhar_cli.learning.single_result import EvalOptions
+from radhar_cli.learning.tasks.predictions import EvalOptions
 
 CPU = torch.device("cpu")
 
@@ -156,11 +162,11 @@ def test_batch_size_does_not_change_predictions(learned):
     metadata, model = load_best(learned[0])
     images = open_for_model(metadata, learned[1], None)
     rows = images.rows("val")[::-1].copy()
-    one, many = (predict(model, metadata, images, rows, CPU, batch) for batch in (1, 5))
+    one, many = (predict_classes(model, metadata, images, rows, CPU, batch) for batch in (1, 5))
     np.testing.assert_allclose(one.probabilities, many.probabilities, atol=1e-5)
     np.testing.assert_allclose(many.probabilities.sum(1), 1, atol=1e-6)
     assert np.array_equal(one.truth, images.label[rows])
-    assert many.features.shape == (9, 128)
+    assert last_features(model, metadata, images, rows, CPU).shape == (9, 128)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import torch
 from few_shots import drawn, few_shots, interval_of_repeats, learned_from, missing
 from learning.patterns import CLASSES, tree
 
-from radhar_cli.learning.evaluation import open_for_model, predict, training_images
+from radhar_cli.learning.evaluation import open_for_model, predict_classes, training_images
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import load_best
@@ -113,7 +113,7 @@ def test_the_curve_of_a_run(run_dir, data, measured, tmp_path, capsys):
     ]
     assert "8 a class: left out; kicking has too few" in capsys.readouterr().out
     metadata, as_trained = load_best(run_dir)
-    every = predict(as_trained, metadata, opened(measured).images, np.arange(24), CPU, 8)
+    every = predict_classes(as_trained, metadata, opened(measured).images, np.arange(24), CPU, 8)
     assert found[0]["accuracies"] == [(every.predicted == every.truth).mean()]
     assert json.loads((tmp_path / "shots.json").read_text()) == found
     assert curve() == found

@@ -9,6 +9,7 @@ from learning.patterns import split_tree, trained
 from radhar_cli.errors import ModelError
 from radhar_cli.learning.models.build import build_model, features_and_logits
 from radhar_cli.learning.models.fftnet import Block, FFTNet, GlobalFilter
+from radhar_cli.learning.models.outputs import Outputs
 
 
 def full_form(weight, x):
@@ -82,7 +83,7 @@ def test_block_is_branches_times_each_other_plus_filter_plus_input():
 
 @pytest.mark.parametrize("size", [(32, 32), (64, 32), (32, 96)])
 def test_shapes_from_images_to_logits(size):
-    model = build_model("fftnet", 5, size).eval()
+    model = build_model("fftnet", Outputs(5), size).eval()
     x = torch.randn(2, 3, *size)
     with torch.no_grad():
         maps = model.forward_features(x)
@@ -96,7 +97,7 @@ def test_shapes_from_images_to_logits(size):
 @pytest.mark.parametrize("size", [(48, 32), (32, 33), (16, 16)])
 def test_sides_that_are_no_multiples_of_32_are_refused(size):
     with pytest.raises(ModelError, match=f"{size[0]} x {size[1]} px; both sides should be multi"):
-        build_model("fftnet", 3, size)
+        build_model("fftnet", Outputs(3), size)
 
 
 def test_filter_computes_in_float32_under_autocast():

@@ -22,7 +22,7 @@ from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.images.image_set import ImageSet, check_split_name, labels_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
-from radhar_cli.learning.training import checked_images
+from radhar_cli.learning.training_set import open_training_set
 from radhar_cli.numerics.rounding import half_up
 
 SET = """
@@ -272,7 +272,7 @@ def test_a_folder_of_documents_is_told_from_a_data_set(tmp_path, with_images, ad
         (tmp_path / name).mkdir()
         Image.new("RGB", (32, 32)).save(tmp_path / name / "picture.png")
     with pytest.raises(FolderError) as error:
-        checked_images(settings(), tmp_path)
+        open_training_set(settings(), tmp_path)
     assert "the class 'guide' has no image; " + advice in str(error.value)
 
 
@@ -305,7 +305,7 @@ def test_gray_and_other_formats_are_read_as_rgb(tmp_path):
 def test_unusable_training_data_is_refused(tmp_path, parts, classes, size, expected):
     root = tree(tmp_path / "t", classes, parts, size)
     with clear_line(FolderError, expected, root):
-        checked_images(settings(), root)
+        open_training_set(settings(), root)
 
 
 def test_a_class_without_training_images_is_named(tmp_path):
@@ -313,7 +313,7 @@ def test_a_class_without_training_images_is_named(tmp_path):
     (root / "val/c").mkdir()
     Image.new("RGB", (32, 32)).save(root / "val/c/0.png")
     with pytest.raises(FolderError, match="'c' has no training image"):
-        checked_images(settings(), root)
+        open_training_set(settings(), root)
 
 
 def test_an_unknown_split_is_refused_with_a_suggestion():

@@ -12,7 +12,8 @@ from radhar_cli.learning.batches import epoch_order
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.run_folder import RunError, load_best
-from radhar_cli.learning.training import checked_images, train
+from radhar_cli.learning.training import TrainOptions, train
+from radhar_cli.learning.training_set import open_training_set
 
 
 @pytest.fixture
@@ -23,7 +24,7 @@ def other(tmp_path):
 
 def test_a_joined_set_has_all_rows_and_classes(data, other):
     one, two = (open_images(path, None, "rgb") for path in (data, other))
-    both = checked_images(settings(), [data, other])
+    both = open_training_set(settings(), [data, other])
     assert len(both) == len(one) + len(two)
     assert set(both.classes) == {*one.classes, *two.classes}
     for row in range(len(both)):
@@ -37,7 +38,7 @@ def test_a_joined_set_has_all_rows_and_classes(data, other):
 
 
 def test_weights_of_sets_and_balance_of_classes(data, other):
-    both = checked_images(settings(), [data, other])
+    both = open_training_set(settings(), [data, other])
     rows = both.rows("train")
     plain = sampling_weights(both, rows, None, balanced=False)
     assert (plain == 1).all()
@@ -60,7 +61,7 @@ def test_a_run_on_two_sets(data, other, tmp_path):
 
 def test_an_epoch_shows_sets_by_their_weights_and_classes_equally_often(data, other):
     config = settings(data_weights=[3.0, 0.5], sampling="balanced")
-    both = checked_images(config, [data, other])
+    both = open_training_set(config, [data, other])
     rows = both.rows("train")
     weights = sampling_weights(both, rows, config.data_weights, balanced=True)
     shown = np.concatenate([rows[epoch_order(weights, seed=1, epoch=e)] for e in range(50)])
@@ -74,13 +75,25 @@ def test_an_epoch_shows_sets_by_their_weights_and_classes_equally_often(data, ot
 
 def test_a_run_on_weighted_sets_resumes_to_the_same_weights(data, other, run_dir, tmp_path):
     config = settings(data_weights=[1, 0.5], sampling="balanced")
-    train(config, [data, other], tmp_path / "whole", Watched(), start=run_dir)
+    train(config, [data, other], tmp_path / "whole", Watched(), TrainOptions(start=run_dir))
     with pytest.raises(KeyboardInterrupt):
-        train(config, [data, other], tmp_path / "cut", Watched(stop_after=1), start=run_dir)
-    train(config, [data, other], tmp_path / "cut", Watched(), start=run_dir)
+        train(
+            config,
+            [data, other],
+            tmp_path / "cut",
+            Watched(stop_after=1),
+            TrainOptions(start=run_dir),
+        )
+    train(config, [data, other], tmp_path / "cut", Watched(), TrainOptions(start=run_dir))
     assert same_run(tmp_path / "whole", tmp_path / "cut")
     with pytest.raises(RunError, match=r"start: .* there"):
-        train(config, [data, other], tmp_path / "cut", Watched(), start=tmp_path / "whole")
+        train(
+            config,
+            [data, other],
+            tmp_path / "cut",
+            Watched(),
+            TrainOptions(start=tmp_path / "whole"),
+        )
     with pytest.raises(RunError, match=r"start: .* there, null here"):
         train(config, [data, other], tmp_path / "cut", Watched())
 
@@ -88,7 +101,7 @@ def test_a_run_on_weighted_sets_resumes_to_the_same_weights(data, other, run_dir
 def test_images_of_two_sizes_are_refused(data, tmp_path):
     large = split_tree(tmp_path / "large", size=(64, 64))
     with pytest.raises(FolderError, match=r"64 x 64 px, those of .* 32 x 32"):
-        checked_images(settings(), [data, large])
+        open_training_set(settings(), [data, large])
 
 
 def h5_set(folder, name, maps, colour_map="viridis"):
@@ -116,12 +129,12 @@ def test_data_sets_of_two_maps_are_no_one_set_unless_a_map_is_named(tmp_path, da
     """Without --map each data set would give its first one."""
     one, two = h5_set(tmp_path, "one", "stft"), h5_set(tmp_path, "two", "rtm, stft")
     with clear_line(FolderError, two, "its map is rtm", "stft", "--map"):
-        checked_images(settings(), [one, two])
-    assert checked_images(settings(map="stft"), [one, two]).map == "stft"
-    mixed = checked_images(settings(), [data, one])  # a tree says of no map
+        open_training_set(settings(), [one, two])
+    assert open_training_set(settings(map="stft"), [one, two]).map == "stft"
+    mixed = open_training_set(settings(), [data, one])  # a tree says of no map
     assert mixed.map == "stft"
     with clear_line(FolderError, "its map is rtm"):
-        checked_images(settings(), [one, data, two])
+        open_training_set(settings(), [one, data, two])
 
 
 def test_of_all_joined_sets_what_is_left_out_is_added_up(data, other):
@@ -138,7 +151,7 @@ def test_a_joined_set_is_named_after_all_of_its_parts(data, other, tmp_path):
 def test_joined_data_sets_have_the_colours_of_the_first(tmp_path):
     one = h5_set(tmp_path, "one", "stft")
     two = h5_set(tmp_path, "two", "stft", "jet")
-    both = checked_images(settings(), [one, two])
+    both = open_training_set(settings(), [one, two])
     assert both.colours == "viridis"
     assert any("drawn in jet, recoloured to viridis" in note for note in both.notes)
     for row in range(4):

@@ -13,7 +13,8 @@ from radhar_cli.learning.images.h5 import h5_images
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.images.scan import content_hash
-from radhar_cli.learning.targets import labels_loss
+from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.tasks.task import Task, create_task
 
 YAML = """
 radar: {carrier_hz: 24e9, bandwidth_hz: 1e9, prf_hz: 500}
@@ -49,6 +50,10 @@ def trained(place: Path, target: str) -> Path:
     return run
 
 
+def task_of(target: str) -> Task:
+    return create_task(TrainConfig(target=target))
+
+
 def images(place: Path, name: str = "several") -> ImageSet:
     return h5_images(place / name, None, "gray")
 
@@ -56,7 +61,7 @@ def images(place: Path, name: str = "several") -> ImageSet:
 def test_what_is_shown_and_counted(place: Path) -> None:
     stored = images(place)
     assert stored.person_classes is not None
-    labels, count = stored.learned_as("labels"), stored.learned_as("count")
+    labels, count = (task_of(name).relabel(stored) for name in ("labels", "count"))
     assert labels.classes == ("walking", "punching", "sitting_down")
     assert count.classes == ("1 person", "2 people")
     shown = labels.multi_hot(labels.classes)
@@ -64,16 +69,16 @@ def test_what_is_shown_and_counted(place: Path) -> None:
         assert names[0] == stored.classes[stored.label[row]] == labels.classes[labels.label[row]]
         assert {labels.classes[n] for n in np.flatnonzero(shown[row])} == set(names)
         assert count.classes[count.label[row]].split()[0] == str(len(names))
-    assert stored.learned_as("classes") is stored
+    assert task_of("classes").relabel(stored) is stored
 
 
 def test_of_one_person_it_is_what_that_person_does(place: Path) -> None:
     alone = images(place, "alone")
     assert alone.person_classes is None
-    shown = alone.learned_as("labels").multi_hot(alone.classes)
+    shown = task_of("labels").relabel(alone).multi_hot(alone.classes)
     np.testing.assert_array_equal(shown.argmax(axis=1), alone.label)
     assert (shown.sum(axis=1) == 1).all()
-    assert alone.learned_as("count").classes == ("1 person",)
+    assert task_of("count").relabel(alone).classes == ("1 person",)
 
 
 def test_rows_names_and_joined_sets_keep_everybody(place: Path) -> None:
@@ -97,11 +102,12 @@ def test_rows_names_and_joined_sets_keep_everybody(place: Path) -> None:
 def test_loss_of_labels() -> None:
     logits = torch.tensor([[3.0, -2.0], [0.5, 0.5]])
     shown = torch.tensor([[1, 0], [1, 0]], dtype=torch.uint8)
-    loss, right = labels_loss(logits, shown)
+    task = task_of("labels")
     p = 1 / (1 + np.exp(-logits.numpy()))
-    expected = -np.log(np.where(shown.numpy() > 0, p, 1 - p)).mean(axis=1).sum()
-    assert float(loss) == pytest.approx(expected, rel=1e-6)
-    assert right == 1
+    expected = -np.log(np.where(shown.numpy() > 0, p, 1 - p)).mean(axis=1)
+    np.testing.assert_allclose(task.loss(logits, shown), expected, rtol=1e-6)
+    assert task.score(logits, shown).tolist() == [1, 0]
+    np.testing.assert_allclose(task.predict(logits), p, rtol=1e-6)
 
 
 def test_a_network_of_labels_is_evaluated_by_label_and_by_number_of_people(place: Path) -> None:

@@ -30,7 +30,7 @@ from radhar_cli.learning.evaluation import open_for_model, predict_paths, rows_o
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.run_folder import RunError
-from radhar_cli.learning.single_result import EvalOptions
+from radhar_cli.learning.tasks.predictions import EvalOptions
 
 CPU = torch.device("cpu")
 

@@ -182,23 +182,23 @@ def test_a_folder_with_foreign_files_is_refused(data, tmp_path):
         trained(data, tmp_path)
     from learning.patterns import settings
 
-    from radhar_cli.learning.training import train
+    from radhar_cli.learning.training import TrainOptions, train
 
     with pytest.raises(RunError):
-        train(settings(), data, tmp_path, Watched(), overwrite=True)
+        train(settings(), data, tmp_path, Watched(), TrainOptions(overwrite=True))
     assert (tmp_path / "thesis.tex").read_text() == "years of work"
 
 
 def test_overwrite_removes_only_files_of_a_run(data, copy):
     from learning.patterns import settings
 
-    from radhar_cli.learning.training import train
+    from radhar_cli.learning.training import TrainOptions, train
 
     (copy / "notes.txt").write_text("mine")
     (copy / "eval").mkdir()
     (copy / "eval/report.json").write_text("{}")
     with pytest.raises(KeyboardInterrupt):
-        train(settings(seed=2), data, copy, Watched(stop_after=1), overwrite=True)
+        train(settings(seed=2), data, copy, Watched(stop_after=1), TrainOptions(overwrite=True))
     kept = {p.name for p in copy.iterdir()} - {".radhar"}
     assert kept == {
         *(

@@ -15,16 +15,17 @@ from torch.utils.data import DataLoader
 import radhar_cli
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.evaluation import open_for_model
+from radhar_cli.learning.evaluation import open_for_model, predict
 from radhar_cli.learning.images.h5 import h5_sequences
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.images.sequences import cloud_frames, fit_length
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.models.cloudnet import moving_centroid
+from radhar_cli.learning.models.outputs import Outputs, OutputShape
 from radhar_cli.learning.run_folder import load_best
-from radhar_cli.learning.skeleton_result import predict_skeletons
-from radhar_cli.learning.targets import skeleton_loss
+from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.tasks.task import create_task
 
 QUICK = ("--set", "device=cpu", "--set", "precision=float32", "--set", "threads=1")
 
@@ -102,17 +103,28 @@ def test_a_product_that_is_not_there_is_named(boards: Path) -> None:
         radhar_cli.Sequences(boards / "data", "range_azimuth")
 
 
-@pytest.mark.parametrize("per_frame", [False, True])
-def test_cloudnet_heeds_neither_the_order_nor_the_missing_ones_of_points(per_frame: bool) -> None:
+def expected_shape(shape: OutputShape, frames: int) -> tuple[int, ...]:
+    """Of six outputs for two inputs."""
+    return {
+        OutputShape.INPUT: (2, 6),
+        OutputShape.FRAMES: (2, frames, 6),
+        OutputShape.PLACES: (2, frames, 2, 3),
+    }[shape]
+
+
+@pytest.mark.parametrize("shape", OutputShape)
+def test_cloudnet_heeds_neither_the_order_nor_the_missing_ones_of_points(
+    shape: OutputShape,
+) -> None:
     torch.manual_seed(0)
-    network = build_model("cloudnet", 6, (4, 8), per_frame).eval()
+    network = build_model("cloudnet", Outputs(6, shape), (4, 8)).eval()
     clouds = torch.randn(2, 6, 4, 8)
     clouds[:, 5] = (torch.arange(8) < 5).float()
     other = clouds[..., torch.randperm(8)]
     other[:, :5] += 9 * (1 - other[:, 5:])
     with torch.inference_mode():
         torch.testing.assert_close(network(other), network(clouds), rtol=1e-4, atol=1e-5)
-        assert network(clouds).shape == ((2, 4, 2, 3) if per_frame else (2, 6))
+        assert network(clouds).shape == expected_shape(shape, frames=4)
 
 
 def test_the_centre_of_a_frame_without_points_is_that_of_all() -> None:
@@ -121,12 +133,12 @@ def test_the_centre_of_a_frame_without_points_is_that_of_all() -> None:
     torch.testing.assert_close(moving_centroid(clouds), torch.full((1, 3, 11), 2.0))
 
 
-@pytest.mark.parametrize("per_frame", [False, True])
-def test_framenet_takes_any_number_of_frames(per_frame: bool) -> None:
-    network = build_model("framenet", 6, (16, 24), per_frame).eval()
+@pytest.mark.parametrize("shape", OutputShape)
+def test_framenet_takes_any_number_of_frames(shape: OutputShape) -> None:
+    network = build_model("framenet", Outputs(6, shape), (16, 24)).eval()
     for frames in (1, 5):
         found = network(torch.randn(2, frames, 16, 24))
-        assert found.shape == ((2, frames, 2, 3) if per_frame else (2, 6))
+        assert found.shape == expected_shape(shape, frames)
 
 
 def test_the_loss_of_skeletons_leaves_out_what_is_not_there() -> None:
@@ -134,9 +146,9 @@ def test_the_loss_of_skeletons_leaves_out_what_is_not_there() -> None:
     joints[1, 1:] = torch.nan
     found = torch.zeros(2, 3, 2, 3)
     found[:, 0, 0, 0] = 0.3
-    loss, right = skeleton_loss(found, joints)
-    assert float(loss) == pytest.approx(0.3 / 18 + 0.3 / 6)
-    assert right == pytest.approx(5 / 6 + 1 / 2)
+    task = create_task(TrainConfig(model="cloudnet", target="skeleton"))
+    np.testing.assert_allclose(task.loss(found, joints), [0.3 / 18, 0.3 / 6])
+    np.testing.assert_allclose(task.score(found, joints), [5 / 6, 1 / 2])
 
 
 def test_statistics_of_frames_are_of_all_of_them_and_clouds_have_none(boards: Path) -> None:
@@ -183,7 +195,8 @@ def test_joints_are_found_nearer_than_by_a_person_who_stands_still(boards: Path)
     metadata, model = load_best(run)
     images = open_for_model(metadata, boards / "data", None)
     rows = images.rows("val")
-    found, true = predict_skeletons(model, metadata, images, rows, torch.device("cpu"), 3)
+    found = predict(model, metadata, images, rows, torch.device("cpu"), 3).values
+    true = np.stack([images.skeletons[int(row)] for row in rows])
     off = 100 * np.linalg.norm(found - true, axis=3)
     assert numbers["frames"] == 20
     assert numbers["mpjpe_cm"] == pytest.approx(off.mean(), rel=1e-5)

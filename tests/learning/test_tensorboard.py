@@ -5,7 +5,7 @@ from learning.patterns import Watched, settings
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from radhar_cli.learning.run_folder import read_history
-from radhar_cli.learning.training import train
+from radhar_cli.learning.training import TrainOptions, train
 
 
 def curves(run):
@@ -23,8 +23,8 @@ def test_the_curves_are_those_of_the_history_each_epoch_once(data, tmp_path, int
     run, config = tmp_path / "run", settings(epochs=3)
     if interrupted:
         with pytest.raises(KeyboardInterrupt):
-            train(config, data, run, Watched(stop_after=2), tensorboard=True)
-    train(config, data, run, Watched(), tensorboard=True)
+            train(config, data, run, Watched(stop_after=2), TrainOptions(tensorboard=True))
+    train(config, data, run, Watched(), TrainOptions(tensorboard=True))
     events, found = curves(run)
     history = read_history(run)
     for name, column in (
@@ -43,7 +43,7 @@ def test_the_curves_are_those_of_the_history_each_epoch_once(data, tmp_path, int
 
 def test_overwriting_a_run_removes_its_curves_and_nothing_else(data, tmp_path):
     run = tmp_path / "run"
-    train(settings(epochs=1), data, run, Watched(), tensorboard=True)
+    train(settings(epochs=1), data, run, Watched(), TrainOptions(tensorboard=True))
     (run / "tensorboard/mine.txt").write_text("notes")
-    train(settings(epochs=1, seed=2), data, run, Watched(), overwrite=True)
+    train(settings(epochs=1, seed=2), data, run, Watched(), TrainOptions(overwrite=True))
     assert [path.name for path in (run / "tensorboard").iterdir()] == ["mine.txt"]

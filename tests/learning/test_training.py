@@ -26,26 +26,37 @@ from learning.patterns import (
 )
 from torch import nn
 
-from radhar_cli.learning import run_files, targets, training
+from radhar_cli.learning import run_files, training
 from radhar_cli.learning import run_folder as run
+from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
+from radhar_cli.learning.learner import Learner, Totals
+from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.optimiser import optimiser_for
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.training import TrainingError, _Training, checked_images
+from radhar_cli.learning.tasks import categories
+from radhar_cli.learning.tasks.task import create_task
+from radhar_cli.learning.training import TrainingError, _Training
+from radhar_cli.learning.training_set import open_training_set
 
 
-def prepared(data, out, **changes):
-    out.mkdir()
+def learner_of(data, **changes):
+    """What `train` makes of some settings before its first step."""
     config = settings(**changes)
-    images = checked_images(config, data)
-    return _Training(config, images, out, Watched(), torch.device("cpu"))
+    images = open_training_set(config, data)
+    task, found = create_task(config), scan(images, images.rows("train"))
+    torch.manual_seed(config.seed)
+    model = build_model(config.model, task.outputs(images), images.size)
+    normalise = Normalisation(found.mean, found.sd)
+    return Learner(model, task, normalise, torch.device("cpu"), torch.float32)
 
 
-def first_batch(work, count=6):
-    rows = work.images.rows("train")[::2][:count]
-    levels = np.stack([work.images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
-    return torch.from_numpy(levels), torch.from_numpy(work.images.label[rows])
+def first_batch(data, count=6):
+    images = open_training_set(settings(), data)
+    rows = images.rows("train")[::2][:count]
+    levels = np.stack([images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
+    return torch.from_numpy(levels), torch.from_numpy(images.label[rows])
 
 
 def gradients(model):
@@ -105,9 +116,12 @@ def test_resumed_after_an_epoch_gives_the_same_run(data, run_dir, tmp_path, epoc
 
 
 def test_dropout_resumes_its_random_state(data, tmp_path, monkeypatch):
-    def with_dropout(name, classes, size, per_frame):
+    def with_dropout(name, outputs, size):
         return nn.Sequential(
-            nn.Conv2d(3, 4, 3, 4), nn.Flatten(), nn.Dropout(0.5), nn.Linear(4 * 8 * 8, classes)
+            nn.Conv2d(3, 4, 3, 4),
+            nn.Flatten(),
+            nn.Dropout(0.5),
+            nn.Linear(4 * 8 * 8, outputs.count),
         )
 
     for module in (training, run):
@@ -140,7 +154,7 @@ def test_stopped_between_the_files_of_the_last_epoch_loses_nothing(
 
 def test_only_a_better_epoch_replaces_the_best(data, tmp_path, monkeypatch):
     seen = iter([(1.0, 0.5), (2.0, 0.75), (1.5, 0.75), (9.0, 0.5)])
-    monkeypatch.setattr(_Training, "_validate", lambda *_: next(seen))
+    monkeypatch.setattr(_Training, "_validate", lambda *_: Totals(*next(seen), 1))
     kept = {}
 
     class Keeps(Watched):
@@ -169,7 +183,7 @@ class KeepsLast(Watched):
 
 def test_weights_of_the_last_steps_are_averaged(data, tmp_path, monkeypatch):
     losses = iter([4.0, 3.0, 2.0, 1.0])
-    monkeypatch.setattr(_Training, "_validate", lambda *_: (next(losses), 0.5))
+    monkeypatch.setattr(_Training, "_validate", lambda *_: Totals(next(losses), 0.5, 1))
     progress = KeepsLast(tmp_path / "run")
     trained(data, tmp_path / "run", progress, epochs=4, batch_size=12, average_last=0.5)
     assert len(progress.losses) == 4  # one step an epoch
@@ -243,43 +257,41 @@ def test_validation_is_that_of_the_stored_weights(data, run_dir):
     assert last.val_accuracy == float((logits.argmax(1) == truth).double().mean())
 
 
-def test_a_step_starts_from_zero_gradient(data, tmp_path):
-    work = prepared(data, tmp_path / "run", learning_rate=1e-12, optimiser="sgd")
-    levels, labels = first_batch(work)
+def test_a_step_starts_from_zero_gradient(data):
+    work = learner_of(data, learning_rate=1e-12, optimiser="sgd")
+    levels, labels = first_batch(data)
     work.model.eval()
-    work._step(levels, labels)
+    work.train_step(levels, labels)
     once = gradients(work.model)
-    work._step(levels, labels)
+    work.train_step(levels, labels)
     for one, other in zip(once, gradients(work.model), strict=True):
         torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-7)
 
 
 def test_out_of_memory_names_a_smaller_batch(data, tmp_path, monkeypatch):
     """An allocation of 2**60 bytes, which PyTorch refuses at once."""
-    monkeypatch.setattr(targets, "cross_entropy", lambda *_, **__: torch.empty(2**58))
+    monkeypatch.setattr(categories, "cross_entropy", lambda *_, **__: torch.empty(2**58))
     with pytest.raises(TrainingError, match=r"out of memory on cpu in .* 6 images .*batch_size=3"):
         trained(data, tmp_path / "run", batch_size=6)
 
 
-def test_clipping_limits_the_gradient(data, tmp_path):
-    free = prepared(data, tmp_path / "free", optimiser="sgd", weight_decay=0.0)
-    held = prepared(
-        data, tmp_path / "held", optimiser="sgd", weight_decay=0.0, gradient_clip_norm=0.01
-    )
-    levels, labels = first_batch(free)
+def test_clipping_limits_the_gradient(data):
+    free = learner_of(data, optimiser="sgd", weight_decay=0.0)
+    held = learner_of(data, optimiser="sgd", weight_decay=0.0, gradient_clip_norm=0.01)
+    levels, labels = first_batch(data)
     moved = []
     for work in (free, held):
         before = [p.detach().clone() for p in work.model.parameters()]
         work.model.train()
-        work._step(levels, labels)
+        work.train_step(levels, labels)
         steps = [p.detach() - b for p, b in zip(work.model.parameters(), before, strict=True)]
         moved.append(float(torch.linalg.vector_norm(torch.cat([s.flatten() for s in steps]))))
     assert moved[0] > 2e-5
     assert moved[1] == pytest.approx(1e-3 * 0.01, rel=0.05)
 
 
-def test_weight_decay_spares_biases_and_norms(data, tmp_path):
-    work = prepared(data, tmp_path / "run", weight_decay=0.5)
+def test_weight_decay_spares_biases_and_norms(data):
+    work = learner_of(data, weight_decay=0.5)
     for name in ("adam", "adamw", "sgd"):
         optimiser = optimiser_for(settings(weight_decay=0.5, optimiser=name), work.model)
         decayed = {
@@ -315,14 +327,14 @@ def test_rates_of_the_schedule_reach_the_optimiser(data, tmp_path, monkeypatch):
 def test_a_non_finite_loss_is_one_clear_line(data, tmp_path, monkeypatch, model_step):
     """Two steps an epoch: the first is of the first epoch, the fourth the last of the second."""
     out, calls = tmp_path / "run", []
-    loss = targets.cross_entropy
+    loss = categories.cross_entropy
 
     def sometimes(logits, *rest, **more):
         calls.append(torch.is_grad_enabled())
         found = loss(logits, *rest, **more)
         return found * math.nan if sum(calls) == model_step else found
 
-    monkeypatch.setattr(targets, "cross_entropy", sometimes)
+    monkeypatch.setattr(categories, "cross_entropy", sometimes)
     with pytest.raises(TrainingError) as caught:
         trained(data, out)
     monkeypatch.undo()
@@ -337,13 +349,13 @@ def test_a_non_finite_loss_is_one_clear_line(data, tmp_path, monkeypatch, model_
 
 
 def test_a_non_finite_validation_loss_is_one_clear_line(data, tmp_path, monkeypatch):
-    loss = targets.cross_entropy
+    loss = categories.cross_entropy
 
     def only_training(logits, *rest, **more):
         found = loss(logits, *rest, **more)
         return found if torch.is_grad_enabled() else found * math.inf
 
-    monkeypatch.setattr(targets, "cross_entropy", only_training)
+    monkeypatch.setattr(categories, "cross_entropy", only_training)
     with clear_line(TrainingError, "validation of epoch 1", "inf"):
         trained(data, tmp_path / "run")
 

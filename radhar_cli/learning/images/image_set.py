@@ -11,7 +11,7 @@ from PIL import Image
 from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
-from radhar_cli.learning.settings import Kind, Target
+from radhar_cli.learning.choices import Kind
 from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.numerics.rounding import half_up
@@ -123,6 +123,11 @@ class ImageSet:
         return shape_in_words(self.kind, self.size, self.channels)
 
     @property
+    def is_pictures(self) -> bool:
+        """Whether it holds images, not sequences."""
+        return self.kind in ("rgb", "gray")
+
+    @property
     def frames(self) -> int:
         """Number of frames of a sequence; 1 of an image."""
         return {"clouds": self.size[0], "frames": self.channels}.get(self.kind, 1)
@@ -143,23 +148,6 @@ class ImageSet:
         for row, names in zip(labels, self.activities, strict=True):
             row[[numbers[name] for name in names if name in numbers]] = 1
         return labels
-
-    def learned_as(self, target: Target) -> "ImageSet":
-        """Images with the classes of a target: numbers of people, or all activities of anybody.
-
-        The label of target labels is still that of the sample's main person. The images of other
-        targets stay as they are.
-        """
-        if target == "labels":
-            activities = {name for names in self.activities for name in names}
-            further_classes = sorted(activities.difference(self.classes))
-            return replace(self, classes=(*self.classes, *further_classes))
-        if target != "count":
-            return self
-        counts = np.array([len(names) for names in self.activities])
-        occurring, label = np.unique(counts, return_inverse=True)
-        classes = tuple(f"{n} {'person' if n == 1 else 'people'}" for n in occurring)
-        return replace(self, classes=classes, label=label, person_classes=None)
 
     @property
     def skeletons(self) -> TrueSkeletons:

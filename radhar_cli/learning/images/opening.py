@@ -9,11 +9,12 @@ import numpy as np
 from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import DATASET, SPLITS, is_incomplete
 from radhar_cli.errors import FolderError
+from radhar_cli.learning.choices import Kind, sequences_of
 from radhar_cli.learning.images.folder import FilePixels, folder_images
 from radhar_cli.learning.images.h5 import h5_images, h5_sequences
 from radhar_cli.learning.images.image_set import ImageSet, resized
 from radhar_cli.learning.run_files import is_run
-from radhar_cli.learning.settings import KIND_OF_SEQUENCES, Kind, TrainConfig
+from radhar_cli.learning.settings import TrainConfig
 
 
 def open_inputs(
@@ -33,7 +34,7 @@ def open_inputs(
     Raises:
         FolderError: data that cannot be used.
     """
-    if config.model not in KIND_OF_SEQUENCES:
+    if sequences_of(config.model) is None:
         return open_images(path, map_name, config.input, resize)
     if resize is not None:
         raise FolderError(f"--resize: {config.model} reads {config.input_kind}, which have no size")

@@ -1,15 +1,29 @@
 """A network by its name."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import torch
 from torch import Tensor, nn
 
-from radhar_cli.errors import ModelError
-from radhar_cli.learning.models import cloudnet, framenet, smallnet
-from radhar_cli.learning.models.fftnet import NAME, STRIDE, FFTNet
+from radhar_cli.learning.choices import NETWORKS, image_channels_of, load_place, sequences_of
+from radhar_cli.learning.models.outputs import Outputs
 from radhar_cli.learning.models.zoo import zoo_model
+
+
+class Builder(Protocol):
+    """Builds a network with fresh weights; `choices.NETWORKS` names builders."""
+
+    def __call__(self, outputs: Outputs, size: tuple[int, int]) -> nn.Module:
+        """Build a network.
+
+        Args:
+            outputs: number and shape of its outputs.
+            size: (H, W) of an image or a frame, (frames, points) of clouds.
+
+        Raises:
+            ModelError: it cannot take inputs of that size.
+        """
 
 
 @dataclass(frozen=True)
@@ -22,46 +36,21 @@ class Cost:
     multiply_adds: int
 
 
-def build_model(
-    name: str, outputs: int, size: tuple[int, int], per_frame: bool = False
-) -> nn.Module:
+def build_model(name: str, outputs: Outputs, size: tuple[int, int]) -> nn.Module:
     """Build a network with fresh weights.
 
     Args:
-        name: fftnet, smallnet, smallnet_bn, or any name that timm knows (needs the extra `zoo`); of
-            sequences cloudnet, framenet.
-        outputs: number of classes, or of coordinates of all joints.
+        name: one of `choices.NETWORKS`, or any name that timm knows (needs the extra `zoo`).
+        outputs: number and shape of its outputs.
         size: (H, W) of an image or a frame, (frames, points) of clouds.
-        per_frame: every frame of a sequence has outputs.
 
     Raises:
         ModelError: no such network, or it cannot take inputs of that size.
     """
-    height, width = size
-    if name == cloudnet.NAME:
-        return cloudnet.CloudNet(outputs, per_frame)
-    if name == framenet.NAME:
-        if min(size) < framenet.MIN_SIDE:
-            raise ModelError(
-                f"model framenet: frames are {height} x {width} cells; both sides should have at "
-                f"least {framenet.MIN_SIDE}"
-            )
-        return framenet.FrameNet(outputs, per_frame)
-    if name == NAME:
-        if height % STRIDE or width % STRIDE:
-            raise ModelError(
-                f"model fftnet: images are {height} x {width} px; both sides should be multiples "
-                f"of {STRIDE}"
-            )
-        return FFTNet(outputs, height, width)
-    if name in (smallnet.NAME, smallnet.WITH_BATCH_NORM):
-        if min(size) < smallnet.MIN_SIDE:
-            raise ModelError(
-                f"model {name}: images are {height} x {width} px; both sides should have at "
-                f"least {smallnet.MIN_SIDE}"
-            )
-        return smallnet.SmallNet(outputs, name == smallnet.WITH_BATCH_NORM)
-    return zoo_model(name, outputs, size)
+    if name not in NETWORKS:
+        return zoo_model(name, outputs.count, size)
+    build: Builder = load_place(NETWORKS[name].place)
+    return build(outputs, size)
 
 
 def features_and_logits(model: nn.Module, x: Tensor) -> tuple[Tensor, Tensor]:
@@ -78,17 +67,14 @@ def features_and_logits(model: nn.Module, x: Tensor) -> tuple[Tensor, Tensor]:
     return features.flatten(1), logits
 
 
-def cost(
-    name: str, outputs: int, size: tuple[int, int], per_frame: bool = False, channels: int = 3
-) -> Cost:
+def cost(name: str, outputs: Outputs, size: tuple[int, int], channels: int = 3) -> Cost:
     """Parameters and multiply-adds of a network, without computing or allocating anything.
 
     Args:
         name: name of the network, as for `build_model`.
-        outputs: number of outputs.
+        outputs: number and shape of its outputs.
         size: (H, W) of an image or a frame, (frames, points) of clouds.
-        per_frame: every frame of a sequence has outputs.
-        channels: channels of the input: colours, frames, or columns of a cloud.
+        channels: channels of an input of sequences: frames, or columns of a cloud.
     """
     from torch.utils.flop_counter import FlopCounterMode
 
@@ -100,11 +86,12 @@ def cost(
     aten = torch.ops.aten
     real_ffts: dict[Any, Any] = {aten._fft_r2c: fft_operations, aten._fft_c2r: fft_operations}
     with torch.device("meta"):
-        model = build_model(name, outputs, size, per_frame).eval()
-        image = torch.zeros(1, channels, *size)
+        model = build_model(name, outputs, size).eval()
+        depth = channels if sequences_of(name) else image_channels_of(name)
+        inputs = torch.zeros(1, depth, *size)
     counter = FlopCounterMode(display=False, custom_mapping=real_ffts)
     with counter, torch.no_grad():
-        model(image)
+        model(inputs)
     return Cost(parameter_count(model), counter.get_total_flops() // 2)
 
 

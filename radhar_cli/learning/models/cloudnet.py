@@ -9,9 +9,9 @@ from torch import Tensor, nn
 from torch.nn.functional import avg_pool1d
 
 from radhar_cli.learning.images.sequences import COLUMNS
+from radhar_cli.learning.models.outputs import Outputs, OutputShape
 from radhar_cli.learning.models.smallnet import GROUPS
 
-NAME = "cloudnet"
 WIDTHS = (64, 128)
 NEAR = 5  # frames whose points make the centre of one
 
@@ -51,16 +51,16 @@ class OverTime(nn.Module):
 
     head: nn.Linear
 
-    def __init__(self, per_frame: bool) -> None:
+    def __init__(self, outputs: Outputs) -> None:
         super().__init__()
-        self.per_frame = per_frame
+        self.outputs = outputs
 
     def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
-        """Outputs [B, outputs] of features [B, 128, T], or [B, T, outputs] for each frame.
+        """Outputs [B, count] of features [B, 128, T], or [B, T, count] for each frame.
 
         With `pre_logits` the features before the last layer: their mean over time, or all frames'.
         """
-        pooled = features.transpose(1, 2) if self.per_frame else features.mean(2)
+        pooled = features.transpose(1, 2) if self.outputs.per_frame else features.mean(2)
         return pooled if pre_logits else self.head(pooled)
 
 
@@ -68,12 +68,12 @@ class CloudNet(OverTime):
     """Network of clouds [B, 6, T, K]: COLUMNS of K points in T frames.
 
     Args:
-        outputs: number of outputs of a sequence; with `per_frame`, of a frame.
-        per_frame: every frame has outputs, places relative to the centre of its points.
+        outputs: number and shape of its outputs; places are relative to the centre of the points
+            of their frame.
     """
 
-    def __init__(self, outputs: int, per_frame: bool = False) -> None:
-        super().__init__(per_frame)
+    def __init__(self, outputs: Outputs) -> None:
+        super().__init__(outputs)
         first, second = WIDTHS
         self.points = nn.Sequential(
             nn.Conv2d(3 + len(COLUMNS) - 1, first, 1),
@@ -82,19 +82,25 @@ class CloudNet(OverTime):
             nn.ReLU(inplace=True),
         )
         self.time = temporal_convolutions(second)
-        self.head = nn.Linear(second, outputs)
+        self.head = nn.Linear(second, outputs.count)
 
     def forward_features(self, x: Tensor) -> Tensor:
         """Features [B, 128, T] of clouds [B, 6, T, K]."""
-        present = x[:, -1:]
-        point_features = torch.cat([x[:, :3] - moving_centroid(x)[..., None], x[:, :-1]], 1)
+        present = x[:, -1:]  # [B, 1, T, K]
+        from_centre = x[:, :3] - moving_centroid(x)[..., None]  # [B, 3, T, K]
+        point_features = torch.cat([from_centre, x[:, :-1]], 1)  # [B, 8, T, K]
         features: Tensor = self.time((self.points(point_features * present) * present).amax(3))
         return features
 
     def forward(self, x: Tensor) -> Tensor:
-        """Outputs [B, outputs] of clouds [B, 6, T, K], or places [B, T, outputs/3, 3] in m."""
+        """Outputs of clouds [B, 6, T, K]."""
         outputs = self.forward_head(self.forward_features(x))
-        if not self.per_frame:
+        if self.outputs.shape is not OutputShape.PLACES:
             return outputs
-        places = outputs.view(*outputs.shape[:2], -1, 3)
+        places = outputs.view(*outputs.shape[:2], -1, 3)  # [B, T, count] -> [B, T, place, 3]
         return places + moving_centroid(x).transpose(1, 2)[:, :, None]
+
+
+def build(outputs: Outputs, size: tuple[int, int]) -> nn.Module:
+    """Build cloudnet for clouds of (frames, points), any of which it takes."""
+    return CloudNet(outputs)

@@ -6,6 +6,8 @@ Source: paper, section IV and its network figure.
 import torch
 from torch import Tensor, nn
 
+from radhar_cli.errors import ModelError
+from radhar_cli.learning.models.outputs import Outputs
 from radhar_cli.learning.models.smallnet import Pooled
 
 NAME = "fftnet"
@@ -92,3 +94,18 @@ class FFTNet(Pooled):
             layers.append(convolution(channels, wider, stride=2))
         self.layers = nn.Sequential(*layers)
         self.head = nn.Linear(LAST_WIDTH, classes)
+
+
+def build(outputs: Outputs, size: tuple[int, int]) -> nn.Module:
+    """Build fftnet for images of (H, W).
+
+    Raises:
+        ModelError: a side is no multiple of 32.
+    """
+    height, width = size
+    if height % STRIDE or width % STRIDE:
+        raise ModelError(
+            f"model {NAME}: images are {height} x {width} px; both sides should be multiples of "
+            f"{STRIDE}"
+        )
+    return FFTNet(outputs.count, height, width)

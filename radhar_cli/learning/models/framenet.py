@@ -2,10 +2,11 @@
 
 from torch import Tensor, nn
 
+from radhar_cli.errors import ModelError
 from radhar_cli.learning.models.cloudnet import OverTime, temporal_convolutions
+from radhar_cli.learning.models.outputs import Outputs, OutputShape
 from radhar_cli.learning.models.smallnet import block
 
-NAME = "framenet"
 WIDTHS = (8, 16, 32)
 FEATURES, GRID = 128, 4
 MIN_SIDE = 2 ** len(WIDTHS)
@@ -17,12 +18,11 @@ class FrameNet(OverTime):
     The place of an echo in its frame is kept, on a grid of 4 x 4.
 
     Args:
-        outputs: number of outputs of a sequence; with `per_frame`, of a frame.
-        per_frame: every frame has outputs, which are places.
+        outputs: number and shape of its outputs.
     """
 
-    def __init__(self, outputs: int, per_frame: bool = False) -> None:
-        super().__init__(per_frame)
+    def __init__(self, outputs: Outputs) -> None:
+        super().__init__(outputs)
         pairs = zip((1, *WIDTHS[:-1]), WIDTHS, strict=True)
         self.frame = nn.Sequential(
             *(block(*pair) for pair in pairs),
@@ -31,7 +31,7 @@ class FrameNet(OverTime):
             nn.Linear(WIDTHS[-1] * GRID**2, FEATURES),
         )
         self.time = temporal_convolutions(FEATURES)
-        self.head = nn.Linear(FEATURES, outputs)
+        self.head = nn.Linear(FEATURES, outputs.count)
 
     def forward_features(self, x: Tensor) -> Tensor:
         """Features [B, 128, T] of frames [B, T, H, W]."""
@@ -40,6 +40,22 @@ class FrameNet(OverTime):
         return features
 
     def forward(self, x: Tensor) -> Tensor:
-        """Outputs [B, outputs] of frames [B, T, H, W], or places [B, T, outputs/3, 3] in m."""
+        """Outputs of frames [B, T, H, W]."""
         outputs = self.forward_head(self.forward_features(x))
-        return outputs.view(*outputs.shape[:2], -1, 3) if self.per_frame else outputs
+        if self.outputs.shape is OutputShape.PLACES:
+            return outputs.view(*outputs.shape[:2], -1, 3)  # [B, T, count] -> [B, T, place, 3]
+        return outputs
+
+
+def build(outputs: Outputs, size: tuple[int, int]) -> nn.Module:
+    """Build framenet for frames of (H, W) cells.
+
+    Raises:
+        ModelError: a side is too short.
+    """
+    if min(size) < MIN_SIDE:
+        raise ModelError(
+            f"model framenet: frames are {size[0]} x {size[1]} cells; both sides should have at "
+            f"least {MIN_SIDE}"
+        )
+    return FrameNet(outputs)

@@ -8,7 +8,9 @@ images of the simulator, and measured ones are others. With batch norm `radhar a
 import torch
 from torch import Tensor, nn
 
-NAME, WITH_BATCH_NORM = "smallnet", "smallnet_bn"
+from radhar_cli.errors import ModelError
+from radhar_cli.learning.models.outputs import Outputs
+
 WIDTHS = (16, 32, 64, 128)
 GROUPS = 8
 MIN_SIDE = 2 ** len(WIDTHS)
@@ -70,3 +72,24 @@ class SmallNet(Pooled):
         pairs = zip((3, *WIDTHS[:-1]), WIDTHS, strict=True)
         self.layers = nn.Sequential(*(block(*pair, batch_norm) for pair in pairs))
         self.head = nn.Linear(WIDTHS[-1], classes)
+
+
+def build(outputs: Outputs, size: tuple[int, int]) -> nn.Module:
+    """Build smallnet for images of (H, W)."""
+    _require_size("smallnet", size)
+    return SmallNet(outputs.count)
+
+
+def build_with_batch_norm(outputs: Outputs, size: tuple[int, int]) -> nn.Module:
+    """Build smallnet_bn, which has batch norm, for images of (H, W)."""
+    _require_size("smallnet_bn", size)
+    return SmallNet(outputs.count, batch_norm=True)
+
+
+def _require_size(name: str, size: tuple[int, int]) -> None:
+    """Raise ModelError for images that four max-pools leave nothing of."""
+    if min(size) < MIN_SIDE:
+        raise ModelError(
+            f"model {name}: images are {size[0]} x {size[1]} px; both sides should have at least "
+            f"{MIN_SIDE}"
+        )

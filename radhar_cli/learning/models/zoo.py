@@ -8,11 +8,9 @@ from torch import nn
 from torch.library import Library
 
 from radhar_cli.errors import ModelError, did_you_mean
-from radhar_cli.learning.models import fftnet, smallnet
-from radhar_cli.learning.settings import KIND_OF_SEQUENCES
+from radhar_cli.learning.choices import NETWORKS, sequences_of
 
 _OPERATORS: Any = Library("torchvision", "FRAGMENT")  # type: ignore[no-untyped-call]  # forgets what it defines when it is let go
-OURS = (fftnet.NAME, smallnet.NAME, smallnet.WITH_BATCH_NORM)
 
 
 def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
@@ -26,15 +24,16 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
     Raises:
         ModelError: no such network, timm is not installed, or it cannot take images of that size.
     """
-    suggestion = did_you_mean(name, OURS, "")
+    of_images = [ours for ours in NETWORKS if sequences_of(ours) is None]
+    suggestion = did_you_mean(name, of_images, "")
     if suggestion:
         raise ModelError(f"model {name!r}: is unknown; {suggestion}")
     try:
         timm = load_timm()
     except ImportError as error:
         raise ModelError(
-            f"model {name!r}: is neither {' nor '.join(OURS)}, and timm, which has others, is not "
-            f"installed ({error}): pip install 'radhar[zoo]'"
+            f"model {name!r}: is neither {' nor '.join(of_images)}, and timm, which has others, is "
+            f"not installed ({error}): pip install 'radhar[zoo]'"
         ) from None
     except RuntimeError as error:
         raise ModelError(
@@ -43,10 +42,10 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
         ) from None
     if not timm.is_model(name):
         hint = did_you_mean(
-            name, (*KIND_OF_SEQUENCES, *timm.list_models()), "timm.list_models() has them all"
+            name, (*NETWORKS, *timm.list_models()), "timm.list_models() has them all"
         )
         raise ModelError(
-            f"model {name!r}: is none of {', '.join(OURS)} nor a name of timm's; {hint}"
+            f"model {name!r}: is none of {', '.join(of_images)} nor a name of timm's; {hint}"
         )
     create: Any = timm.create_model
     try:

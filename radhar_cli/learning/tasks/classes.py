@@ -1,0 +1,7 @@
+"""What the main person does: one class an input (`target: classes`)."""
+
+from radhar_cli.learning.tasks.categories import Classifier
+
+
+class Classes(Classifier):
+    """The class of the main person, as the data set labels it."""

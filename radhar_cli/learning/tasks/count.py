@@ -1,0 +1,19 @@
+"""How many people there are: one class an input (`target: count`)."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.tasks.categories import Classifier
+
+
+class Count(Classifier):
+    """The number of people in a scene; the classes are "1 person", "2 people" and so on."""
+
+    def relabel(self, images: ImageSet) -> ImageSet:
+        """Images whose classes are the numbers of people that occur."""
+        counts = np.array([len(names) for names in images.activities])
+        occurring, label = np.unique(counts, return_inverse=True)
+        classes = tuple(f"{n} {'person' if n == 1 else 'people'}" for n in occurring)
+        return replace(images, classes=classes, label=label, person_classes=None)

@@ -1,0 +1,83 @@
+"""Where the joints of a person are in every frame of a sequence (`target: skeleton`)."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from torch import Tensor
+
+from radhar_cli.learning.batches import Targets
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.models.outputs import Outputs, OutputShape
+from radhar_cli.learning.tasks.task import Evaluation, Names, Task
+
+NEAR_M = 0.15  # joints found within it count as found
+
+
+class Skeleton(Task):
+    """The joints of the person in every frame, m, in the radar's axes.
+
+    Frames without a true skeleton, which is NaN there, count neither for the loss nor the score.
+    """
+
+    score_name: ClassVar[str] = "joints within 15 cm"
+    score_key: ClassVar[str] = "val_within_15_cm"
+    loss_name: ClassVar[str] = "mean absolute error, m"
+    finds: ClassVar[str] = "joints"
+    outputs_name: ClassVar[str] = "joints"
+    main_number: ClassVar[str] = "mpjpe_cm"
+
+    def targets(self, images: ImageSet) -> Targets:
+        """Joints [T, joint, 3] of each row, m; NaN after the end of a sample."""
+        return images.skeletons
+
+    def names(self, known: Names) -> tuple[str, ...]:
+        """Names of the joints."""
+        return known.joints
+
+    @property
+    def names_key(self) -> str:
+        """Key of the names of the joints in the metadata of an ONNX file."""
+        return "joints"
+
+    def outputs(self, known: Names) -> Outputs:
+        """Three coordinates a joint, in every frame."""
+        return Outputs(3 * len(known.joints), OutputShape.PLACES)
+
+    def loss(self, outputs: Tensor, targets: Tensor) -> Tensor:
+        """Mean absolute error [B] of coordinates, m.
+
+        Args:
+            outputs: [B, T, joint, 3] joints, m.
+            targets: [B, T, joint, 3] true joints, m.
+        """
+        is_known = targets.isfinite()
+        deviation = (outputs - targets.nan_to_num()) * is_known
+        mean: Tensor = deviation.abs().sum((1, 2, 3)) / is_known.sum((1, 2, 3)).clamp_min(1)
+        return mean
+
+    def score(self, outputs: Tensor, targets: Tensor) -> Tensor:
+        """Share of joints within 15 cm [B]."""
+        is_known = targets.isfinite().all(3)  # [B, T, joint]
+        distance = (outputs - targets.nan_to_num()).norm(dim=3)
+        is_near = (distance < NEAR_M) & is_known
+        share: Tensor = is_near.sum((1, 2)) / is_known.sum((1, 2)).clamp_min(1)
+        return share
+
+    def predict(self, outputs: Tensor) -> Tensor:
+        """Joints [B, T, joint, 3], m, as the network gives them."""
+        return outputs
+
+    def report(self, evaluation: Evaluation) -> dict[str, Any]:
+        """Errors in cm, by joint, axis and class."""
+        from radhar_cli.learning.tasks.skeleton_report import report_skeletons
+
+        return report_skeletons(evaluation)
+
+    def summarise(self, numbers: Mapping[str, Any]) -> str:
+        """Errors of the coordinates and of the joints, in words."""
+        in_place = numbers["mpjpe_of_the_mean_pose_in_place_cm"]
+        return (
+            f"mean absolute error {numbers['mean_absolute_error_cm']:.2f} cm, MPJPE "
+            f"{numbers['mpjpe_cm']:.2f} cm (the mean pose in its place {in_place:.2f} cm), "
+            f"{numbers['frames']} frames"
+        )

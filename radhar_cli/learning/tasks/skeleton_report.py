@@ -1,0 +1,103 @@
+"""One network that finds joints, on one data set: its errors, and found beside true skeletons."""
+
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.figures.evaluation import bars_png
+from radhar_cli.figures.skeletons import skeletons_png
+from radhar_cli.learning.report_files import ResultPage
+from radhar_cli.learning.tasks.predictions import Predictions
+from radhar_cli.learning.tasks.skeleton import NEAR_M
+from radhar_cli.learning.tasks.task import Evaluation
+from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.numerics.arrays import Bool, Float
+
+AXES = ("ahead", "left", "up")
+DISTANCE = "mean distance between found and true joint (cm)"
+DRAWN = 6  # skeletons of the figure
+
+
+def report_skeletons(evaluation: Evaluation) -> dict[str, Any]:
+    """Report the errors of joints in cm, by joint, axis and class.
+
+    Beside them the error of the mean pose at its true place: the mean skeleton of these frames
+    moved to the mean of the true joints, which asks for no movement of the limbs.
+
+    Returns:
+        Plain numbers by their keys in report.json.
+    """
+    predictions, page = evaluation.predictions, evaluation.page
+    rows, names = predictions.rows, predictions.names
+    skeletons = predictions.images.skeletons
+    true = np.stack([skeletons[int(row)] for row in rows])  # [N, T, joint, 3], NaN after the end
+    is_known: Bool = np.all(np.isfinite(true), axis=(2, 3))  # [N, T]
+    deviation, joints = (predictions.values - true)[is_known], true[is_known]  # [frame, joint, 3]
+    distance = np.linalg.norm(deviation, axis=2)  # [frame, joint]
+    by_joint = 100 * distance.mean(0)
+    by_axis = 100 * np.abs(deviation).mean(0)  # [joint, 3]
+    header = ("joint", *(f"{axis}_cm" for axis in AXES), "mpjpe_cm")
+    errors = list(zip(names, by_axis.tolist(), by_joint.tolist(), strict=True))
+    table = [(name, *map("{:.2f}".format, (*axes, error))) for name, axes, error in errors]
+    page.table("joints", header, table, "Joint by joint, mean errors")
+    png = bars_png(names, by_joint.tolist(), DISTANCE, page.title)
+    page.figure("joints", f"Error of each joint, mean distance, {page.title}.", png)
+    _draw_skeletons(page, predictions, true, is_known)
+    return {
+        "images": int(rows.size),
+        "frames": int(is_known.sum()),
+        "mean_absolute_error_cm": float(100 * np.abs(deviation).mean()),
+        "mpjpe_cm": float(by_joint.mean()),
+        "mpjpe_of_the_mean_pose_in_place_cm": _mean_pose_error_cm(joints),
+        "within_15_cm": float((distance < NEAR_M).mean()),
+        "joints": {
+            name: {"mpjpe_cm": error, **dict(zip(header[1:4], axes, strict=True))}
+            for name, axes, error in errors
+        },
+        "classes": _errors_by_class(predictions, distance.mean(1), is_known),
+    }
+
+
+def _mean_pose_error_cm(joints: Float) -> float:
+    """Mean distance of joints [frame, joint, 3] from the mean pose at the place of each, cm."""
+    centre = joints.mean(1, keepdims=True)
+    deviation = (joints - centre).mean(0) + centre - joints
+    return float(100 * np.linalg.norm(deviation, axis=2).mean())
+
+
+def _errors_by_class(
+    predictions: Predictions, errors: Float, is_known: Bool
+) -> dict[str, dict[str, float]]:
+    """Frames and mean error in cm of each class that occurs.
+
+    Args:
+        predictions: joints of N rows.
+        errors: mean distance of the joints of each known frame [frame], m.
+        is_known: [N, T], whether a frame has a true skeleton.
+    """
+    images = predictions.images
+    label = np.repeat(images.label[predictions.rows], is_known.sum(1))  # [frame]
+    numbers = {}
+    for number, name in enumerate(images.classes):
+        in_class = label == number
+        if in_class.any():
+            error_cm = float(100 * errors[in_class].mean())
+            numbers[name] = {"frames": int(in_class.sum()), "mpjpe_cm": error_cm}
+    return numbers
+
+
+def _draw_skeletons(
+    page: ResultPage, predictions: Predictions, true: Float, is_known: Bool
+) -> None:
+    """Add found beside true skeletons [N, T, joint, 3] of some frames, evenly spread."""
+    images, predicted = predictions.images, predictions.values
+    frames = np.argwhere(is_known)[np.linspace(0, is_known.sum() - 1, DRAWN).astype(int)]
+    pairs = []
+    for row, frame in frames.tolist():
+        name = f"{images.names[predictions.rows[row]]}, frame {frame}"
+        pairs.append((true[row, frame], predicted[row, frame], name))
+    parents = PARENTS if predictions.names == JOINTS else ()
+    caption = (
+        f"True skeletons (grey) and those found (red), from ahead and from the side, {page.title}."
+    )
+    page.figure("skeletons", caption, skeletons_png(pairs, parents, page.title))

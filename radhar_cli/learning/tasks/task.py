@@ -1,0 +1,170 @@
+"""What a network learns of an input: a task has its outputs, targets, loss, score and report."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
+
+from torch import Tensor
+
+from radhar_cli.learning.batches import Targets
+from radhar_cli.learning.choices import TASKS, load_place
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.models.outputs import Outputs
+from radhar_cli.learning.report_files import ResultPage
+from radhar_cli.learning.run_files import RunError
+from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.tasks.predictions import EvalOptions, Predictions
+from radhar_cli.numerics.arrays import Float, Index
+
+
+class Names(Protocol):
+    """What images, and a trained network, have names for."""
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """Names of the classes."""
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints of skeletons; empty without them."""
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """One network on one data set, as a task reports on it."""
+
+    page: ResultPage  # receives figures and tables
+    predictions: Predictions
+    options: EvalOptions
+    features: Callable[[Index], Float]  # input [n, F] of the network's last layer, of n rows
+
+
+@dataclass(frozen=True)
+class Task(ABC):
+    """What a network learns of an input; B inputs in a batch, N in a data set.
+
+    A task of one's own is a subclass in a file of its own and a line of `choices.TASKS`.
+    """
+
+    settings: TrainConfig  # of the training
+
+    score_name: ClassVar[str]  # for tables and curves, such as "accuracy"
+    score_key: ClassVar[str]  # of the score of validation in metrics.json
+    loss_name: ClassVar[str]
+    finds: ClassVar[str]  # what its networks find, in words, such as "joints"
+    outputs_name: ClassVar[str] = "logits"  # of what an ONNX file gives
+    main_number: ClassVar[str]  # key of the number that a report is summed up by
+
+    # The data: what of a set is learned.
+
+    def relabel(self, images: ImageSet) -> ImageSet:
+        """Give images the classes of the task; those of the source unless it has others."""
+        return images
+
+    def check_training(self, images: ImageSet, path: str) -> None:
+        """Make sure that a set with a split can be learned from.
+
+        Args:
+            images: the set, as `relabel` gives it.
+            path: its data sets, for messages.
+
+        Raises:
+            FolderError: it has nothing to train or validate with.
+        """
+        for split in ("train", "val"):
+            images.rows(split)
+
+    def match(self, images: ImageSet, known: Names, names: Mapping[str, str | None]) -> ImageSet:
+        """Bring labelled images to what a trained network knows.
+
+        Args:
+            images: the set, as it was opened.
+            known: names that the network knows.
+            names: {class of the data: class of the network, or None to leave it out}.
+
+        Raises:
+            FolderError: the network knows nothing of it.
+            ConfigError: `names` leads to an unknown class.
+        """
+        return images.renamed(names)
+
+    @abstractmethod
+    def targets(self, images: ImageSet) -> Targets:
+        """Targets [N, ...] of a set."""
+
+    def training_warnings(self, images: ImageSet) -> list[str]:
+        """Warnings of a set that is learned from, in words."""
+        return []
+
+    # The network: what it gives, and how good that is.
+
+    def names(self, known: Names) -> tuple[str, ...]:
+        """Names of what the outputs of the network stand for."""
+        return known.classes
+
+    @property
+    def names_key(self) -> str:
+        """Key of these names in the metadata of an ONNX file."""
+        return "classes"
+
+    def outputs(self, known: Names) -> Outputs:
+        """Number and shape of the network's outputs: one a name."""
+        return Outputs(len(self.names(known)))
+
+    def describe(self, known: Names) -> str:
+        """Outputs of a network in words, such as "12 classes"."""
+        return f"{len(self.names(known))} {self.names_key}"
+
+    @abstractmethod
+    def loss(self, outputs: Tensor, targets: Tensor) -> Tensor:
+        """Loss of each input [B]."""
+
+    @abstractmethod
+    def score(self, outputs: Tensor, targets: Tensor) -> Tensor:
+        """Score of each input [B], from 0 to 1; the best epoch has the highest mean."""
+
+    @abstractmethod
+    def predict(self, outputs: Tensor) -> Tensor:
+        """Predictions [B, ...] of outputs [B, ...], such as probabilities."""
+
+    # Results.
+
+    def validation_numbers(self, score: float, count: int) -> dict[str, Any]:
+        """Score of `count` validation images by its keys in metrics.json."""
+        return {self.score_key: score}
+
+    def check_options(self, run: str, options: EvalOptions, known: Names) -> None:
+        """Refuse figures of `radhar eval` that cannot be drawn of such a network.
+
+        Args:
+            run: name of the run, for messages.
+            options: which figures are asked for; t-SNE and the paper's groups are of classes.
+            known: names that the network knows.
+
+        Raises:
+            RunError: one cannot be drawn.
+        """
+        if options.tsne or options.in_place_vs_moving:
+            raise RunError(f"{run} finds {self.finds}; that figure is of classes")
+
+    @abstractmethod
+    def report(self, evaluation: Evaluation) -> dict[str, Any]:
+        """Add figures and tables to a page; return plain numbers by their keys in report.json.
+
+        `images` is the number of inputs, `main_number` that by which the result is summed up.
+        """
+
+    @abstractmethod
+    def summarise(self, numbers: Mapping[str, Any]) -> str:
+        """Numbers of `report` as a line for people."""
+
+    def evaluation_warnings(self, images: ImageSet, name: str) -> list[str]:
+        """Warnings of a data set of that name that is evaluated, in words."""
+        return []
+
+
+def create_task(settings: TrainConfig) -> Task:
+    """Task that a training config names."""
+    task: Task = load_place(TASKS[settings.target].place)(settings)
+    return task

@@ -134,14 +134,15 @@ def reliability_png(confidence: Float, accuracy: Float, count: Index, title: str
 
 
 def captioned_png(images: Sequence[Levels], captions: Sequence[str], title: str) -> bytes:
-    """Draw RGB images [H, W, 3] with captions, ACROSS in a row; return the PNG file."""
+    """Draw images, RGB [H, W, 3] or gray [H, W, 1], with captions; return the PNG file."""
     rows, columns = -(-len(images) // ACROSS), ACROSS  # the title needs the width of four
     figure = page(2.5 * columns, 3.1 * rows + 0.4)
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for panel in panels:
         panel.set_axis_off()
     for panel, image, caption in zip(panels, images, captions, strict=False):
-        panel.imshow(image, interpolation="nearest", aspect="auto")
+        rgb = np.broadcast_to(image, (*image.shape[:2], 3))
+        panel.imshow(rgb, interpolation="nearest", aspect="auto")
         panel.set_title(caption, fontsize=7.5, loc="left")
     figure.suptitle(title, fontsize=10)
     return png_bytes(figure)

@@ -12,7 +12,7 @@ from torch.utils.data import DataLoader, Dataset
 
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.images.image_set import Pixels, repeated
+from radhar_cli.learning.images.image_set import Pixels
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.randomness import TRAINING, stream
 
@@ -24,20 +24,25 @@ AS_STORED = -1
 class Normalisation:
     """Levels to network input: (level/255 - mean)/sd, channel by channel, or all channels alike.
 
-    What is no levels, but numbers with a unit, stays as it is.
+    What is no levels, but numbers with a unit, stays as it is. Images of one channel are repeated
+    here, on the device, for a network that takes several.
     """
 
     mean: tuple[float, ...]
     sd: tuple[float, ...]
+    channels: int | None = None  # that a network of images takes; None takes them as they are
 
     def __call__(self, levels: Tensor) -> Tensor:
-        """uint8 [B, C, H, W] to float32 of the same shape."""
+        """uint8 [B, C, H, W] to float32 [B, C, H, W], or of `channels` equal ones where C is 1."""
         if levels.is_floating_point():
             return levels
         shape = (1, -1, 1, 1)
         mean = torch.tensor(self.mean, device=levels.device).view(shape)
         sd = torch.tensor(self.sd, device=levels.device).view(shape)
-        return (levels.float() / 255 - mean) / sd
+        inputs = (levels.float() / 255 - mean) / sd
+        if self.channels is not None and inputs.shape[1] == 1:
+            return inputs.expand(-1, self.channels, -1, -1)
+        return inputs
 
 
 def epoch_order(weights: Float, seed: int, epoch: int) -> Index:
@@ -89,7 +94,7 @@ class _Rows(Dataset[tuple[Tensor, Tensor]]):
         row, epoch = item
         values = self.pixels.read(row)
         if self.augmentation is not None and epoch >= 0:
-            values = repeated(self.augmentation(values[..., 0], row, epoch))
+            values = self.augmentation(values[..., 0], row, epoch)[..., None]
         target = torch.as_tensor(0 if self.targets is None else self.targets[row])
         return torch.from_numpy(np.ascontiguousarray(values.transpose(2, 0, 1))), target
 

@@ -18,9 +18,9 @@ def select_rows(count: int) -> Index:
     return np.unique(np.linspace(0, count - 1, min(count, MAX_POINTS)).astype(int))
 
 
-def shrink(rgb: Levels) -> Float:
-    """Vector of an image [H, W, 3]: one channel from 0 to 1, averaged down to at most 64 x 64."""
-    gray = rgb.mean(2)
+def shrink(levels: Levels) -> Float:
+    """Vector of an image [H, W, C]: one channel from 0 to 1, averaged down to at most 64 x 64."""
+    gray = levels.mean(2)
     down, across = -(-gray.shape[0] // SIDE), -(-gray.shape[1] // SIDE)
     height, width = gray.shape[0] // down * down, gray.shape[1] // across * across
     blocks = gray[:height, :width].reshape(height // down, down, width // across, across)

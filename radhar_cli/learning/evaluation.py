@@ -25,6 +25,7 @@ from radhar_cli.learning.run_files import RunError, is_run
 from radhar_cli.learning.run_folder import RunMetadata, load_best
 from radhar_cli.learning.tasks.categories import Categories
 from radhar_cli.learning.tasks.predictions import ClassPredictions, Predictions
+from radhar_cli.learning.tasks.skeleton import Skeleton
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 
@@ -82,7 +83,7 @@ def open_for_model(
 
 def _with_split_of_training(images: ImageSet, metadata: RunMetadata) -> ImageSet:
     """Images with the split that a run has cut, where they are those; else as they are."""
-    if images.split is not None:
+    if images.samples.split is not None:
         return images
     with suppress(FolderError):
         cut = images.cut(metadata.settings.validation_share, metadata.settings.seed)
@@ -111,12 +112,13 @@ def training_images(metadata: RunMetadata, path: Path) -> ImageSet:
     config = metadata.settings
     images = open_for_model(metadata, path, None).cut(config.validation_share, config.seed)
     images = images.take(images.rows("train"))
-    return replace(images, split=np.full(len(images), TRAIN, np.uint8))
+    split = np.full(len(images), TRAIN, np.uint8)
+    return replace(images, samples=replace(images.samples, split=split))
 
 
 def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:
     """Rows of a split, and its name; all rows, and "all", where images come without a split."""
-    split = "all" if images.split is None else split
+    split = "all" if images.samples.split is None else split
     return images.rows(split), split
 
 
@@ -252,9 +254,9 @@ def predict_paths(
     """
     metadata, model = load_best(run)
     if not isinstance(metadata.task, Categories):
-        raise RunError(
-            f"{run}: finds {metadata.task.finds}, no classes; `-o joints.npz` writes them to a file"
-        )
+        to_file = isinstance(metadata.task, Skeleton)
+        hint = "; `-o joints.npz` writes them to a file" if to_file else ""
+        raise RunError(f"{run}: finds {metadata.task.finds}, no classes{hint}")
     model.to(device)
     for path in paths:
         inputs = open_unlabelled(metadata, path, map_name, split, resize)
@@ -298,10 +300,12 @@ def open_unlabelled(
         images = recolour(open_pictures(path, files, metadata.input, size), metadata.colours)
         if resize:
             images = resized(images, metadata.size)
-        return Inputs(images.pixels, np.arange(len(files)), images.names, images.notes)
+        return Inputs(
+            images.pixels, np.arange(len(files)), tuple(images.samples.name), images.notes
+        )
     images = open_for_model(metadata, path, map_name, labelled=False, resize=resize)
     rows, _ = rows_of(images, split)
-    names = tuple(f"{path}: {images.names[row]}" for row in rows)
+    names = tuple(f"{path}: {images.samples.name[row]}" for row in rows)
     return Inputs(images.pixels, rows, names, images.notes)
 
 

@@ -36,10 +36,10 @@ class _FromInputs(nn.Module):
 def export(run: Path, path: Path) -> float:
     """Write the best epoch's network as ONNX and compare the two on random inputs.
 
-    The input is `pixels` uint8 [batch, 3, H, W], RGB; or `frames` uint8 [batch, T, H, W]; or
-    `clouds` float32 [batch, 6, T, points], the columns of `Sequences` first. The output is `logits`
-    float32 [batch, classes], or `joints` float32 [batch, T, joint, 3] in m. The file's metadata
-    names the classes or the joints.
+    The input is `pixels` uint8 [batch, 3, H, W], RGB, or [batch, 1, H, W] of gray; or `frames`
+    uint8 [batch, T, H, W]; or `clouds` float32 [batch, 6, T, points], the columns of `Sequences`
+    first. The output is `logits` float32 [batch, classes], or `joints` float32 [batch, T, joint, 3]
+    in m. The file's metadata names the classes or the joints.
 
     Args:
         run: folder of the run.

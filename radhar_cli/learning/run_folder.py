@@ -26,7 +26,7 @@ from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
 from radhar_cli.errors import ModelError
 from radhar_cli.files.untrusted import regular_size
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.choices import Kind
+from radhar_cli.learning.choices import Kind, image_channels_of
 from radhar_cli.learning.images.image_set import shape_in_words
 from radhar_cli.learning.models.build import Cost, build_model, cost
 from radhar_cli.learning.report_folder import csv_text
@@ -93,6 +93,11 @@ class RunMetadata(Section):
 
     @model_validator(mode="after")
     def _fits(self) -> "RunMetadata":
+        if self.input == "gray" and self.channels != 1:
+            raise value_error(
+                "should have one channel of input: gray; earlier versions had three, and their "
+                "runs should be trained anew"
+            )
         if not len(self.mean) == len(self.sd) in (1, self.channels):
             raise value_error("should have a mean and an sd for each channel")
         if self.model != self.settings.model or not self.task.names(self):
@@ -140,7 +145,8 @@ class RunMetadata(Section):
     @property
     def normalisation(self) -> Normalisation:
         """Normalisation from levels to the network's input."""
-        return Normalisation(self.mean, self.sd)
+        channels = image_channels_of(self.model) if self.reads_pictures else None
+        return Normalisation(self.mean, self.sd, channels)
 
 
 @dataclass(frozen=True)

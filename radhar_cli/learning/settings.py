@@ -112,7 +112,7 @@ class TrainConfig(Section):
     map: str | None = None
     """Map that is learned from; null is the first one of the data set."""
     input: Literal["rgb", "gray"] = "rgb"
-    """Channels of images: colours as in the PNGs, or the levels three times."""
+    """Channels of images: the three colours of the PNGs, or the levels alone."""
     frames: Annotated[Auto, _auto_or(1)] = "auto"
     """Frames of a sequence, the middle ones of a longer sample; auto is as many as the longest."""
     points: Annotated[Count, Field(le=4096)] = 64

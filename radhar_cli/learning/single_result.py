@@ -134,7 +134,9 @@ def count_trained_on(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
     folder = run.folder if run.folder.is_dir() else run.folder.parent
     pixels, scenes = read_trained_on(folder)
     digests = scan(images, rows).digests if pixels else ()
+    column = images.samples.scene
+    evaluated_scenes = () if column is None else column[rows]
     return {
         "images": sum(p in pixels for p in digests),
-        "scenes": sum(images.scenes[row] in scenes for row in rows) if images.scenes else 0,
+        "scenes": sum(scene in scenes for scene in evaluated_scenes),
     }

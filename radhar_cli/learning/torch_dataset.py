@@ -21,7 +21,6 @@ class LabelledImages(Dataset[tuple[Any, int]]):
     """Pairs (image, label) of one map: float32 [C, H, W] from 0 to 1, and a place in `classes`."""
 
     images: ImageSet
-    channels: int
     transform: Callable[[Tensor], Any] | None
 
     @property
@@ -34,14 +33,14 @@ class LabelledImages(Dataset[tuple[Any, int]]):
 
     def __getitem__(self, row: int) -> tuple[Any, int]:
         row = range(len(self))[row]  # of a negative number, and an IndexError beyond the end
-        levels = self.images.pixels.read(row)[..., : self.channels]
+        levels = self.images.pixels.read(row)
         image = torch.from_numpy(np.ascontiguousarray(levels.transpose(2, 0, 1))).float() / 255
         transformed = image if self.transform is None else self.transform(image)
-        return transformed, int(self.images.label[row])
+        return transformed, int(self.images.samples.label[row])
 
     def __repr__(self) -> str:
         images = self.images
-        shape = f"float32 {[self.channels, *images.size]}"
+        shape = f"float32 {[images.channels, *images.size]}"
         of_map = "" if images.map is None else f" of map {images.map}"
         classes = ", ".join(self.classes)
         return f"<LabelledImages {images.where}: {len(self)} x {shape}{of_map}; classes {classes}>"
@@ -76,4 +75,4 @@ def torch_dataset(
         raise ConfigError(f"input = {input!r}: should be rgb or gray")
     images = open_images(Path(path), map, input)
     images = images.take(images.rows(split))
-    return LabelledImages(images, 1 if input == "gray" else 3, transform)
+    return LabelledImages(images, transform)

@@ -59,8 +59,9 @@ class TrainedRun:
         """Probabilities [B, classes], or joints [B, T, joint, 3] in m, of a batch of inputs.
 
         Args:
-            inputs: as they are stored: images uint8 [B, 3, H, W], frames uint8 [B, T, H, W], clouds
-                float32 [B, 6, T, points] (`Sequences` has the columns last).
+            inputs: as they are stored: images uint8 [B, 3, H, W], gray ones [B, 1, H, W], frames
+                uint8 [B, T, H, W], clouds float32 [B, 6, T, points] (`Sequences` has the columns
+                last).
         """
         with torch.inference_mode():
             outputs: Tensor = self.network(self.metadata.normalisation(inputs.to(self.device)))

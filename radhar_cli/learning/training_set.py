@@ -120,6 +120,8 @@ def describe_run(
         },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},
     )
-    scenes = images.scenes or ("",) * len(images)
+    scenes = ("",) * len(images) if images.samples.scene is None else images.samples.scene
     row_digests = zip(rows.tolist(), training_scan.digests, strict=True)
-    return metadata, [(images.names[row], pixels, scenes[row]) for row, pixels in row_digests]
+    return metadata, [
+        (images.samples.name[row], pixels, scenes[row]) for row, pixels in row_digests
+    ]

@@ -139,7 +139,7 @@ def _class_rows(images: ImageSet, names: Mapping[str, str | None]) -> dict[str, 
         if common is not None:
             numbers.setdefault(common, []).append(number)
     return {
-        name: np.flatnonzero(np.isin(images.label, own_numbers))
+        name: np.flatnonzero(np.isin(images.samples.label, own_numbers))
         for name, own_numbers in numbers.items()
     }
 
@@ -147,14 +147,14 @@ def _class_rows(images: ImageSet, names: Mapping[str, str | None]) -> dict[str, 
 def _side(path: Path, images: ImageSet, classes: dict[str, Index], size: tuple[int, int]) -> Side:
     compared_rows = np.concatenate(list(classes.values()))
     counts = np.bincount(
-        np.delete(images.label, compared_rows), minlength=len(images.classes)
+        np.delete(images.samples.label, compared_rows), minlength=len(images.classes)
     ).tolist()
     left_out = {name: n for name, n in zip(images.classes, counts, strict=True) if n}
     looked_at = compared_rows[:: max(1, compared_rows.size // TWO_VALUED)]
     masks = all(_two_valued(images.pixels.read(int(row))) for row in looked_at)
     group, extent, decibels = np.arange(len(images)), None, None
-    if images.persons is not None:
-        group = np.unique(images.persons, return_inverse=True)[1]
+    if images.samples.person is not None:
+        group = np.unique(images.samples.person, return_inverse=True)[1]
     if images.map is not None and is_h5(path):
         with open_dataset(path) as data:
             extent, recorded = data.extents(images.map), data.config.recordings

@@ -69,14 +69,15 @@ def drawn(data: EvalSet, k: int, seed: int, repeat: int) -> Draw:
     """Up to k images of each class; those of a smaller k are among those of a larger one."""
     images, rng = data.images, stream(seed, TRAINING, repeat, name="shots")
     order = data.rows[rng.permutation(data.rows.size)]
-    persons, mine = images.persons, np.ones(order.size, bool)
+    persons, mine = images.samples.person, np.ones(order.size, bool)
     names = sorted({persons[row] for row in data.rows}) if persons is not None else []
     apart = 0 < len(names) < data.rows.size  # several images show the same person or recording
     if apart:
         assert persons is not None
         half = set(rng.permutation(names)[: len(names) // 2].tolist())
         mine = np.array([persons[row] in half for row in order])
-    of_class = (order[mine & (images.label[order] == c)] for c in range(len(images.classes)))
+    label = images.samples.label[order]
+    of_class = (order[mine & (label == c)] for c in range(len(images.classes)))
     labelled = np.concatenate([rows[:k] for rows in of_class])
     others = order[~mine] if apart else data.rows
     return Draw(labelled, np.sort(np.setdiff1d(others, labelled)))
@@ -84,7 +85,7 @@ def drawn(data: EvalSet, k: int, seed: int, repeat: int) -> Draw:
 
 def missing(data: EvalSet, draw: Draw, k: int) -> str | None:
     """The class that gives fewer than k images to learn from or none to test on, if any."""
-    label, classes = data.images.label, data.images.classes
+    label, classes = data.images.samples.label, data.images.classes
     learned, tested = (np.bincount(label[rows], minlength=len(classes)) for rows in draw)
     short = [name for c, name in enumerate(classes) if k and (learned[c] < k or not tested[c])]
     return short[0] if short else None
@@ -99,10 +100,12 @@ def learned_from(
     """
     count, mass = len(labelled), sum(map(len, mix))
     split = np.repeat(np.array([TRAIN, VALIDATION], np.uint8), count)
-    twice = replace(labelled.take(np.tile(np.arange(count), 2)), split=split)
+    twice = labelled.take(np.tile(np.arange(count), 2))
+    twice = replace(twice, samples=replace(twice.samples, split=split))
     images, shown = joined([twice, *mix]), max(SHOWN, count)
+    label = labels_for(images, metadata.classes)
     return (
-        replace(images, classes=metadata.classes, label=labels_for(images, metadata.classes)),
+        replace(images, classes=metadata.classes, samples=replace(images.samples, label=label)),
         (min(shown / count, most), *(shown / mass for _ in mix)),
     )
 
@@ -186,7 +189,7 @@ def few_shots(
         if short:
             print(f"{k} a class: left out; {short[0]} has too few", flush=True)
             continue
-        draws = draws if k or measured.images.persons else draws[:1]
+        draws = draws if k or measured.images.samples.person is not None else draws[:1]
         accuracies: dict[str, list[float]] = {}
         for repeat, draw in enumerate(draws):
             for way, one in learned(k, repeat, draw).items():

@@ -374,11 +374,11 @@ def mistakes_png(found: Predicted, simulated: ImageSet) -> bytes | None:
         surest = np.argsort(-found.probabilities[some, taken], kind="stable")[:BESIDE]
         levels = _grey(found.images, some[surest])
         row = [
-            _picture(one, f"measured {Path(found.images.names[number]).name}")
+            _picture(one, f"measured {Path(found.images.samples.name[number]).name}")
             for number, one in zip(some[surest], levels, strict=True)
         ]
         for slug in (names[true], names[taken]):
-            of_class = shown[simulated.label == simulated.classes.index(slug)]
+            of_class = shown[simulated.samples.label == simulated.classes.index(slug)]
             apart = (np.abs(of_class.astype(np.int16) - one) for one in levels)
             nearest = [one.sum((1, 2)).argmin() for one in apart]
             row += [_picture(of_class[number], f"simulated {slug}") for number in nearest]

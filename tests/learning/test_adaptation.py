@@ -31,7 +31,7 @@ def cross_entropy(run, data):
     levels = np.stack([images.pixels.read(row).transpose(2, 0, 1) for row in range(len(images))])
     with torch.inference_mode():
         logits = model.train()(metadata.normalisation(torch.from_numpy(levels)))
-    return float(nn.functional.cross_entropy(logits, torch.from_numpy(images.label)))
+    return float(nn.functional.cross_entropy(logits, torch.from_numpy(images.samples.label)))
 
 
 def another_radar(data):

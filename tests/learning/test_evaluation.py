@@ -165,7 +165,7 @@ def test_batch_size_does_not_change_predictions(learned):
     one, many = (predict_classes(model, metadata, images, rows, CPU, batch) for batch in (1, 5))
     np.testing.assert_allclose(one.probabilities, many.probabilities, atol=1e-5)
     np.testing.assert_allclose(many.probabilities.sum(1), 1, atol=1e-6)
-    assert np.array_equal(one.truth, images.label[rows])
+    assert np.array_equal(one.truth, images.samples.label[rows])
     assert last_features(model, metadata, images, rows, CPU).shape == (9, 128)
 
 
@@ -262,7 +262,7 @@ def test_onnx_runtime_gives_the_same_probabilities(learned, tmp_path):
     with torch.no_grad():
         expected = model(metadata.normalisation(torch.from_numpy(levels))).numpy()
     np.testing.assert_allclose(logits, expected, atol=1e-4, rtol=1e-4)
-    assert np.array_equal(logits.argmax(1), images.label[rows])
+    assert np.array_equal(logits.argmax(1), images.samples.label[rows])
 
 
 SET = """

@@ -13,6 +13,7 @@ from learning.patterns import CLASSES, tree
 
 from radhar_cli.learning.evaluation import open_for_model, predict_classes, training_images
 from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.images.sample_table import objects
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.single_result import EvalSet
@@ -34,7 +35,9 @@ def measured(tmp_path_factory):
 
 
 def opened(path, persons=None):
-    images = replace(open_images(path, None, "rgb"), persons=persons)
+    images = open_images(path, None, "rgb")
+    column = None if persons is None else objects(persons)
+    images = replace(images, samples=replace(images.samples, person=column))
     return EvalSet(images, np.arange(len(images)), "all")
 
 
@@ -51,7 +54,7 @@ def test_draws_are_k_of_each_class_and_all_others_are_tested(measured):
     some = opened(measured)
     for k in (1, 3):
         draw = drawn(some, k, seed=1, repeat=0)
-        assert np.bincount(some.images.label[draw.labelled]).tolist() == [k] * len(CLASSES)
+        assert np.bincount(some.images.samples.label[draw.labelled]).tolist() == [k] * len(CLASSES)
         assert sorted([*draw.labelled, *draw.tested]) == list(range(24))
     larger, other = drawn(some, 5, 1, 0), drawn(some, 5, 1, 1)
     assert set(draw.labelled) < set(larger.labelled), "more labels are the fewer ones and others"
@@ -78,7 +81,7 @@ def test_labelled_images_come_from_other_persons_than_tested_ones(measured):
         assert who(one.tested) == who(more.tested), "tested on the same persons, whatever k"
         assert len(who(more.labelled)) == len(who(more.tested)) == 2
         assert not who(more.labelled) & who(more.tested)
-        assert np.bincount(some.images.label[more.labelled]).tolist() == [4, 4, 4]
+        assert np.bincount(some.images.samples.label[more.labelled]).tolist() == [4, 4, 4]
         assert sorted([*more.labelled, *more.tested]) == list(range(24))
     assert missing(some, more, 4) is None
     assert missing(some, drawn(some, 5, 1, 0), 5) == "kicking"
@@ -93,10 +96,11 @@ def test_mixed_images_are_shown_as_often_as_labelled_ones_unless_these_are_few(
     for most, of_few in ((100, 24), (2, 6)):
         images, weights = learned_from(metadata, few, [mixed], most)
         rows = images.rows("train")
-        shown = np.bincount(images.source[rows], np.array(weights)[images.source[rows]])
+        source = images.samples.source
+        shown = np.bincount(source[rows], np.array(weights)[source[rows]])
         assert shown == pytest.approx([of_few, 24])
         assert images.rows("val").size == 3
-        assert (images.source[images.rows("val")] == 0).all(), "the mixed ones choose no epoch"
+        assert (source[images.rows("val")] == 0).all(), "the mixed ones choose no epoch"
         assert images.classes == metadata.classes
 
 

@@ -63,10 +63,10 @@ def test_hdf5_and_png_are_resized_alike(tmp_path, kind):
     build(config, tmp_path / "set", 1, Listener())
     stored = open_images(tmp_path / "set", None, kind, (32, 40))
     files = open_images(tmp_path / "set/png/stft", None, kind, (32, 40))
-    for row, name in enumerate(stored.names):
+    for row, name in enumerate(stored.samples.name):
         read = stored.pixels.read(row)
         assert read.shape == (32, 40, 3)
-        assert np.array_equal(read, files.pixels.read(files.names.index(name)))
+        assert np.array_equal(read, files.pixels.read(files.samples.name.tolist().index(name)))
 
 
 def test_eval_and_predict_take_other_sizes_with_resize_alone(run_dir, tmp_path):
@@ -132,11 +132,11 @@ def test_kept_rows_have_their_pixels_names_and_splits(tmp_path):
     left = images.renamed({"a": None, "c": "walking", "b": "punching"})
     assert left.classes == ("punching", "walking")
     assert left.left_out == {"a": 3}
-    rows = [row for row in range(len(images)) if images.classes[images.label[row]] != "a"]
-    assert left.names == tuple(images.names[row] for row in rows)
-    assert images.split is not None
-    assert left.split is not None
-    assert left.split.tolist() == images.split[rows].tolist()
+    rows = [row for row in range(len(images)) if images.classes[images.samples.label[row]] != "a"]
+    assert left.samples.name.tolist() == images.samples.name[rows].tolist()
+    assert images.samples.split is not None
+    assert left.samples.split is not None
+    assert left.samples.split.tolist() == images.samples.split[rows].tolist()
     for new, row in enumerate(rows):
         assert np.array_equal(left.pixels.read(new), images.pixels.read(row))
     with pytest.raises(FolderError, match="leaves no class"):

@@ -2,6 +2,7 @@
 
 import pickle
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -62,15 +63,15 @@ def test_hdf5_and_png_are_the_same_images_in_the_same_order(made, kind, map_name
         for split, count in (("train", 6), ("val", 3), ("test", 3)):
             ours, theirs = stored.rows(split), files.rows(split)
             assert len(ours) == len(theirs) == count
-            assert np.array_equal(stored.label[ours], files.label[theirs])
-            assert [stored.names[r] for r in ours] == [files.names[r] for r in theirs]
+            assert np.array_equal(stored.samples.label[ours], files.samples.label[theirs])
+            assert [stored.samples.name[r] for r in ours] == [files.samples.name[r] for r in theirs]
             assert np.array_equal(pixels(stored, ours), pixels(files, theirs))
         for images in (stored, files):
             rows = np.concatenate([images.rows("train"), images.rows("val")])
             hashes.add(content_hash(images, rows, scan(images, rows).digests))
     assert len(hashes) == 1
     channels = pixels(stored, stored.rows("train"))
-    assert (channels[..., 0] == channels[..., 1]).all() == (kind == "gray")
+    assert channels.shape[-1] == stored.channels == (1 if kind == "gray" else 3)
 
 
 def test_gray_is_the_stored_level(made):
@@ -79,7 +80,7 @@ def test_gray_is_the_stored_level(made):
     with h5py.File(made / "dataset.h5") as file:
         levels = file["maps/stft"][3]
     read = open_images(made, "stft", "gray").pixels.read(3)
-    assert np.array_equal(read, np.repeat(levels[..., None], 3, axis=-1))
+    assert np.array_equal(read, levels[..., None])
 
 
 def test_levels_of_radhar_pngs_are_read_without_their_data_set(made, tmp_path):
@@ -108,13 +109,15 @@ def test_hash_covers_pixels_labels_classes_and_splits(made):
     rows = images.rows("train")
     digests = scan(images, rows).digests
     right = content_hash(images, rows, digests)
-    from dataclasses import replace
+
+    def with_column(**column):
+        return replace(images, samples=replace(images.samples, **column))
 
     assert content_hash(images, rows, digests) == right
     assert content_hash(images, rows, digests[::-1]) != right
-    assert content_hash(replace(images, label=images.label[::-1].copy()), rows, digests) != right
+    assert content_hash(with_column(label=images.samples.label[::-1]), rows, digests) != right
     assert content_hash(replace(images, classes=("a", "b", "c")), rows, digests) != right
-    assert content_hash(replace(images, split=1 - images.split), rows, digests) != right
+    assert content_hash(with_column(split=1 - images.samples.split), rows, digests) != right
 
 
 def test_first_map_is_read_if_none_is_named_and_a_wrong_one_is_suggested(made):
@@ -125,8 +128,8 @@ def test_first_map_is_read_if_none_is_named_and_a_wrong_one_is_suggested(made):
 
 def test_subjects_and_snr_are_read_from_the_scenes(made):
     images = open_images(made, None, "rgb")
-    assert images.scenes is not None
-    assert len(set(images.scenes)) == len(images)
+    assert images.samples.scene is not None
+    assert len(set(images.samples.scene)) == len(images)
     assert images.snr_db == 20.0
 
 
@@ -144,7 +147,7 @@ def test_labels_of_a_tree_are_those_of_its_classes_txt_or_of_the_alphabet(tmp_pa
 
 def test_classes_are_matched_by_name_not_by_number(tmp_path):
     images = open_images(tree(tmp_path / "t", ("b", "d"), {"test": 2}), None, "rgb")
-    assert images.label.tolist() == [0, 0, 1, 1]
+    assert images.samples.label.tolist() == [0, 0, 1, 1]
     assert labels_for(images, ("d", "c", "b")).tolist() == [2, 2, 0, 0]
 
 
@@ -152,19 +155,19 @@ def test_classes_are_matched_by_name_not_by_number(tmp_path):
 def test_folders_named_like_splits_are_splits(tmp_path, name):
     root = tree(tmp_path / "t", parts={"train": 3, name: 2, "test": 1})
     images = open_images(root, None, "rgb")
-    assert images.split is not None
+    assert images.samples.split is not None
     counts = [images.rows(split).size for split in ("train", "val", "test", "all")]
     assert counts == [9, 6, 3, 18]
-    assert images.names[0] == "kicking/000"
+    assert images.samples.name[0] == "kicking/000"
 
 
 def test_a_tree_without_splits_is_split_by_class_reproducibly(tmp_path):
     root = tree(tmp_path / "t", ("a", "b"), {"": 10})
     images = open_images(root, None, "rgb")
-    assert images.split is None
+    assert images.samples.split is None
     cut = images.cut(0.2, 1)
-    assert np.bincount(cut.label[cut.rows("val")]).tolist() == [2, 2]
-    assert np.bincount(cut.label[cut.rows("train")]).tolist() == [8, 8]
+    assert np.bincount(cut.samples.label[cut.rows("val")]).tolist() == [2, 2]
+    assert np.bincount(cut.samples.label[cut.rows("train")]).tolist() == [8, 8]
     assert cut.rows("val").tolist() == images.cut(0.2, 1).rows("val").tolist()
     others = {tuple(images.cut(0.2, seed).rows("val").tolist()) for seed in range(2, 6)}
     assert others - {tuple(cut.rows("val").tolist())}
@@ -183,7 +186,7 @@ def test_every_class_has_images_in_both_splits(counts, share):
     images = ImageSet(Path("x"), None, kinds, label, None, names, None, (32, 32), None)
     cut = images.cut(share, 0)
     for index, count in enumerate(counts):
-        held = int((cut.label[cut.rows("val")] == index).sum())
+        held = int((cut.samples.label[cut.rows("val")] == index).sum())
         assert held == min(max(1, half_up(share, count)), count - 1)
         assert held < count
 
@@ -331,10 +334,10 @@ def test_persons_come_from_data_sets(tmp_path):
     assert radhar(*command, "-o", out, *(x for s in sets for x in ("--set", s))).returncode == 0
     ok(*command, "-o", plain, *(x for s in sets[:3] for x in ("--set", s)))
     images = open_images(out, None, "gray")
-    assert images.persons == tuple("01201") * 2
+    assert images.samples.person.tolist() == [*"01201"] * 2
     walking = images.renamed({"punching": None})
-    assert walking.persons == tuple("01201")
-    assert open_images(plain, None, "gray").persons is None
+    assert walking.samples.person.tolist() == [*"01201"]
+    assert open_images(plain, None, "gray").samples.person is None
 
 
 @pytest.mark.parametrize("named", [True, False])
@@ -348,7 +351,7 @@ def test_persons_or_recordings_come_from_recorded_sets(tmp_path, named):
     )
     out = tmp_path / "set"
     ok("generate", tmp_path / "c.yaml", "--recordings", tmp_path / "m.npz", "-o", out)
-    persons = open_images(out, None, "gray").persons
+    persons = open_images(out, None, "gray").samples.person
     assert persons is not None
     assert set(persons) == (set("abc") if named else {f"file m.npz/{n}" for n in range(6)})
 
@@ -375,8 +378,8 @@ def fingerprints(folder, *changes):
     config = load_config(small_config(folder.parent, SET), list(changes))
     build(config, folder, 1, Listener())
     images = open_images(folder, None, "gray")
-    assert images.scenes is not None
-    return dict(zip(images.names, images.scenes, strict=True))
+    assert images.samples.scene is not None
+    return dict(zip(images.samples.name, images.samples.scene, strict=True))
 
 
 @pytest.mark.parametrize("pair", OTHER_SCENES)

@@ -29,12 +29,12 @@ def test_a_joined_set_has_all_rows_and_classes(data, other):
     assert set(both.classes) == {*one.classes, *two.classes}
     for row in range(len(both)):
         part, at = (one, row) if row < len(one) else (two, row - len(one))
-        assert both.classes[both.label[row]] == part.classes[part.label[at]]
-        assert both.split is not None
-        assert part.split is not None
-        assert both.split[row] == part.split[at]
+        assert both.classes[both.samples.label[row]] == part.classes[part.samples.label[at]]
+        assert both.samples.split is not None
+        assert part.samples.split is not None
+        assert both.samples.split[row] == part.samples.split[at]
         assert np.array_equal(both.pixels.read(row), part.pixels.read(at))
-        assert both.source[row] == (part is two)
+        assert both.samples.source[row] == (part is two)
 
 
 def test_weights_of_sets_and_balance_of_classes(data, other):
@@ -43,9 +43,9 @@ def test_weights_of_sets_and_balance_of_classes(data, other):
     plain = sampling_weights(both, rows, None, balanced=False)
     assert (plain == 1).all()
     weighted = sampling_weights(both, rows, (1.0, 0.25), balanced=False)
-    assert weighted[both.source[rows] == 1].tolist() == [0.25] * 16
+    assert weighted[both.samples.source[rows] == 1].tolist() == [0.25] * 16
     balanced = sampling_weights(both, rows, (1.0, 0.25), balanced=True)
-    mass = np.bincount(both.label[rows], balanced)
+    mass = np.bincount(both.samples.label[rows], balanced)
     assert np.allclose(mass, mass[0])
     assert np.isclose(balanced.sum(), weighted.sum())
 
@@ -65,11 +65,11 @@ def test_an_epoch_shows_sets_by_their_weights_and_classes_equally_often(data, ot
     rows = both.rows("train")
     weights = sampling_weights(both, rows, config.data_weights, balanced=True)
     shown = np.concatenate([rows[epoch_order(weights, seed=1, epoch=e)] for e in range(50)])
-    by_class = np.bincount(both.label[shown]) / 50
+    by_class = np.bincount(both.samples.label[shown]) / 50
     assert by_class == pytest.approx([11] * 4, rel=0.1)
     walking = both.classes.index("walking")
-    of_walking = shown[both.label[shown] == walking]
-    by_set = np.bincount(both.source[of_walking])
+    of_walking = shown[both.samples.label[shown] == walking]
+    by_set = np.bincount(both.samples.source[of_walking])
     assert by_set[0] / by_set[1] == pytest.approx(3 * 4 / (0.5 * 8), rel=0.15)
 
 

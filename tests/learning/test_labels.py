@@ -12,6 +12,7 @@ from helpers.command_line import radhar
 from radhar_cli.learning.images.h5 import h5_images
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined
+from radhar_cli.learning.images.sample_table import objects
 from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tasks.task import Task, create_task
@@ -60,42 +61,45 @@ def images(place: Path, name: str = "several") -> ImageSet:
 
 def test_what_is_shown_and_counted(place: Path) -> None:
     stored = images(place)
-    assert stored.person_classes is not None
+    assert stored.samples.activities is not None
     labels, count = (task_of(name).relabel(stored) for name in ("labels", "count"))
     assert labels.classes == ("walking", "punching", "sitting_down")
     assert count.classes == ("1 person", "2 people")
     shown = labels.multi_hot(labels.classes)
-    for row, names in enumerate(stored.person_classes):
-        assert names[0] == stored.classes[stored.label[row]] == labels.classes[labels.label[row]]
+    for row, names in enumerate(stored.samples.activities):
+        assert names[0] == stored.classes[stored.samples.label[row]]
+        assert names[0] == labels.classes[labels.samples.label[row]]
         assert {labels.classes[n] for n in np.flatnonzero(shown[row])} == set(names)
-        assert count.classes[count.label[row]].split()[0] == str(len(names))
+        assert count.classes[count.samples.label[row]].split()[0] == str(len(names))
     assert task_of("classes").relabel(stored) is stored
 
 
 def test_of_one_person_it_is_what_that_person_does(place: Path) -> None:
     alone = images(place, "alone")
-    assert alone.person_classes is None
+    assert alone.samples.activities is None
     shown = task_of("labels").relabel(alone).multi_hot(alone.classes)
-    np.testing.assert_array_equal(shown.argmax(axis=1), alone.label)
+    np.testing.assert_array_equal(shown.argmax(axis=1), alone.samples.label)
     assert (shown.sum(axis=1) == 1).all()
     assert task_of("count").relabel(alone).classes == ("1 person",)
 
 
 def test_rows_names_and_joined_sets_keep_everybody(place: Path) -> None:
     stored, alone = images(place), images(place, "alone")
-    assert stored.person_classes is not None
+    assert stored.samples.activities is not None
     some = stored.take(np.array([3, 15]))
-    assert some.person_classes == (stored.person_classes[3], stored.person_classes[15])
+    everybody = stored.samples.activities.tolist()
+    assert some.samples.activities.tolist() == [everybody[3], everybody[15]]
     seated = stored.renamed({"sitting_down": "seated", "walking": None})
-    assert seated.person_classes is not None
+    assert seated.samples.activities is not None
     assert len(seated) == 10
-    assert {name for names in seated.person_classes for name in names} == {"punching", "seated"}
+    assert {name for names in seated.samples.activities for name in names} == {"punching", "seated"}
     both = joined([alone, stored])
-    assert both.person_classes is not None
-    assert both.person_classes[20:] == stored.person_classes
-    assert all(len(names) == 1 for names in both.person_classes[:20])
+    assert both.samples.activities is not None
+    assert both.samples.activities[20:].tolist() == everybody
+    assert all(len(names) == 1 for names in both.samples.activities[:20])
     rows = np.arange(len(stored))
-    others = replace(stored, person_classes=tuple(names[:1] for names in stored.person_classes))
+    alone = objects(names[:1] for names in everybody)
+    others = replace(stored, samples=replace(stored.samples, activities=alone))
     assert content_hash(stored, rows) != content_hash(others, rows)
 
 

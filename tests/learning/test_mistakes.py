@@ -179,7 +179,7 @@ def test_a_broken_file_in_a_worker_is_one_line(tmp_path):
     (root / "train/kicking/001.png").write_bytes(b"no more")
     with pytest.raises(FolderError) as caught:
         list(
-            Reader(images.pixels, images.label, workers=1)(
+            Reader(images.pixels, images.samples.label, workers=1)(
                 batches_in_order(np.arange(len(images)), 4)
             )
         )
@@ -193,7 +193,9 @@ def test_workers_leave_the_random_state_of_the_network_alone(data):
     for workers in (0, 1):
         torch.manual_seed(5)
         list(
-            Reader(images.pixels, images.label, workers=workers)(batches_in_order(np.arange(4), 2))
+            Reader(images.pixels, images.samples.label, workers=workers)(
+                batches_in_order(np.arange(4), 2)
+            )
         )
         drawn.append(float(torch.rand(1)))
     assert drawn[0] == drawn[1]

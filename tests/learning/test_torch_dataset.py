@@ -45,7 +45,7 @@ def test_workers_read_what_training_reads(data: Path) -> None:
     loader = DataLoader(found, 2, num_workers=2, multiprocessing_context="spawn")
     read, labels = (torch.cat(parts) for parts in zip(*loader, strict=True))
     assert read.dtype == torch.float32
-    assert labels.tolist() == images.label[rows].tolist()
+    assert labels.tolist() == images.samples.label[rows].tolist()
     for row, image in zip(rows, read, strict=True):
         levels = (image * 255).round().to(torch.uint8).permute(1, 2, 0).numpy()
         assert np.array_equal(levels, images.pixels.read(int(row)))

@@ -56,7 +56,7 @@ def first_batch(data, count=6):
     images = open_training_set(settings(), data)
     rows = images.rows("train")[::2][:count]
     levels = np.stack([images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
-    return torch.from_numpy(levels), torch.from_numpy(images.label[rows])
+    return torch.from_numpy(levels), torch.from_numpy(images.samples.label[rows])
 
 
 def gradients(model):
@@ -249,7 +249,7 @@ def test_validation_is_that_of_the_stored_weights(data, run_dir):
     x = ((levels - metadata.mean) / metadata.sd).transpose(0, 3, 1, 2)
     with torch.no_grad():
         logits = model(torch.tensor(x, dtype=torch.float32)).double()
-    truth = torch.from_numpy(images.label[rows])
+    truth = torch.from_numpy(images.samples.label[rows])
     wanted = nn.functional.one_hot(truth, 3) * (1 - 0.1) + 0.1 / 3
     loss = -(wanted * logits.log_softmax(1)).sum(1).mean()
     last = run.read_history(run_dir)[-1]
@@ -369,7 +369,7 @@ def test_gray_and_bfloat16_train(data, tmp_path):
     trained(data, tmp_path / "run", epochs=1, input="gray", precision="bfloat16")
     metadata = run.read_metadata(tmp_path / "run")
     assert metadata.input == "gray"
-    assert metadata.mean[0] == metadata.mean[1] == metadata.mean[2]
+    assert metadata.channels == len(metadata.mean) == len(metadata.sd) == 1
     assert all(w.dtype != torch.bfloat16 for w in best_weights(tmp_path / "run").values())
 
 

@@ -216,13 +216,13 @@ def test_mistakes_are_drawn_beside_the_nearest_simulated_images(
         return b"PNG"
 
     monkeypatch.setattr(script, "pictures_png", pictures_png)
-    right = np.eye(2)[measured.label]
-    found = script.Predicted(measured, measured.label, right, measured.classes)
+    right = np.eye(2)[measured.samples.label]
+    found = script.Predicted(measured, measured.samples.label, right, measured.classes)
     assert found.accuracy == 1
     assert script.mistakes_png(found, simulated) is None
     wrong = right.copy()
-    wrong[list(measured.names).index("grabbing/60")] = 0.2, 0.8
-    found = script.Predicted(measured, measured.label, wrong, measured.classes)
+    wrong[list(measured.samples.name).index("grabbing/60")] = 0.2, 0.8
+    found = script.Predicted(measured, measured.samples.label, wrong, measured.classes)
     assert found.accuracy == 0.75
     assert script.mistakes_png(found, simulated) == b"PNG"
     assert list(drawn) == ["grabbing\n1 as\nwalking"]

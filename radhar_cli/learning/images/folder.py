@@ -4,7 +4,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import itemgetter
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,14 +16,17 @@ from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_
 from radhar_cli.dataset.layout import CLASSES, CONFIG, PNG
 from radhar_cli.errors import FolderError
 from radhar_cli.files.untrusted import refuse_outside
+from radhar_cli.learning.choices import Kind
 from radhar_cli.learning.images.colour_maps import PICTURES_LOOKED_AT, colour_map_of, levels_behind
-from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet, repeated
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet
+from radhar_cli.learning.images.sample_table import SampleTable, objects
 from radhar_cli.numerics.arrays import Levels
 
 _WANTED = (
     "should be dataset.h5, a folder that `radhar generate` wrote, or a tree <class>/<image>.png or "
     "<train|val|test>/<class>/<image>.png"
 )
+NO_SPLIT = -1  # of an image in a tree without splits
 MAX_CLASSES = 128  # a confusion matrix of them can still be drawn
 
 
@@ -30,16 +35,16 @@ class FilePixels:
     """One image file per row."""
 
     files: tuple[Path, ...]  # [N]
-    kind: str  # "rgb" or "gray"
+    kind: Kind  # "rgb" or "gray"
     size: tuple[int, int] | None  # (H, W) that all of them should have, None for any
     colours: str | None = None  # colour map whose levels are one channel; None takes the luminance
 
     def read(self, row: int) -> Levels:
-        """RGB [H, W, 3] of a row, or one channel three times."""
+        """RGB [H, W, 3] or levels [H, W, 1] of a row."""
         if self.kind == "rgb":
             return read_rgb(self.files[row], self.size)
         levels_of = None if self.colours is None else partial(levels_behind, name=self.colours)
-        return repeated(read_gray(self.files[row], self.size, levels_of or luminance))
+        return read_gray(self.files[row], self.size, levels_of or luminance)[..., None]
 
     def with_recognised_colours(self) -> "FilePixels":
         """Pixels of these files that know the colour map in which some of them are drawn."""
@@ -59,7 +64,7 @@ class FilePixels:
 def folder_images(
     root: Path,
     map_name: str | None,
-    kind: str,
+    kind: Kind,
     any_size: bool = False,
     looks_at_colours: bool = True,
 ) -> ImageSet:
@@ -82,54 +87,76 @@ def folder_images(
             raise FolderError(f"{root}: has no map {map_name!r}; it is a tree of images")
         root = root / map_name
         folder_map = map_name
+    listed = _list_tree(root, tree)
+    classes = _classes(root, {image.class_name for image in listed})
+    if len(classes) > MAX_CLASSES:
+        raise FolderError(f"{root}: has {len(classes)} classes; should have at most {MAX_CLASSES}")
+    listed.sort(key=lambda image: (image.split, classes.index(image.class_name), image.file.name))
+    files = tuple(image.file for image in listed)
+    size = image_size(files[0])
+    images = open_pictures(root, files, kind, None if any_size else size, looks_at_colours)
+    samples = replace(
+        images.samples,
+        label=np.array([classes.index(image.class_name) for image in listed], np.intp),
+        name=objects(_names(listed)),
+        split=np.array([image.split for image in listed], np.uint8)
+        if listed[0].split != NO_SPLIT
+        else None,
+    )
+    return replace(images, map=folder_map, classes=classes, samples=samples, size=size)
+
+
+class _ListedImage(NamedTuple):
+    """An image file of a tree, and what its folders say of it."""
+
+    split: int  # number of the split; NO_SPLIT in a tree without splits
+    class_name: str
+    file: Path
+
+
+def _list_tree(root: Path, tree: Path) -> list[_ListedImage]:
+    """Images of the class folders in `root`, or of those in its train, val and test.
+
+    Args:
+        root: folder of class folders or splits.
+        tree: folder out of which no link may lead.
+
+    Raises:
+        FolderError: there is none, or a class folder without images.
+    """
     folders = _folders(root, tree)
     split_folders = {
         name: SPLIT_NAMES[name.lower()] for name in folders if name.lower() in SPLIT_NAMES
     }
-    if split_folders:
-        images = [
-            (split, name, file)
-            for split_folder, split in sorted(split_folders.items(), key=lambda item: item[1])
-            for name in _folders(root / split_folder, tree)
-            for file in image_files(root / split_folder / name, tree)
-        ]
-        empty = {
-            name for split_folder in split_folders for name in _folders(root / split_folder, tree)
-        }
-    else:
-        images = [(-1, name, file) for name in folders for file in image_files(root / name, tree)]
-        empty = set(folders)
-    empty -= {name for _, name, _ in images}
-    if not images:
+    # of each split, in order: its number, and the folder of its class folders
+    parts = [
+        (split, root / name) for name, split in sorted(split_folders.items(), key=itemgetter(1))
+    ]
+    class_folders = [
+        (split, name, part / name)
+        for split, part in parts or [(NO_SPLIT, root)]
+        for name in (_folders(part, tree) if parts else folders)
+    ]
+    listed = [
+        _ListedImage(split, name, file)
+        for split, name, folder in class_folders
+        for file in image_files(folder, tree)
+    ]
+    if not listed:
         maps = [name for name in folders if _folders(root / name, tree)]
-        hint = f"--map {maps[0]} takes one of its maps" if maps and not split_folders else _WANTED
+        hint = f"--map {maps[0]} takes one of its maps" if maps and not parts else _WANTED
         raise FolderError(f"{root}: holds no class folders with images; {hint}")
+    empty = {name for _, name, _ in class_folders} - {image.class_name for image in listed}
     if empty:
         raise FolderError(
-            f"{root}: the class {sorted(empty)[0]!r} has no image; {_empty_hint(empty, images)}"
+            f"{root}: the class {sorted(empty)[0]!r} has no image; {_empty_hint(empty, listed)}"
         )
-    classes = _classes(root, {name for _, name, _ in images})
-    if len(classes) > MAX_CLASSES:
-        raise FolderError(f"{root}: has {len(classes)} classes; should have at most {MAX_CLASSES}")
-    images.sort(key=lambda item: (item[0], classes.index(item[1]), item[2].name))
-    files = tuple(file for _, _, file in images)
-    size = image_size(files[0])
-    return replace(
-        open_pictures(root, files, kind, None if any_size else size, looks_at_colours),
-        map=folder_map,
-        classes=classes,
-        label=np.array([classes.index(name) for _, name, _ in images], dtype=np.intp),
-        split=np.array([split for split, _, _ in images], dtype=np.uint8)
-        if split_folders
-        else None,
-        names=_names(images),
-        size=size,
-    )
+    return listed
 
 
-def _empty_hint(empty: set[str], images: Sequence[tuple[int, str, Path]]) -> str:
+def _empty_hint(empty: set[str], images: Sequence[_ListedImage]) -> str:
     """Advice on folders without images beside others that have some."""
-    classes = sorted({name for _, name, _ in images})
+    classes = sorted({image.class_name for image in images})
     if len(classes) < 2:
         return f"{classes[0]!r} alone has images, so this may be no data set; {_WANTED}"
     return "every folder beside those of the classes should hold images of its class"
@@ -138,7 +165,7 @@ def _empty_hint(empty: set[str], images: Sequence[tuple[int, str, Path]]) -> str
 def open_pictures(
     where: Path,
     files: Sequence[Path],
-    kind: str,
+    kind: Kind,
     size: tuple[int, int] | None,
     looks_at_colours: bool = True,
 ) -> ImageSet:
@@ -158,12 +185,15 @@ def open_pictures(
         where=where,
         map=None,
         classes=("unknown",),
-        label=np.zeros(len(files), np.intp),
-        split=None,
-        names=tuple(map(str, files)),
-        scenes=None,
+        samples=SampleTable(
+            label=np.zeros(len(files), np.intp),
+            name=objects(map(str, files)),
+            source=np.zeros(len(files), np.intp),
+        ),
         size=size or image_size(files[0]),
         pixels=pixels,
+        kind=kind,
+        channels=1 if kind == "gray" else 3,
         colours=pixels.colours if kind == "rgb" else None,
         notes=pixels.notes(where),
     )
@@ -183,16 +213,12 @@ def _classes(root: Path, present: set[str]) -> tuple[str, ...]:
     return tuple(sorted(present))
 
 
-def _names(images: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
-    """<class>/<image> of (split, class, file), with the ending where only that tells two apart."""
-    stem_counts = Counter((split, name, file.stem) for split, name, file in images)
-    names = []
+def _names(images: Sequence[_ListedImage]) -> Iterator[str]:
+    """Yield <class>/<image> of each, with the ending where only that tells two apart."""
+    stems = Counter((split, name, file.stem) for split, name, file in images)
     for split, name, file in images:
         file_name = file.name if file.parent.name == name else f"{file.parent.name}/{file.name}"
-        names.append(
-            f"{name}/{file.stem if stem_counts[split, name, file.stem] == 1 else file_name}"
-        )
-    return tuple(names)
+        yield f"{name}/{file.stem if stems[split, name, file.stem] == 1 else file_name}"
 
 
 def map_of_folder(folder: Path) -> str | None:

@@ -12,7 +12,8 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.recorded import windows
 from radhar_cli.learning.choices import Kind
-from radhar_cli.learning.images.image_set import ImageSet, Pixels, repeated
+from radhar_cli.learning.images.image_set import ImageSet, Pixels
+from radhar_cli.learning.images.sample_table import Objects, SampleTable, objects
 from radhar_cli.learning.images.sequences import (
     COLUMNS,
     POINTS,
@@ -29,6 +30,18 @@ _WHO_AND_HOW = (
     *("subject.", "motion.", "timing.", "classes.", "people."),
     *("recordings.part", "recordings.start_s"),
 )
+
+
+@dataclass
+class H5Levels(Opened):
+    """Rows of one map of a dataset.h5, as levels of one channel."""
+
+    map: str
+
+    def read(self, row: int) -> Levels:
+        """Levels [H, W, 1] of a row."""
+        levels: Levels = self.data.maps[self.map][row]
+        return levels[..., None]
 
 
 @dataclass
@@ -49,19 +62,21 @@ def h5_images(path: Path, map_name: str | None, kind: Kind) -> ImageSet:
 
     Args:
         map_name: map to open; None takes the first one.
-        kind: "rgb" as the PNGs are coloured, or "gray", the levels in three equal channels.
+        kind: "rgb" as the PNGs are coloured, or "gray", the levels as one channel.
 
     Raises:
         FolderError: it is no data set, or has no such map.
     """
     with open_dataset(path) as data:
         name = data.map_name(map_name)
-        colours = colour_table(data.config.image.colour_map)
-        table = colours if kind == "rgb" else repeated(np.arange(256, dtype=np.uint8))
-        pixels = H5Pixels(data.path, name, table)
-        images = _image_set(data, path, name, pixels, data.config.image.size_px)
-        colour_map = data.config.image.colour_map if kind == "rgb" else None
-        return replace(images, colours=colour_map)
+        image = data.config.image
+        if kind == "gray":
+            levels = H5Levels(data.path, name)
+            images = _image_set(data, path, name, levels, image.size_px)
+            return replace(images, kind="gray", channels=1)
+        coloured = H5Pixels(data.path, name, colour_table(image.colour_map))
+        images = _image_set(data, path, name, coloured, image.size_px)
+        return replace(images, colours=image.colour_map)
 
 
 def h5_sequences(
@@ -95,37 +110,46 @@ def _image_set(
     """Image set of the rows of a data set, which `pixels` reads."""
     rows, snr_db = Rows.of(data.config), data.config.snr_db
     slugs = np.array(data.classes)[data.label]
+    samples = SampleTable(
+        label=data.label.astype(np.intp),
+        name=objects(f"{s}/{rows.name(row)}" for row, s in enumerate(slugs)),
+        source=np.zeros(len(slugs), np.intp),
+        split=data.split,
+        scene=objects(_scenes(data, slugs.tolist())),
+        person=_persons(data),
+        activities=_activities(data),
+    )
     return ImageSet(
         where=where,
         map=name,
         classes=data.classes,
-        label=data.label.astype(np.intp),
-        split=data.split,
-        names=tuple(f"{s}/{rows.name(row)}" for row, s in enumerate(slugs)),
-        scenes=_scenes(data, slugs.tolist()),
+        samples=samples,
         size=size,
         pixels=pixels,
         snr_db=float(snr_db) if isinstance(snr_db, (int, float)) else None,
-        persons=_persons(data),
-        person_classes=None
-        if data.person_label is None
-        else tuple(
-            tuple(data.class_slugs[n] for n in numbers if n >= 0) for numbers in data.person_label
-        ),
     )
 
 
-def _persons(data: Dataset) -> tuple[str, ...] | None:
+def _activities(data: Dataset) -> Objects | None:
+    """Classes of all persons in each row [N], the main person's first; None without `people`."""
+    if data.person_label is None:
+        return None
+    return objects(
+        tuple(data.class_slugs[n] for n in numbers if n >= 0) for numbers in data.person_label
+    )
+
+
+def _persons(data: Dataset) -> Objects | None:
     """Person of each row [N], or its recording where that names none; None if neither is known."""
     if isinstance(data.config, MeasuredConfig):
         parts = (window.part for window in windows(data.config))
-        return tuple(f"file {p.file}" if p.person is None else p.person for p in parts)
+        return objects(f"file {p.file}" if p.person is None else p.person for p in parts)
     if data.config.split.subjects is None:
         return None
-    return tuple(map(str, data.scene["subject"][:].tolist()))
+    return objects(map(str, data.scene["subject"][:].tolist()))
 
 
-def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
+def _scenes(data: Dataset, slugs: list[str]) -> list[str]:
     """A fingerprint of who moved and how, in SI units; radar, wall and noise do not enter.
 
     Numbers enter with their dotted keys where they apply, so that a scene has the same fingerprint
@@ -148,4 +172,4 @@ def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
         text = f"{' '.join(activities)}\n{names[pattern.flat[row]]}\n"
         content = text.encode() + table[row, known[row]].tobytes()
         fingerprints.append(hashlib.blake2b(content, digest_size=8).hexdigest())
-    return tuple(fingerprints)
+    return fingerprints

@@ -12,6 +12,7 @@ from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.choices import Kind
+from radhar_cli.learning.images.sample_table import Objects, SampleTable, objects
 from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.numerics.rounding import half_up
@@ -23,7 +24,7 @@ class Pixels(Protocol):
     """Reads images by row; can be pickled for worker processes."""
 
     def read(self, row: int) -> Levels:
-        """RGB [H, W, 3] of a row, or a sequence (`SequenceReader.read`)."""
+        """RGB [H, W, 3] or levels [H, W, 1] of a row, or a sequence (`SequenceReader.read`)."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +35,14 @@ class Resized:
     size: tuple[int, int]
 
     def read(self, row: int) -> Levels:
-        """RGB [size[0], size[1], 3] of a row."""
-        rgb = self.pixels.read(row)
-        if rgb.shape[:2] == self.size:
-            return rgb
-        smooth = Image.Resampling.BILINEAR
-        return np.asarray(Image.fromarray(rgb).resize(self.size[::-1], smooth))
+        """RGB or levels [size[0], size[1], C] of a row."""
+        levels = self.pixels.read(row)
+        if levels.shape[:2] == self.size:
+            return levels
+        is_gray = levels.shape[2] == 1
+        picture = Image.fromarray(levels[..., 0] if is_gray else levels)
+        resized = np.asarray(picture.resize(self.size[::-1], Image.Resampling.BILINEAR))
+        return resized[..., None] if is_gray else resized
 
 
 def resized(images: "ImageSet", size: tuple[int, int]) -> "ImageSet":
@@ -67,7 +70,7 @@ class Chosen:
     rows: Index
 
     def read(self, row: int) -> Levels:
-        """RGB [H, W, 3] of a row, or a sequence, as its part reads it."""
+        """Image [H, W, C] of a row, or a sequence, as its part reads it."""
         return self.parts[int(self.part[row])].read(int(self.rows[row]))
 
     def joints(self, row: int) -> Float:
@@ -77,45 +80,31 @@ class Chosen:
 
 @dataclass(frozen=True)
 class ImageSet:
-    """Images or sequences of one size, each with a class and a split; N is their number."""
+    """Images or sequences of one size, and what is known of each; N is their number."""
 
     where: Path  # file or folder that the images came from
     map: str | None  # name of the map, None for a tree that names none
     # name of every label: the data set's, of a tree without classes.txt by the alphabet
     classes: tuple[str, ...]
-    label: Index  # [N] index into `classes`
-    split: Levels | None  # [N] 0 train, 1 validation, 2 test; None where the source does not say
-    names: tuple[str, ...]  # [N] name of each image, for messages and tables
-    # [N] fingerprint of the person and the motion, None where the source does not say
-    scenes: tuple[str, ...] | None
+    samples: SampleTable  # [N] label, split, name and so on of each image
     size: tuple[int, int]  # (H, W) in pixels
     pixels: Pixels
     snr_db: float | None = None  # of all images; None where it differs or is not known
     # {class: images of it that the source has and this set does not}
     left_out: Mapping[str, int] = field(default_factory=dict)
-    # [N] which of several joined sets each came from
-    source: Index = field(default_factory=lambda: np.zeros(0, np.intp))
-    # [N] who is in each, or the recording that it was cut from; None where the source does not say
-    persons: tuple[str, ...] | None = None
     kind: Kind = "rgb"
-    channels: int = 3  # colours, columns of a cloud, or frames of a sequence of frames
+    channels: int = 3  # colours (1 of gray), columns of a cloud, or frames of a sequence of frames
     joints: tuple[str, ...] = ()  # names of what `pixels.joints` reads
-    # [N] classes of all persons in each, the main person's first; None where there is one person
-    person_classes: tuple[tuple[str, ...], ...] | None = None
     colours: str | None = None  # colour map of RGB pictures, where it is known
     notes: tuple[str, ...] = ()  # what was done to make the images fit, to be said
 
-    def __post_init__(self) -> None:
-        if not self.source.size:
-            object.__setattr__(self, "source", np.zeros(len(self.label), np.intp))
-
     def __len__(self) -> int:
-        return len(self.label)
+        return len(self.samples)
 
     def path_of(self, row: int) -> str:
         """File of an image in a tree; else the data set and the name of the row."""
         files = getattr(self.pixels, "files", None)
-        return str(files[row]) if files else f"{self.where}: {self.names[row]}"
+        return str(files[row]) if files else f"{self.where}: {self.samples.name[row]}"
 
     @property
     def shape(self) -> str:
@@ -133,9 +122,11 @@ class ImageSet:
         return {"clouds": self.size[0], "frames": self.channels}.get(self.kind, 1)
 
     @property
-    def activities(self) -> tuple[tuple[str, ...], ...]:
-        """Activities of everybody in each image [N], the main person's first."""
-        return self.person_classes or tuple((self.classes[label],) for label in self.label)
+    def activities(self) -> Objects:
+        """Tuples of the activities of everybody in each image [N], the main person's first."""
+        if self.samples.activities is not None:
+            return self.samples.activities
+        return objects((self.classes[label],) for label in self.samples.label)
 
     def multi_hot(self, classes: Sequence[str]) -> Levels:
         """Multi-hot labels [N, classes]: 1 for an activity that anybody does in the image, else 0.
@@ -162,12 +153,12 @@ class ImageSet:
         """
         if split == "all":
             return np.arange(len(self))
-        if self.split is None:
+        if self.samples.split is None:
             why = "is not split into train and val; should be read whole, split = all"
             raise FolderError(f"{self.where}: {why}")
-        numbers = np.flatnonzero(self.split == SPLIT_NAMES[split])
+        numbers = np.flatnonzero(self.samples.split == SPLIT_NAMES[split])
         if not numbers.size:
-            counts = np.bincount(self.split, minlength=3)
+            counts = np.bincount(self.samples.split, minlength=3)
             available = ", ".join(
                 f"{n} {name}" for n, name in zip(counts, SPLITS, strict=True) if n
             )
@@ -189,43 +180,29 @@ class ImageSet:
         if not classes:
             raise FolderError(f"{self.where}: --classes leaves no class of it")
         new_number = np.array([-1 if name is None else classes.index(name) for name in new])
-        label = new_number[self.label]
+        label = new_number[self.samples.label]
         rows = np.flatnonzero(label >= 0)
-        if self.person_classes is not None:
-            new_names = (
-                [names.get(name, name) for name in self.person_classes[row]] for row in rows
-            )
-            activities = tuple(
-                tuple(name for name in person_names if name is not None)
-                for person_names in new_names
-            )
-            return replace(
-                replace(self, person_classes=None).renamed(names), person_classes=activities
-            )
+        samples = replace(self.samples, label=label, activities=self._renamed_activities(names))
+        images = replace(self, classes=classes, samples=samples)
         if rows.size == label.size:
-            return replace(self, classes=classes, label=label)
-        image_counts = np.bincount(self.label[label < 0], minlength=len(new)).tolist()
-        left_out = {name: n for name, n in zip(self.classes, image_counts, strict=True) if n}
-        return replace(
-            replace(self, classes=classes, label=label).take(rows),
-            left_out={**self.left_out, **left_out},
+            return images
+        counts = np.bincount(self.samples.label[label < 0], minlength=len(new)).tolist()
+        left_out = {name: n for name, n in zip(self.classes, counts, strict=True) if n}
+        return replace(images.take(rows), left_out={**self.left_out, **left_out})
+
+    def _renamed_activities(self, names: Mapping[str, str | None]) -> Objects | None:
+        """Activities of all persons in each image under new names, without those left out."""
+        if self.samples.activities is None:
+            return None
+        return objects(
+            tuple(new for name in activities if (new := names.get(name, name)) is not None)
+            for activities in self.samples.activities
         )
 
     def take(self, rows: Index) -> "ImageSet":
         """Set of the images of some rows, in their order; a row may come twice."""
-        return replace(
-            self,
-            label=self.label[rows],
-            split=None if self.split is None else self.split[rows],
-            names=tuple(self.names[row] for row in rows),
-            scenes=None if self.scenes is None else tuple(self.scenes[row] for row in rows),
-            pixels=Chosen((self.pixels,), np.zeros_like(rows), rows),
-            source=self.source[rows],
-            persons=None if self.persons is None else tuple(self.persons[row] for row in rows),
-            person_classes=None
-            if self.person_classes is None
-            else tuple(self.person_classes[r] for r in rows),
-        )
+        pixels = Chosen((self.pixels,), np.zeros_like(rows), rows)
+        return replace(self, samples=self.samples.take(rows), pixels=pixels)
 
     def cut(self, share: float, seed: int) -> "ImageSet":
         """Set with a split: its own, or each class cut at random into train and validation.
@@ -237,11 +214,11 @@ class ImageSet:
         Raises:
             FolderError: a class has a single image.
         """
-        if self.split is not None:
+        if self.samples.split is not None:
             return self
         split = np.full(len(self), TRAIN, dtype=np.uint8)
         for index, name in enumerate(self.classes):
-            class_rows = np.flatnonzero(self.label == index)
+            class_rows = np.flatnonzero(self.samples.label == index)
             order = stream(seed, TRAINING, name=f"cut {name}").permutation(class_rows.size)
             if class_rows.size < 2:
                 raise FolderError(
@@ -250,7 +227,7 @@ class ImageSet:
                 )
             held_out = min(max(1, half_up(share, class_rows.size)), class_rows.size - 1)
             split[class_rows[order[:held_out]]] = VALIDATION
-        return replace(self, split=split)
+        return replace(self, samples=replace(self.samples, split=split))
 
 
 def shape_in_words(kind: Kind, size: tuple[int, int], channels: int) -> str:
@@ -268,12 +245,7 @@ def shape_in_words(kind: Kind, size: tuple[int, int], channels: int) -> str:
 
 def labels_for(images: ImageSet, known: Sequence[str]) -> Index:
     """Labels [N] in the numbering of `known`, a list that has every class of the images."""
-    return np.array([list(known).index(name) for name in images.classes])[images.label]
-
-
-def repeated(levels: Levels) -> Levels:
-    """Levels [...] in three equal channels, [..., 3]."""
-    return np.repeat(levels[..., None], 3, axis=-1)
+    return np.array([list(known).index(name) for name in images.classes])[images.samples.label]
 
 
 def check_split_name(name: str) -> str:

@@ -9,7 +9,8 @@ import numpy as np
 
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.colours import recolour
-from radhar_cli.learning.images.image_set import Chosen, ImageSet
+from radhar_cli.learning.images.image_set import Chosen, ImageSet, labels_for
+from radhar_cli.learning.images.sample_table import SampleTable, objects
 from radhar_cli.numerics.arrays import Float, Index
 
 
@@ -25,12 +26,9 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
     _refuse_unlike(sets)
     colours = next((images.colours for images in sets if images.colours is not None), None)
     sets = [recolour(images, colours) for images in sets]
-    has_several_people = any(images.person_classes for images in sets)
     classes = tuple(dict.fromkeys(name for images in sets for name in images.classes))
-    numbers = [np.array([classes.index(name) for name in images.classes]) for images in sets]
     source = np.repeat(np.arange(len(sets)), [len(images) for images in sets])
     rows = np.concatenate([np.arange(len(images)) for images in sets])
-    scenes = [images.scenes or ("",) * len(images) for images in sets]
     left_out = Counter[str]()
     for images in sets:
         left_out.update(images.left_out)
@@ -41,18 +39,34 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
         colours=colours,
         notes=tuple(dict.fromkeys(note for images in sets for note in images.notes)),
         classes=classes,
-        label=np.concatenate(
-            [label_of[images.label] for label_of, images in zip(numbers, sets, strict=True)]
-        ),
-        split=np.concatenate([images.split for images in sets if images.split is not None]),
-        names=tuple(name for images in sets for name in images.names),
-        scenes=tuple(scene for set_scenes in scenes for scene in set_scenes),
+        samples=_join_samples(sets, classes, source),
         pixels=Chosen(tuple(images.pixels for images in sets), source, rows),
         snr_db=sets[0].snr_db if len({images.snr_db for images in sets}) == 1 else None,
         left_out=dict(left_out),
+    )
+
+
+def _join_samples(sets: Sequence[ImageSet], classes: tuple[str, ...], source: Index) -> SampleTable:
+    """Table of the samples of several sets, one after the other; persons are not compared.
+
+    Args:
+        sets: sets of images.
+        classes: classes of all of them, in which labels are numbered.
+        source: number of the set of each sample [N].
+    """
+    tables = [images.samples for images in sets]
+    splits = [table.split for table in tables if table.split is not None]
+    scenes = [
+        objects([""] * len(table)) if table.scene is None else table.scene for table in tables
+    ]
+    has_several_people = any(table.activities is not None for table in tables)
+    return SampleTable(
+        label=np.concatenate([labels_for(images, classes) for images in sets]),
+        name=np.concatenate([table.name for table in tables]),
         source=source,
-        persons=None,
-        person_classes=tuple(names for images in sets for names in images.activities)
+        split=np.concatenate(splits),
+        scene=np.concatenate(scenes),
+        activities=np.concatenate([images.activities for images in sets])
         if has_several_people
         else None,
     )
@@ -98,9 +112,9 @@ def sampling_weights(
     """
     weights = np.ones(rows.size)
     if set_weights is not None:
-        weights = np.array(set_weights, dtype=float)[images.source[rows]]
+        weights = np.array(set_weights, dtype=float)[images.samples.source[rows]]
     if balanced:
-        label = images.label[rows]
+        label = images.samples.label[rows]
         mass = np.bincount(label, weights, len(images.classes))
         weights = weights * (mass.sum() / np.count_nonzero(mass) / np.maximum(mass, 1e-9))[label]
     return weights

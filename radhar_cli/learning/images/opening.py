@@ -52,7 +52,7 @@ def open_images(
 
     Args:
         map_name: map to open; None takes the first one.
-        kind: "rgb" as the PNGs are coloured, or "gray", the levels in three equal channels.
+        kind: "rgb" as the PNGs are coloured, or "gray", the levels as one channel.
         resize: (H, W) to bring every image to; they may then differ in size.
 
     Raises:
@@ -94,10 +94,10 @@ def summarise_tree(root: Path) -> dict[str, Any]:
     sizes = Counter(map(image_size, files))
 
     def counts(label: int) -> dict[str, int]:
-        in_class = images.label == label
-        if images.split is None:
+        in_class = images.samples.label == label
+        if images.samples.split is None:
             return {"images": int(in_class.sum())}
-        by_split = np.bincount(images.split[in_class], minlength=len(SPLITS))
+        by_split = np.bincount(images.samples.split[in_class], minlength=len(SPLITS))
         return dict(zip(SPLITS, by_split.tolist(), strict=True))
 
     return {

@@ -52,9 +52,9 @@ def content_hash(images: ImageSet, rows: Index, digests: Sequence[str] | None = 
         digests: [len(rows)] digests of their pixels; None has `scan` compute them.
     """
     digests = scan(images, rows).digests if digests is None else digests
-    split = None if images.split is None else images.split[rows].tolist()
-    about = [images.classes, images.label[rows].tolist(), split, list(digests)]
-    if images.person_classes is not None:
-        about.append([images.person_classes[row] for row in rows])
+    split = None if images.samples.split is None else images.samples.split[rows].tolist()
+    about = [images.classes, images.samples.label[rows].tolist(), split, list(digests)]
+    if images.samples.activities is not None:
+        about.append([images.samples.activities[row] for row in rows])
     text = json.dumps(about)
     return hashlib.sha256(text.encode()).hexdigest()

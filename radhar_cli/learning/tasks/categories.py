@@ -68,11 +68,11 @@ class Classifier(Categories):
 
     def targets(self, images: ImageSet) -> Targets:
         """Number of the class of each row [N]."""
-        return images.label
+        return images.samples.label
 
     def occurring_classes(self, images: ImageSet, rows: Index) -> set[int]:
         """Numbers of the classes of some rows."""
-        return set(images.label[rows].tolist())
+        return set(images.samples.label[rows].tolist())
 
     def loss(self, outputs: Tensor, targets: Tensor) -> Tensor:
         """Cross-entropy [B] of logits [B, classes] and class numbers [B], smoothed."""

@@ -84,7 +84,7 @@ class _ClassFigures:
         header = ("class", "precision", "recall", "f1", "images")
         self.page.table("classes", header, class_rows, "Class by class")
         predictions = self.predictions
-        image_names, names = predictions.images.names, predictions.names
+        image_names, names = predictions.images.samples.name, predictions.names
         columns = (
             predictions.rows,
             predictions.truth,
@@ -137,7 +137,7 @@ class _ClassFigures:
             probability = f"{100 * confidence[number]:.1f} %"
             pictures.append(images.pixels.read(row))
             captions.append(
-                f"{escaped(images.names[row])}\ntrue: {true}\nfound: {found}, {probability}"
+                f"{escaped(images.samples.name[row])}\ntrue: {true}\nfound: {found}, {probability}"
             )
             table.append((images.path_of(row), true, found, probability))
         png = captioned_png(pictures, captions, f"{heading}: {self.page.title}")

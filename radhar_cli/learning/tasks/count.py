@@ -16,4 +16,5 @@ class Count(Classifier):
         counts = np.array([len(names) for names in images.activities])
         occurring, label = np.unique(counts, return_inverse=True)
         classes = tuple(f"{n} {'person' if n == 1 else 'people'}" for n in occurring)
-        return replace(images, classes=classes, label=label, person_classes=None)
+        samples = replace(images.samples, label=label, activities=None)
+        return replace(images, classes=classes, samples=samples)

@@ -73,6 +73,6 @@ class Labels(Categories):
 
     def evaluation_warnings(self, images: ImageSet, name: str) -> list[str]:
         """Warning of a data set that knows the activity of one person alone."""
-        if images.person_classes is not None:
+        if images.samples.activities is not None:
             return []
         return [f"warning: {name} says of one person alone what they do"]

@@ -43,7 +43,7 @@ def report_labels(evaluation: Evaluation) -> dict[str, Any]:
     page.table("labels", header, label_rows, "Label by label")
     names = np.array(predictions.names)
     prediction_rows = (
-        (images.names[row], " ".join(names[true]), " ".join(names[found]))
+        (images.samples.name[row], " ".join(names[true]), " ".join(names[found]))
         for row, true, found in zip(rows.tolist(), is_true, is_found, strict=True)
     )
     page.table("predictions", ("image", "true", "found"), prediction_rows)

@@ -76,7 +76,7 @@ def _errors_by_class(
         is_known: [N, T], whether a frame has a true skeleton.
     """
     images = predictions.images
-    label = np.repeat(images.label[predictions.rows], is_known.sum(1))  # [frame]
+    label = np.repeat(images.samples.label[predictions.rows], is_known.sum(1))  # [frame]
     numbers = {}
     for number, name in enumerate(images.classes):
         in_class = label == number
@@ -94,7 +94,7 @@ def _draw_skeletons(
     frames = np.argwhere(is_known)[np.linspace(0, is_known.sum() - 1, DRAWN).astype(int)]
     pairs = []
     for row, frame in frames.tolist():
-        name = f"{images.names[predictions.rows[row]]}, frame {frame}"
+        name = f"{images.samples.name[predictions.rows[row]]}, frame {frame}"
         pairs.append((true[row, frame], predicted[row, frame], name))
     parents = PARENTS if predictions.names == JOINTS else ()
     caption = (

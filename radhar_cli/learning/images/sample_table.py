@@ -1,0 +1,42 @@
+"""What is known of each sample of a data set in memory: a table of rows."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from radhar_cli.numerics.arrays import Index, Levels
+
+Objects: TypeAlias = NDArray[np.object_]
+
+
+@dataclass(frozen=True)
+class SampleTable:
+    """One row a sample; each column has length N, or is None where the source does not say."""
+
+    label: Index  # [N] index into the classes of the set
+    name: Objects  # [N] text, for messages and tables
+    source: Index  # [N] which of several joined sets the sample came from
+    split: Levels | None = None  # [N] 0 train, 1 validation, 2 test
+    scene: Objects | None = None  # [N] fingerprint of person and motion, text
+    person: Objects | None = None  # [N] text: who is seen, or the recording it was cut from
+    # [N] tuples of the classes of all persons, the main person's first; None with one person each
+    activities: Objects | None = None
+
+    def __len__(self) -> int:
+        return len(self.label)
+
+    def take(self, rows: Index) -> "SampleTable":
+        """Take rows in the order given; a row may come twice."""
+        columns: dict[str, Any] = {}
+        for field in fields(self):
+            column = getattr(self, field.name)
+            columns[field.name] = None if column is None else column[rows]
+        return SampleTable(**columns)
+
+
+def objects(values: Iterable[object]) -> Objects:
+    """Column of texts or tuples [N]."""
+    return np.fromiter(values, dtype=object)

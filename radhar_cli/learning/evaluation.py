@@ -98,13 +98,14 @@ def _map_to_open(metadata: RunMetadata, path: Path) -> str | None:
     if not is_h5(path):
         inside = metadata.map is not None and (path / metadata.map).is_dir()
         return metadata.map if inside else None
-    with open_dataset(path) as data:
-        if metadata.map is None and len(data.maps) > 1:
-            raise FolderError(
-                f"{path}: has the maps {', '.join(data.maps)}, and the model was trained on images "
-                "that did not say which they were; name one with --map"
-            )
-        return metadata.map
+    if metadata.map is None:
+        with open_dataset(path) as data:
+            if len(data.maps) > 1:
+                raise FolderError(
+                    f"{path}: has the maps {', '.join(data.maps)}, and the model was trained on "
+                    "images that did not say which they were; name one with --map"
+                )
+    return metadata.map
 
 
 def training_images(metadata: RunMetadata, path: Path) -> ImageSet:

@@ -52,29 +52,55 @@ def export(run: Path, path: Path) -> float:
         RunError: PyTorch cannot write the network, or the two differ by more than TOLERANCE.
         FolderError: the file cannot be written.
     """
-    import onnx
     import onnxruntime
 
     metadata, network = load_best(run)
     model = _FromInputs(network, metadata.normalisation).eval()
-    input_name, output_name = INPUTS[metadata.input], metadata.task.outputs_name
-    inputs = _trial(2, metadata)
     try:
-        with warnings.catch_warnings(), torch.no_grad():
-            warnings.simplefilter("ignore")
-            program: Any = torch.onnx.export(
-                model,
-                (inputs,),
-                dynamo=True,
-                dynamic_shapes={"inputs": {0: torch.export.Dim("batch")}},
-                input_names=[input_name],
-                output_names=[output_name],
-                verbose=False,
-            )
+        content = _onnx_of(model, metadata)
     except torch.onnx.errors.OnnxExporterError as error:
         raise RunError(
             f"{run}: PyTorch cannot write {metadata.model} as ONNX ({first_line(error)})"
         ) from None
+    session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
+    difference = _largest_difference(model, session, metadata)
+    if not difference <= TOLERANCE:
+        raise RunError(
+            f"{run}: ONNX Runtime's {metadata.task.outputs_name} differ from PyTorch's by "
+            f"{difference:.2g}, more than {TOLERANCE:g}; {path} was not written"
+        )
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(path) as unfinished:
+            unfinished.write_bytes(content)
+    except OSError as error:
+        raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
+    return difference
+
+
+def _onnx_of(model: nn.Module, metadata: RunMetadata) -> bytes:
+    """Content of the ONNX file of a network, its metadata included.
+
+    Args:
+        model: network with its normalisation, in evaluation mode.
+        metadata: description of the network.
+
+    Raises:
+        OnnxExporterError: PyTorch cannot write it.
+    """
+    import onnx
+
+    with warnings.catch_warnings(), torch.no_grad():
+        warnings.simplefilter("ignore")
+        program: Any = torch.onnx.export(
+            model,
+            (_random_inputs(2, metadata),),
+            dynamo=True,
+            dynamic_shapes={"inputs": {0: torch.export.Dim("batch")}},
+            input_names=[INPUTS[metadata.input]],
+            output_names=[metadata.task.outputs_name],
+            verbose=False,
+        )
     onnx_model = program.model_proto
     onnx.helper.set_model_props(
         onnx_model,
@@ -85,30 +111,28 @@ def export(run: Path, path: Path) -> float:
         },
     )
     onnx.checker.check_model(onnx_model)
-    content = onnx_model.SerializeToString()
-    session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
-    largest_difference = 0.0
-    for images in (1, 3):
-        trial = _trial(images, metadata)
+    content: bytes = onnx_model.SerializeToString()
+    return content
+
+
+def _largest_difference(model: nn.Module, session: Any, metadata: RunMetadata) -> float:
+    """Largest difference of an output in ONNX Runtime, over the largest output if above 1.
+
+    Args:
+        model: network in PyTorch.
+        session: the same network in ONNX Runtime.
+        metadata: its description.
+    """
+    largest = 0.0
+    for count in (1, 3):
+        inputs = _random_inputs(count, metadata)
         with torch.inference_mode():
-            expected = model(trial).numpy()
-        outputs = session.run([output_name], {input_name: trial.numpy()})[0]
+            expected = model(inputs).numpy()
+        feed = {INPUTS[metadata.input]: inputs.numpy()}
+        outputs = session.run([metadata.task.outputs_name], feed)[0]
         scale = max(1.0, float(np.abs(expected).max()))
-        largest_difference = max(
-            largest_difference, float(np.abs(outputs - expected).max()) / scale
-        )
-    if not largest_difference <= TOLERANCE:
-        raise RunError(
-            f"{run}: ONNX Runtime's {output_name} differ from PyTorch's by "
-            f"{largest_difference:.2g}, more than {TOLERANCE:g}; {path} was not written"
-        )
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as unfinished:
-            unfinished.write_bytes(content)
-    except OSError as error:
-        raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
-    return largest_difference
+        largest = max(largest, float(np.abs(outputs - expected).max()) / scale)
+    return largest
 
 
 def _names(metadata: RunMetadata) -> dict[str, tuple[str, ...]]:
@@ -116,7 +140,7 @@ def _names(metadata: RunMetadata) -> dict[str, tuple[str, ...]]:
     return {metadata.task.names_key: metadata.task.names(metadata)}
 
 
-def _trial(count: int, metadata: RunMetadata) -> Tensor:
+def _random_inputs(count: int, metadata: RunMetadata) -> Tensor:
     """Random inputs of a network, like those of its training."""
     return _clouds(count, metadata) if metadata.input == "clouds" else _pixels(count, metadata)
 

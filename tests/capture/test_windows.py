@@ -98,7 +98,7 @@ def test_every_command_accepts_it(recordings: Path, tmp_path: Path) -> None:
         assert done.returncode == 0, done.stdout + done.stderr
     images = open_images(out, "stft", "rgb")
     assert sorted(images.classes) == ["drinking", "punching", "walking"]
-    assert len(set(images.scenes)) == 28, "every window is another scene"
+    assert len(set(images.samples.scene)) == 28, "every window is another scene"
 
 
 def test_any_number_of_workers_and_batches_give_the_same(recordings: Path, tmp_path: Path) -> None:

@@ -125,8 +125,8 @@ def test_every_reader_finds_the_subfolders_of_large_classes(
     assert build(few, folder, 1, Listener()).pngs == 2
     assert fingerprint(folder) == before
     images, ours = open_images(tree, None, "gray"), open_images(folder, "stft", "gray")
-    assert sorted(images.names) == sorted(ours.names)
-    for row, name in enumerate(images.names):
-        same = ours.names.index(name)
-        assert images.classes[images.label[row]] == ours.classes[ours.label[same]]
+    assert sorted(images.samples.name) == sorted(ours.samples.name)
+    for row, name in enumerate(images.samples.name):
+        same = ours.samples.name.tolist().index(name)
+        assert images.classes[images.samples.label[row]] == ours.classes[ours.samples.label[same]]
         assert np.array_equal(images.pixels.read(row), ours.pixels.read(same))

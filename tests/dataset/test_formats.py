@@ -166,7 +166,8 @@ def test_every_reader_of_ours_has_the_same_labels(place, h5):
     assert samples[7]["label"] == stored[7]
     for path in (place / "set", place / "set/dataset.h5", place / "set/png/stft"):
         images = torch_dataset(path)
-        labels = {name: images.images.label[n] for n, name in enumerate(images.images.names)}
+        samples = images.images.samples
+        labels = dict(zip(samples.name, samples.label, strict=True))
         assert images.classes == names
         assert all(names[label] == name.split("/")[0] for name, label in labels.items())
         logits = torch.zeros(len(images), len(images.classes))

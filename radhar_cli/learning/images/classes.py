@@ -19,10 +19,10 @@ def read_classes(path: Path | None) -> dict[str, str | None]:
         ConfigError: a value is neither a name nor null.
     """
     names = read_document(path)[0] if path else {}
-    for foreign, ours in names.items():
-        if ours is not None and (not isinstance(ours, str) or not ours):
+    for foreign, name in names.items():
+        if name is not None and (not isinstance(name, str) or not name):
             raise ConfigError(
-                f"{path}: {foreign} = {ours!r}: should be the name of a class, such as walking, or "
+                f"{path}: {foreign} = {name!r}: should be the name of a class, such as walking, or "
                 "null to leave it out"
             )
     return names
@@ -52,10 +52,10 @@ def refuse_mistyped(names: Mapping[str, str | None], known: Sequence[str]) -> No
         ConfigError: one of our names is unknown.
     """
     accepted = [*known, *(activity.slug for activity in ACTIVITIES if activity.slug not in known)]
-    for foreign, ours in names.items():
-        if ours is not None and ours not in accepted:
-            hint = did_you_mean(ours, accepted, f"the model knows {', '.join(known)}")
-            raise ConfigError(f"--classes: {foreign} = {ours!r}: should be a class or null; {hint}")
+    for foreign, name in names.items():
+        if name is not None and name not in accepted:
+            hint = did_you_mean(name, accepted, f"the model knows {', '.join(known)}")
+            raise ConfigError(f"--classes: {foreign} = {name!r}: should be a class or null; {hint}")
 
 
 def keep_known_classes(images: ImageSet, known: Sequence[str]) -> ImageSet:

@@ -1,6 +1,7 @@
 """Images of a dataset.h5, its levels or their colours in the PNGs, and its sequences."""
 
 import hashlib
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -67,16 +68,19 @@ def h5_images(path: Path, map_name: str | None, kind: Kind) -> ImageSet:
     Raises:
         FolderError: it is no data set, or has no such map.
     """
-    with open_dataset(path) as data:
+    with ExitStack() as on_error:
+        data = on_error.enter_context(open_dataset(path))
         name = data.map_name(map_name)
         image = data.config.image
-        if kind == "gray":
-            levels = H5Levels(data.path, name)
-            images = _image_set(data, path, name, levels, image.size_px)
-            return replace(images, kind="gray", channels=1)
-        coloured = H5Pixels(data.path, name, colour_table(image.colour_map))
-        images = _image_set(data, path, name, coloured, image.size_px)
-        return replace(images, colours=image.colour_map)
+        pixels: H5Levels | H5Pixels = H5Levels(data.path, name)
+        if kind == "rgb":
+            pixels = H5Pixels(data.path, name, colour_table(image.colour_map))
+        images = _image_set(data, path, name, pixels, image.size_px)
+        pixels.keep_open(data)
+        on_error.pop_all()  # `pixels` has the file from here on
+    if kind == "gray":
+        return replace(images, kind="gray", channels=1)
+    return replace(images, colours=image.colour_map)
 
 
 def h5_sequences(
@@ -93,7 +97,8 @@ def h5_sequences(
     Raises:
         FolderError: it is no data set, or has no such product.
     """
-    with open_dataset(path) as data:
+    with ExitStack() as on_error:
+        data = on_error.enter_context(open_dataset(path))
         name = sequence_product(data, kind, product)
         count = longest_sequence(data, name) if frames == "auto" else frames
         pixels = SequenceReader(data.path, name, count, points)
@@ -101,7 +106,10 @@ def h5_sequences(
         if kind == "clouds":
             size, channels = (count, points), len(COLUMNS)
         images = _image_set(data, path, name, pixels, (size[0], size[1]))
-        return replace(images, kind=kind, channels=channels, joints=joint_names(data))
+        joints = joint_names(data)
+        pixels.keep_open(data)
+        on_error.pop_all()  # `pixels` has the file from here on
+    return replace(images, kind=kind, channels=channels, joints=joints)
 
 
 def _image_set(

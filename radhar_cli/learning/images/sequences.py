@@ -75,6 +75,10 @@ class Opened:
             dataset = self._open[os.getpid()] = open_dataset(self.path)
         return dataset
 
+    def keep_open(self, data: Dataset) -> None:
+        """Read from a data set of this path that is open in this process already."""
+        self._open[os.getpid()] = data
+
     def __getstate__(self) -> dict[str, object]:
         return {**self.__dict__, "_open": {}}
 

@@ -133,13 +133,13 @@ class _ClassFigures:
         pictures, captions, table = list[Levels](), list[str](), list[tuple[str, ...]]()
         for number in selected.tolist():
             row = int(rows[number])
-            true, found = (names[c[number]].replace("_", " ") for c in (truth, predicted))
+            true, winner = (names[c[number]].replace("_", " ") for c in (truth, predicted))
             probability = f"{100 * confidence[number]:.1f} %"
             pictures.append(images.pixels.read(row))
             captions.append(
-                f"{escaped(images.samples.name[row])}\ntrue: {true}\nfound: {found}, {probability}"
+                f"{escaped(images.samples.name[row])}\ntrue: {true}\nfound: {winner}, {probability}"
             )
-            table.append((images.path_of(row), true, found, probability))
+            table.append((images.path_of(row), true, winner, probability))
         png = captioned_png(pictures, captions, f"{heading}: {self.page.title}")
         self.page.figure("hardest", f"{heading}, {self.page.title}.", png)
         self.page.table("hardest", ("image", "true", "predicted", "probability"), table, heading)

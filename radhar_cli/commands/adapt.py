@@ -14,7 +14,8 @@ from radhar_cli.errors import ConfigError
 def adapt(
     run: Run,
     data: Annotated[
-        Path, typer.Argument(help="Data set, or tree of class folders; its labels are not used.")
+        Path,
+        typer.Argument(help="Data set or tree of images of the other radar; labels are not used."),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write the adapted run to.")],
     map_: TrainedMap = None,
@@ -33,7 +34,8 @@ def adapt(
         list[Path] | None,
         typer.Option(
             metavar="DATA",
-            help="Labelled data that RUN was trained on, used in the same epochs; may be repeated.",
+            help="Labelled data that RUN was trained on, shown in the same epochs; may be given "
+            "several times.",
         ),
     ] = None,
     resize: Resize = False,
@@ -42,16 +44,16 @@ def adapt(
 ) -> None:
     """Adapt a trained network to another radar's images, without labels.
 
-    The run is copied. The copy's batch-norm statistics are recomputed on the images; with --epochs,
-    its weights are trained on them, too.
+    RUN stays as it is. In the copy, batch-norm statistics are recomputed on the images; with
+    --epochs, all layers but the last are also trained on them.
 
     Example:
 
       radhar adapt runs/simulated measured -o runs/adapted --epochs 20 --mix datasets/simulated
 
     This is for a network that was trained on simulated maps and will be used with a real radar.
-    The classes should be about as frequent in the images as in later use; with --epochs, about
-    equally frequent.
+    The images should show the classes about as often as later use will; with --epochs, about
+    equally often.
     """
     from radhar_cli.commands.learning_options import needs_torch, refuse_output_inside_data
 

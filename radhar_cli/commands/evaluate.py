@@ -34,13 +34,14 @@ def evaluate(
     ] = False,
     filters: Annotated[
         bool,
-        typer.Option("--filters", help="Draw the weights of the global filters, of fftnet only."),
+        typer.Option("--filters", help="Draw the weights of the global filters of fftnet."),
     ] = False,
     in_place_vs_moving: Annotated[
         bool,
         typer.Option(
             "--in-place-vs-moving",
-            help="Also report S1 to S7 (in place) against S8 to S12 (moving).",
+            help="Also draw the confusion matrix of two groups, in place (S1 to S7) and moving (S8 "
+            "to S12).",
         ),
     ] = False,
     batch: Annotated[int, typer.Option(min=1, help="Number of images per batch.")] = 32,
@@ -55,7 +56,8 @@ def evaluate(
 
       radhar eval runs/quickstart datasets/quickstart --tsne
 
-    Several runs or data sets give a comparison, such as training at one SNR and testing at all.
+    Each run is evaluated on each data set, for example to compare networks, or to test one that was
+    trained at a single SNR at all others.
     """
     from radhar_cli.commands.learning_options import (
         needs_torch,

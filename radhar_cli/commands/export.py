@@ -15,7 +15,7 @@ def export(
     out: Annotated[Path, typer.Option("-o", "--out", help="File to write, such as model.onnx.")],
     overwrite: Replace = False,
 ) -> None:
-    """Write a network as ONNX, checked with ONNX Runtime.
+    """Export a network as ONNX, checked with ONNX Runtime.
 
     Example:
 

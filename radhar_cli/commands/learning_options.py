@@ -12,13 +12,14 @@ Run: TypeAlias = Annotated[
     Path, typer.Argument(help="Folder of a training run, or its .safetensors file.")
 ]
 TrainedMap: TypeAlias = Annotated[
-    str | None, typer.Option("--map", help="Use this map instead of the one trained on.")
+    str | None,
+    typer.Option("--map", help="Map to use instead of the one that the network was trained on."),
 ]
 AnyMap: TypeAlias = Annotated[
     str | None, typer.Option("--map", help="Name of the map. The default is the first one.")
 ]
 Split: TypeAlias = Annotated[
-    str, typer.Option(help="Part of the split: train, val (or validation), test or all.")
+    str, typer.Option(help="Split to use: train, val (or validation), test or all.")
 ]
 Device: TypeAlias = Annotated[
     str, typer.Option(help="Device to compute on: auto, cpu, cuda or mps.")

@@ -12,21 +12,26 @@ from radhar_cli.commands.tell import counted, report, tell
 def predict(
     run: Run,
     paths: Annotated[
-        list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images, or data sets.")
+        list[Path],
+        typer.Argument(metavar="IMAGE_OR_DATA...", help="Images, folders of images, or data sets."),
     ],
     top: Annotated[
         int, typer.Option(min=1, help="Number of classes to print, most likely first.")
     ] = 3,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="For a network that estimates joints: .npz or .csv file."),
+        typer.Option(
+            "-o",
+            "--out",
+            help="For networks trained on skeletons: file for the joints, .npz or .csv.",
+        ),
     ] = None,
     map_: TrainedMap = None,
     split: Split = "all",
     resize: Resize = False,
     device: Device = "auto",
 ) -> None:
-    """Print the likely classes of images, or write joints of sequences.
+    """Print the most likely classes of images, or write the joints of sequences.
 
     Example:
 
@@ -34,9 +39,9 @@ def predict(
 
       radhar predict runs/joints datasets/boards -o joints.npz
 
-    An .npz file has joints [sample, frame, joint, 3] in m (x ahead of the radar, y to its left, z
-    up; NaN after the end of a sample), joint_names, samples, and first_frame, the number of the
-    first frame in its sample; a .csv file a row for every joint and frame.
+    An .npz file holds joints [sample, frame, joint, 3] in m (x ahead of the radar, y to its left, z
+    up; NaN after the end of a sample), joint_names, samples, and first_frame, the number in its
+    sample of the first frame. A .csv file holds one row for each joint in each frame.
     """
     from radhar_cli.commands.learning_options import needs_torch
 

@@ -16,8 +16,8 @@ def train(
     data: Annotated[
         list[Path],
         typer.Argument(
-            help="dataset.h5, a folder that generate wrote, or a tree of class folders; several "
-            "are combined (data_weights, sampling)."
+            help="Data sets to train on: dataset.h5, a folder that `radhar generate` wrote, or a "
+            "tree of class folders. Several are combined, as data_weights and sampling say."
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write the run to.")],
@@ -26,29 +26,31 @@ def train(
     ] = None,
     set_: Overrides = None,
     map_: Annotated[
-        str | None, typer.Option("--map", help="Map to learn from. The default is the first one.")
+        str | None, typer.Option("--map", help="Map to train on. The default is the first one.")
     ] = None,
     model: Annotated[
         str | None,
         typer.Option(
-            help="Network: smallnet, fftnet or one of timm; for sequences framenet or cloudnet."
+            help="Network: for images smallnet, smallnet_bn, fftnet or any model of timm; for "
+            "sequences framenet or cloudnet."
         ),
     ] = None,
     target: Annotated[
         str | None,
         typer.Option(
-            help="What to learn: classes, labels (of everybody), count (of people) or skeleton."
+            help="What to learn: classes (the activity of the main person), labels (the activities "
+            "of everybody), count (the number of people) or skeleton (joints in every frame)."
         ),
     ] = None,
     init: Annotated[
-        Path | None, typer.Option(help="Run whose best weights are the initial weights.")
+        Path | None, typer.Option(help="Run whose best weights training starts from.")
     ] = None,
     resize: Annotated[
         bool,
         typer.Option("--resize", help="With --init: resize images to the size used in that run."),
     ] = False,
     tensorboard: Annotated[
-        bool, typer.Option("--tensorboard", help="Also write the curves for TensorBoard.")
+        bool, typer.Option("--tensorboard", help="Also log the training curves for TensorBoard.")
     ] = False,
     classes: Classes = None,
     overwrite: StartOver = False,
@@ -63,8 +65,8 @@ def train(
 
       radhar train measured -o runs/tuned --init runs/simulated --resize --set learning_rate=1e-4
 
-    The same command resumes an interrupted run after its last finished epoch. With --tensorboard,
-    `tensorboard --logdir runs` shows the curves of all runs.
+    An interrupted run is resumed after its last finished epoch by the same command. With
+    --tensorboard, `tensorboard --logdir runs` shows the curves of all runs.
     """
     from radhar_cli.commands.learning_options import needs, needs_torch, refuse_output_inside_data
 

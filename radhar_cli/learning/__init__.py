@@ -2,16 +2,18 @@
 
 The only package that imports PyTorch; `pip install 'radhar[train]'` installs it.
 
-    settings        the YAML file of `radhar train`
+    settings        the YAML file of `radhar train`; choices: the networks and tasks it may name
     images/         labelled images or sequences of dataset.h5, or of class folders
     batches         which images make a step; augmentation
+    tasks/          what is learned, one task per file: targets, loss, score, report
     models/         one network per file; zoo: those of timm
     machine         device, precision, reading processes, what is repeatable
-    optimiser       learning rate, update; targets: losses of what is learned
-    training        epochs, validation, the best one, resuming; starting_point: --init
+    optimiser       learning rate, update
+    learner         a training step, validation; training_set: what is learned from
+    training        epochs, the best one, resuming; starting_point: --init
     run_folder      the files of a run, and how they are read safely; run_summary
     evaluation      probabilities, features and speed; metrics: how good they are
-    report          `radhar eval`: single_result, labels_result, skeleton_result fill it
+    report          `radhar eval`: single_result and the reports of tasks/ fill it
     adaptation      batch norm fitted to unlabelled images
     stream          samples for a PyTorch DataLoader, synthesised in its workers; sequences: stored
     onnx_export     the network without PyTorch

@@ -38,8 +38,8 @@ NETWORKS = {
     "smallnet": NetworkChoice("radhar_cli.learning.models.smallnet:build"),
     "smallnet_bn": NetworkChoice("radhar_cli.learning.models.smallnet:build_with_batch_norm"),
     "fftnet": NetworkChoice("radhar_cli.learning.models.fftnet:build"),
-    "framenet": NetworkChoice("radhar_cli.learning.models.framenet:build", reads="frames"),
     "cloudnet": NetworkChoice("radhar_cli.learning.models.cloudnet:build", reads="clouds"),
+    "framenet": NetworkChoice("radhar_cli.learning.models.framenet:build", reads="frames"),
 }
 TASKS = {
     "classes": TaskChoice("radhar_cli.learning.tasks.classes:Classes"),

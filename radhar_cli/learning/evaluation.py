@@ -70,7 +70,7 @@ def open_for_model(
         metadata.size if resize else None,
     )
     if (images.size, images.channels) != (metadata.size, metadata.channels):
-        cure = "; --resize brings them to that" if metadata.input in ("rgb", "gray") else ""
+        cure = "; --resize brings them to that" if metadata.reads_pictures else ""
         raise FolderError(
             f"{path}: images are {images.shape}; the model was trained on {metadata.shape}{cure}"
         )
@@ -293,7 +293,7 @@ def open_unlabelled(
         raise FolderError(f"{path}: no such file or folder")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; images or data are asked for here")
-    if metadata.input not in ("rgb", "gray") and not is_h5(path):
+    if not metadata.reads_pictures and not is_h5(path):
         raise RunError(f"{path}: {metadata.model} reads {metadata.input}; should be a data set")
     files = image_files(path, path) if is_tree(path) else [p for p in (path,) if is_image(p)]
     if files:

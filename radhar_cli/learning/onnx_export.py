@@ -161,7 +161,7 @@ def _pixels(images: int, metadata: RunMetadata) -> Tensor:
     grow without bound, and rounding errors with them.
     """
     generator = torch.Generator().manual_seed(0)
-    depth = 1 if metadata.input in ("rgb", "gray") else metadata.channels
+    depth = 1 if metadata.reads_pictures else metadata.channels
     coarse = torch.randn(images, depth, 8, 8, generator=generator)
     smooth = interpolate(coarse, size=metadata.size, mode="bilinear", align_corners=False)
     mean, sd = (torch.tensor(numbers).view(1, -1, 1, 1) for numbers in (metadata.mean, metadata.sd))

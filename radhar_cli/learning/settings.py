@@ -15,7 +15,7 @@ from pydantic import (
 from radhar_cli.config.number import value_error
 from radhar_cli.config.section import Section
 from radhar_cli.extensions import load_extensions
-from radhar_cli.learning.choices import TASKS, Kind, sequences_of
+from radhar_cli.learning.choices import NETWORKS, TASKS, Kind, sequences_of
 
 
 def _auto_or(least: int) -> BeforeValidator:
@@ -183,7 +183,8 @@ class TrainConfig(Section):
         if self.warmup_epochs > self.epochs:
             raise value_error("should have warmup_epochs of at most epochs")
         if TASKS[self.target].of_sequences and sequences_of(self.model) is None:
-            raise value_error(f"should have model: cloudnet or framenet for target: {self.target}")
+            networks = " or ".join(name for name in NETWORKS if sequences_of(name))
+            raise value_error(f"should have model: {networks} for target: {self.target}")
         if self.augment != AugmentConfig() and sequences_of(self.model) is not None:
             raise value_error("should have no augment, which is of images")
         if self.augment != AugmentConfig() and self.input != "gray":

@@ -25,7 +25,7 @@ def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
 
     Numbers with a unit, as clouds have them, have no statistics.
     """
-    channels = images.channels if images.kind in ("rgb", "gray") else 1
+    channels = images.channels if images.is_pictures else 1
     digests, histogram = list[str](), np.zeros((channels, 256), dtype=np.int64)
     for row in rows:
         values = images.pixels.read(int(row))

@@ -12,7 +12,7 @@ from functools import lru_cache
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import Detection
-from radhar_cli.radar.ti_commands import CfgLine, Effect, split_lines
+from radhar_cli.radar.ti_commands import COUNT, CfgLine, Effect, Family, find_family, split_lines
 from radhar_cli.radar.ti_detection import read_detection
 
 MAX_CFG = 2**16  # characters
@@ -193,11 +193,13 @@ class BoardHeader(FrameHeader):
     """What a .cfg says of a board that is simulated, whichever device it runs on.
 
     Attributes:
+        family: Software that the file is for.
         detection: Detection of its points.
         unknown: Commands that radhar does not know.
         not_simulated: Commands that switch on what is not simulated.
     """
 
+    family: Family
     detection: Detection
     unknown: tuple[str, ...]
     not_simulated: tuple[str, ...]
@@ -248,7 +250,8 @@ def parse_ti_cfg(text: str, where: str = "radar.cfg") -> BoardHeader:
     )
     return BoardHeader(
         **vars(header),
-        detection=read_detection(lines.with_effect(Effect.POINTS), channels, bins),
+        family=find_family(lines.lines),
+        detection=read_detection(lines.lines, channels, bins),
         unknown=tuple(dict.fromkeys(line.name for line in lines.lines if not line.command)),
         not_simulated=tuple(dict.fromkeys(filter(None, map(_name_if_said, lines.lines)))),
     )
@@ -369,7 +372,7 @@ class _Lines:
 
     def __init__(self, text: str, where: str) -> None:
         self.where = where
-        self.lines = tuple(split_lines(text, where))
+        self.lines = split_lines(text, where)
 
     def with_effect(self, effect: Effect) -> list[CfgLine]:
         """Return the lines of commands with an effect."""
@@ -385,7 +388,10 @@ class _Lines:
 
 def _read_frames(lines: _Lines) -> FrameHeader:
     """Read all that the lines say of chirps, frames and samples."""
+    modes = [line.numbers() for line in lines.lines if line.name == "dfeDataOutputMode"]
     for line in lines.with_effect(Effect.NOT_READ):
+        if modes and line.name in ("advFrameCfg", "subFrameCfg"):  # with mode 1 frameCfg counts
+            continue
         raise CaptureError(f"{line.place}: {line.name}: {line.command and line.command.reason}")
     receivers = lines.all("channelCfg", "channelCfg 15 7 0")[-1]
     adc = lines.all("adcCfg", "adcCfg 2 1")[-1]
@@ -452,8 +458,6 @@ def _read_frame(line: CfgLine) -> FrameTiming:
 def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
     """Raise CaptureError for chirps and samples that boards of radhar do not have."""
     adc = lines.all("adcCfg", "")[-1]
-    if header.adc_bits != 16:
-        raise adc.refusal("numADCBits", (header.adc_bits - 12) // 2, "2 (16 bits)")
     if header.sampling is not Sampling.COMPLEX:
         raise adc.refusal(
             "adcOutputFmt", header.sampling, "1: complex samples of which no image is kept"
@@ -461,10 +465,14 @@ def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
     channels = lines.all("channelCfg", "")[-1]
     if not header.receivers:
         raise channels.refusal("rxChannelEn", channels.words[0], "1 to 15: a receiver that is on")
+    transmitters = int(channels.numbers().get("txChannelEn", COUNT))
     for line in lines.all("chirpCfg", ""):
         mask = _read_chirp(line).mask
         if mask in header.masks and mask.bit_count() != 1:
             right = "a mask of one transmitter: they take turns, chirp by chirp"
+            raise line.refusal("txEnable", mask, right)
+        if mask in header.masks and mask & ~transmitters:
+            right = f"of transmitters that are on (channelCfg txChannelEn = {transmitters})"
             raise line.refusal("txEnable", mask, right)
     if len(set(header.masks)) < len(header.masks):
         raise lines.all("chirpCfg", "")[-1].refusal(
@@ -482,6 +490,8 @@ def _name_if_said(line: CfgLine) -> str | None:
     if command.name == "profileCfg":  # lower transmit power, and turned phases
         numbers = line.numbers()
         return command.name if numbers["txOutPower"] or numbers["txPhaseShifter"] else None
+    if command.name == "adcCfg":  # samples are not rounded
+        return command.name if line.numbers()["numADCBits"] != 2 else None
     if command.effect is not Effect.SAID:
         return None
     is_readable = bool(command.arguments) and len(line.words) in command.counts

@@ -5,8 +5,9 @@ lines of TI's demos, SDK 1 to 4 and MMWAVE-L-SDK, and of its people counting and
 docs/reference/ti_commands.md is made of this table.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
 from math import isfinite
 from types import MappingProxyType
@@ -180,18 +181,24 @@ class CfgLine:
         name: Its command.
         words: The words behind it.
         place: FILE:LINE, which messages name.
+        family: Software that the file is for.
     """
 
     name: str
     words: tuple[str, ...]
     place: str
+    family: Family = Family.ANY
 
     @property
     def command(self) -> Command | None:
-        """The command, of the family that has so many numbers; None for one that is not known."""
+        """The command as the file's family has it; None for one that is not known.
+
+        Where the family has none of so many numbers, another's that has them.
+        """
         commands = COMMANDS.get(self.name, ())
-        fitting = (command for command in commands if len(self.words) in command.counts)
-        return next(fitting, commands[0] if commands else None)
+        fitting = [command for command in commands if len(self.words) in command.counts]
+        of_family = (command for command in fitting if command.family is self.family)
+        return next(of_family, (*fitting, *commands, None)[0])
 
     def numbers(self) -> dict[str, float]:
         """Parse the line into {argument: number}.
@@ -217,17 +224,40 @@ class CfgLine:
         return CaptureError(f"{self.place}: {self.name} {argument} = {value}: should be {right}")
 
 
-def split_lines(text: str, where: str) -> Iterator[CfgLine]:
-    """Split a .cfg into its lines with a command; what follows a % is a comment.
+COMMENT = re.compile("%|//|#")
+
+
+def split_lines(text: str, where: str) -> tuple[CfgLine, ...]:
+    """Split a .cfg into its lines with a command.
+
+    A byte-order mark, and what follows %, // or #, is left out.
 
     Args:
         text: Text of the .cfg.
         where: File or key that messages name.
     """
-    for number, line in enumerate(text.splitlines(), 1):
-        name, *words = line.partition("%")[0].split() or [""]
+    lines = list[CfgLine]()
+    for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), 1):
+        name, *words = COMMENT.split(line, maxsplit=1)[0].split() or [""]
         if name:
-            yield CfgLine(name, tuple(words), f"{where}:{number}")
+            lines.append(CfgLine(name, tuple(words), f"{where}:{number}"))
+    family = find_family(lines)
+    return tuple(replace(line, family=family) for line in lines)
+
+
+def find_family(lines: Sequence[CfgLine]) -> Family:
+    """Find the software that lines are for; `ANY` where no command tells."""
+    counts = {line.name: len(line.words) for line in lines}
+    if "chirpComnCfg" in counts:
+        return Family.L_SDK
+    if counts.get("frameCfg") == 8 or counts.get("channelCfg") == 5 or "subDataFrameCfg" in counts:
+        return Family.MCU_PLUS
+    if "dynamicRACfarCfg" in counts and "dynamicRangeAngleCfg" in counts:
+        return Family.PEOPLE_3D
+    if "doaCfg" in counts or counts.get("cfarCfg") in (12, 13):
+        return Family.PEOPLE
+    by_count = {7: Family.SDK_1, 8: Family.SDK_2, 9: Family.SDK_3}
+    return by_count.get(counts.get("cfarCfg", 0), Family.ANY)
 
 
 def _wholes(*names: str, low: float = 0, high: float = COUNT) -> tuple[Argument, ...]:
@@ -336,6 +366,18 @@ _CFAR = (
     *_flags("cyclicMode"),
     Argument("thresholdScale", 0, 1e6),
 )
+_CFAR_OF_PEOPLE = (
+    *_wholes("cfarMethod", "cfarDiscardRangeLeft", "cfarDiscardRangeRight"),
+    *_wholes("cfarDiscardAngleLeft", "cfarDiscardAngleRight", "refWinSize0", "refWinSize1"),
+    *_wholes("guardWinSize0", "guardWinSize1", "rangeThre", "azimuthThre", "log2MagFlag"),
+    *_optional("inputScaleDown"),
+)
+_CFAR_OF_MCU_PLUS = (
+    *_CFAR,
+    *_flags("peakGroupingEn"),
+    *_wholes("osKvalue", "osEdgeKscaleEn", "isEnabled"),
+    *_optional("variableThresholdMode"),
+)
 CHANNELS = 16  # most virtual channels of compRangeBiasAndRxChanPhase
 _POINTS = (
     Command("cfarCfg", Effect.POINTS, _CFAR, Family.SDK_1),
@@ -343,6 +385,8 @@ _POINTS = (
     Command(
         "cfarCfg", Effect.POINTS, (*_CFAR, *_flags("peakGroupingEn")), Family.SDK_3, Subframe.ALWAYS
     ),
+    Command("cfarCfg", Effect.SAID, _CFAR_OF_PEOPLE, Family.PEOPLE),
+    Command("cfarCfg", Effect.POINTS, _CFAR_OF_MCU_PLUS, Family.MCU_PLUS, Subframe.ALWAYS),
     Command(
         "peakGrouping",
         Effect.POINTS,
@@ -427,7 +471,16 @@ _SAID = (
             *("antGeometry0", "antGeometry1", "antPhaseRot", "sensorPosition"),
         )
     ),
-    Command("doaCfg", Effect.SAID, family=Family.PEOPLE),
+    Command(
+        "doaCfg",
+        Effect.SAID,
+        (
+            *_wholes("estAngleRange", "estAngleResolution", "gamma"),
+            *_flags("clutterRemovalFlag"),
+            *_optional(*(f"argument{number}" for number in range(5, 11))),
+        ),
+        Family.PEOPLE,
+    ),
 )
 # Control of the demo, tracker, presence, vital signs: nothing of them is in a cube or its points.
 _SILENT = {

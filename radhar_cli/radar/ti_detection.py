@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import TypeAlias
 
 from radhar_cli.radar.detection import CASO, Cfar, Detection, ti_threshold_db
-from radhar_cli.radar.ti_commands import ALL_SUBFRAMES, SUBFRAME, CfgLine
+from radhar_cli.radar.ti_commands import ALL_SUBFRAMES, SUBFRAME, CfgLine, Effect
 
 Numbers: TypeAlias = Mapping[str, float]
 NO_CFAR = Cfar(CASO, 8, 4, False, 15.0)  # along range, where no line sets it
@@ -17,7 +17,7 @@ def read_detection(
     """Read the detection of a subframe.
 
     Args:
-        lines: Lines of commands that set it; of equal ones the last holds.
+        lines: Lines of a .cfg; of equal commands the last holds.
         channels: Number of virtual channels.
         bins: Number of range bins.
         subframe: Number of the subframe, from 0 on.
@@ -27,6 +27,8 @@ def read_detection(
     """
     detection = Detection(along_range=NO_CFAR)
     for line in lines:
+        if line.command is None or not (line.command.effect is Effect.POINTS or line.name in _MEAN):
+            continue
         numbers = line.numbers()
         if numbers[SUBFRAME.name] not in (ALL_SUBFRAMES, subframe):
             continue
@@ -93,7 +95,8 @@ def _set_second_peak(detection: Detection, numbers: Numbers) -> Detection:
 
 def _set_mean_removal(detection: Detection, numbers: Numbers) -> Detection:
     """Set whether the mean over the loops of a frame is taken out."""
-    return replace(detection, remove_mean=bool(numbers["enabled"]))
+    flag = numbers["enabled" if "enabled" in numbers else "clutterRemovalFlag"]
+    return replace(detection, remove_mean=bool(flag))
 
 
 def _set_angle_limits(detection: Detection, numbers: Numbers) -> Detection:
@@ -113,10 +116,11 @@ def _set_cfar_limits(detection: Detection, numbers: Numbers) -> Detection:
     return replace(detection, range_m=limits)
 
 
+_MEAN = ("clutterRemoval", "doaCfg")  # of doaCfg no more than that is simulated
 _SETTERS: Mapping[str, Callable[[Detection, Numbers], Detection]] = {
     "peakGrouping": _set_grouping,
     "multiObjBeamForming": _set_second_peak,
-    "clutterRemoval": _set_mean_removal,
+    **dict.fromkeys(_MEAN, _set_mean_removal),
     "aoaFovCfg": _set_angle_limits,
     "cfarFovCfg": _set_cfar_limits,
 }

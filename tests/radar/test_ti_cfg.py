@@ -8,6 +8,7 @@ from helpers.boards import CFG, MARS
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import CA, CASO, Cfar
 from radhar_cli.radar.ti_cfg import parse_ti_cfg
+from radhar_cli.radar.ti_commands import Family
 
 
 def test_what_a_cfg_says() -> None:
@@ -43,6 +44,46 @@ cfarFovCfg -1 1 -3 3
     assert (detection.range_m, detection.doppler_mps) == ((0.5, 6), (-3, 3))
 
 
+def test_text_is_read_as_boards_read_it() -> None:
+    """A byte-order mark, the ends of lines, blanks, and what programs write behind a command."""
+    lines = "\r\n".join(f"\t{line.replace(' ', '  ')}  // said" for line in CFG.splitlines())
+    assert parse_ti_cfg(f"\ufeff{lines}\r\n# all\r\n") == parse_ti_cfg(CFG)
+    assert parse_ti_cfg(CFG.replace("channelCfg 15 7", "channelCfg 0xF 0x7")) == parse_ti_cfg(CFG)
+
+
+def test_family_decides_what_twelve_numbers_of_cfarCfg_are() -> None:
+    people = CFG.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0")
+    header = parse_ti_cfg(people.replace("clutterRemoval 1", "doaCfg 600 1875 30 1"))
+    assert (header.family, header.detection.remove_mean) == (Family.PEOPLE, True)
+    assert header.not_simulated == ("cfarCfg", "doaCfg")
+    newer = CFG.replace("frameCfg 0 2 32 0 100 1 0", "frameCfg 0 2 32 0 80 100 1 0")
+    newer = newer.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg -1 0 2 16 4 4 1 12 1 0 0 1")
+    header = parse_ti_cfg(newer)
+    assert (header.family, header.not_simulated) == (Family.MCU_PLUS, ())
+    assert header.detection.along_range == Cfar(CASO, 16, 4, True, 12.0)
+
+
+@pytest.mark.parametrize(
+    ("lines", "family"),
+    [
+        ("cfarCfg -1 0 2 8 4 3 0 15 1", Family.SDK_3),
+        ("cfarCfg -1 0 2 8 4 3 0 15", Family.SDK_2),
+        ("cfarCfg 0 2 8 4 3 0 1130", Family.SDK_1),
+        ("subDataFrameCfg 0 80 96 1", Family.MCU_PLUS),
+        ("dynamicRACfarCfg -1 4\ndynamicRangeAngleCfg -1 0.75", Family.PEOPLE_3D),
+        ("", Family.ANY),
+    ],
+)
+def test_family_is_known_by_its_commands(lines: str, family: Family) -> None:
+    without_cfar = CFG.replace("cfarCfg 0 2 8 4 3 0 1130\n", "")
+    assert parse_ti_cfg(f"{without_cfar}{lines}\n").family is family
+
+
+def test_frameCfg_counts_in_mode_1_whatever_stands_beside_it() -> None:
+    beside = "dfeDataOutputMode 1\nadvFrameCfg 2 0 0 1 0\nsubFrameCfg 0 0 0 1 64 50 0 1 1 50\n"
+    assert parse_ti_cfg(CFG + beside) == parse_ti_cfg(CFG)
+
+
 def test_calibration_of_the_channels() -> None:
     pairs = " ".join(f"{n} 0.5" for n in range(12))
     detection = parse_ti_cfg(f"{CFG}compRangeBiasAndRxChanPhase 0.07 {pairs}").detection
@@ -74,6 +115,11 @@ def test_what_is_switched_on_and_not_simulated_is_named_once(off: str, on: str) 
     assert (header.not_simulated, header.unknown) == ((on.split()[0],), ())
 
 
+def test_fewer_bits_than_16_are_named() -> None:
+    header = parse_ti_cfg(CFG.replace("adcCfg 2 1", "adcCfg 1 1"))
+    assert (header.adc_bits, header.not_simulated) == (14, ("adcCfg",))
+
+
 def test_less_power_than_the_transmitters_have_is_named() -> None:
     less = CFG.replace("7 40 0 0 100", "7 40 6 0 100")
     assert parse_ti_cfg(less).not_simulated == ("profileCfg",)
@@ -82,7 +128,6 @@ def test_less_power_than_the_transmitters_have_is_named() -> None:
 
 WRONG = [
     ("adcCfg 2 1", "adcCfg 2 2", "3: adcCfg adcOutputFmt = 2: should be 1: complex samples"),
-    ("adcCfg 2 1", "adcCfg 1 1", "3: adcCfg numADCBits = 1: should be 2 (16 bits)"),
     ("adcCfg 2 1", "adcCfg 3 1", "numADCBits = 3: should be 0, 1 or 2 (12, 14"),
     ("adcCfg 2 1", "adcCfg 2", "3: adcCfg has 1 numbers: should be adcCfg numADCBits adcOutputFmt"),
     (
@@ -121,6 +166,7 @@ WRONG = [
     ("frameCfg 0 2 32 0 100 1 0", "advFrameCfg 2 0 0 1 0", "9: advFrameCfg: advanced frames"),
     ("channelCfg 15 7 0", "channelCfg 0 7 0", "2: channelCfg rxChannelEn = 0: should be 1 to 15"),
     ("channelCfg 15 7 0", "channelCfg 15 7 1", "cascading = 1: should be 0"),
+    ("channelCfg 15 7 0", "channelCfg 15 3 0", "7: chirpCfg txEnable = 4: should be of transmit"),
     (
         "cfarCfg 0 2 8 4 3 0 1130",
         "cfarCfg 0 2 8",
@@ -194,7 +240,8 @@ def test_masks_that_repeat_are_further_loops() -> None:
 
 def test_frame_of_the_mcu_plus_sdk_repeats_the_number_of_samples() -> None:
     newer = CFG.replace("frameCfg 0 2 32 0 100 1 0", "frameCfg 0 2 32 0 80 100 1 0")
-    assert parse_ti_cfg(newer) == parse_ti_cfg(CFG)
+    header = parse_ti_cfg(newer)
+    assert replace(header, family=Family.SDK_1) == parse_ti_cfg(CFG)
 
 
 def test_lines_of_other_subframes_do_not_count() -> None:

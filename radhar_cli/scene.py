@@ -5,16 +5,17 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property, lru_cache, partial
 from math import nan
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
 from radhar_cli.activities.activity import Activity
 from radhar_cli.config.annotations import Mark, of_kind
-from radhar_cli.config.data_set import Config
+from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.number import Choice, Distribution, Number, is_fixed, nominal, quantile
 from radhar_cli.config.paths import at, changed, each_number
 from radhar_cli.config.people import FALLS, Falls, PersonConfig
+from radhar_cli.config.radar import SceneRadar
 from radhar_cli.config.section import PerActivity, Section, for_activity
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.numerics.randomness import PERSON, SCENE, stream
@@ -133,6 +134,11 @@ class Person:
         return stream(scene.config.seed, SCENE, scene.activity.index, scene.index, name=name)
 
 
+def fixed_radar(config: AnyConfig) -> SceneRadar:
+    """Return the radar of a config in which nothing of it is left to draw."""
+    return cast(SceneRadar, config.radar)
+
+
 @dataclass(frozen=True)
 class Scene:
     """One recording to be simulated.
@@ -153,8 +159,13 @@ class Scene:
     subject: int | None = None
     attempt: int = 0
 
-    radar, wall, room, receiver = map(_section, ("radar", "wall", "room", "receiver"))
+    wall, room, receiver = map(_section, ("wall", "room", "receiver"))
     seconds, snr_db = map(_section, ("duration_s", "snr_db"))
+
+    @property
+    def radar(self) -> SceneRadar:
+        """Radar of the scene."""
+        return fixed_radar(self.config)
 
     @property
     def name(self) -> str:

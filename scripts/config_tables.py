@@ -6,15 +6,24 @@ A table stands between `<!-- keys: SECTIONS -->` or `<!-- limits -->` and `<!-- 
 what lies in no section. What stands around them is written by hand.
 """
 
+import inspect
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic import BaseModel
 
-from radhar_cli.config.annotations import ByModel, Mark, Paper, People, annotations, section
+from radhar_cli.config.annotations import (
+    ByModel,
+    Mark,
+    Paper,
+    People,
+    annotations,
+    section,
+    sections,
+)
 from radhar_cli.config.checks.people import HUMAN_LIMITS
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import MAX_NUMBER, Bounds, Choice, Normal, Uniform, Vary
@@ -42,15 +51,35 @@ def _keys(names: list[str]) -> Iterator[str]:
     yield "| key | default | meaning |"
     yield "| --- | --- | --- |"
     for name in names:
-        inner = section(Config.model_fields[name]) if name != "-" else Config
-        assert inner is not None
-        assert issubclass(inner, Section)
-        yield from _rows(inner, "" if inner is Config else f"{name}.")
+        if name == "-":
+            yield from _rows(Config, "")
+            continue
+        kinds = sections(Config.model_fields[name])
+        for number, kind in enumerate(kinds):
+            assert issubclass(kind, Section)
+            if len(kinds) == 1:
+                yield from _rows(kind, f"{name}.")
+            else:
+                yield from _rows_of_alternative(kind, kinds[:number], name)
 
 
-def _rows(kind: type[Section], prefix: str) -> Iterator[str]:
+def _rows_of_alternative(
+    kind: type[Section], earlier: tuple[type[BaseModel], ...], name: str
+) -> Iterator[str]:
+    """Rows of one of several sections that a key may hold: a heading, and keys not yet there."""
+    documented = {key for other in earlier for key in other.model_fields} - {"waveform"}
+    inherited = [key for key in kind.model_fields if key in documented]
+    text = " ".join((inspect.getdoc(kind) or "").partition("\n\n")[0].split())
+    also = f" As above: {', '.join(f'`{key}`' for key in inherited)}." if inherited else ""
+    yield f"| **{getattr(kind, 'named', name)}** |  | {text}{also} |"
+    yield from _rows(kind, f"{name}.", documented)
+
+
+def _rows(kind: type[Section], prefix: str, left_out: Collection[str] = ()) -> Iterator[str]:
     texts, about = kind.descriptions(), annotations(kind)
     for name, field in kind.model_fields.items():
+        if name in left_out:
+            continue
         inner, many = section(field), get_origin(field.annotation) is tuple
         if inner is None or many:
             words = " ".join(texts.get(name, "").split())

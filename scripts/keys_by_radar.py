@@ -25,10 +25,12 @@ from radhar_cli.config.annotations import (
     GIVEN,
     ActsIf,
     ActsIfAny,
+    OfRadar,
     Unless,
     at,
     conditions,
     section,
+    sections,
 )
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.offered_maps import possible_maps
@@ -129,6 +131,7 @@ TOGETHER: dict[str, dict[str, Any]] = {
 }
 # Values that no rule finds: {key: values}.
 VALUES: dict[str, tuple[Any, ...]] = {
+    "radar.waveform": ("sfcw", "cw", "impulse", "fmcw"),
     "activities": (["kicking"],),
     "classes": ({"own": {"sequence": ["punching"]}},),
     "people": (SOME["people"],),
@@ -223,10 +226,15 @@ def fields(kind: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, Any]]
     """(dotted key, field) of a model and its sections."""
     for name, field in kind.model_fields.items():
         yield prefix + name, field
-        inner = section(field)
-        if inner is not None and not getattr(inner, "REPEATS", False):
-            many = get_origin(field.annotation) is tuple
-            yield from fields(inner, f"{prefix}{name}.{'0.' if many else ''}")
+        many = get_origin(field.annotation) is tuple
+        known = set[str]()
+        for inner in sections(field):
+            if getattr(inner, "REPEATS", False):
+                continue
+            for key, inner_field in fields(inner, f"{prefix}{name}.{'0.' if many else ''}"):
+                if key not in known:
+                    yield key, inner_field
+                known.add(key)
 
 
 def base_of(radar: str) -> dict[str, Any]:
@@ -258,11 +266,11 @@ def with_conditions(document: dict[str, Any], key: str) -> dict[str, Any]:
     for condition in conditions(Config, key):
         config = valid(document)
         value_at = None if config is None else partial(at, config)
-        if isinstance(condition, Unless):
+        if isinstance(condition, Unless | OfRadar):
             continue
         if value_at is not None and not condition.holds(value_at):
             one = condition.choices[0] if isinstance(condition, ActsIfAny) else condition
-            if one.key not in ("radar.cfg", "radar.waveform", key):
+            if isinstance(one, ActsIf) and one.key != key:
                 document = with_key(document, one.key, required(one))
     if key.startswith("processing.gate"):
         document = document | {"maps": [one for one in document["maps"] if "fsst" not in one]}
@@ -287,6 +295,9 @@ def required(condition: ActsIf) -> Any:
     return condition.values[0]
 
 
+UNKNOWN = "Extra inputs are not permitted"  # as pydantic says it of a key
+
+
 class Refusal(NamedTuple):
     """Why a config is refused: what is said, and of which keys or sections."""
 
@@ -299,7 +310,7 @@ class Refusal(NamedTuple):
         return any(
             one == key
             or one.startswith(f"{key}.")
-            or (key.startswith(f"{one}.") and name in right)
+            or (key.startswith(f"{one}.") and (name in right or UNKNOWN in right))
             or key in right
             for one, right in self.faults
         )
@@ -320,7 +331,10 @@ def _faults(error: ValidationError) -> Iterator[tuple[str, str]]:
             for problem in item["ctx"]["problems"]:
                 yield problem.key, problem.right
         elif not item["type"].endswith("_type"):
-            yield ".".join(map(str, item["loc"])), item["msg"]
+            tags = [name for name in item["loc"] if str(name).startswith("<")]  # of the radar
+            key = ".".join(str(name) for name in item["loc"] if name not in tags)
+            names = ["radar.cfg" if tag == "<board>" else f"radar.waveform: {tag}" for tag in tags]
+            yield key, " with ".join((item["msg"], *names))
 
 
 def valid(document: Mapping[str, Any]) -> Config | None:
@@ -339,7 +353,7 @@ def other_values(key: str, field: Any, now: Any) -> list[Any]:
         return [one for one in literals if one != now]
     if isinstance(now, bool):
         return [not now]
-    if section(field) is not None:
+    if sections(field):
         return [{}] if now is None else [None]
     if isinstance(now, tuple):
         plain = [getattr(one, "nominal", one) for one in now]

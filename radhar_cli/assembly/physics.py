@@ -4,12 +4,22 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import partial
 from math import inf, log, radians, sqrt
+from typing import TypeAlias, assert_never
 
 import numpy as np
 
 from radhar_cli.bodies.segment_paths import Body
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.number import nominal, support
+from radhar_cli.config.processing import ProcessingConfig
+from radhar_cli.config.radar import (
+    BeamConfig,
+    BoardRadar,
+    CwRadar,
+    FmcwRadar,
+    ImpulseRadar,
+    SfcwRadar,
+)
 from radhar_cli.motion.paper.activities import PaperGait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion
@@ -40,13 +50,16 @@ from radhar_cli.receiver.interference import InterferenceLine
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Numbers, Person, Scene, nominal_scene
 
+Vector: TypeAlias = tuple[float, float, float]
 
-def board_of(radar: Numbers, seconds: float = 0.0) -> Board:
+
+def board_of(radar: BoardRadar[float], seconds: float = 0.0) -> Board:
     """Make the board of a `radar.cfg`, with the frames of so many seconds, at least one."""
-    header = radar.header
+    header, array = radar.header, radar.elements
+    assert array is not None  # refused where the config is read
     frames = max(int(seconds / header.period_s + 1e-9), 1)
     return Board(
-        array=radar.elements,
+        array=array,
         start=header.start_hz,
         fc=header.carrier_hz,
         slope=header.slope_hz,
@@ -67,12 +80,10 @@ def board_of(radar: Numbers, seconds: float = 0.0) -> Board:
     )
 
 
-def detection_of(config: Config) -> Detection:
+def detection_of(radar: BoardRadar, processing: ProcessingConfig) -> Detection:
     """Read detection from the .cfg, as far as the board heeds it; clutter is the config's."""
-    detection = replace(
-        config.radar.header.detection, remove_mean=config.processing.clutter == "mean"
-    )
-    if "1443" in str(config.radar.device):
+    detection = replace(radar.header.detection, remove_mean=processing.clutter == "mean")
+    if "1443" in str(radar.device):
         detection = replace(
             detection, azimuth_deg=None, elevation_deg=None, range_m=None, doppler_mps=None
         )
@@ -82,12 +93,19 @@ def detection_of(config: Config) -> Detection:
 def waveform_of(scene: Scene) -> Waveform:
     """Make the waveform of a scene."""
     radar, processing = scene.radar, scene.config.processing
-    if radar.cfg is not None:
-        return board_of(radar, scene.seconds).waveform
     kind: Callable[..., Waveform] = Waveform
-    if radar.waveform == "impulse":
-        samples = scene.config.radar.profile_samples
-        kind = partial(Impulse, profile=radar.profile_m, samples=samples)
+    residual_video_phase, centred = False, processing.range_reference == "centre"
+    match radar:
+        case BoardRadar():
+            return board_of(radar, scene.seconds).waveform
+        case ImpulseRadar():
+            kind = partial(Impulse, profile=radar.profile_m, samples=radar.profile_samples)
+        case CwRadar():
+            centred = False
+        case FmcwRadar() | SfcwRadar():
+            residual_video_phase = radar.residual_video_phase
+        case _:
+            assert_never(radar)
     return kind(
         fc=radar.carrier_hz,
         bandwidth=radar.bandwidth_hz,
@@ -96,15 +114,15 @@ def waveform_of(scene: Scene) -> Waveform:
         prf=radar.prf_hz,
         duration=scene.seconds,
         fft_length=processing.range_fft_length,
-        centred=processing.range_reference == "centre" and radar.waveform != "cw",
-        residual_video_phase=radar.residual_video_phase,
+        centred=centred,
+        residual_video_phase=residual_video_phase,
     )
 
 
 def antennas_of(scene: Scene) -> Antennas:
     """Make the antennas of a scene; for a board those of its first channel."""
     radar = scene.radar
-    if radar.cfg is not None:
+    if isinstance(radar, BoardRadar):
         board = board_of(radar)
         return board.antennas(*board.pairs[0])
     return Antennas(
@@ -112,7 +130,7 @@ def antennas_of(scene: Scene) -> Antennas:
         rx=radar.rx_m,
         gain=10 ** (radar.antenna_gain_dbi / 10),
         isolation_db=radar.antenna_isolation_db,
-        aim=beam_of(radar),
+        aim=None if radar.beam is None else aim_of(radar.beam, radar.tx_m, radar.rx_m),
     )
 
 
@@ -182,12 +200,14 @@ def body_of(person: Person, motion: Motion) -> Body:
     return Body(whole, segments_between(landmark_names(whole)), stature, thickness(stature, weight))
 
 
-def beam_of(radar: Numbers) -> Aim | None:
-    """Aim of both antennas, of -min(12 (az/bw)^2 + 12 (el/bw)^2, most_db) dB; None without beam."""
-    beam = radar.beam
-    if beam is None:
-        return None
-    x, y, z = (np.array(radar.tx_m) + np.array(radar.rx_m)) / 2
+def aim_of(beam: BeamConfig[float], tx: Vector, rx: Vector) -> Aim:
+    """Make the aim of two antennas with a beam of -min(12 (az/bw)^2 + 12 (el/bw)^2, most_db) dB.
+
+    Args:
+        beam: widths, boresight and least gain.
+        tx, rx: places of the antennas, m.
+    """
+    x, y, z = (np.array(tx) + np.array(rx)) / 2
     half = sqrt(log(2) * 20 / (6 * log(10))) / 2  # -3 dB there, and not a half
     widths = half * beam.azimuth_deg, half * beam.elevation_deg
     axes = boresight_axes(radians(beam.pan_deg), radians(beam.tilt_deg))

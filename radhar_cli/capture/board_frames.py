@@ -11,12 +11,13 @@ from radhar_cli.capture.chain import pulses_between
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.errors import CaptureError
 from radhar_cli.products.plan import plan
 from radhar_cli.products.run import run
 from radhar_cli.products.table import products
 from radhar_cli.radar.board import Board
-from radhar_cli.scene import Numbers
+from radhar_cli.scene import fixed_radar
 
 # {map of a board: products of its recording that are behind it}
 OF_FRAMES = {name: (name,) for name in (*FRAME_MAPS, "cube")} | {"points": ("cloud",)}
@@ -64,9 +65,10 @@ def _board(recording: Recording, config: Config) -> Board:
     Raises:
         CaptureError: the config has no board, or another.
     """
-    if config.radar.cfg is None:
+    radar = fixed_radar(config)
+    if not isinstance(radar, BoardRadar):
         raise CaptureError(f"{recording.path}: frames need the board's .cfg: radar.cfg")
-    board, info = board_of(Numbers(config.radar)), recording.info
+    board, info = board_of(radar), recording.info
     expected = {
         "receivers": board.channels,
         "samples": board.samples,

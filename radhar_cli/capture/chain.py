@@ -15,6 +15,7 @@ from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
 from radhar_cli.config.data_set import AnyConfig
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Bool, Complex
 from radhar_cli.numerics.phasor import unit_phasor
@@ -28,7 +29,7 @@ from radhar_cli.products.run import process
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import Numbers
+from radhar_cli.scene import fixed_radar
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once
 PIECE_SAMPLES = 2**20
@@ -98,8 +99,9 @@ def maps_of(
         centred = processing.range_reference == "centre" or processing.range_sum == "gated"
         waveform = recording.info.waveform(processing.range_fft_length, centred)
         waveform = replace(waveform, duration=segments.pulses / prf)
-        if config.radar.cfg is not None:  # whose samples have no half band
-            waveform = replace(board_of(Numbers(config.radar)).waveform, centred=centred)
+        radar = fixed_radar(config)
+        if isinstance(radar, BoardRadar):  # whose samples have no half band
+            waveform = replace(board_of(radar).waveform, centred=centred)
         x = fill_lost_pulses(bins_of_part(recording, waveform, chosen, first, last), lost)
         profiles = recording.info.holds == "profiles"
         moving_bins = analytic(x) if profiles and recording.samples.parts == 1 else x

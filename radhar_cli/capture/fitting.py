@@ -21,6 +21,7 @@ from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import WINDOW_S, hann_in_range, track_torso, without_static
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import nominal
+from radhar_cli.config.radar import FmcwRadar
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.page import page, write_figure
@@ -100,7 +101,7 @@ class Fit:
     @cached_property
     def document(self) -> dict[str, Any]:
         """Config of the estimates, as plain values by key."""
-        w, snr, defaults = self.waveform, self.snr_db, Config().radar
+        w, snr, defaults = self.waveform, self.snr_db, FmcwRadar()
         middle = round(float(snr.mean()), 2)
         spread = round(float(snr.std()), 2) if snr.size >= MIN_SNRS else 0
         document: dict[str, Any] = {

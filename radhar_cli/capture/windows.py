@@ -19,6 +19,7 @@ from radhar_cli.capture.images import are_images, is_image, list_images, read_im
 from radhar_cli.capture.recording import Recording, RecordingInfo
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.identity import resolved
+from radhar_cli.config.radar import RADARS, kind_of_radar
 from radhar_cli.config.reading import validated
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
@@ -218,10 +219,18 @@ def radar_of(info: RecordingInfo) -> dict[str, Any]:
 
 
 def as_recorded(radar: dict[str, Any], recorded: dict[str, Any]) -> dict[str, Any]:
-    """Replace keys of a config's section `radar` by those of its recordings (`radar_of`)."""
-    if radar["waveform"] == "impulse" and "waveform" not in recorded:
-        radar = radar | {"waveform": "fmcw", "profile_m": None}
-    return radar | recorded
+    """Replace keys of a config's section `radar` by those of its recordings (`radar_of`).
+
+    What the resulting kind of radar has no key for is left out: the band of a cw radar, the
+    chirps of a board.
+    """
+    waveform = recorded.get("waveform", radar["waveform"])
+    if waveform == "impulse" and "waveform" not in recorded:
+        waveform = "fmcw"
+    merged = radar | recorded | {"waveform": waveform}
+    tag = kind_of_radar(merged)
+    kind = next(kind for kind in RADARS if f"<{kind.kind}>" == tag)
+    return {key: value for key, value in merged.items() if key in kind.model_fields}
 
 
 def _split(config: Config, parts: Sequence[dict[str, Any]], manifest: Path) -> dict[str, Any]:

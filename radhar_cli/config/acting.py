@@ -1,13 +1,10 @@
 """Conditions under which a key acts that several sections share."""
 
-from radhar_cli.config.annotations import GIVEN, ActsIf, OnlyMaps, Unless
+from radhar_cli.config.annotations import OfRadar, OnlyMaps, Unless
 
-BOARD, NO_BOARD = ActsIf("radar.cfg", GIVEN), ActsIf("radar.cfg", None)
-
-
-NO_IMPULSE = ActsIf("radar.waveform", "fmcw", "sfcw", "cw")
-
-
+BOARD = OfRadar("board")
+NO_BOARD = OfRadar("fmcw", "sfcw", "cw", "impulse")
+NO_IMPULSE = OfRadar("fmcw", "sfcw", "cw", "board")
 EVEN = Unless("radar.frames_apart", "the pauses between a board's frames (radar.cfg)")
 
 

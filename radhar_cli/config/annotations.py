@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cache
 from types import MappingProxyType
-from typing import Any, Literal, TypeAlias, TypeVar, get_args, get_origin
+from typing import Any, Literal, TypeAlias, TypeGuard, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -152,7 +152,32 @@ class Unless:
         return "none"
 
 
-Condition: TypeAlias = ActsIf | ActsIfAny | Unless
+@dataclass(frozen=True)
+class OfRadar:
+    """The key acts only with radars of some kinds."""
+
+    kinds: tuple[str, ...]
+
+    def __init__(self, *kinds: str) -> None:
+        object.__setattr__(self, "kinds", kinds)
+
+    def holds(self, value_at: ValueAt) -> bool:
+        """Whether the radar is of one of the kinds."""
+        return value_at("radar.kind") in self.kinds
+
+    def entry(self, value_at: ValueAt) -> str:
+        """What tells the kind of the radar, as YAML."""
+        return str(value_at("radar.named"))
+
+    @property
+    def right(self) -> str:
+        """What would tell one of the kinds, in words."""
+        waveforms = [kind for kind in self.kinds if kind != "board"]
+        words = [f"radar.waveform: {' or '.join(waveforms)}"] if waveforms else []
+        return " or ".join((*words, *["radar.cfg"] * ("board" in self.kinds)))
+
+
+Condition: TypeAlias = ActsIf | ActsIfAny | Unless | OfRadar
 
 
 def entry(key: str, value: object) -> str:
@@ -210,9 +235,10 @@ def annotations(kind: type[BaseModel], prefix: str = "") -> Mapping[str, tuple[A
     found = dict[str, tuple[Any, ...]]()
     for name, field in kind.model_fields.items():
         found[prefix + name] = tuple(_flat(field))
-        inner = section(field)
-        if inner is not None and not getattr(inner, "REPEATS", False):
-            found |= annotations(inner, f"{prefix}{name}.")
+        for inner in sections(field):
+            if not getattr(inner, "REPEATS", False):
+                about = annotations(inner, f"{prefix}{name}.")
+                found |= {key: about[key] for key in about if key not in found}
     return MappingProxyType(found)
 
 
@@ -253,8 +279,14 @@ def at(config: BaseModel, key: str) -> Any:
         elif isinstance(place, dict):
             place = place[name]
         elif place is not None:
-            place = getattr(place, name)
+            place = None if _is_of_alternative(place, name) else getattr(place, name)
     return place
+
+
+def _is_of_alternative(section: Any, name: str) -> bool:
+    """Whether not this section but another that may stand in its place has a key."""
+    others = getattr(section, "ALTERNATIVES", ())
+    return not hasattr(section, name) and any(name in other.model_fields for other in others)
 
 
 def range_of(kind: type[BaseModel], key: str) -> str:
@@ -277,13 +309,26 @@ def range_of(kind: type[BaseModel], key: str) -> str:
     return f"from {low:g} to {high:g} {unit}".rstrip()
 
 
-def section(field: FieldInfo) -> type[BaseModel] | None:
-    """The section that a field holds, maybe instead of null; None of values, lists, mappings."""
+def sections(field: FieldInfo) -> tuple[type[BaseModel], ...]:
+    """Sections of which a field holds one, maybe instead of null; none of other fields."""
     kinds = [field.annotation, *get_args(field.annotation)]
     if any(get_origin(kind) is Literal for kind in kinds):  # a value, or drawn
-        return None
-    found = (k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel))
-    return next((k for k in found if not k.__module__.endswith(".number")), None)
+        return ()
+    members = [getattr(kind, "__origin__", None) for kind in get_args(field.annotation)]
+    alternatives = [kind for kind in members if _is_section(kind)]
+    if alternatives and len(alternatives) == len(members):
+        return (*alternatives,)
+    return (*[kind for kind in kinds if _is_section(kind)][:1],)
+
+
+def section(field: FieldInfo) -> type[BaseModel] | None:
+    """The section that a field holds by default, maybe instead of null; None of other fields."""
+    return next(iter(sections(field)), None)
+
+
+def _is_section(kind: Any) -> TypeGuard[type[BaseModel]]:
+    is_model = isinstance(kind, type) and issubclass(kind, BaseModel)
+    return is_model and not kind.__module__.endswith(".number")
 
 
 def _flat(about: Any) -> Iterator[Any]:

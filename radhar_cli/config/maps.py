@@ -6,16 +6,9 @@ from pydantic import AfterValidator
 
 from radhar_cli.config.number import value_error
 from radhar_cli.extensions import is_known, own_products
+from radhar_cli.processing.map_kind import MAP_KINDS
 
-MAP_NAMES = (
-    "rtm",
-    *(
-        f"{kind}{suffix}"
-        for kind in ("stft", "fsst")
-        for suffix in ("", "_denoised", "_compensated", "_compensated_denoised")
-    ),
-)
-
+MAP_NAMES = tuple(MAP_KINDS)
 
 # Maps of a board, frame by frame: data sets hold them as arrays, and sheets of frames as images.
 MIN_LOOPS = 4  # of a frame: of 2 or fewer, a Hann window keeps one

@@ -299,35 +299,25 @@ class Bounds:
 
 
 within = Bounds  # (low, high, unit)
-Positive: TypeAlias = Annotated[Number, Bounds(0, MAX_NUMBER, wording="above 0", open_low=True)]
-NotNegative: TypeAlias = Annotated[Number, Bounds(0, MAX_NUMBER, wording="0 or more")]
-AtLeastOne: TypeAlias = Annotated[Number, Bounds(1, MAX_NUMBER, wording="1 or more")]
-Angle: TypeAlias = Annotated[Number, within(-360, 360, "degrees")]
-Decibel: TypeAlias = Annotated[Number, within(-300, 300, "dB")]
-Coordinate: TypeAlias = Annotated[
-    Number, Bounds(-1e6, 1e6, "m", wording="within 1e6 m of the origin")
-]
+POSITIVE = Bounds(0, MAX_NUMBER, wording="above 0", open_low=True)
+NOT_NEGATIVE = Bounds(0, MAX_NUMBER, wording="0 or more")
+AT_LEAST_ONE = Bounds(1, MAX_NUMBER, wording="1 or more")
+ANGLE = within(-360, 360, "degrees")
+DECIBEL = within(-300, 300, "dB")
+COORDINATE = Bounds(-1e6, 1e6, "m", wording="within 1e6 m of the origin")
+
+Positive: TypeAlias = Annotated[Number, POSITIVE]
+NotNegative: TypeAlias = Annotated[Number, NOT_NEGATIVE]
+AtLeastOne: TypeAlias = Annotated[Number, AT_LEAST_ONE]
+Angle: TypeAlias = Annotated[Number, ANGLE]
+Decibel: TypeAlias = Annotated[Number, DECIBEL]
+Coordinate: TypeAlias = Annotated[Number, COORDINATE]
 Vector = tuple[Coordinate, Coordinate, Coordinate]
-
 Metres = Annotated[NotNegative, within(0, 1, "m")]
-
-
 Rate = Annotated[NotNegative, within(0, 20, "Hz")]
-
-
 Ratio = Annotated[NotNegative, within(0, 10)]
-
-
 Signed = Annotated[Number, within(-1, 1)]
-
-
 Speed = Annotated[NotNegative, within(0, 1e4, "m/s")]
-
-
 Frequency = Annotated[NotNegative, within(0, 1e3, "Hz")]
-
-
 Seconds = Annotated[NotNegative, within(0, 1e7, "s")]
-
-
 Share = Annotated[float, Field(ge=0, le=1, strict=True)]

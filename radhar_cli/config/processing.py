@@ -8,6 +8,7 @@ from pydantic import Field, field_validator, model_validator
 from radhar_cli.config.acting import EVEN, NO_BOARD, SPECTRA
 from radhar_cli.config.annotations import ActsIf, OnlyMaps
 from radhar_cli.config.number import value_error
+from radhar_cli.config.radar import MIN_WINDOW
 from radhar_cli.config.section import Flag, Section
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import half_up
@@ -53,9 +54,6 @@ LIMB_ACCELERATION = 2.0  # m/s^2 along the line of sight; gait and kicks are res
 
 
 MAX_WINDOW_SHARE = 0.25
-
-
-MIN_WINDOW = 8
 
 
 PAPER_WINDOW = 0.1  # of the recording

@@ -1,23 +1,44 @@
-"""The radar: its waveform, antennas and board."""
+"""The radar: five kinds, each with the keys that it alone has.
 
-from typing import Annotated, Literal, TypeAlias
+`radar:` is the one that `cfg` or `waveform` tells. A kind answers for itself: what its pulses are,
+which maps it makes, and why not the others.
+"""
 
-from pydantic import Field
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, TypeAlias
 
-from radhar_cli.config.acting import BOARD, NO_BOARD
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, field_validator
+
 from radhar_cli.config.annotations import GIVEN, ActsIf, ActsIfAny, ByModel
-from radhar_cli.config.number import Angle, Decibel, NotNegative, Positive, Real, Vector, within
-from radhar_cli.config.section import Flag, Section
-from radhar_cli.radar.board import DEVICES, EVEN, Array
+from radhar_cli.config.maps import MIN_LOOPS
+from radhar_cli.config.number import (
+    ANGLE,
+    COORDINATE,
+    DECIBEL,
+    NOT_NEGATIVE,
+    POSITIVE,
+    Real,
+    value_error,
+    within,
+)
+from radhar_cli.config.section import Filled, Flag, N, Section, default_draw
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.processing.map_kind import MapKind, Transform
+from radhar_cli.radar.board import (
+    DEVICES,
+    EVEN,
+    MAX_SIDELOBE,
+    Array,
+    Places,
+    longest_rows,
+    sidelobe,
+)
 from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
 
-Place: TypeAlias = tuple[Real, Real]
-
-
-HalfPower = Annotated[float, Field(ge=1, le=1000, strict=True)]
-
-
 BOOST = "IWR1443BOOST"
+MIN_WINDOW = 8  # pulses of the window of a Doppler-time map
+Place: TypeAlias = tuple[Real, Real]
+HalfPower = Annotated[float, Field(ge=1, le=1000, strict=True)]
 
 
 class ArrayConfig(Section):
@@ -29,111 +50,272 @@ class ArrayConfig(Section):
     """Places of the receivers, in the order of the board's RX 1 to 4."""
 
 
-class BeamConfig(Section):
+class BeamConfig(Section, Generic[N]):
     """A beam of -min(12 (az/azimuth_deg)^2 + 12 (el/elevation_deg)^2, most_db) dB, one way."""
 
-    azimuth_deg: Annotated[Positive, within(1, 1000, "degree")] = 70.0
+    azimuth_deg: Annotated[N, POSITIVE, within(1, 1000, "degree")] = default_draw(70.0)
     """Full width of the beam in azimuth at -3 dB."""
-    elevation_deg: Annotated[Positive, within(1, 1000, "degree")] = 30.0
+    elevation_deg: Annotated[N, POSITIVE, within(1, 1000, "degree")] = default_draw(30.0)
     """Full width of the beam in elevation at -3 dB."""
-    pan_deg: Angle = 0.0
+    pan_deg: Annotated[N, ANGLE] = default_draw(0.0)
     """Angle of the boresight from the x axis, positive to the left."""
-    tilt_deg: Angle = 0.0
+    tilt_deg: Annotated[N, ANGLE] = default_draw(0.0)
     """Angle of the boresight below the horizontal, positive down."""
-    most_db: Annotated[NotNegative, within(0, 120, "dB")] = 30.0
+    most_db: Annotated[N, NOT_NEGATIVE, within(0, 120, "dB")] = default_draw(30.0)
     """Largest loss: no direction gets less than this below the gain of the boresight."""
 
 
-class RadarConfig(Section):
-    """Waveform, antenna positions and gains; every number may be drawn."""
+class AnyRadar(Section, Generic[N]):
+    """What every kind of radar answers, each by its own keys."""
 
-    carrier_hz: Annotated[Positive, within(1e6, 1e13, "Hz")] = 77e9
-    """Carrier frequency at the start of the chirp."""
-    bandwidth_hz: Annotated[
-        Positive | None, within(1e3, 1e12, "Hz"), ByModel(human=1e9, paper=4e9, file=4e9)
-    ] = None
-    """Bandwidth B that a chirp sweeps; the range step is c/2B. With the default chirp 1 and 4 GHz
-    have a half-band of 30 and 7.5 m."""
+    kind: ClassVar[str]
+    named: ClassVar[str]  # as messages name it: the key, and value, that tell the kind
+
+    if TYPE_CHECKING:  # keys of some kinds, which follow from others' keys
+
+        @property
+        def carrier_hz(self) -> N: ...
+        @property
+        def bandwidth_hz(self) -> N: ...
+        @property
+        def prf_hz(self) -> N: ...
+        @property
+        def adc_rate_hz(self) -> N: ...
+        @property
+        def chirp_s(self) -> N: ...
+
+    @property
+    def frames_apart(self) -> bool:
+        """Whether the radar pauses between frames."""
+        return False
+
+    @property
+    def place_keys(self) -> tuple[str, ...]:
+        """Keys of the places where the radar's antennas stand."""
+        return ("tx_m", "rx_m")
+
+    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
+        """Say why the radar does not make a map of a signal; None if it does.
+
+        Args:
+            kind: the map.
+            gating: what makes Doppler maps those of a gate, in words; None where they show the
+                coherent sum over range.
+        """
+        if gating and kind.transform is Transform.FSST:
+            return (
+                f"{gating} adds up powers of bins, and the fsst moves coefficients by their phase"
+            )
+        return None
+
+    def why_no_frames(self, name: str) -> str | None:
+        """Say why the radar does not make a map of frames, or their cube; None if it does."""
+        return f"{name} is of the frames of a board (radar.cfg, docs/guide/boards.md)"
+
+
+class _Pulses(AnyRadar[N], Generic[N]):
+    """Keys of radars that send pulse after pulse."""
+
+    carrier_hz: Annotated[N, POSITIVE, within(1e6, 1e13, "Hz")] = default_draw(77e9)
+    """Carrier frequency: at the start of a chirp, of the first step, at the lower end of an
+    impulse's band (-10 dB)."""
     prf_hz: Annotated[
-        Positive | None, within(1e-3, 1e7, "Hz"), ByModel(human=1e4, paper=5e3, file=5e3)
-    ] = None
+        Filled[N], POSITIVE, within(1e-3, 1e7, "Hz"), ByModel(human=1e4, paper=5e3, file=5e3)
+    ] = default_draw(None)
     """Pulse repetition frequency, chirps per second; 10 kHz is +-9.7 m/s at 77 GHz, and a kick's
     foot reaches 7 to 9."""
-    adc_rate_hz: Annotated[Positive, within(1e-3, 1e13, "Hz")] = 10e6
-    """Sampling rate of the ADC within a chirp."""
-    chirp_s: Annotated[Positive, within(1e-12, 1e4, "s")] = 40e-6
-    """Duration of a chirp, at most 1/prf_hz."""
-    tx_m: Annotated[Vector, NO_BOARD] = (0.4, -0.1, 1.5)
+
+
+class _Band(_Pulses[N], Generic[N]):
+    """Keys of pulses that have a band."""
+
+    bandwidth_hz: Annotated[
+        Filled[N],
+        POSITIVE,
+        within(1e3, 1e12, "Hz"),
+        ByModel(human=1e9, paper=4e9, file=4e9),
+    ] = default_draw(None)
+    """Bandwidth B that a pulse covers; the range step is c/2B. With the default chirp 1 and 4 GHz
+    have a half-band of 30 and 7.5 m."""
+
+
+class _AntennaPair(AnyRadar[N], Generic[N]):
+    """Keys of a transmitting and a receiving antenna."""
+
+    tx_m: tuple[Annotated[N, COORDINATE], Annotated[N, COORDINATE], Annotated[N, COORDINATE]] = (
+        default_draw((0.4, -0.1, 1.5))
+    )
     """Place of the transmitter: range, cross-range, height."""
-    rx_m: Annotated[Vector, NO_BOARD] = (0.4, 0.1, 1.5)
+    rx_m: tuple[Annotated[N, COORDINATE], Annotated[N, COORDINATE], Annotated[N, COORDINATE]] = (
+        default_draw((0.4, 0.1, 1.5))
+    )
     """Place of the receiver: range, cross-range, height."""
-    antenna_gain_dbi: Annotated[Decibel, within(-150, 150, "dBi")] = 6.0
+    antenna_gain_dbi: Annotated[N, DECIBEL, within(-150, 150, "dBi")] = default_draw(6.0)
     """Gain of each antenna at its boresight."""
-    antenna_isolation_db: Annotated[Decibel, NO_BOARD] = 10.0
+    antenna_isolation_db: Annotated[N, DECIBEL] = default_draw(10.0)
     """Isolation between transmitter and receiver; only a raw echo shows the leakage."""
-    residual_video_phase: Annotated[Flag, NO_BOARD] = False
-    """Whether the beat keeps the residual video phase, the term pi K tau^2."""
+    beam: BeamConfig[N] | None = None
+    """Beam of both antennas; null radiates evenly."""
+
+
+class _Emission(AnyRadar[N], Generic[N]):
+    """Keys of the field that a radar sends out."""
+
     polarisation: Annotated[
         Literal["vertical", "horizontal"],
         ActsIfAny(ActsIf("room.faces", GIVEN), ActsIf("wall.echoes", "exact")),
     ] = "vertical"
     """Polarisation of the antennas' field, for room.faces and wall.echoes; horizontal is along
     y."""
-    beam: BeamConfig | None = None
-    """Beam of both antennas; null radiates evenly. A board has radar.half_power_deg instead."""
-    waveform: Literal["fmcw", "sfcw", "cw", "impulse"] = "fmcw"
-    """sfcw: sweeps of steps, sampled once each; cw: one sample a pulse, at carrier_hz; impulse:
-    Gaussian pulses from carrier_hz to carrier_hz + bandwidth_hz (-10 dB). Without adc_rate_hz and
-    chirp_s; cw without bandwidth_hz."""
-    output: Annotated[Literal["iq", "real"], ActsIf("radar.waveform", "cw")] = "iq"
-    """Output of a cw radar: iq, or real for the in-phase channel alone, whose Doppler is
-    symmetric."""
-    steps: Annotated[
-        Annotated[int, Field(ge=2, le=2**20, strict=True)] | None, ActsIf("radar.waveform", "sfcw")
-    ] = None
-    """Number of frequencies of an sfcw sweep, carrier_hz + n bandwidth_hz/steps."""
-    dwell_s: Annotated[
-        Annotated[float, Field(gt=0, le=1e3, strict=True)] | None, ActsIf("radar.waveform", "sfcw")
-    ] = None
-    """Time that an sfcw radar stays on each frequency."""
-    profile_m: Annotated[tuple[Real, Real] | None, ActsIf("radar.waveform", "impulse")] = None
-    """Range axis [from, to] of an impulse radar's profiles, m."""
-    profile_samples: Annotated[
-        int, Field(ge=2, le=2**16, strict=True), ActsIf("radar.waveform", "impulse")
-    ] = 256
-    """Number of range samples in an impulse radar's profile."""
-    cfg: Annotated[str, Field(min_length=1, max_length=2**16)] | None = None
-    """The .cfg of a TI board, which gives the waveform: a path from this file's folder on, or a
-    known radar (docs/guide/boards.md). A config that is written has its text."""
-    device: Annotated[Literal[tuple(DEVICES)] | None, BOARD] = None  # type: ignore[valid-type]
-    """TI board that the .cfg runs on; it decides the antenna array."""
-    array: Annotated[ArrayConfig | None, BOARD] = None
-    """Antenna array used instead of the device's."""
-    position_m: Annotated[Vector, BOARD] = (0.0, 0.0, 1.0)
-    """Position of a board: range, cross-range, height."""
-    yaw_deg: Annotated[Angle, BOARD] = 0.0
-    """Angle of a board's boresight from the x axis, positive to the left."""
-    tilt_deg: Annotated[Angle, BOARD] = 0.0
-    """Angle of a board's boresight below the horizontal, positive down."""
-    half_power_deg: Annotated[tuple[HalfPower, HalfPower] | None, BOARD] = None
-    """Half-power half-widths of an element in azimuth and elevation; null is the device's."""
-    half_wavelength_m: Annotated[float | None, Field(gt=0, le=1, strict=True), BOARD] = None
-    """Unit of an array's places; null is c/(2 f_c), where f_c is the middle of the sampled band."""
     transmit_power_dbm: Annotated[
-        Decibel, ActsIf("snr_db", None), ActsIf("receiver.noise_figure_db", GIVEN)
-    ] = 12.0
+        N, DECIBEL, ActsIf("snr_db", None), ActsIf("receiver.noise_figure_db", GIVEN)
+    ] = default_draw(12.0)
     """Transmitted power, which thermal noise (receiver.noise_figure_db) is compared with."""
 
+
+class FmcwRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
+    """A radar that sends chirps: antennas, gains, and a linear sweep sampled by an ADC."""
+
+    kind: ClassVar[str] = "fmcw"
+    named: ClassVar[str] = "radar.waveform: fmcw"
+
+    waveform: Literal["fmcw"] = "fmcw"
+    """Kind of the radar: fmcw sends chirps; sfcw sweeps of steps, sampled once each; cw takes one
+    sample a pulse, at carrier_hz; impulse sends Gaussian pulses from carrier_hz to carrier_hz +
+    bandwidth_hz (-10 dB). A TI board has `cfg` instead."""
+    adc_rate_hz: Annotated[N, POSITIVE, within(1e-3, 1e13, "Hz")] = default_draw(10e6)
+    """Sampling rate of the ADC within a chirp."""
+    chirp_s: Annotated[N, POSITIVE, within(1e-12, 1e4, "s")] = default_draw(40e-6)
+    """Duration of a chirp, at most 1/prf_hz."""
+    residual_video_phase: Flag = False
+    """Whether the beat keeps the residual video phase, the term pi K tau^2."""
+
+
+def _require_waveform(schema: dict[str, Any]) -> None:
+    """Ask for `waveform` in the JSON schema of a radar that is not the default one."""
+    schema["required"] = [*schema.get("required", ()), "waveform"]
+
+
+class SfcwRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
+    """A radar that steps through frequencies and takes a sample at each."""
+
+    kind: ClassVar[str] = "sfcw"
+    named: ClassVar[str] = "radar.waveform: sfcw"
+    model_config = ConfigDict(json_schema_extra=_require_waveform)
+
+    waveform: Literal["sfcw"] = "sfcw"
+    """Kind of the radar."""
+    steps: Annotated[int, Field(ge=2, le=2**20, strict=True)]
+    """Number of frequencies of a sweep, carrier_hz + n bandwidth_hz/steps."""
+    dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)]
+    """Time that the radar stays on each frequency."""
+    residual_video_phase: Flag = False
+    """Whether the beat keeps the residual video phase, the term pi K tau^2."""
+
     @property
-    def chirp_keys(self) -> dict[str, float]:
-        """Keys of the chirp that another waveform has instead; empty of fmcw."""
-        if self.waveform == "cw":  # of one sample; its length and band change nothing
-            return {"adc_rate_hz": 1e9, "chirp_s": 1e-9, "bandwidth_hz": 1e3}
-        if self.waveform == "impulse":  # whose middle is that of the band
-            return {"adc_rate_hz": 1e9, "chirp_s": 2e-9}
-        if self.waveform == "fmcw" or self.steps is None or self.dwell_s is None:
-            return {}
-        return {"adc_rate_hz": 1 / self.dwell_s, "chirp_s": self.steps * self.dwell_s}
+    def adc_rate_hz(self) -> float:  # type: ignore[override]
+        """Samples per second of a sweep."""
+        return 1 / self.dwell_s
+
+    @property
+    def chirp_s(self) -> float:  # type: ignore[override]
+        """Duration of a sweep, s."""
+        return self.steps * self.dwell_s
+
+
+class CwRadar(_Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
+    """A radar that sends one frequency and takes one sample a pulse; it has no range."""
+
+    kind: ClassVar[str] = "cw"
+    named: ClassVar[str] = "radar.waveform: cw"
+    model_config = ConfigDict(json_schema_extra=_require_waveform)
+
+    waveform: Literal["cw"] = "cw"
+    """Kind of the radar."""
+    output: Literal["iq", "real"] = "iq"
+    """Output of the mixer: iq, or real for the in-phase channel alone, whose Doppler is
+    symmetric."""
+
+    # A pulse of one sample, whose length and band change nothing.
+    adc_rate_hz: ClassVar[float] = 1e9  # type: ignore[assignment]
+    chirp_s: ClassVar[float] = 1e-9  # type: ignore[assignment]
+    bandwidth_hz: ClassVar[float] = 1e3  # type: ignore[assignment]
+
+    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
+        """Say why the radar does not make a map: it has no range, real samples no direction."""
+        if kind.transform is Transform.RTM:
+            return f"{self.named} has no range"
+        if self.output == "real" and kind.treatment.compensated:
+            return "radar.output: real has no sign of the Doppler"
+        return super().why_no_map(kind, gating)
+
+
+class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
+    """A radar that sends Gaussian pulses; its receiver samples real range profiles."""
+
+    kind: ClassVar[str] = "impulse"
+    named: ClassVar[str] = "radar.waveform: impulse"
+    model_config = ConfigDict(json_schema_extra=_require_waveform)
+
+    waveform: Literal["impulse"] = "impulse"
+    """Kind of the radar."""
+    profile_m: tuple[Real, Real]
+    """Range axis [from, to] of the profiles, m."""
+    profile_samples: Annotated[int, Field(ge=2, le=2**16, strict=True)] = 256
+    """Number of range samples in a profile."""
+
+    # A pulse of one sample, whose middle is that of the band.
+    adc_rate_hz: ClassVar[float] = 1e9  # type: ignore[assignment]
+    chirp_s: ClassVar[float] = 2e-9  # type: ignore[assignment]
+
+    @field_validator("profile_m")
+    @classmethod
+    def _rising(cls, value: tuple[float, float]) -> tuple[float, float]:
+        if not 0 <= value[0] < value[1]:
+            raise value_error("should be [from, to], 0 <= from < to, with radar.waveform: impulse")
+        return value
+
+    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
+        """Say why the radar does not make a map of its real samples."""
+        if kind not in (MapKind.parse("rtm"), MapKind.parse("stft")):
+            return f"{self.named} takes real samples"
+        if kind.is_doppler_time and not gating:
+            return (
+                f"the real samples of {self.named} have no mean over range; stft needs "
+                "processing.range_sum: gated"
+            )
+        return super().why_no_map(kind, gating)
+
+
+class BoardRadar(_Emission[N], Generic[N]):
+    """A TI board: the .cfg says its chirps, frames and receivers, the device its antennas."""
+
+    kind: ClassVar[str] = "board"
+    named: ClassVar[str] = "radar.cfg"
+
+    cfg: Annotated[str, Field(min_length=1, max_length=2**16)]
+    """The .cfg of a TI board, which gives the waveform: a path from this file's folder on, or a
+    known radar (docs/guide/boards.md). A config that is written has its text."""
+    waveform: Literal["fmcw"] = "fmcw"
+    """Waveform of a board, which sends chirps."""
+    device: Literal[tuple(DEVICES)] | None = None  # type: ignore[valid-type]
+    """TI board that the .cfg runs on; it decides the antenna array."""
+    array: ArrayConfig | None = None
+    """Antenna array used instead of the device's."""
+    position_m: tuple[
+        Annotated[N, COORDINATE], Annotated[N, COORDINATE], Annotated[N, COORDINATE]
+    ] = default_draw((0.0, 0.0, 1.0))
+    """Position of the board: range, cross-range, height."""
+    yaw_deg: Annotated[N, ANGLE] = default_draw(0.0)
+    """Angle of the board's boresight from the x axis, positive to the left."""
+    tilt_deg: Annotated[N, ANGLE] = default_draw(0.0)
+    """Angle of the board's boresight below the horizontal, positive down."""
+    antenna_gain_dbi: Annotated[N, DECIBEL, within(-150, 150, "dBi")] = default_draw(9.0)
+    """Gain of each antenna at its boresight."""
+    half_power_deg: tuple[HalfPower, HalfPower] | None = None
+    """Half-power half-widths of an element in azimuth and elevation; null is the device's."""
+    half_wavelength_m: Annotated[float, Field(gt=0, le=1, strict=True)] | None = None
+    """Unit of an array's places; null is c/(2 f_c), where f_c is the middle of the sampled band."""
 
     @property
     def header(self) -> BoardHeader:
@@ -142,17 +324,163 @@ class RadarConfig(Section):
         Raises:
             CaptureError: `cfg` cannot be read.
         """
-        assert self.cfg is not None
         return parse_ti_cfg(self.cfg)
 
     @property
+    def carrier_hz(self) -> float:  # type: ignore[override]
+        """Frequency at the first sample of a chirp that is kept, Hz."""
+        return self.header.carrier_hz
+
+    @property
+    def bandwidth_hz(self) -> float:  # type: ignore[override]
+        """Bandwidth that a chirp sweeps while it is sampled, Hz."""
+        return self.header.slope_hz * self.chirp_s
+
+    @property
+    def prf_hz(self) -> float:  # type: ignore[override]
+        """Loops per second within a frame."""
+        return 1 / (self.header.slot_s * len(self.header.order))
+
+    @property
+    def adc_rate_hz(self) -> float:  # type: ignore[override]
+        """Sampling rate of the ADC, Hz."""
+        return self.header.adc_rate_hz
+
+    @property
+    def chirp_s(self) -> float:  # type: ignore[override]
+        """Duration for which a chirp is sampled, s."""
+        return self.header.samples / self.header.adc_rate_hz
+
+    @property
     def frames_apart(self) -> bool:
-        """Whether a board pauses between its frames."""
-        return self.cfg is not None and self.header.frames_apart
+        """Whether the board pauses between its frames."""
+        return self.header.frames_apart
+
+    @property
+    def place_keys(self) -> tuple[str, ...]:
+        """Key of the place of the board."""
+        return ("position_m",)
 
     @property
     def elements(self) -> Array | None:
-        """Antenna elements of a board: those of `array`, or its device's."""
+        """Antenna elements of the board: those of `array`, or its device's; None without either."""
         if self.array is None:
             return DEVICES.get(str(self.device))
         return Array(self.array.tx, self.array.rx, (1.0,) * len(self.array.rx), EVEN)
+
+    @property
+    def virtual_places(self) -> Places:
+        """Places of the virtual elements, half wavelengths; none where elements are missing."""
+        array, header = self.elements, self.header
+        if array is None:
+            return ()
+        if max(header.order) >= len(array.tx) or max(header.receivers) >= len(array.rx):
+            return ()
+        scale = 1.0
+        if self.half_wavelength_m is not None:
+            swept = header.slope_hz * (header.samples - 1) / header.adc_rate_hz
+            centre = header.carrier_hz + swept / 2
+            scale = self.half_wavelength_m * 2 * centre / SPEED_OF_LIGHT
+        return tuple(
+            (scale * (array.tx[t][0] + array.rx[r][0]), scale * (array.tx[t][1] + array.rx[r][1]))
+            for t in header.order
+            for r in header.receivers
+        )
+
+    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
+        """Say why the board does not make a map: its frames may be too short for a window."""
+        if kind.is_doppler_time and self.header.loops < MIN_WINDOW:
+            return (
+                f"the {self._loops} of a frame (radar.cfg, frameCfg) are fewer than "
+                f"{MIN_WINDOW} pulses"
+            )
+        return super().why_no_map(kind, gating)
+
+    def why_no_frames(self, name: str) -> str | None:
+        """Say why the board does not make a map of its frames; None if it does.
+
+        A board that lacks elements which its .cfg names is refused elsewhere.
+        """
+        if name in ("range_doppler", "points") and self.header.loops < MIN_LOOPS:
+            return (
+                f"the {self._loops} of a frame (radar.cfg, frameCfg) show no Doppler; "
+                f"{MIN_LOOPS} do"
+            )
+        lines = {"range_azimuth": (0, "column"), "range_elevation": (1, "row")}
+        if name in lines and self.virtual_places:
+            axis, line = lines[name]
+            if len({round(place[axis], 6) for place in self.virtual_places}) == 1:
+                return f"all elements of the array lie in one {line}"
+        return None
+
+    def why_no_points(self, chain: Literal["best", "board"]) -> str | None:
+        """Say why the elements of the board do not tell where points are; None if they do.
+
+        The firmware's chain takes the elements of a row for neighbours. The other knows their
+        places, but takes high sidelobes of a sparse row for targets of their own.
+        """
+        places = self.virtual_places
+        row = [places[v][0] for v in longest_rows(places, 0)[0]] if places else []
+        spacings = [right - left for left, right in pairwise(row)]
+        if not spacings:
+            return None
+        neighbours = min(spacings) >= 0.8 and max(spacings) <= 1.2
+        unambiguous = min(spacings) <= 1.2 and sidelobe(row) <= MAX_SIDELOBE
+        if neighbours or (chain == "best" and unambiguous):
+            return None
+        listed = ", ".join(f"{place:g}" for place in row)
+        return (
+            f"the longest row of the array, with elements at {listed} half wavelengths, does not "
+            f"tell azimuths apart for the points of cloud.chain: {chain}"
+        )
+
+    @property
+    def _loops(self) -> str:
+        return f"{self.header.loops} loop{'s' * (self.header.loops > 1)}"
+
+
+RADARS: tuple[type[AnyRadar[Any]], ...] = (
+    FmcwRadar,
+    SfcwRadar,
+    CwRadar,
+    ImpulseRadar,
+    BoardRadar,
+)
+for _kind in RADARS:
+    _kind.ALTERNATIVES = tuple(other for other in RADARS if other is not _kind)
+
+
+def kind_of_radar(value: Any) -> str | None:
+    """Tell the tag of a radar, or of a mapping that describes one; None of an unknown kind."""
+    if isinstance(value, AnyRadar):
+        return f"<{value.kind}>"
+    if not isinstance(value, dict):
+        return "<fmcw>"  # refused there, as no mapping
+    name = "board" if value.get("cfg") is not None else value.get("waveform", "fmcw")
+    return f"<{name}>" if name in [kind.kind for kind in RADARS] else None
+
+
+def _without_null_cfg(value: Any) -> Any:
+    """Drop `cfg: null`, by which a config leaves the board of its base."""
+    if isinstance(value, dict) and "cfg" in value and value["cfg"] is None:
+        return {key: inner for key, inner in value.items() if key != "cfg"}
+    return value
+
+
+# What `radar:` may be: of a config, and with its numbers as floats of a scene.
+Radar: TypeAlias = Annotated[
+    Annotated[FmcwRadar[N], Tag("<fmcw>")]
+    | Annotated[SfcwRadar[N], Tag("<sfcw>")]
+    | Annotated[CwRadar[N], Tag("<cw>")]
+    | Annotated[ImpulseRadar[N], Tag("<impulse>")]
+    | Annotated[BoardRadar[N], Tag("<board>")],
+    Discriminator(
+        kind_of_radar,
+        custom_error_type="wrong",
+        custom_error_message="should have a waveform: fmcw, sfcw, cw or impulse; or cfg",
+    ),
+    BeforeValidator(_without_null_cfg),
+]
+SceneRadar: TypeAlias = (
+    FmcwRadar[float] | SfcwRadar[float] | CwRadar[float] | ImpulseRadar[float] | BoardRadar[float]
+)

@@ -8,13 +8,15 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
 
-from radhar_cli.config.annotations import range_of, section
+from radhar_cli.config.annotations import range_of, sections
 from radhar_cli.config.classes import FilesConfig, SequenceConfig
 from radhar_cli.config.data_set import Config, ConfigOfRecordings
 from radhar_cli.config.documents import BASE, OTHER_NAMES, Places, cfg_text, read_on_bases
 from radhar_cli.config.motion_files import resolve_files
 from radhar_cli.config.number import FORMS
+from radhar_cli.config.radar import RADARS, AnyRadar, FmcwRadar, kind_of_radar
 from radhar_cli.config.section import PerActivity, Problem, Section
 from radhar_cli.config.units import key_in_our_unit, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
@@ -27,6 +29,7 @@ _UNION_TAGS = {
     *("<same>", "<per_activity>"),
     *("<movements>", "<recordings>"),
     *("<material>", "<dielectric>"),
+    *(f"<{radar.kind}>" for radar in RADARS),
 }
 _CLASS_KINDS: dict[str, type[BaseModel]] = {"sequence": SequenceConfig, "files": FilesConfig}
 Options: TypeAlias = dict[str, str]
@@ -277,6 +280,9 @@ def _found(kind: type[BaseModel], items: Iterable[Any], document: Any) -> Iterat
             yield Problem(key, item["input"], absent)
         else:
             message = _WORDING.get(item["type"], item["msg"])
+            if item["type"] == "missing" and names[:1] == ["radar"]:
+                radar = next((r for r in RADARS if f"<{r.kind}>" in item["loc"]), FmcwRadar)
+                message = f"{message} with {radar.named}"
             message = message.removeprefix("Tuple ").replace(" after validation", "")
             if not message.startswith(("should", "'")):
                 message = message[0].lower() + message[1:]
@@ -330,10 +336,12 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
     if misplaced := MISPLACED.get(".".join(map(str, names))):
         return misplaced
     place: type[BaseModel] | None = kind
+    inner = document
     for name in names[:-1]:
+        inner = inner.get(name) if isinstance(inner, dict) else None
         if isinstance(name, str):  # no place in a list of sections
             field = place.model_fields.get(name) if place else None
-            place = section(field) if field else None
+            place = _section_of(field, inner) if field else None
     places = _kinds_of_class(names, document) if len(names) == 3 else None
     if places is None:
         places = [] if place is None else [place]
@@ -345,6 +353,8 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
         places = [*_CLASS_KINDS.values()]
     if not places:
         return "is an unknown key"
+    if elsewhere := _why_of_another(places[0], str(names[-1])):
+        return elsewhere
     known = [name for one in places for name in one.model_fields]
     in_our_unit = key_in_our_unit(str(names[-1]), value, known)
     if in_our_unit is not None:
@@ -352,6 +362,28 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
     return "is an unknown key; " + did_you_mean(
         str(names[-1]), known, f"known here: {', '.join(known)}"
     )
+
+
+def _section_of(field: FieldInfo, value: Any) -> type[BaseModel] | None:
+    """Section that a field holds: of several that it may, the one that its value tells."""
+    kinds = sections(field)
+    if len(kinds) > 1:
+        tag = kind_of_radar(value)
+        return next((kind for kind in RADARS if f"<{kind.kind}>" == tag), None)
+    return next(iter(kinds), None)
+
+
+def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
+    """Say which other radars have a key that this kind does not know; None if none has it."""
+    if not issubclass(kind, AnyRadar):
+        return None
+    owners = [other.named for other in RADARS if key in other.model_fields]
+    if not owners:
+        return None
+    if hasattr(kind, key):
+        gives = "gives it" if isinstance(getattr(kind, key), property) else "has none"
+        return f"should be left out: {kind.named} {gives}"
+    return f"is unknown with {kind.named}; it is a key of {' and '.join(owners)}"
 
 
 def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> str:

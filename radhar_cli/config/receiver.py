@@ -64,4 +64,4 @@ class ReceiverConfig(Section):
     """How often gains and phases of the channels are drawn: once a data set, or once a sample."""
 
 
-BOARD_GAIN_DBI, BOARD_NOISE_FIGURE_DB = 9.0, 15.0
+BOARD_NOISE_FIGURE_DB = 15.0

@@ -16,6 +16,7 @@ from radhar_cli.activities.activity import (
     Activity,
     activity_named,
 )
+from radhar_cli.config.acting import BOARD
 from radhar_cli.config.annotations import (
     GIVEN,
     ActsIf,
@@ -43,11 +44,12 @@ from radhar_cli.config.people import (
     TimingConfig,
 )
 from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
-from radhar_cli.config.radar import RadarConfig
-from radhar_cli.config.receiver import BOARD_GAIN_DBI, BOARD_NOISE_FIGURE_DB, ReceiverConfig
+from radhar_cli.config.radar import BoardRadar, FmcwRadar, Radar
+from radhar_cli.config.receiver import BOARD_NOISE_FIGURE_DB, ReceiverConfig
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.section import By, PerActivity, S, Section, for_activity
+from radhar_cli.errors import CaptureError
 
 Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
 
@@ -77,7 +79,7 @@ class Request(Section):
         ByModel(human=6.0, paper=4.0, file=4.0),
     ] = None
     """Duration of a recording."""
-    radar: RadarConfig = RadarConfig()
+    radar: Radar = FmcwRadar()
     subject: SubjectConfig = SubjectConfig()
     motion: MotionConfig = MotionConfig()
     timing: TimingConfig = TimingConfig()
@@ -95,7 +97,7 @@ class Request(Section):
     snr_reference: Annotated[
         Literal["free_space", "received"],
         ActsIf("snr_db", GIVEN),
-        ActsIfAny(ActsIf("wall", GIVEN), ActsIf("radar.beam", GIVEN), ActsIf("radar.cfg", GIVEN)),
+        ActsIfAny(ActsIf("wall", GIVEN), ActsIf("radar.beam", GIVEN), BOARD),
     ] = "free_space"
     """Echo that snr_db refers to: as it would be without the wall, in the middle of the antennas'
     beam (free_space); or as it is received, less what the wall and the beam take."""
@@ -149,7 +151,9 @@ class Request(Section):
     def has_error(self) -> bool:
         """Whether the direct engine makes something whose error is measured."""
         signals = set(self.maps) & set(MAP_NAMES) - {"rtm"}
-        return self.engine.kind == "direct" and bool(signals or self.radar.cfg is not None)
+        return self.engine.kind == "direct" and (
+            bool(signals) or isinstance(self.radar, BoardRadar)
+        )
 
     def filled(self) -> Self:
         """This config, in which what is null and has a default by model takes it.
@@ -160,18 +164,17 @@ class Request(Section):
         for key, default in of_kind(Request, ByModel):
             name, _, rest = key.rpartition(".")
             holder = getattr(self, name) if name else self
-            if holder is not None and getattr(holder, rest) is None:
+            if holder is None or rest not in type(holder).model_fields:
+                continue  # no wall, or a radar that has no band
+            if getattr(holder, rest) is None:
                 changed.setdefault(name, {})[rest] = default.values.get(self.motion.model)
         wall = self.wall
         if wall is not None and wall.layers and "size_m" not in wall.model_fields_set:
             changed.setdefault("wall", {})["size_m"] = (None, *wall.size_m[1:])
         if self.receiver.noise_figure_db is not None and "snr_db" not in self.model_fields_set:
             changed.setdefault("", {})["snr_db"] = None
-        if self.radar.cfg is not None:
-            _fill_from_cfg(self, changed)
-        for key, number in self.radar.chirp_keys.items():
-            if key not in self.radar.model_fields_set:
-                changed.setdefault("radar", {})[key] = number
+        if isinstance(self.radar, BoardRadar):
+            _fill_for_board(self, self.radar, changed)
         for name, value in changed.pop("", {}).items():
             object.__setattr__(self, name, value)
         for name, values in changed.items():
@@ -283,7 +286,7 @@ class MeasuredRequest(Section):
 
     seed: Seed
     classes: Classes
-    radar: RadarConfig
+    radar: Radar
     processing: ProcessingConfig
     image: ImageConfig
     maps: Maps
@@ -347,26 +350,18 @@ def _missing_defaults(c: Request) -> dict[str, dict[str, Any]]:
     return changed
 
 
-def _fill_from_cfg(c: Request, changed: dict[str, dict[str, Any]]) -> None:
-    """Note what the .cfg of a board gives, and the defaults of boards, of what was not given."""
-    from radhar_cli.errors import CaptureError
-
+def _fill_for_board(c: Request, radar: BoardRadar, changed: dict[str, dict[str, Any]]) -> None:
+    """Note the defaults that a board has of its own, of what was not given."""
     try:
-        board = c.radar.header
+        header = radar.header
     except CaptureError as error:
         raise value_error(str(error)) from None
-    radar = {
-        key: value for key, value in board.numbers.items() if key not in c.radar.model_fields_set
-    }
-    if "antenna_gain_dbi" not in c.radar.model_fields_set:
-        radar["antenna_gain_dbi"] = BOARD_GAIN_DBI
-    changed.setdefault("radar", {}).update(radar)
     if "snr_db" not in c.model_fields_set:
         changed.setdefault("", {})["snr_db"] = None
     if "noise_figure_db" not in c.receiver.model_fields_set:
         changed.setdefault("receiver", {})["noise_figure_db"] = BOARD_NOISE_FIGURE_DB
     if "clutter" not in c.processing.model_fields_set:
-        clutter = "mean" if board.detection.remove_mean else "none"
+        clutter = "mean" if header.detection.remove_mean else "none"
         changed.setdefault("processing", {})["clutter"] = clutter
     if "range_sum" not in c.processing.model_fields_set:
         changed.setdefault("processing", {})["range_sum"] = "gated"

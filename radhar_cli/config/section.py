@@ -1,18 +1,43 @@
-"""A section of a config, a number that differs by activity, and a mistake across keys."""
+"""A section of a config, a number that differs by activity, and a mistake across keys.
+
+Sections with numbers are generic over what a number is, for the type checker alone: in a config a
+law of draws, in a scene a float (`WallConfig`, `WallConfig[float]`). At run time both are one
+class, as generic models of pydantic cost 60 to 150 ms at every start.
+"""
 
 import ast
 import inspect
 from dataclasses import dataclass
 from itertools import pairwise
 from textwrap import dedent
-from typing import Annotated, Any, Generic, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, NamedTuple, TypeAlias
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
+from typing_extensions import TypeVar
 
 from radhar_cli.activities.activity import DEFAULT, TWELVE, Activity
 from radhar_cli.config.number import Number, value_error
 
 Flag: TypeAlias = Annotated[bool, Field(strict=True)]
+T = TypeVar("T")
+N = TypeVar("N", default=Number)  # what a number of a section is: a law of draws, or a float
+
+
+if TYPE_CHECKING:
+    Filled: TypeAlias = Annotated[T, "null in a file; filled in by the model of motion"]
+else:
+
+    class Filled:
+        """`Filled[N]` may be null in a file, where a default by model takes its place."""
+
+        def __class_getitem__(cls, kind: Any) -> Any:
+            """Return the type of the file."""
+            return kind | None
+
+
+def default_draw(number: Any) -> Any:
+    """Return the default of a number: Any, as its field takes what its section is generic over."""
+    return number
 
 
 class Section(BaseModel):
@@ -21,6 +46,13 @@ class Section(BaseModel):
     model_config = ConfigDict(
         extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
     )
+    ALTERNATIVES: ClassVar[tuple[type["Section"], ...]] = ()  # sections that may stand in its place
+
+    if not TYPE_CHECKING:
+
+        def __class_getitem__(cls, number: Any) -> Any:
+            """Return the class itself: one model at run time, several types for the checker."""
+            return cls
 
     @classmethod
     def descriptions(cls) -> dict[str, str]:
@@ -44,9 +76,6 @@ def _texts_below_fields(kind: type[Section]) -> dict[str, str]:
         and isinstance(text.value, ast.Constant)
         and isinstance(text.value.value, str)
     }
-
-
-T = TypeVar("T")
 
 
 S = TypeVar("S", bound=Section)

@@ -4,7 +4,7 @@ import inspect
 import json
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import suppress
 from decimal import Decimal
 from itertools import takewhile
@@ -70,11 +70,15 @@ def as_commented_yaml(kind: type[Section]) -> str:
     return re.sub("\n{3,}", "\n\n", "\n".join((head, *_lines(kind), "")))
 
 
-def _lines(kind: type[Section]) -> Iterator[str]:
+def _lines(kind: type[Section], left_out: Collection[str] = ()) -> Iterator[str]:
     defaults = kind.model_construct().model_dump(mode="json")  # nothing filled in for null
     descriptions = kind.descriptions()
     for name, field in kind.model_fields.items():
-        if field.exclude:
+        if field.exclude or name in left_out:
+            continue
+        if field.is_required():
+            yield from _comment_lines(f"{descriptions.get(name, '')} Required.")
+            yield f"{name}:"
             continue
         members = [field.annotation, *get_args(field.annotation)]
         inner = section(field)
@@ -91,7 +95,19 @@ def _lines(kind: type[Section]) -> Iterator[str]:
             mark = "# "
         yield f"{mark}{name}:"
         yield from (f"{mark}  {line}" for line in _lines(inner) if line)
+        yield from _alternatives(name, inner)
         yield ""
+
+
+def _alternatives(name: str, kind: type[Section]) -> Iterator[str]:
+    """Lines, all of them comments, of other sections that may stand in the place of one."""
+    common = set(kind.model_fields) - {"waveform"}
+    for other in kind.ALTERNATIVES:
+        dropped = sorted(common - set(other.model_fields))
+        text = (inspect.getdoc(other) or "").partition("\n\n")[0]
+        yield from _comment_lines(f"Or: {text} It has no {', '.join(dropped)}.")
+        yield f"# {name}:"
+        yield from (f"#   {line}" for line in _lines(other, common) if line)
 
 
 def _comment(members: list[Any], description: str) -> str:

@@ -10,6 +10,7 @@ from radhar_cli.activities.vocabulary import FROM_FILES, advice_on
 from radhar_cli.assembly.physics import board_of, motion_of
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.maps import FRAME_MAPS
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
@@ -73,8 +74,8 @@ def _sample_entry(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> 
     if scene is not None:
         view = scene_page.moving(scene, tuple(map(motion_of, scene.people)))
     board = None
-    if isinstance(config, Config) and config.radar.cfg is not None:
-        drawn = scene or nominal_scene(config, activity)
+    drawn = scene or (nominal_scene(config, activity) if isinstance(config, Config) else None)
+    if drawn is not None and isinstance(drawn.radar, BoardRadar):
         board = board_of(drawn.radar, drawn.seconds)
         view = view if scene is not None else _stored_joints(data, row, board, view)
     for name in data.maps:

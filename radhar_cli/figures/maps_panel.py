@@ -163,7 +163,7 @@ def describe_scene(scene: Scene, waveform: Waveform) -> list[str]:
     """Describe a scene: activity, radar, surroundings, noise and seed, a few words each."""
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
     noise = "no noise" if figure is None else f"noise figure {figure:g} dB"
-    kind = scene.config.radar.waveform
+    kind = scene.radar.kind
     band = " CW" if kind == "cw" else f" + {waveform.bandwidth / 1e9:g} GHz"
     band += " impulses" if kind == "impulse" else ""
     rooms = scene.config.room.faces is not None

@@ -19,6 +19,7 @@ from radhar_cli.assembly.physics import (
 )
 from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.data_set import Config
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power
 from radhar_cli.echo.direct import Accuracy
@@ -82,7 +83,7 @@ def board_products(c: Config) -> Iterator[Product]:
     seen = ("scene", "motions", "board", "wall", *(("room",) if c.room.reflectors else ()))
     still = c.processing.clutter == "mean"
     does = "canceller of each frame"
-    yield Product("board", ("scene",), lambda s: board_of(s.radar, s.seconds), "array and chirps")
+    yield Product("board", ("scene",), _board_of_scene, "array and chirps")
     yield Product("channels", seen, channels, "paths of every virtual channel")
     made = "sums in matrix products" if c.engine.kind == "direct" else "exact sums"
     inputs: tuple[str, ...] = ("channels", "board", "scene")
@@ -267,8 +268,14 @@ def _add_impairments(echo: Echo, noise: WhiteNoise, board: Board, scene: Scene) 
     return noise.added_to(cube, "cube") if noise.sigma > 0 else cube
 
 
+def _board_of_scene(scene: Scene) -> Board:
+    assert isinstance(scene.radar, BoardRadar)
+    return board_of(scene.radar, scene.seconds)
+
+
 def _cloud(c: Config, cube: Complex, board: Board) -> Cloud:
-    cloud, detection = c.cloud, detection_of(c)
+    assert isinstance(c.radar, BoardRadar)
+    cloud, detection = c.cloud, detection_of(c.radar, c.processing)
     carrier = board.start if cloud.doppler_carrier == "start" else None
     if cloud.chain == "board":
         return board_points(cube, board, detection, cloud.quantise, carrier)

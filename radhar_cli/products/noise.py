@@ -8,6 +8,7 @@ from radhar_cli.assembly.bodies import sources_of, sum_of_paths
 from radhar_cli.assembly.physics import noise_stream
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import nominal
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Motion
@@ -77,7 +78,7 @@ def snr_of_other_paths(c: Config) -> bool:
     It refers to the sample's own person, without the room and without others; in free space also
     without what wall and beam take.
     """
-    takes = c.wall is not None or c.radar.beam is not None or c.radar.cfg is not None
+    takes = c.wall is not None or isinstance(c.radar, BoardRadar) or c.radar.beam is not None
     others = c.room.reflectors or c.people or c.room.faces or c.room.back_wall_m is not None
     return (c.snr_reference == "free_space" and takes) or bool(others)
 

@@ -37,6 +37,7 @@ from radhar_cli.assembly.physics import (
 from radhar_cli.bodies.motion_paths import TorsoPath
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.maps import MAP_NAMES
+from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar
 from radhar_cli.echo.accuracy import AccuracyError, first_aim, settings
 from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.echo.exact import beat_at, exact_echo, signal_power
@@ -124,7 +125,7 @@ def products(config: Config) -> dict[str, Product]:
     Raises:
         ConfigError: a product of a user's own would replace one that a board does not have.
     """
-    if config.radar.cfg is None:
+    if not isinstance(config.radar, BoardRadar):
         echo = _echo(config)
     else:
         from radhar_cli.products.board import board_products  # slow to import
@@ -138,7 +139,7 @@ def products(config: Config) -> dict[str, Product]:
         echo = board_products(config)
     rows = (*_physics(config), *_signals(config), *_maps(config), *echo, *own_products())
     table = {row.name: row for row in rows}
-    if config.radar.output == "real" and config.radar.waveform == "cw":
+    if isinstance(config.radar, CwRadar) and config.radar.output == "real":
         table["signal_iq"] = replace(table["signal"], name="signal_iq")
         table["signal"] = Product(
             "signal", ("signal_iq",), in_phase, "in-phase channel", is_array=True
@@ -208,7 +209,7 @@ def _echo(c: Config) -> Iterator[Product]:
     yield Product("canceller", ("waveform",), lambda w: canceller_of(c, w.prf), _clutter(c))
     yield from _receiver(c)
     yield from _gate(c)
-    if c.radar.waveform == "impulse":
+    if isinstance(c.radar, ImpulseRadar):
         yield from _impulse(c)
     else:
         yield from _direct(c) if c.engine.kind == "direct" else _exact(c)

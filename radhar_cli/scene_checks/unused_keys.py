@@ -19,7 +19,6 @@ from radhar_cli.config.annotations import (
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import support
 from radhar_cli.config.people import MotionConfig
-from radhar_cli.config.radar import RadarConfig
 from radhar_cli.config.room import WallConfig
 from radhar_cli.config.section import PerActivity
 from radhar_cli.scene import FALL, numbers
@@ -61,13 +60,17 @@ def _describe_unused(
 
 def _left_out(config: Config) -> Config:
     """What a config says where it says nothing, with the radar and the motion that it has."""
-    stepped = ("steps", "dwell_s") if config.radar.waveform == "sfcw" else ()
-    radar = {name: getattr(config.radar, name) for name in ("waveform", "cfg", *stepped)}
+    radar = config.radar
+    needed = {
+        "waveform",
+        *(name for name, f in type(radar).model_fields.items() if f.is_required()),
+    }
+    required = {name: getattr(radar, name) for name in needed}
     wall = config.wall and WallConfig.model_construct({"layers"}, layers=config.wall.layers)
     return Config.model_construct(
         motion=MotionConfig(model=config.motion.model),
         duration_s=config.duration_s,
-        radar=RadarConfig.model_construct(set(radar), **radar),
+        radar=type(radar).model_construct(needed, **required),
         wall=wall,
     ).filled()
 

@@ -21,6 +21,7 @@ from radhar_cli.assembly.physics import (
 from radhar_cli.bodies.motion_paths import OfMotion, point_delay, through_wall_delay
 from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings
 from radhar_cli.config.data_set import Config
+from radhar_cli.config.radar import BoardRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
 from radhar_cli.echo.accuracy import first_aim, settings
 from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.echo.interpolation import BEFORE
@@ -210,8 +211,10 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     flags |= Flags.SEAM if getattr(motion, "slides", False) else Flags(0)
     near, c = list[Approach](), scene.config
     inside_wall, beyond_band, outside = 0.0, 0.0, (0.0, "")
-    shared = not c.people and c.room.faces is None and c.radar.cfg is None
-    frozen = c.radar.waveform in ("fmcw", "sfcw") and not c.engine.motion_in_chirp
+    shared = not c.people and c.room.faces is None and not isinstance(c.radar, BoardRadar)
+    frozen = (
+        isinstance(c.radar, FmcwRadar | SfcwRadar | BoardRadar) and not c.engine.motion_in_chirp
+    )
     ahead = list[Float]()
     for asked, places, pulses in _grid(motion, w, shared):
         if body is not None and isinstance(body.motion, Landmarks):  # which its echo asks for too
@@ -487,10 +490,11 @@ def _cure(person: Person, check: SceneCheck) -> str:
         return _leave_room(person, check)
     if check.too_close and check.closest.joint.startswith("reflector "):
         return "room.reflectors should be elsewhere"
-    if check.flags & Flags.HALF_BAND and config.radar.cfg is not None and not check.too_close:
+    is_board = isinstance(config.radar, BoardRadar)
+    if check.flags & Flags.HALF_BAND and is_board and not check.too_close:
         return "a smaller motion.range_m stays in the range that the board's .cfg sees"
     if config.on_invalid == "redraw" and check.flags & Flags.HALF_BAND and not check.too_close:
-        impulse = config.radar.waveform == "impulse"
+        impulse = isinstance(config.radar, ImpulseRadar)
         longer = "radar.profile_m that ends later" if impulse else "smaller radar.bandwidth_hz"
         return f"a {longer} reaches farther, a smaller motion.range_m leaves room"
     if config.on_invalid == "redraw":
@@ -501,7 +505,7 @@ def _cure(person: Person, check: SceneCheck) -> str:
 def config_warnings(config: Config) -> list[str]:
     """Say which keys and lines have no effect or alias, and whether maps are noise alone."""
     lines = list[str]()
-    if config.radar.cfg is not None:
+    if isinstance(config.radar, BoardRadar):
         header = config.radar.header
         lines = [f"radar.cfg: {one} is not known and has no effect" for one in header.unknown]
         off = "switches on what is not simulated: it has no effect"
@@ -526,7 +530,7 @@ def _says_window(config: Config) -> bool:
 
 def _folded(config: Config) -> list[str]:
     """Say that some echoes by way of faces come from beyond the ranges that the radar has."""
-    if config.room.faces is None or config.radar.waveform in ("cw", "impulse"):
+    if config.room.faces is None or isinstance(config.radar, CwRadar | ImpulseRadar):
         return []
     farthest, reach = 0.0, 0.0
     for activity in config.chosen_activities:
@@ -563,9 +567,9 @@ def scene_warnings(scene: Scene) -> list[str]:
 
 def _words(flag: Flags, config: Config | None) -> str:
     """What a flag says, of scenes of a config where there is one."""
-    board = config is not None and config.radar.cfg is not None
-    if flag is Flags.ALIASING and config is not None and board:
-        turns = len(config.radar.header.order) > 1
+    radar = None if config is None else config.radar
+    if flag is Flags.ALIASING and isinstance(radar, BoardRadar):
+        turns = len(radar.header.order) > 1
         return _WORDING[flag] + ANGLES_ALIAS * turns
     if flag is Flags.SWEEP and config is not None:
         return f"{_WORDING[flag]}: {_slow_sweep(config)}"
@@ -576,9 +580,9 @@ def _slow_sweep(config: Config) -> str:
     """How far frozen positions leave echoes from where they belong, and the remedies."""
     radar = config.radar
     w = waveform_of(nominal_scene(config, config.chosen_activities[0]))
-    shorter = "radar.dwell_s or radar.steps" if radar.waveform == "sfcw" else "radar.chirp_s"
+    shorter = "radar.dwell_s or radar.steps" if isinstance(radar, SfcwRadar) else "radar.chirp_s"
     within = "engine.motion_in_chirp: true with engine.kind: cube has it, "
-    if radar.cfg is not None:
+    if isinstance(radar, BoardRadar):
         shorter, within = "a ramp of radar.cfg", ""
     return (
         f"by {sweep_shift(w):.2g} m at 1 m/s, with {w.chirp:.2g} s a sweep and cells of "

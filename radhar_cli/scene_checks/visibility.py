@@ -24,6 +24,7 @@ from radhar_cli.assembly.physics import (
 )
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.look import noise_gain, weights
 from radhar_cli.products.noise import noise_law_of
@@ -71,7 +72,7 @@ def noise_alone(config: Config) -> list[str]:
     for what, loss in taken.items():
         if loss > HIDES_DB:
             causes.append(f"{what} takes {loss:.0f} dB of the echo")
-            keys += _KEYS[what] if config.radar.cfg is None else _BOARD_KEYS[what]
+            keys += _BOARD_KEYS[what] if isinstance(config.radar, BoardRadar) else _KEYS[what]
     if isinstance(law, Snr):
         if snr + gain <= LEAST_CELL_SNR_DB:  # whatever wall and beam take
             causes, keys = [], ["snr_db"]
@@ -100,7 +101,7 @@ def cell_gain_db(scene: Scene, name: str) -> float:
             filter matched to the recording.
     """
     config, channels = scene.config, 1
-    if config.radar.cfg is not None:
+    if isinstance(scene.radar, BoardRadar):
         board = board_of(scene.radar)
         channels = board.channels
         if name in FRAME_MAPS:
@@ -147,7 +148,7 @@ def _pulse(w: Impulse) -> Float:
 
 def _window_pulses(scene: Scene, w: Waveform) -> int:
     """Pulses of a window of the Doppler maps; those of a board end with the frame."""
-    if scene.config.radar.cfg is None:
+    if not isinstance(scene.radar, BoardRadar):
         return frames_of(scene.config, w.duration, w.prf, w.f0).length
     board = board_of(scene.radar, scene.seconds)
     frames = frames_of(scene.config, board.frames * board.period, 1 / board.loop, board.centre)

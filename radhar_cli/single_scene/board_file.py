@@ -9,6 +9,7 @@ import numpy as np
 
 from radhar_cli.assembly.physics import kinds_of
 from radhar_cli.config.data_set import Config
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import COLUMNS, Cloud
 from radhar_cli.products.board import Skeletons
@@ -46,13 +47,14 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
         else:
             file[name] = one
             file[name].attrs["meaning"] = "number of the person, -1 of none"
-    text = config.radar.cfg or ""
+    radar = config.radar
+    assert isinstance(radar, BoardRadar)
     file.attrs.update(
         {
             "frame_times": board.middles,
-            "cfg": text,
-            "cfg_sha256": hashlib.sha256(text.encode()).hexdigest(),
-            "device": str(config.radar.device or "array"),
+            "cfg": radar.cfg,
+            "cfg_sha256": hashlib.sha256(radar.cfg.encode()).hexdigest(),
+            "device": str(radar.device or "array"),
             "axes": AXES,
             "doppler_sign": DOPPLER_SIGN,
             "position_m": np.array(board.position),

@@ -15,6 +15,7 @@ from radhar_cli.config.checks.signal import problems_of_maps
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
 from radhar_cli.config.offered_maps import possible_maps
+from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar
 from radhar_cli.config.reading import ABSENT, as_config
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.direct import Accuracy
@@ -174,7 +175,7 @@ def simulate(
     echoing_motion = (
         motion if joint is None else ScattererSubset(motion, (_joint_index(joint, motion.names),))
     )
-    board = config.radar.cfg is not None
+    board = isinstance(config.radar, BoardRadar)
     frames = [product for name in maps for product in FRAMES.get(name, ())]
     frames += ["points_kind"] if "points" in maps and config.room.faces else []
     maps = tuple(name for name in maps if name not in FRAMES)
@@ -184,7 +185,7 @@ def simulate(
     product_names = [*signals, *maps, *frames, "waveform", "antennas", "wall"] + ["board"] * board
     product_names += ["accuracy"] if config.engine.kind == "direct" else []
     product_names += ["raw_echo"] if raw and not board else []
-    raw_rows = [RAW_PROFILES if config.radar.waveform == "impulse" else RAW_ECHO]
+    raw_rows = [RAW_PROFILES if isinstance(config.radar, ImpulseRadar) else RAW_ECHO]
     motions = (echoing_motion, *(others if joint is None else ()))
     recorded = record(scene, product_names, raw_rows, progress, motions=motions)
     radar = {name: recorded[name] for name in ("antennas", "wall", "waveform")}
@@ -310,7 +311,8 @@ def raw_echo(
         if wall.layers is not None:
             echo *= _reflection(wall.layers, waveform.frequencies())[:, None]
         beat += echo
-    return beat.real if scene.config.radar.output == "real" else beat
+    is_real = isinstance(scene.radar, CwRadar) and scene.radar.output == "real"
+    return beat.real if is_real else beat
 
 
 def raw_profiles(

@@ -9,6 +9,7 @@ from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.number import nominal
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.scene import Scene
 from radhar_cli.scene_checks.validity import draw_valid_scene
 
@@ -140,7 +141,7 @@ def _switch_settings(config: Config) -> list[Setting]:
     ]
     if config.motion.model == "human" and not config.people:
         switches.append(switch_off_by_default("another person, who walks", "people=[{}]"))
-    if config.radar.beam is None:
+    if not isinstance(config.radar, BoardRadar) and config.radar.beam is None:
         switches.append(switch_off_by_default("beams of 70 x 30 degrees", BEAM))
     if config.room.faces is None and config.room.back_wall_m is None:
         order_2 = (*CORRIDOR, "room.order=2")

@@ -195,11 +195,14 @@ WRONG: list[tuple[dict[str, Any], str]] = [
         {"radar": {"cfg": CFG, "device": "IWR1443BOOST"}, "engine": {}, "maps": ["points"]},
         r"wall\.echoes.*none with radar\.cfg",
     ),
-    ({"radar": RADAR | {"profile_m": [0, 3]}}, r"radar\.profile_m.*null with radar\.waveform"),
+    (
+        {"radar": RADAR | {"profile_m": [0, 3]}},
+        r"radar\.profile_m.*a key of radar\.waveform: impulse",
+    ),
     ({"image": {"kind": "signed"}, "maps": ["rtm"]}, r"image\.kind.*impulse"),
 ]
 WRONG_IMPULSES: list[tuple[dict[str, Any], str]] = [
-    ({"radar": IMPULSE | {"profile_m": None}}, r"radar\.profile_m = null.*\[from, to\]"),
+    ({"radar": IMPULSE | {"profile_m": None}}, r"radar\.profile_m = null.*a list"),
     ({"radar": IMPULSE | {"profile_m": [3, 1]}}, r"radar\.profile_m = \[3.*from < to"),
     ({"radar": IMPULSE | {"profile_samples": 64}}, r"profile_samples = 64: should be 207 or more"),
     ({"engine": {"kind": "cube"}}, r"engine\.kind.*should be direct"),
@@ -212,7 +215,7 @@ WRONG_IMPULSES: list[tuple[dict[str, Any], str]] = [
     ({"output": {"slow_time": True}}, r"output\.slow_time"),
     ({"radar": IMPULSE | {"residual_video_phase": True}}, r"residual_video_phase"),
     ({"radar": IMPULSE | {"chirp_s": 1e-5}}, r"radar\.chirp_s.*left out"),
-    ({"radar": IMPULSE | {"steps": 4}}, r"radar\.steps.*null"),
+    ({"radar": IMPULSE | {"steps": 4}}, r"radar\.steps.*a key of radar\.waveform: sfcw"),
     ({"receiver": {"noise_corner_hz": 10}, "snr_db": 3}, r"noise_corner_hz.*real"),
 ]
 

@@ -50,4 +50,4 @@ def test_keys_are_described(tmp_path: Path) -> None:
             for key, text in kind.descriptions().items()
             if key in part["properties"]
         )
-    assert "chirps" in schema["$defs"]["RadarConfig"]["properties"]["prf_hz"]["description"].lower()
+    assert "chirps" in schema["$defs"]["FmcwRadar"]["properties"]["prf_hz"]["description"].lower()

@@ -286,7 +286,17 @@ BROKEN = [
     Broken("maps: [range_doppler]", '1: maps = ["range_doppler"]', "of the frames of a board"),
     Broken("receivers: 4", "1: receivers = 4", "come with radar.cfg"),
     Broken("people: 2", "1: people = 2", "should be a list"),
-    Broken("radar:\n  device: IWR6843", '2: radar.device = "IWR6843"', "IWR6843ISK-ODS"),
+    Broken(
+        "radar:\n  cfg: iwr1443boost\n  device: IWR6843",
+        '3: radar.device = "IWR6843"',
+        "IWR6843ISK-ODS",
+    ),
+    Broken(
+        "radar:\n  device: IWR6843ISK", '2: radar.device = "IWR6843ISK"', "is a key of radar.cfg"
+    ),
+    Broken("radar: {waveform: cw, chirp_s: 1e-5}", "1: radar.chirp_s = 1e-05", "cw has none"),
+    Broken("radar: {steps: 4}", "1: radar.steps = 4", "a key of radar.waveform: sfcw"),
+    Broken("radar: {waveform: lfm}", '1: radar = {"waveform": "lfm"}', "fmcw, sfcw, cw or impulse"),
     Broken("radar: {cfg: a.cfg}", '1: radar.cfg = "a.cfg"', "should be the path of a TI .cfg"),
     Broken("maps: [sfft]", '1: maps.0 = "sfft"', "should be 'rtm', 'stft'"),
     Broken("maps: []", "1: maps = []", "at least 1"),

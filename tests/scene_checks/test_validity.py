@@ -296,7 +296,8 @@ def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
         ({"engine": {"kind": "cube", "tolerance_db": -60.0}}, "engine.tolerance_db has no effect"),
         (
             {"snr_reference": "received"},
-            "snr_reference has no effect with wall: null, radar.beam: null, radar.cfg: null; it "
+            "snr_reference has no effect with wall: null, radar.beam: null, "
+            "radar.waveform: fmcw; it "
             "needs wall or radar.beam or radar.cfg",
         ),
         (
@@ -312,7 +313,6 @@ def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
             {"snr_db": 30, "receiver": {"noise_figure_db": 12.0}},
             "receiver.noise_figure_db has no effect with snr_db: 30.0; it needs snr_db: null",
         ),
-        ({"radar": {"position_m": [0, 1, 1]}}, "radar.position_m has no effect with radar.cfg"),
         ({"cloud": {"pfa": 1e-4}}, "cloud has no effect with maps: [stft]"),
         ({"motion": {"gait_hz": 1.5}}, "motion.gait_hz has no effect with motion.model: human"),
         ({"timing": {"blend_s": 0.5}}, "timing.blend_s has no effect with motion.model: human"),

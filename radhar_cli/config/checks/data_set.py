@@ -8,13 +8,7 @@ from radhar_cli.config.checks.people import (
     people_problems,
     unknown_activities,
 )
-from radhar_cli.config.checks.radar import (
-    BOARD_PRODUCTS,
-    board_problems,
-    impulse_problems,
-    profile_problems,
-    step_problems,
-)
+from radhar_cli.config.checks.radar import profile_problems, radar_problems
 from radhar_cli.config.checks.room import (
     back_wall_problems,
     room_problems,
@@ -29,10 +23,9 @@ from radhar_cli.config.section import Problem
 
 def problems_of_recordings(c: Request) -> Iterator[Problem]:
     """Find what is wrong in a request for recordings, whatever they are."""
-    radar_problems = board_problems(c) if c.radar.cfg else impulse_problems(c)
-    measured_sections = MeasuredRequest.model_fields
+    sections = MeasuredRequest.model_fields
     yield from (
-        problem for problem in radar_problems if problem.key.partition(".")[0] in measured_sections
+        problem for problem in radar_problems(c) if problem.key.partition(".")[0] in sections
     )
 
 
@@ -52,15 +45,7 @@ def problems(c: Request) -> Iterator[Problem]:
         yield Problem("classes", {}, "should have files of each class with motion.model: file")
         return
     yield from unknown_activities(c)
-    if c.radar.cfg is not None:
-        yield from board_problems(c)
-    else:
-        of_boards = [name for name in c.output.products if name in BOARD_PRODUCTS]
-        if of_boards:
-            right = "should have the board that makes them: radar.cfg"
-            yield Problem("output.products", of_boards, right)
-        yield from step_problems(c)
-        yield from impulse_problems(c)
+    yield from radar_problems(c)
     yield from processing_problems(c)
     yield from wall_problems(c)
     yield from back_wall_problems(c)

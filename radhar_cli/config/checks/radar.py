@@ -2,62 +2,61 @@
 
 from collections.abc import Iterator
 from math import ceil
+from typing import assert_never
 
 from radhar_cli.config.annotations import at
 from radhar_cli.config.checks.smallest_waveform import ENDS, waveform_at
 from radhar_cli.config.maps import FRAME_MAPS, OF_FRAMES, OF_POINTS
 from radhar_cli.config.number import support
 from radhar_cli.config.offered_maps import why_no_map
+from radhar_cli.config.radar import BoardRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
 
 MAX_CUBE = 2**27  # samples of all channels
+MAX_PADDING = 64
 
 
 BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, "points_kind", *OF_FRAMES, "cube")
 
 
-def step_problems(c: Request) -> Iterator[Problem]:
-    """Keys of stepped frequencies that do not fit together."""
-    radar = c.radar
-    for key in ("steps", "dwell_s"):
-        value = getattr(radar, key)
-        if (value is None) == (radar.waveform == "sfcw"):
-            right = "should be given" if value is None else "should be null"
-            yield Problem(f"radar.{key}", value, f"{right} with radar.waveform: {radar.waveform}")
-    if radar.output == "real" and radar.waveform != "cw":
-        right = f"should be iq with radar.waveform: {radar.waveform}; cw alone can be real"
-        yield Problem("radar.output", "real", right)
-    if radar.waveform == "cw":
-        if c.processing.range_sum == "gated":
-            right = "should be coherent with radar.waveform: cw, which has no range"
-            yield Problem("processing.range_sum", "gated", right)
-        right = "should be false with radar.waveform: cw, which has no chirp"
-        for key in ("radar.residual_video_phase", "engine.motion_in_chirp"):
-            if at(c, key):
-                yield Problem(key, True, right)
-    for key, number in radar.chirp_keys.items():
-        value = getattr(radar, key)
-        if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
-            gives = f"gives {number:.17g}" if radar.waveform == "sfcw" else "has none"
-            right = f"should be left out: radar.waveform: {radar.waveform} {gives}"
-            yield Problem(f"radar.{key}", value, right)
-
-
-def impulse_problems(c: Request) -> Iterator[Problem]:
-    """Keys that an impulse radar alone may have, and keys that it may not have."""
+def radar_problems(c: Request) -> Iterator[Problem]:
+    """Find what does not go with the kind of radar that a request has."""
+    match c.radar:
+        case BoardRadar():
+            yield from board_problems(c, c.radar)
+            return
+        case CwRadar():
+            yield from _cw_problems(c)
+        case ImpulseRadar():
+            yield from _impulse_problems(c)
+        case FmcwRadar() | SfcwRadar():
+            pass
+        case _:
+            assert_never(c.radar)
+    if of_boards := [name for name in c.output.products if name in BOARD_PRODUCTS]:
+        right = "should have the board that makes them: radar.cfg"
+        yield Problem("output.products", of_boards, right)
     yield from profile_problems(c)
-    if c.radar.waveform != "impulse":
-        return
-    radar, of = c.radar, "with radar.waveform: impulse"
+
+
+def _cw_problems(c: Request) -> Iterator[Problem]:
+    if c.processing.range_sum == "gated":
+        right = "should be coherent with radar.waveform: cw, which has no range"
+        yield Problem("processing.range_sum", "gated", right)
+    if c.engine.motion_in_chirp:
+        right = "should be false with radar.waveform: cw, which has no chirp"
+        yield Problem("engine.motion_in_chirp", True, right)
+
+
+def _impulse_problems(c: Request) -> Iterator[Problem]:
+    of = "with radar.waveform: impulse"
     if c.engine.kind == "cube":
         yield Problem("engine.kind", "cube", f"should be direct {of}, which has no beat")
     if c.output.slow_time:
         yield Problem("output.slow_time", True, f"should be false {of}: there is no sum over range")
-    if radar.residual_video_phase:
-        yield Problem("radar.residual_video_phase", True, f"should be false {of}")
     if c.snr_db is None and c.receiver.noise_figure_db is not None:
         right = f"should be null {of}: how many pulses its samples are means of is not said; snr_db"
         yield Problem("receiver.noise_figure_db", c.receiver.noise_figure_db, right)
@@ -67,19 +66,12 @@ def impulse_problems(c: Request) -> Iterator[Problem]:
 
 
 def profile_problems(c: AnyRequest) -> Iterator[Problem]:
-    """Keys that do not fit range profiles, or chirps, simulated or recorded."""
-    radar, of = c.radar, "with radar.waveform: impulse"
-    if radar.waveform != "impulse":
-        if radar.profile_m is not None:
-            right = f"should be null with radar.waveform: {radar.waveform}"
-            yield Problem("radar.profile_m", list(radar.profile_m), right)
+    """Find what does not fit range profiles, or chirps, simulated or recorded."""
+    radar = c.radar
+    if not isinstance(radar, ImpulseRadar):
         if c.image.kind == "signed":
             right = "should be decibel or cfar without radar.waveform: impulse"
             yield Problem("image.kind", "signed", right)
-        return
-    if radar.profile_m is None or not 0 <= radar.profile_m[0] < radar.profile_m[1]:
-        value = radar.profile_m and list(radar.profile_m)
-        yield Problem("radar.profile_m", value, f"should be [from, to], 0 <= from < to, {of}")
         return
     fc, band = support(radar.carrier_hz)[1], support(radar.bandwidth_hz)[1]
     step = (radar.profile_m[1] - radar.profile_m[0]) / radar.profile_samples
@@ -92,13 +84,9 @@ def profile_problems(c: AnyRequest) -> Iterator[Problem]:
         yield Problem("maps", list(c.maps), "should be [rtm] with image.kind: signed")
 
 
-def board_problems(c: Request) -> Iterator[Problem]:
-    """Keys that a board cannot have, or that are not simulated for boards."""
-    board, radar, clutter = c.radar.header, c.radar, c.processing.clutter
-    if radar.waveform != "fmcw":
-        right = "should be left out with radar.cfg: a board sends chirps (fmcw)"
-        yield Problem("radar.waveform", radar.waveform, right)
-        return
+def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
+    """Find what a board cannot have, or what is not simulated for boards."""
+    board, clutter = radar.header, c.processing.clutter
     if radar.elements is None:
         right = (
             f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
@@ -114,10 +102,6 @@ def board_problems(c: Request) -> Iterator[Problem]:
         )
         yield Problem("radar.cfg", "chirpCfg, channelCfg", right)
         return
-    for key, number in board.numbers.items():
-        value = getattr(radar, key)
-        if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
-            yield Problem(f"radar.{key}", value, f"should be left out: radar.cfg gives {number:g}")
     if support(c.duration_s)[0] < board.period_s:
         right = f"should hold a frame of {board.period_s:g} s"
         yield Problem("duration_s", c.duration_s, right)
@@ -165,19 +149,18 @@ def board_problems(c: Request) -> Iterator[Problem]:
 def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
     """Find what does not fit the pulses: chirps that are too long, FFTs that are too short."""
     radar, fft_length = c.radar, c.processing.range_fft_length
-    fewest, most = waveform_at(c).n_adc, waveform_at(c, *ENDS).n_adc
-    shortest_interval = 1 / support(radar.prf_hz)[1]
-    samples = "ADC samples per chirp (adc_rate_hz * chirp_s is"
-    key = "processing.range_fft_length"
-    if radar.waveform in ("cw", "impulse"):
-        right = f"should be left out with radar.waveform: {radar.waveform}, which has no chirp"
+    if isinstance(radar, CwRadar | ImpulseRadar):
+        right = f"should be left out with {radar.named}, which has no chirp"
         for key in ("processing.range_fft_length", "processing.range_reference"):
             if at(c, key) not in (None, "centre"):
                 yield Problem(key, at(c, key), right)
         return
+    fewest, most = waveform_at(c).n_adc, waveform_at(c, *ENDS).n_adc
+    shortest_interval = 1 / support(radar.prf_hz)[1]
+    samples = "ADC samples per chirp (adc_rate_hz * chirp_s is"
     if not support(radar.chirp_s)[1] < shortest_interval:
         right = f"should be shorter than the pulse interval 1/prf_hz = {shortest_interval:g} s"
-        if radar.waveform == "sfcw":
+        if isinstance(radar, SfcwRadar):
             right = f"{right} (steps * dwell_s is {radar.chirp_s:g} s)"
             yield Problem("radar.steps", radar.steps, right)
         else:
@@ -188,12 +171,10 @@ def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
     if most > 2**20:
         right = f"should give at most {2**20} {samples} {most})"
         yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
+    key = "processing.range_fft_length"
     if fft_length is not None and fft_length < most:
         right = f"should be null or an even number of at least the {most} ADC samples"
         yield Problem(key, fft_length, right)
     if fft_length is not None and fft_length > MAX_PADDING * fewest:
         right = f"should be null or at most {MAX_PADDING} times the {fewest} ADC samples"
         yield Problem(key, fft_length, right)
-
-
-MAX_PADDING = 64

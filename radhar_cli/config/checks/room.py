@@ -5,6 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 from radhar_cli.config.number import support
+from radhar_cli.config.radar import BoardRadar, ImpulseRadar
 from radhar_cli.config.request import Request
 from radhar_cli.config.room import WallConfig
 from radhar_cli.config.section import Problem, for_activity
@@ -17,7 +18,7 @@ def wall_problems(c: Request) -> Iterator[Problem]:
     yield from _layer_problems(c, c.wall)
     depth = sum(support(layer.thickness_m)[1] for layer in c.wall.layers or ())
     sizes = [depth if size is None else support(size)[1] for size in c.wall.size_m]
-    for name in ("tx_m", "rx_m") if c.radar.cfg is None else ("position_m",):
+    for name in c.radar.place_keys:
         antenna = getattr(c.radar, name)
         along = zip(map(support, antenna), map(support, c.wall.center_m), sizes, strict=True)
         if all(p[0] <= m[1] + size / 2 and p[1] >= m[0] - size / 2 for p, m, size in along):
@@ -49,9 +50,9 @@ def _layer_problems(c: Request, wall: WallConfig) -> Iterator[Problem]:
     if wall.fresnel != "normal":
         right = "should be left out with wall.echoes: exact, which has radar.polarisation"
         yield Problem("wall.fresnel", wall.fresnel, right)
-    if c.radar.cfg is not None:
+    if isinstance(c.radar, BoardRadar):
         yield Problem("wall.echoes", "exact", "should be none with radar.cfg")
-    elif c.engine.kind == "direct" and c.radar.waveform != "impulse":
+    elif c.engine.kind == "direct" and not isinstance(c.radar, ImpulseRadar):
         right = "should be cube with wall.echoes: exact, which the direct engine does not have"
         yield Problem("engine.kind", "direct", right)
 
@@ -91,16 +92,13 @@ def _coordinates(c: Request, name: str) -> Iterator[tuple[str, Any, list[tuple[f
 def room_problems(c: Request) -> Iterator[Problem]:
     """Faces, box and antennas that do not go together."""
     room, radar = c.room, c.radar
-    if radar.beam is not None and radar.cfg is not None:
-        right = "should be null with radar.cfg, whose pattern is radar.half_power_deg"
-        yield Problem("radar.beam", radar.beam.model_dump(mode="json"), right)
     if room.faces is None:
         return
     if room.back_wall_m is not None:
         right = "should be null with room.faces, of which back is one"
         yield Problem("room.back_wall_m", room.back_wall_m, right)
     if room.box_m is None:
-        for name in ("tx_m", "rx_m") if radar.cfg is None else ("position_m",):
+        for name in radar.place_keys:
             if support(getattr(radar, name)[2])[0] <= 0:
                 right = "should be above the floor of room.faces, at a height of 0"
                 yield Problem(f"radar.{name}", list(getattr(radar, name)), right)
@@ -119,7 +117,7 @@ def room_problems(c: Request) -> Iterator[Problem]:
         yield Problem("room.box_m.height", box.height, right)
     within = [(support(low)[1], support(high)[0]) for low, high in (box.x, box.y)]
     within.append((0.0, height[0]))
-    for name in ("tx_m", "rx_m") if radar.cfg is None else ("position_m",):
+    for name in radar.place_keys:
         antenna = getattr(radar, name)
         places = [support(one) for one in antenna]
         before = places[0][1] < support(box.x[0])[0]

@@ -13,10 +13,11 @@ from radhar_cli.config.checks.smallest_waveform import (
 from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
 from radhar_cli.config.number import support
 from radhar_cli.config.offered_maps import why_no_map
-from radhar_cli.config.processing import MIN_WINDOW
+from radhar_cli.config.radar import MIN_WINDOW, BoardRadar
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.processing.map_kind import MAP_KINDS
 
 MAX_PULSES = 2**24
 MAX_BIN_SAMPLES = 2**27  # of range bins in memory, 16 bytes each
@@ -45,7 +46,7 @@ def processing_problems(c: AnyRequest) -> Iterator[Problem]:
     names = c.maps if isinstance(c, Request) else [one for one in c.maps if one in MAP_NAMES]
     if (of_maps := map_problem(c, names)) is not None:
         yield of_maps
-    if c.radar.cfg is None:
+    if not isinstance(c.radar, BoardRadar):
         yield from waveform_problems(c)
         yield from _clutter_problems(c)
     yield from _signal_problems(c)
@@ -54,16 +55,18 @@ def processing_problems(c: AnyRequest) -> Iterator[Problem]:
 
 
 def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
-    processing, padding, board = c.processing, c.processing.stft_fft_length, c.radar.cfg is not None
+    processing, padding = c.processing, c.processing.stft_fft_length
     shortest, longest = waveform_at(c, *HIGHEST_F0), waveform_at(c, "duration_s", "prf_hz")
     pulses, most_pulses = shortest.n_pulses, longest.n_pulses
     window, longest_window = window_pulses(c, shortest), window_pulses(c, longest)
     usable_pulses = pulses - 1 if processing.clutter == "difference" else pulses
     pulses_meant = "pulses there are"
+    board = c.radar if isinstance(c.radar, BoardRadar) else None
     if board:  # frames are cancelled, filtered and windowed one by one
-        usable_pulses = c.radar.header.loops
+        usable_pulses = board.header.loops
         pulses_meant = "pulses of a frame, the loops of radar.cfg"
     doppler = [name for name in c.maps if name != "rtm" and name not in FRAME_MAPS]
+    denoised = [n for n in doppler if n in MAP_KINDS and MAP_KINDS[n].treatment.denoised]
     duration_entry: tuple[str, object] = ("duration_s", c.duration_s)
     window_is_given = "window_s" in processing.model_fields_set and processing.window_s is not None
     window_entry = (
@@ -82,7 +85,7 @@ def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
             f"should make the window at most the {usable_pulses} {pulses_meant} (it has {window})"
         )
         yield Problem(*window_entry, right)
-    if any("denoised" in name for name in doppler) and processing.savgol.frame > usable_pulses:
+    if denoised and processing.savgol.frame > usable_pulses:
         right = f"should be at most the {usable_pulses} {pulses_meant}"
         yield Problem("processing.savgol.frame", processing.savgol.frame, right)
     if padding is not None and padding < longest_window:
@@ -114,8 +117,9 @@ def _gate_problems(c: AnyRequest) -> Iterator[Problem]:
         return
     within = processing.gate_m
     half_band = waveform_at(c, "bandwidth_hz").half_band_range  # the least
-    if c.radar.cfg is not None:  # of whose complex samples every range bin is kept
-        half_band = SPEED_OF_LIGHT * c.radar.header.adc_rate_hz / (2 * c.radar.header.slope_hz)
+    if isinstance(c.radar, BoardRadar):  # of whose complex samples every range bin is kept
+        header = c.radar.header
+        half_band = SPEED_OF_LIGHT * header.adc_rate_hz / (2 * header.slope_hz)
     if isinstance(within, tuple):
         if within[1] >= half_band:
             right = f"should end before the range half-band does, at {half_band:.4g} m"
@@ -123,7 +127,7 @@ def _gate_problems(c: AnyRequest) -> Iterator[Problem]:
     elif 2 * within >= half_band:
         right = f"should be less than half the range half-band of {half_band:.4g} m"
         yield Problem("processing.gate_m", within, right)
-    if c.radar.cfg is None:
+    if not isinstance(c.radar, BoardRadar):
         yield from _bin_problems(c, "processing.range_sum", "gated", "the gate")
 
 

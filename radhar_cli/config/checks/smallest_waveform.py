@@ -1,6 +1,7 @@
 """Waveforms at the ends of what a config draws."""
 
 from radhar_cli.config.number import support
+from radhar_cli.config.radar import BoardRadar, ImpulseRadar
 from radhar_cli.config.request import AnyRequest
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import Waveform
@@ -17,7 +18,7 @@ def waveform_at(c: AnyRequest, *largest: str) -> Waveform:
     processing = c.processing
     length, centred = processing.range_fft_length, processing.range_reference == "centre"
     parameters = fc, bandwidth, chirp, rate, prf, duration, length, centred
-    if c.radar.waveform == "impulse" and c.radar.profile_m is not None:
+    if isinstance(c.radar, ImpulseRadar):
         return Impulse(*parameters, profile=c.radar.profile_m, samples=c.radar.profile_samples)
     return Waveform(*parameters)
 
@@ -25,12 +26,12 @@ def waveform_at(c: AnyRequest, *largest: str) -> Waveform:
 def window_pulses(c: AnyRequest, w: Waveform) -> int:
     """Pulses of the STFT's window of a waveform, at most those of a board's frame."""
     length = c.processing.window_pulses(w.duration, w.prf, w.f0)
-    return length if c.radar.cfg is None else min(length, c.radar.header.loops)
+    return min(length, c.radar.header.loops) if isinstance(c.radar, BoardRadar) else length
 
 
 def prf_in_words(c: AnyRequest, w: Waveform) -> str:
     """The pulse rate of a waveform, and the key that one would change it by."""
-    board = c.radar.cfg is not None
+    board = isinstance(c.radar, BoardRadar)
     return f"radar.cfg has a PRF of {w.prf:g} Hz" if board else f"radar.prf_hz may be {w.prf:g}"
 
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.identity import as_yaml
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
@@ -25,7 +26,6 @@ from radhar_cli.motion.segments import cross, unit
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processes.progress import Progress
-from radhar_cli.radar.ti_cfg import parse_ti_cfg
 
 SIDE = 8  # MARS: 64 points of a frame as a square
 MARS_SPLITS = ("train", "validate", "test")  # in its file names
@@ -172,7 +172,9 @@ def _new_array(path: Path, kind: np.dtype[Any], shape: tuple[int, ...]) -> NDArr
 
 def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <Split>/<class>/<sample>.txt of messages RadarScan, a record a point."""
-    header = parse_ti_cfg(data.config.radar.cfg or "")
+    radar = data.config.radar
+    assert isinstance(radar, BoardRadar)  # no other radar has points
+    header = radar.header
     middle = 2 ** (header.loops - 1).bit_length() // 2
     rows = Rows.of(data.config)
     for split in data.present_splits:

@@ -10,6 +10,7 @@ one process.
 """
 
 import argparse
+import ast
 import json
 import os
 import subprocess
@@ -69,6 +70,14 @@ def interleaved(
         for name, function in rows.items():
             results[name].append(timed(lambda function=function, turn=turn: function(turn), clock))
     return results
+
+
+def program(tree: Path, name: str) -> str:
+    """Program that a tree's own copy of this script measures it with, as its names are its own."""
+    for node in ast.parse((tree / "scripts/bench_generate.py").read_text()).body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == name:
+            return str(ast.literal_eval(node.value))
+    raise SystemExit(f"{tree}: its scripts/bench_generate.py has no {name}")
 
 
 def scene(config: Config, number: int) -> Scene:
@@ -369,10 +378,7 @@ import numpy as np
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.paths import Paths
 from radhar_cli.radar.waveform import Waveform
-try:
-    from radhar_cli.processes.worker_process import prepare_process
-except ImportError:  # an older tree
-    from radhar_cli.process import prepare_process
+from radhar_cli.processes.worker_process import prepare_process
 
 class Walker:
     # Points on four swinging limbs of two links each and on a trunk, seen from the origin.
@@ -419,7 +425,7 @@ def scatterers(rounds: int, against: Path | None = None) -> dict[str, Any]:
     for _ in range(rounds):
         for name, tree in trees.items():
             done = subprocess.run(
-                [sys.executable, "-c", _SCATTERERS],
+                [sys.executable, "-c", program(tree, "_SCATTERERS")],
                 env=os.environ | one_thread | {"PYTHONPATH": str(tree)},
                 cwd=tree,
                 capture_output=True,
@@ -450,10 +456,7 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.products.table import plan_images
 from radhar_cli.products.run import run
 from radhar_cli.scene_checks.validity import draw_valid_scene
-try:
-    from radhar_cli.processes.worker_process import prepare_process
-except ImportError:  # an older tree
-    from radhar_cli.process import prepare_process
+from radhar_cli.processes.worker_process import prepare_process
 
 prepare_process()
 config = load_config(sys.argv[1], sys.argv[3:])
@@ -490,7 +493,6 @@ def people(rounds: int, against: Path | None = None) -> dict[str, Any]:
     """Processor time of a sample without its files, by stage; one process, one thread."""
     trees = {"this": ROOT} | ({"against": against.resolve()} if against else {})
     one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    program = [sys.executable, "-c", _PEOPLE]
     print("\nscenes to images, ms of processor time a sample, and the largest stages")
     results: dict[str, Any] = {}
     for label, (config, more) in PEOPLE.items():
@@ -502,7 +504,10 @@ def people(rounds: int, against: Path | None = None) -> dict[str, Any]:
         for _ in range(rounds):
             for name, tree in having.items():
                 done = subprocess.run(
-                    [*program, f"configs/{config}.yaml", str(PEOPLE_SAMPLES), *more],
+                    [
+                        *(sys.executable, "-c", program(tree, "_PEOPLE")),
+                        *(f"configs/{config}.yaml", str(PEOPLE_SAMPLES), *more),
+                    ],
                     env=os.environ | one_thread | {"PYTHONPATH": str(tree)},
                     cwd=tree,
                     capture_output=True,
@@ -519,8 +524,15 @@ def people(rounds: int, against: Path | None = None) -> dict[str, Any]:
         if "against" in having:
             pairs = zip(found["against"], found["this"], strict=True)
             each = [old["total"] / new["total"] for old, new in pairs]
-            results[label]["ratio"] = median(each)
-            print(f"  {'':<34}{median(each):8.2f} times ({', '.join(f'{r:.2f}' for r in each)})")
+            least = {n: min(one["total"] for one in of_rounds) for n, of_rounds in found.items()}
+            results[label] |= {
+                "ratio": median(each),
+                "ratio_of_minima": least["against"] / least["this"],
+            }
+            print(
+                f"  {'':<34}{median(each):8.2f} times ({', '.join(f'{r:.2f}' for r in each)}), "
+                f"{least['against'] / least['this']:.2f} of the least"
+            )
     return results
 
 
@@ -607,13 +619,18 @@ def lengths(rounds: int, against: Path | None = None) -> dict[str, Any]:
     """Processor time of the echo of a walk to and fro, of one minute to eight."""
     trees = {"this": ROOT} | ({"against": against.resolve()} if against else {})
     one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    words = [sys.executable, "-c", _LENGTHS, "configs/quickstart.yaml", *map(str, LENGTHS)]
+    words = ["configs/quickstart.yaml", *map(str, LENGTHS)]
     found: dict[str, list[list[float]]] = {name: [] for name in trees}
     for _ in range(rounds):
         for name, tree in trees.items():
             environment = os.environ | one_thread | {"PYTHONPATH": str(tree)}
             done = subprocess.run(
-                words, env=environment, cwd=tree, capture_output=True, text=True, check=True
+                [sys.executable, "-c", program(tree, "_LENGTHS"), *words],
+                env=environment,
+                cwd=tree,
+                capture_output=True,
+                text=True,
+                check=True,
             )
             found[name].append(json.loads(done.stdout))
     print(f"\nechoes of walks of {', '.join(map(str, LENGTHS))} s, seconds of processor time")

@@ -6,7 +6,7 @@ pulses.
 """
 
 from collections.abc import Callable
-from math import ceil, inf, log10
+from math import ceil, inf, isnan, log10
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -113,7 +113,9 @@ def measured_db(
         roughness: Where interpolation is likely to err.
     """
     taps = canceller.taps if isinstance(canceller, Fir) else NO_CANCELLER.taps
-    probes = choose_probes(_power(y, canceller), roughness)
+    probes = choose_probes(
+        _powers(y, canceller, roughness.step), y.size - canceller.lost, roughness
+    )
     if probes.total == 0:
         return -inf
     error = exact_sum(source, waveform, probes.pulses, taps) / unit
@@ -138,10 +140,12 @@ class Probes(NamedTuple):
         estimates = squares / self.density
         spread = estimates.std() * np.sqrt(estimates.size)
         relative = float(estimates.sum() + DEVIATIONS * spread) / self.total
+        if isnan(relative):
+            return inf
         return 10 * log10(relative) if relative > 0 else -inf
 
 
-def choose_probes(power: Float, roughness: Roughness = EVEN) -> Probes:
+def choose_probes(powers: Float, pulses: int, roughness: Roughness = EVEN) -> Probes:
     """Choose PROBES pulses at which a signal is compared with the exact one.
 
     A share `ROUGH` of them lies where interpolation is likely to err most, so that few milliseconds
@@ -149,17 +153,16 @@ def choose_probes(power: Float, roughness: Roughness = EVEN) -> Probes:
     power, so that a jump which holds most of that, as of a limb that crosses a wall's face, is.
 
     Args:
-        power: |x|^2 [M].
-        roughness: How large |e|^2 may be in each segment, up to a factor.
+        powers: Sum of |x|^2 over each segment of pulses [segments].
+        pulses: Number M of pulses of x.
+        roughness: How large |e|^2 may be in each segment, up to a factor, and their pulses.
     """
-    step = roughness.step
-    starts = np.arange(0, power.size, step)
-    powers = np.add.reduceat(power, starts) if step > 1 and starts.size else power
+    starts = np.arange(0, pulses, roughness.step)
     total = float(powers.sum())
     if total == 0:
         return Probes(np.empty(0, np.intp), np.empty(0), 0.0)
-    lengths = np.diff(starts, append=power.size)
-    share = powers * (0.5 / total) + lengths * (0.5 / power.size)
+    lengths = np.diff(starts, append=pulses)
+    share = powers * (0.5 / total) + lengths * (0.5 / pulses)
     rough = roughness.squares[: starts.size]
     if (expected := float(rough.sum())) > 0:
         share *= 1 - ROUGH
@@ -173,18 +176,24 @@ def choose_probes(power: Float, roughness: Roughness = EVEN) -> Probes:
     return Probes(starts[segment] + offset, share[segment] * (PROBES / length), total)
 
 
-def _power(y: Complex, canceller: Canceller) -> Float:
-    """Power |x|^2 [M] of y after the canceller."""
+def segment_powers(x: Complex, step: int) -> Float:
+    """Sum of |x|^2 over every `step` pulses [segments] of a signal x [M]; the last may be fewer."""
+    pairs = np.ascontiguousarray(x).view(float)
+    whole = x.size // step * 2 * step
+    powers: Float = np.einsum("sk,sk->s", *2 * (pairs[:whole].reshape(-1, 2 * step),))
+    last = pairs[whole:]
+    return np.append(powers, last @ last) if last.size else powers
+
+
+def _powers(y: Complex, canceller: Canceller, step: int) -> Float:
+    """Sum of |x|^2 over every `step` pulses [segments] of y after the canceller."""
     if not isinstance(canceller, Fir):
-        x = canceller(y)
-        power: Float = x.real**2 + x.imag**2
-        return power
-    power = np.empty(max(y.size - canceller.lost, 0))
-    for start in range(0, power.size, BLOCK_SAMPLES):
-        part = power[start : start + BLOCK_SAMPLES]
-        x = canceller(y[start : start + part.size + canceller.lost])
-        part[:] = x.real**2 + x.imag**2
-    return power
+        return segment_powers(canceller(y), step)
+    parts, length = [], max(1, BLOCK_SAMPLES // step) * step
+    for start in range(0, y.size - canceller.lost, length):
+        x = canceller(y[start : start + length + canceller.lost])
+        parts.append(segment_powers(x, step))
+    return np.concatenate([np.empty(0), *parts])
 
 
 def exact_sum(

@@ -7,12 +7,12 @@ chirp begins.
 """
 
 from collections.abc import Iterator, Sequence
-from math import ceil, inf, isnan, log10, pi
+from math import ceil, inf, pi
 from typing import Any
 
 import numpy as np
 
-from radhar_cli.echo.accuracy import AccuracyError
+from radhar_cli.echo.accuracy import AccuracyError, Probes
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.chebyshev import coefficients
 from radhar_cli.echo.interpolation import lagrange_basis
@@ -216,22 +216,26 @@ def _terms(y: Float, tolerance_db: float) -> int:
 
 
 def measured_db(cube: Complex, channels: Sequence[PathSource], board: Board) -> float:
-    """Relative L2 error (dB) of a cube at PROBES chirps spread over channels, loops and frames."""
+    """Bound of the relative L2 error (dB) of a cube, from PROBES chirps.
+
+    They are spread over channels, loops and frames; the bound is that of `Probes`.
+    """
     count = board.frames * board.loops
     probes = np.arange(min(PROBES, count))
     frame, loop = np.divmod((2 * probes + 1) * count // (2 * probes.size), board.loops)
-    virtual, sent = probes * 5 % board.channels, np.array([k for k, _ in board.pairs])
-    times, error, total = board.chirp_times(), 0.0, 0.0
-    for k in np.unique(sent):  # channels of one transmitter are asked for the same times
-        some = sent[virtual] == k
-        for v in np.unique(virtual[some]):
-            paths = channels[v](times[frame[some], loop[some], k])
-            mine = virtual[some] == v
-            at = frame[some][mine], loop[some][mine], v
+    virtual, sender = probes * 5 % board.channels, np.array([k for k, _ in board.pairs])
+    times, squares = board.chirp_times(), np.zeros(probes.size)
+    for k in np.unique(sender):  # channels of one transmitter are asked for the same times
+        asked = sender[virtual] == k
+        for v in np.unique(virtual[asked]):
+            paths = channels[v](times[frame[asked], loop[asked], k])
+            mine = virtual[asked] == v
+            at = np.flatnonzero(asked)[mine]
             delay, a = (part[:, mine] for part in paths[:2])
             exact = beat_matrix(delay, a, board.waveform).T * board.signs[v]
-            error += float((np.abs(cube[at] - exact) ** 2).sum())
-            total += float((np.abs(exact) ** 2).sum())
-    if isnan(error):
-        return inf
-    return 10 * log10(error / total) if error > 0 and total > 0 else -inf
+            squares[at] = np.sum(np.abs(cube[frame[at], loop[at], v] - exact) ** 2, axis=1)
+    total = float(np.vdot(cube, cube).real)
+    density = np.full(probes.size, probes.size / (count * board.channels))
+    if total == 0:
+        return inf if squares.any() else -inf
+    return Probes(probes, density, total).bound_db(squares)

@@ -170,7 +170,9 @@ class GatedEcho(DirectEcho):
         inside = (low <= k) & (k < high)
         pairs = np.where(inside, self.canceller(y), 0).view(float)
         power = np.einsum("km,km->m", pairs, pairs).reshape(-1, 2).sum(axis=1)
-        probes = choose_probes(power, motion.roughness)
+        step = motion.roughness.step
+        powers = np.add.reduceat(power, np.arange(0, power.size, step))
+        probes = choose_probes(powers, power.size, motion.roughness)
         if probes.total == 0:
             return -inf
         centred = replace(w, centred=True)

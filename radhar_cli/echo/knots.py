@@ -14,7 +14,9 @@ from radhar_cli.echo.interpolation import (
     REACH,
     SHIFTED_BY,
     TAPS,
+    lagrange_weights,
     shifts,
+    stencils,
     upsample,
 )
 from radhar_cli.echo.paths import Paths, PathSource
@@ -54,8 +56,15 @@ class Knots(NamedTuple):
     def power(self) -> float:
         """Sum of A_i^2 over paths and pulses."""
         at, exact = self.paths.amplitude, self.exact.amplitude
-        powers = np.einsum("im,im->m", at, at), np.einsum("im,im->m", exact, exact)
-        return float(self.interpolated(*powers).sum())
+        powers, exact_powers = (np.einsum("im,im->m", a, a) for a in (at, exact))
+        if self.step == 1:
+            return float(powers.sum())
+        last = self.pulses[1] - self.pulses[0] - (self.shift.size - 1) * self.step
+        weights = lagrange_weights(self.step)
+        around = stencils(powers, self.shift)
+        sums = weights.sum(axis=1) @ around
+        sums[-1] = weights[:, :last].sum(axis=1) @ around[:, -1]
+        return float(sums[self.shift != EXACT].sum() + exact_powers.sum())
 
     def interpolated(self, at_knots: Float, exact: Float) -> Float:
         """Interpolate a quantity to all the pulses [M].
@@ -90,6 +99,9 @@ class Roughness(NamedTuple):
 
 
 EVEN = Roughness(1, np.empty(0))
+# By how much squared errors grow where a stencil is shifted; what is EXACT has none.
+_SQUARES_BY = np.zeros(EXACT + 1)
+_SQUARES_BY[: REACH + 1] = np.square(SHIFTED_BY)
 
 
 class PathsAtKnots(NamedTuple):
@@ -210,22 +222,22 @@ def _rough_squares(knots: Knots, w: Waveform) -> Float:
     mixed = (of_delay * (2 * np.pi * w.f0 * size)) @ delay + of_amplitude @ amplitude
     differences = np.diff(mixed, TAPS, axis=1)
     squares: Float = np.einsum("pm,pm->m", differences, differences)
-    broken = knots.shift == EXACT
-    if broken.any():
-        windows = np.lib.stride_tricks.sliding_window_view(
-            np.pad(broken, (BEFORE, AFTER - 1)), TAPS
-        )
-        squares[windows.any(axis=1)] = 0.0
+    special = np.flatnonzero(knots.shift)  # segments beside a breakpoint, or that hold one
+    broken = special[knots.shift[special] == EXACT]
+    for before in range(TAPS):
+        squares[(broken + BEFORE - before).clip(0, squares.size - 1)] = 0.0
     # Higher differences matter where a limb passes something within few knots: each counts for
     # its neighbours, too.
     squares = np.convolve(squares, (1.0, 1.0, 1.0), "same")
-    segment, shift = np.arange(knots.shift.size), np.where(broken, 0, knots.shift)
-    first = segment + shift + BEFORE - REACH - 1
-    last = squares.size - 1
-    largest = np.maximum(squares[first.clip(0)], squares[(first + 1).clip(max=last)])
-    rough: Float = largest * np.array(SHIFTED_BY)[np.abs(shift)] ** 2
-    rough[broken] = 0.0
-    return rough
+    first, count = BEFORE - REACH - 1, knots.shift.size
+    largest: Float = np.maximum(
+        squares[first : first + count], squares[first + 1 : first + 1 + count]
+    )
+    shift = knots.shift[special]
+    around = special + np.where(shift == EXACT, 0, shift) + first
+    pair = squares[around.clip(0)], squares[(around + 1).clip(max=squares.size - 1)]
+    largest[special] = np.maximum(*pair) * _SQUARES_BY[np.abs(shift)]
+    return largest
 
 
 @lru_cache(maxsize=16)

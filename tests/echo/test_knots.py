@@ -81,7 +81,7 @@ def test_probes_lie_where_interpolation_errs() -> None:
     t = RADAR.times(found.step * (np.arange(rough.size) + 0.5))
     near = np.abs(t - 0.25) < 0.05
     assert rough[near].sum() > 0.99 * rough.sum()
-    probes = choose_probes(np.ones(RADAR.n_pulses), found.roughness)
+    probes = choose_probes(np.full(rough.size, float(found.step)), RADAR.n_pulses, found.roughness)
     assert np.abs(RADAR.times(probes.pulses.astype(float)) - 0.25).min() < 0.01
     # Unbiased: what is spread in any way is counted once.
     assert np.sum(1 / probes.density) == pytest.approx(RADAR.n_pulses, rel=0.25)
@@ -93,8 +93,8 @@ def test_probes_count_every_pulse_once_whatever_the_segments() -> None:
     for size, step in ((1003, 7), (50, 7), (3, 7), (400, 1)):
         counts = np.zeros(size)
         for _ in range(100):
-            power, rough = rng.exponential(size=size), rng.exponential(size=-(-size // step))
-            probes = choose_probes(power, Roughness(step, rough))
+            power, rough = rng.exponential(size=(2, -(-size // step)))
+            probes = choose_probes(power, size, Roughness(step, rough))
             assert probes.total == pytest.approx(power.sum())
             np.add.at(counts, probes.pulses, 1 / probes.density / 100)
         assert counts.sum() == pytest.approx(size, rel=0.05)

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.echo.accuracy import AccuracyError, Probes
+from radhar_cli.echo.accuracy import GOLDEN, AccuracyError, Probes
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.chebyshev import coefficients
 from radhar_cli.echo.interpolation import lagrange_basis
@@ -24,7 +24,7 @@ from radhar_cli.radar.board import Board
 
 BLOCK_FRAMES = 16
 SINGLE_DB = -100.0  # tolerances below need double precision
-PROBES = 48
+PROBES = 96
 SPARE_DB = 10.0  # by which the measured error must be below the tolerance
 NODES, MORE_NODES = 6, 16
 MARGIN_DB = 20.0
@@ -90,8 +90,8 @@ def fast_cube(
     single = tolerance_db >= SINGLE_DB
     best = inf
     for count, precise in ((NODES, not single), (MORE_NODES, True), (board.loops, True)):
-        cube, power = _summed(channels, board, tolerance_db, count, precise)
-        error = measured_db(cube, channels, board)
+        cube, power, roughness = _summed(channels, board, tolerance_db, count, precise)
+        error = measured_db(cube, channels, board, roughness)
         if error <= tolerance_db - SPARE_DB:
             return cube, power, error
         best = min(best, error)
@@ -100,37 +100,46 @@ def fast_cube(
 
 def _summed(
     channels: Sequence[PathSource], board: Board, tolerance_db: float, count: int, precise: bool
-) -> tuple[Complex, float]:
-    """Samples and P_s of paths at so many nodes a frame, in single precision or a precise one."""
-    single = not precise
+) -> tuple[Complex, float, Float]:
+    """Samples of paths at so many nodes a frame, in single precision or a precise one.
+
+    Returns:
+        Samples, P_s, and how large the squared error of each frame may be [frames], up to a factor.
+    """
+    single, roughness = not precise, np.empty(board.frames)
     dtype = np.complex64 if single else np.complex128
     cube = np.empty((board.frames, board.loops, board.channels, board.samples), dtype)
     power = 0.0
-    for frame, (delay, amplitude) in enumerate(_frame_paths(channels, board, count)):
+    for frame, (delay, amplitude, rough) in enumerate(_frame_paths(channels, board, count)):
         power += float(np.einsum("ivl,ivl->", amplitude, amplitude))
+        roughness[frame] = rough
         tau = delay.reshape(len(delay), -1)  # [I, virtual loop]
         a = (amplitude * board.signs[:, None]).reshape(tau.shape)
         s = _frame_sum(tau, a.astype(np.float32 if single else float), board, tolerance_db)
         cube[frame] = s.reshape(board.channels, board.loops, -1).swapaxes(0, 1)
         if _still(delay, amplitude):
             cube[frame, 1:] = cube[frame, 0]
-    return cube, power / (board.frames * board.loops * board.channels)
+    return cube, power / (board.frames * board.loops * board.channels), roughness
 
 
 def mean_power(channels: Sequence[PathSource], board: Board) -> float:
     """Mean P_s over frames, loops and channels of sum_i A_i^2, without making the echo."""
-    total = sum(float(np.einsum("ivl,ivl->", a, a)) for _, a in _frame_paths(channels, board))
+    total = sum(float(np.einsum("ivl,ivl->", a, a)) for _, a, _ in _frame_paths(channels, board))
     return total / (board.frames * board.loops * board.channels)
 
 
 def _frame_paths(
     channels: Sequence[PathSource], board: Board, count: int = NODES
-) -> Iterator[tuple[Float, Float]]:
-    """Delays (s) and amplitudes [I, virtual, loop] of each frame.
+) -> Iterator[tuple[Float, Float, float]]:
+    """Delays (s), amplitudes [I, virtual, loop], and the roughness of each frame.
 
-    Paths are asked for at so many instants of a frame and are polynomials between them.
+    Paths are asked for at so many instants of a frame and are polynomials between them. Roughness
+    is the sum over the paths of the squared coefficients of the highest of their Chebyshev
+    polynomials, of 2 pi fc tau A and of A: the next one is what interpolation leaves out.
     """
     at = nodes(count - 1, board.loops)
+    order = np.arange(at.size) + 0.5
+    highest = np.cos((at.size - 1) * np.pi * order / at.size) if at.size < board.loops else 0 * at
     basis = lagrange_basis(at, np.arange(float(board.loops)))
     for first in range(0, board.frames, BLOCK_FRAMES):
         begin = board.chirp_times(slice(first, first + BLOCK_FRAMES))[:, 0]
@@ -142,13 +151,20 @@ def _frame_paths(
         delay = np.stack([paths.delay.reshape(shape) for paths in seen], axis=2)
         amplitude = np.stack([paths.amplitude.reshape(shape) for paths in seen], axis=2)
         for frame in range(len(begin)):
-            yield _between_nodes(delay[:, frame], basis), _between_nodes(amplitude[:, frame], basis)
+            tau, a = delay[:, frame], amplitude[:, frame]
+            bend = 2 * pi * board.waveform.fc * (tau @ highest) * a[..., 0], a @ highest
+            rough = sum(float(np.einsum("iv,iv->", part, part)) for part in bend)
+            yield _between_nodes(tau, basis), _between_nodes(a, basis), rough
 
 
 def _between_nodes(values: Float, basis: Float) -> Float:
     """Polynomials of values [.., node] at all loops; a constant stays so to the last digit."""
-    first = values[..., :1]
-    return first + (values - first) @ basis
+    between: Float = values @ basis
+    constant = values[..., -1] == values[..., 0]
+    if constant.any():
+        constant &= (values == values[..., :1]).all(axis=-1)
+        between[constant] = values[constant][:, :1]
+    return between
 
 
 def _still(delay: Float, amplitude: Float) -> bool:
@@ -157,7 +173,10 @@ def _still(delay: Float, amplitude: Float) -> bool:
     Their samples then are those of the first loop to the last digit, so that a canceller leaves
     nothing, and not the rounding of sums.
     """
-    return all(bool((part == part[..., :1]).all()) for part in (delay, amplitude))
+    parts = delay, amplitude
+    if any((part[:1] != part[:1, ..., :1]).any() for part in parts):
+        return False  # the first path shows it: usual, and cheap
+    return all(bool((part == part[..., :1]).all()) for part in parts)
 
 
 def _frame_sum(tau: Float, a: Float, board: Board, tolerance_db: float) -> Complex:
@@ -215,16 +234,32 @@ def _terms(y: Float, tolerance_db: float) -> int:
     return MOST_TERMS
 
 
-def measured_db(cube: Complex, channels: Sequence[PathSource], board: Board) -> float:
+def measured_db(
+    cube: Complex, channels: Sequence[PathSource], board: Board, roughness: Float | None = None
+) -> float:
     """Bound of the relative L2 error (dB) of a cube, from PROBES chirps.
 
-    They are spread over channels, loops and frames; the bound is that of `Probes`.
+    Half of them are spread evenly over frames, a quarter by the power of frames, a quarter by their
+    roughness; over loops and channels evenly. The bound is that of `Probes`.
+
+    Args:
+        cube: Samples [frame, loop, virtual, sample].
+        channels: Paths of each virtual channel [V].
+        board: The board.
+        roughness: How large the squared error of each frame may be [frames], up to a factor.
     """
-    count = board.frames * board.loops
-    probes = np.arange(min(PROBES, count))
-    frame, loop = np.divmod((2 * probes + 1) * count // (2 * probes.size), board.loops)
-    virtual, sender = probes * 5 % board.channels, np.array([k for k, _ in board.pairs])
-    times, squares = board.chirp_times(), np.zeros(probes.size)
+    powers = np.array([float(np.vdot(frame, frame).real) for frame in cube])
+    total = float(powers.sum())
+    share = np.full(board.frames, 1 / board.frames)
+    for part in (powers, roughness):
+        if part is not None and 0 < part.sum() < inf:
+            share = 0.75 * share + 0.25 * part / part.sum()
+    probe = np.arange(PROBES)
+    ends = np.cumsum(share / share.sum())
+    frame = np.searchsorted(ends, (probe + 0.5) / PROBES).clip(max=board.frames - 1)
+    loop = (probe * GOLDEN % 1 * board.loops).astype(np.intp)
+    virtual, sender = probe * 5 % board.channels, np.array([k for k, _ in board.pairs])
+    times, squares = board.chirp_times(), np.zeros(PROBES)
     for k in np.unique(sender):  # channels of one transmitter are asked for the same times
         asked = sender[virtual] == k
         for v in np.unique(virtual[asked]):
@@ -234,8 +269,7 @@ def measured_db(cube: Complex, channels: Sequence[PathSource], board: Board) -> 
             delay, a = (part[:, mine] for part in paths[:2])
             exact = beat_matrix(delay, a, board.waveform).T * board.signs[v]
             squares[at] = np.sum(np.abs(cube[frame[at], loop[at], v] - exact) ** 2, axis=1)
-    total = float(np.vdot(cube, cube).real)
-    density = np.full(probes.size, probes.size / (count * board.channels))
     if total == 0:
         return inf if squares.any() else -inf
-    return Probes(probes, density, total).bound_db(squares)
+    density = share[frame] * PROBES / (board.loops * board.channels)
+    return Probes(probe, density, total).bound_db(squares)

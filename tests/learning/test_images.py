@@ -22,6 +22,7 @@ from radhar_cli.dataset.image_file import luminance, read_gray, read_rgb
 from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.images.image_set import ImageSet, check_split_name, labels_for
 from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.images.sample_table import SampleTable, objects
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.training_set import open_training_set
 from radhar_cli.numerics.rounding import half_up
@@ -181,9 +182,9 @@ def test_a_tree_without_splits_is_split_by_class_reproducibly(tmp_path):
 @given(counts=st.lists(st.integers(2, 30), min_size=2, max_size=4), share=st.floats(0.01, 0.5))
 def test_every_class_has_images_in_both_splits(counts, share):
     label = np.repeat(np.arange(len(counts)), counts)
-    names = tuple(str(n) for n in range(len(label)))
+    samples = SampleTable(label, name=objects(map(str, range(len(label)))), source=0 * label)
     kinds = tuple("abcd"[: len(counts)])
-    images = ImageSet(Path("x"), None, kinds, label, None, names, None, (32, 32), None)
+    images = ImageSet(Path("x"), None, kinds, samples, (32, 32), pixels=None)
     cut = images.cut(share, 0)
     for index, count in enumerate(counts):
         held = int((cut.samples.label[cut.rows("val")] == index).sum())

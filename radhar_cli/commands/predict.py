@@ -52,7 +52,7 @@ def predict(
 
     chosen, split_part = choose_device(device), check_split_name(split)
     if out is not None:
-        from radhar_cli.learning.found_joints import check_joints_file, predict_joints
+        from radhar_cli.learning.estimated_joints import check_joints_file, predict_joints
 
         check_joints_file(out)
         sequences = predict_joints(run, paths, chosen, map_, split_part)

@@ -22,7 +22,7 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.learning import run_folder
 from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.batches import Reader, batches_in_order
-from radhar_cli.learning.evaluation import open_for_model, rows_of, training_images
+from radhar_cli.learning.evaluation import open_for_model, open_training_images, rows_of
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.scan import content_hash
@@ -184,7 +184,7 @@ def _open_mixed(metadata: RunMetadata, mix: Sequence[Path] | Mixed) -> Mixed | N
         return mix
     if not mix:
         return None
-    return Mixed(joined([training_images(metadata, path) for path in mix]))
+    return Mixed(joined([open_training_images(metadata, path) for path in mix]))
 
 
 def _describe_copy(

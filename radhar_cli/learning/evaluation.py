@@ -20,7 +20,7 @@ from radhar_cli.learning.images.folder import image_files, is_image, open_pictur
 from radhar_cli.learning.images.image_set import ImageSet, Pixels, resized
 from radhar_cli.learning.images.opening import is_h5, is_tree, open_inputs
 from radhar_cli.learning.images.scan import content_hash
-from radhar_cli.learning.models.build import features_and_logits
+from radhar_cli.learning.models.build import compute_features_and_logits
 from radhar_cli.learning.run_files import RunError, is_run
 from radhar_cli.learning.run_folder import RunMetadata, load_best
 from radhar_cli.learning.tasks.categories import Categories
@@ -108,7 +108,7 @@ def _map_to_open(metadata: RunMetadata, path: Path) -> str | None:
     return metadata.map
 
 
-def training_images(metadata: RunMetadata, path: Path) -> ImageSet:
+def open_training_images(metadata: RunMetadata, path: Path) -> ImageSet:
     """Training images of a data set, of the classes that a run knows; all have the split train."""
     config = metadata.settings
     images = open_for_model(metadata, path, None).cut(config.validation_share, config.seed)
@@ -215,7 +215,7 @@ def last_features(
     with torch.inference_mode():
         for levels, _ in reader(batches_in_order(rows, PREDICT_BATCH)):
             inputs = metadata.normalisation(levels.to(device))
-            batches.append(features_and_logits(model, inputs)[0].cpu().numpy())
+            batches.append(compute_features_and_logits(model, inputs)[0].cpu().numpy())
     return np.concatenate(batches)
 
 

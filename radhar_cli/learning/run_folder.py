@@ -274,7 +274,7 @@ def read_history(folder: Path) -> list[Epoch]:
     path = folder / HISTORY
     try:
         rows = csv.DictReader(io.StringIO(_text(path), newline=""))
-        return checked_history(
+        return require_valid_history(
             [Epoch(int(r.pop("epoch")), **{k: float(v) for k, v in r.items()}) for r in rows]
         )
     except FileNotFoundError:
@@ -283,7 +283,7 @@ def read_history(folder: Path) -> list[Epoch]:
         raise RunError(f"{path}: is damaged ({error})") from None
 
 
-def checked_history(history: list[Epoch]) -> list[Epoch]:
+def require_valid_history(history: list[Epoch]) -> list[Epoch]:
     """Epochs of a history that was read, unchanged, if they can be those of a run.
 
     Raises:

@@ -7,8 +7,8 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from radhar_cli.learning.estimated_joints import EstimatedJoints, find_joints
 from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled, predict_batches
-from radhar_cli.learning.found_joints import FoundJoints, find_joints
 from radhar_cli.learning.images.image_set import check_split_name
 from radhar_cli.learning.machine import choose_device
 from radhar_cli.learning.run_files import RunError
@@ -18,7 +18,7 @@ from radhar_cli.numerics.arrays import Float
 
 
 @dataclass(frozen=True)
-class FoundClasses:
+class EstimatedClasses:
     """Probabilities of every class, image by image; N is the number of images."""
 
     samples: tuple[str, ...]  # [N] names
@@ -73,7 +73,7 @@ class TrainedRun:
         map: str | None = None,
         split: str = "all",
         resize: bool = False,
-    ) -> FoundClasses | FoundJoints:
+    ) -> EstimatedClasses | EstimatedJoints:
         """Classes or joints that the network finds in an image, a folder of images, or a data set.
 
         Args:
@@ -92,7 +92,7 @@ class TrainedRun:
         reading = (inputs.pixels, inputs.rows, self.device, PREDICT_BATCH)
         batches = predict_batches(self.network, self.metadata, *reading)
         probabilities = np.concatenate(list(batches))
-        return FoundClasses(inputs.names, self.classes, probabilities)
+        return EstimatedClasses(inputs.names, self.classes, probabilities)
 
     def __repr__(self) -> str:
         about = self.metadata

@@ -322,7 +322,9 @@ class _Training:
             differing = run.differences(stored_metadata, self.metadata)
             if differing:
                 raise run_files.RunError(f"{path}: is another run's; it differs in {differing[0]}")
-            self.history = run.checked_history([Epoch(**row) for row in checkpoint["history"]])
+            self.history = run.require_valid_history(
+                [Epoch(**row) for row in checkpoint["history"]]
+            )
             if not self.history:
                 raise ValueError("it holds no epoch")
             self.learner.restore(checkpoint)

@@ -28,7 +28,7 @@ from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.learning.adaptation import AdaptOptions, Mixed
 from radhar_cli.learning.adaptation import adapt as adapt_run
-from radhar_cli.learning.evaluation import predict_classes, training_images
+from radhar_cli.learning.evaluation import open_training_images, predict_classes
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.metrics import wilson
@@ -153,7 +153,7 @@ def few_shots(
     half = {"epochs": -(-scratch.epochs // 2), "warmup_epochs": scratch.warmup_epochs / 2}
     tuned = scratch.model_copy(update=half)
     measured = open_eval_set(opened, data, EvalOptions("all"))
-    mixed = [training_images(opened.metadata, path) for path in mix]
+    mixed = [open_training_images(opened.metadata, path) for path in mix]
 
     def tested(one: Path, draw: Draw) -> float:
         about, model = load_best(one)

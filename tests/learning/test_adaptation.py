@@ -10,7 +10,7 @@ from torch import nn
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning import adaptation
 from radhar_cli.learning.adaptation import AdaptOptions, Mixed, adapt
-from radhar_cli.learning.evaluation import open_for_model, predict_classes, training_images
+from radhar_cli.learning.evaluation import open_for_model, open_training_images, predict_classes
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.run_folder import RunError, load_best
 
@@ -27,7 +27,7 @@ def accuracy(run, data):
 def cross_entropy(run, data):
     """With batch norm as in training: statistics of other images are not what is asked about."""
     metadata, model = load_best(run)
-    images = training_images(metadata, data)
+    images = open_training_images(metadata, data)
     levels = np.stack([images.pixels.read(row).transpose(2, 0, 1) for row in range(len(images))])
     with torch.inference_mode():
         logits = model.train()(metadata.normalisation(torch.from_numpy(levels)))
@@ -153,7 +153,7 @@ def test_mixed_images_teach_their_labels(learned, tmp_path):
 def test_mixed_sets_are_drawn_by_their_weights(learned, tmp_path):
     metadata, _ = load_best(learned)
     sets = [
-        training_images(metadata, split_tree(tmp_path / name, classes=(name,)))
+        open_training_images(metadata, split_tree(tmp_path / name, classes=(name,)))
         for name in ("walking", "kicking")
     ]
     mixed = Mixed(joined(sets), (3.0, 1.0))

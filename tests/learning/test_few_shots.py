@@ -11,7 +11,7 @@ import torch
 from few_shots import drawn, few_shots, interval_of_repeats, learned_from, missing
 from learning.patterns import CLASSES, tree
 
-from radhar_cli.learning.evaluation import open_for_model, predict_classes, training_images
+from radhar_cli.learning.evaluation import open_for_model, open_training_images, predict_classes
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.sample_table import objects
 from radhar_cli.learning.metrics import wilson
@@ -92,7 +92,7 @@ def test_mixed_images_are_shown_as_often_as_labelled_ones_unless_these_are_few(
 ):
     metadata, _ = load_best(run_dir)
     few = open_for_model(metadata, measured, None).take(np.array([0, 8, 16]))
-    mixed = training_images(metadata, data)
+    mixed = open_training_images(metadata, data)
     for most, of_few in ((100, 24), (2, 6)):
         images, weights = learned_from(metadata, few, [mixed], most)
         rows = images.rows("train")

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from learning.patterns import split_tree, trained
 
 from radhar_cli.errors import ModelError
-from radhar_cli.learning.models.build import build_model, features_and_logits
+from radhar_cli.learning.models.build import build_model, compute_features_and_logits
 from radhar_cli.learning.models.fftnet import Block, FFTNet, GlobalFilter
 from radhar_cli.learning.models.outputs import Outputs
 
@@ -88,7 +88,7 @@ def test_shapes_from_images_to_logits(size):
     with torch.no_grad():
         maps = model.forward_features(x)
         assert maps.shape == (2, 512, size[0] // 32, size[1] // 32)
-        features, logits = features_and_logits(model, x)
+        features, logits = compute_features_and_logits(model, x)
         assert torch.equal(logits, model(x))
         torch.testing.assert_close(features, maps.mean((2, 3)))
     assert logits.shape == (2, 5)

@@ -9,7 +9,7 @@ import pytest
 import torch
 from helpers.command_line import radhar
 
-from radhar_cli.learning.images.h5 import h5_images
+from radhar_cli.learning.images.h5 import open_h5_images
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.images.sample_table import objects
@@ -56,7 +56,7 @@ def task_of(target: str) -> Task:
 
 
 def images(place: Path, name: str = "several") -> ImageSet:
-    return h5_images(place / name, None, "gray")
+    return open_h5_images(place / name, None, "gray")
 
 
 def test_what_is_shown_and_counted(place: Path) -> None:

@@ -9,8 +9,8 @@ from radhar_cli.errors import ModelError
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.models.build import (
     build_model,
+    compute_features_and_logits,
     cost,
-    features_and_logits,
     parameter_count,
 )
 from radhar_cli.learning.models.outputs import Outputs
@@ -41,7 +41,7 @@ def test_networks_build_and_take_a_step(zoo, name):
     moved = [not torch.equal(p, b) for p, b in zip(model.parameters(), before, strict=True)]
     assert sum(moved) > 0.25 * len(moved), "not all: some residual branches start at zero"
     with torch.no_grad():
-        features, again = features_and_logits(model.eval(), x)
+        features, again = compute_features_and_logits(model.eval(), x)
         torch.testing.assert_close(again, model(x))
     assert features.ndim == 2
     assert features.shape[0] == 2

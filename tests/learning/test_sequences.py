@@ -16,7 +16,7 @@ import radhar_cli
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.evaluation import open_for_model, predict
-from radhar_cli.learning.images.h5 import h5_sequences
+from radhar_cli.learning.images.h5 import open_h5_sequences
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.images.sequences import cloud_frames, fit_length
@@ -152,19 +152,19 @@ def test_the_loss_of_skeletons_leaves_out_what_is_not_there() -> None:
 
 
 def test_statistics_of_frames_are_of_all_of_them_and_clouds_have_none(boards: Path) -> None:
-    frames = h5_sequences(boards / "data", None, "frames")
+    frames = open_h5_sequences(boards / "data", None, "frames")
     levels = np.stack([frames.pixels.read(row) for row in range(3)]) / 255
     found = scan(frames, [0, 1, 2])
     np.testing.assert_allclose([found.mean[0], found.sd[0]], [levels.mean(), levels.std()])
     assert len(found.mean) == 1
-    clouds = h5_sequences(boards / "data", None, "clouds")
+    clouds = open_h5_sequences(boards / "data", None, "clouds")
     found = scan(clouds, [0, 1])
     read = torch.from_numpy(clouds.pixels.read(0))
     torch.testing.assert_close(Normalisation(found.mean, found.sd)(read), read)
 
 
 def test_joined_and_chosen_sequences_keep_their_skeletons(boards: Path) -> None:
-    clouds = h5_sequences(boards / "data", None, "clouds")
+    clouds = open_h5_sequences(boards / "data", None, "clouds")
     both = joined([clouds, clouds]).take(np.array([12, 3]))
     for row, of in enumerate((2, 3)):
         np.testing.assert_array_equal(both.skeletons[row], clouds.skeletons[of])

@@ -61,7 +61,7 @@ class FilePixels:
         return (f"{where}: drawn in {self.colours}; its levels are learned from, not brightness",)
 
 
-def folder_images(
+def open_tree(
     root: Path,
     map_name: str | None,
     kind: Kind,

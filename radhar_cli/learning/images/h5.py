@@ -58,7 +58,7 @@ class H5Pixels(Opened):
         return rgb
 
 
-def h5_images(path: Path, map_name: str | None, kind: Kind) -> ImageSet:
+def open_h5_images(path: Path, map_name: str | None, kind: Kind) -> ImageSet:
     """Open one map of a dataset.h5, or of the folder it lies in, as images.
 
     Args:
@@ -83,7 +83,7 @@ def h5_images(path: Path, map_name: str | None, kind: Kind) -> ImageSet:
     return replace(images, colours=image.colour_map)
 
 
-def h5_sequences(
+def open_h5_sequences(
     path: Path, product: str | None, kind: Kind, frames: Auto = "auto", points: int = POINTS
 ) -> ImageSet:
     """Open the frames or clouds of a dataset.h5, or of the folder it lies in.

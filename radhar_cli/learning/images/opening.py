@@ -10,8 +10,8 @@ from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import DATASET, SPLITS, is_incomplete
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.choices import Kind, sequences_of
-from radhar_cli.learning.images.folder import FilePixels, folder_images
-from radhar_cli.learning.images.h5 import h5_images, h5_sequences
+from radhar_cli.learning.images.folder import FilePixels, open_tree
+from radhar_cli.learning.images.h5 import open_h5_images, open_h5_sequences
 from radhar_cli.learning.images.image_set import ImageSet, resized
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.settings import TrainConfig
@@ -42,7 +42,7 @@ def open_inputs(
         raise FolderError(
             f"{path}: is no data set with {config.input_kind}, which {config.model} reads"
         )
-    return h5_sequences(path, map_name, config.input_kind, config.frames, config.points)
+    return open_h5_sequences(path, map_name, config.input_kind, config.frames, config.points)
 
 
 def open_images(
@@ -68,9 +68,9 @@ def open_images(
             "wrote, or a folder of class folders with images"
         )
     if is_tree(path):
-        images = folder_images(path, map_name, kind, any_size=resize is not None)
+        images = open_tree(path, map_name, kind, any_size=resize is not None)
     else:
-        images = h5_images(path, map_name, kind)
+        images = open_h5_images(path, map_name, kind)
     return images if resize is None else resized(images, resize)
 
 
@@ -88,7 +88,7 @@ def is_h5(path: Path) -> bool:
 
 def summarise_tree(root: Path) -> dict[str, Any]:
     """Numbers of images of a tree by class, split and size, for `inspect`; pixels are not read."""
-    images = folder_images(root, None, "rgb", looks_at_colours=False)
+    images = open_tree(root, None, "rgb", looks_at_colours=False)
     assert isinstance(images.pixels, FilePixels)
     files = images.pixels.files
     sizes = Counter(map(image_size, files))

@@ -8,7 +8,7 @@ from torch import Tensor, nn
 
 from radhar_cli.learning.choices import NETWORKS, image_channels_of, load_place, sequences_of
 from radhar_cli.learning.models.outputs import Outputs
-from radhar_cli.learning.models.zoo import zoo_model
+from radhar_cli.learning.models.zoo import build_zoo_model
 
 
 class Builder(Protocol):
@@ -48,12 +48,12 @@ def build_model(name: str, outputs: Outputs, size: tuple[int, int]) -> nn.Module
         ModelError: no such network, or it cannot take inputs of that size.
     """
     if name not in NETWORKS:
-        return zoo_model(name, outputs.count, size)
+        return build_zoo_model(name, outputs.count, size)
     build: Builder = load_place(NETWORKS[name].place)
     return build(outputs, size)
 
 
-def features_and_logits(model: nn.Module, x: Tensor) -> tuple[Tensor, Tensor]:
+def compute_features_and_logits(model: nn.Module, x: Tensor) -> tuple[Tensor, Tensor]:
     """Input [B, F] of a network's last layer, and its logits [B, classes].
 
     Args:

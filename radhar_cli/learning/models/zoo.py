@@ -13,7 +13,7 @@ from radhar_cli.learning.choices import NETWORKS, sequences_of
 _OPERATORS: Any = Library("torchvision", "FRAGMENT")  # type: ignore[no-untyped-call]  # forgets what it defines when it is let go
 
 
-def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
+def build_zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
     """Build a network of timm with fresh weights.
 
     Args:

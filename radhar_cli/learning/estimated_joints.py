@@ -23,7 +23,7 @@ SUFFIXES = (".npz", ".csv")
 
 
 @dataclass(frozen=True)
-class FoundJoints:
+class EstimatedJoints:
     """Joints that a network found in some sequences of one length."""
 
     samples: tuple[str, ...]  # [N] names
@@ -88,7 +88,7 @@ def find_joints(
     device: torch.device,
     map_name: str | None,
     split: str,
-) -> FoundJoints:
+) -> EstimatedJoints:
     """Joints in the sequences of data sets.
 
     Args:
@@ -111,14 +111,14 @@ def find_joints(
             sequence[count:] = np.nan
             first_frames.append(start)
         samples += inputs.names
-    return FoundJoints(
+    return EstimatedJoints(
         tuple(samples), metadata.joints, np.concatenate(joints), np.array(first_frames)
     )
 
 
 def predict_joints(
     run: Path, paths: Sequence[Path], device: torch.device, map_name: str | None, split: str
-) -> FoundJoints:
+) -> EstimatedJoints:
     """Joints that a run finds in data sets.
 
     Raises:

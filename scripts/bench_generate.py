@@ -42,7 +42,8 @@ from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.products.plan import Plan, Product, plan
 from radhar_cli.products.run import record, run
-from radhar_cli.products.table import plan_images, products, signal_of_look
+from radhar_cli.products.signal import signal_of_look
+from radhar_cli.products.table import plan_images, products
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Scene, draw_scene
 
@@ -455,7 +456,7 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.products.table import plan_images
 from radhar_cli.products.run import run
-from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.processes.worker_process import prepare_process
 
 prepare_process()

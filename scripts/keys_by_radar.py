@@ -41,7 +41,8 @@ from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.products.run import record
 from radhar_cli.products.table import plan_images, products
 from radhar_cli.scene import draw_scene
-from radhar_cli.scene_checks.validity import config_warnings, draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene_checks.warnings import config_warnings
 from radhar_cli.single_scene.simulate import RAW_ECHO, RAW_PROFILES
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/reference/keys.md"
@@ -457,7 +458,7 @@ def digests(document: Mapping[str, Any]) -> Iterator[str]:
         table = products(scene.config)
         first = next(one for one in ("cube", "range_signals", "signal") if one in table)
         steps = [[first]]
-        asked = plan_images(config).asked
+        asked = plan_images(config).requested
         images = [name for name in asked if name.startswith("image:") and "points" not in name]
         steps += [images]
         steps += [[name] for name in ("rtm", "stft") if name in config.maps]

@@ -1,6 +1,8 @@
 """A scene and a motion -> paths, from joints or from segments as `body:` has it."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +21,7 @@ from radhar_cli.motion.segments import (
     segments_of_joint,
     thickness,
 )
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.person_shadow import HALF_WIDTH_M
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Leg
@@ -43,6 +46,27 @@ class OwnedPaths(NamedTuple):
     legs: tuple[Leg, Leg]
 
 
+class Link(NamedTuple):
+    """What the paths of one channel run through.
+
+    Attributes:
+        antennas: antennas between which they run.
+        wall: wall between, or None.
+        waveform: waveform of the radar; its duration and window say how many points segments have.
+        first: antennas of the first channel of an array, all channels of which see the same points
+            of a body; None where there is one channel.
+    """
+
+    antennas: Antennas
+    wall: Wall | None
+    waveform: Waveform
+    first: Antennas | None = None
+
+    def trace_motion(self, motion: Motion | Reflectors) -> MotionPaths:
+        """Make the paths of the scatterers of a motion."""
+        return MotionPaths(motion, self.antennas, self.waveform.fc, self.wall)
+
+
 def sum_of_paths(sources: list[OwnedPaths]) -> PathSource:
     """Combine the paths of several sources into one source."""
     if len(sources) == 1:
@@ -50,15 +74,12 @@ def sum_of_paths(sources: list[OwnedPaths]) -> PathSource:
     return SumOfPaths(tuple(owned.source for owned in sources))
 
 
-def sources_of(
+def make_path_sources(
     scene: Scene,
     motions: tuple[Motion, ...],
-    antennas: Antennas,
-    wall: Wall | None,
-    waveform: Waveform,
+    link: Link,
     room: Reflectors | None = None,
     mirrored: bool = True,
-    first: Antennas | None = None,
 ) -> list[OwnedPaths]:
     """Make the paths of everything in a scene: of who moves, and of what stands in the room.
 
@@ -68,109 +89,108 @@ def sources_of(
     Args:
         scene: what is simulated.
         motions: motions of its people, or of parts of one.
-        antennas: antennas between which the paths run.
-        wall: wall between, or None.
-        waveform: waveform whose duration and window say how many points segments have.
+        link: antennas, wall and waveform of a channel.
         room: what stands in the room.
         mirrored: whether people are there again by way of the room's faces.
-        first: antennas of the first channel of an array, all channels of which see the same points
-            of a body; None where there is one channel.
     """
-    sources: list[OwnedPaths] = []
-    images = [antennas.by_way(*way) for way in ways_of(scene)] if mirrored else []
-    people = scene.people
+    antennas, people = link.antennas, scene.people
+    images = [antennas.by_way(*legs) for legs in ways_of(scene)] if mirrored else []
     one_motion_per_person = len(people) == len(motions)  # not so where one body is seen in parts
     several = one_motion_per_person and len(people) > 1 and scene.config.body.shadowing
     if several or images:  # asked for the same times again and again
         motions = tuple(map(cache_motion, motions))
-    shades = [shade_of(*one) for one in zip(people, motions, strict=True)] if several else []
+    shades = list(map(make_shade, people, motions)) if several else []
+    sources: list[OwnedPaths] = []
     for number, motion in enumerate(motions):
-        body_sources: list[SegmentPaths | SurfacePaths | MotionPaths] = []
-        other_joints: Motion | None = motion
-        if scene.config.body.scatterers != "points":
-            mover = people[min(number, len(people) - 1)]
-            stream_number = 0 if one_motion_per_person else number  # streams are the person's own
-            parts = body_paths(mover, motion, antennas, wall, waveform, stream_number, first)
-            body_sources += [parts] if parts else []
-            other_joints = _without_segments(motion)
-        if other_joints is not None:
-            body_sources.append(MotionPaths(other_joints, antennas, waveform.fc, wall))
+        mover = people[min(number, len(people) - 1)]
+        stream_number = 0 if one_motion_per_person else number  # streams are the person's own
+        body_sources = _trace_body(mover, motion, link, stream_number)
         others = tuple(shade for place, shade in enumerate(shades) if place != number)
-        person = people[number].number if one_motion_per_person else number
-        straight = [
-            ShadowedPaths(source, others, waveform.fc) if others else source
-            for source in body_sources
-        ]
-        sources += [OwnedPaths(source, person, antennas.legs) for source in straight]
+        owner = people[number].number if one_motion_per_person else number
+        for source in body_sources:
+            seen_past = ShadowedPaths(source, others, link.waveform.fc) if others else source
+            sources.append(OwnedPaths(seen_past, owner, antennas.legs))
         sources += [
-            OwnedPaths(replace(source, antennas=image), person, image.legs)
+            OwnedPaths(replace(source, antennas=image), owner, image.legs)
             for image in images
             for source in body_sources
         ]
     if room is not None:
-        sources.append(
-            OwnedPaths(MotionPaths(room, antennas, waveform.fc, wall), -1, antennas.legs)
-        )
+        sources.append(OwnedPaths(link.trace_motion(room), -1, antennas.legs))
     return sources
 
 
-def shade_of(person: Person, motion: Motion) -> Shade:
+def _trace_body(
+    person: Person, motion: Motion, link: Link, number: int
+) -> list[SegmentPaths | SurfacePaths | MotionPaths]:
+    """Make the paths of a body: of its segments or surfaces, and of joints without a segment."""
+    if person.scene.config.body.scatterers == "points":
+        return [link.trace_motion(motion)]
+    sources: list[SegmentPaths | SurfacePaths | MotionPaths] = []
+    segments = make_body_paths(person, motion, link, number)
+    if segments is not None:
+        sources.append(segments)
+    other_joints = _without_segments(motion)
+    if other_joints is not None:
+        sources.append(link.trace_motion(other_joints))
+    return sources
+
+
+def make_shade(person: Person, motion: Motion) -> Shade:
     """Make the shade with which a person hides others."""
     stature, weight = person.subject.height_m, person.subject.weight_kg
     of_points = person.scene.config.body.scatterers == "points"
     joints = motion.positions if of_points else getattr(motion, "landmark_positions", None)
-    place = motion.torso
+    torso_positions = motion.torso
     if joints is not None and "torso" in motion.names:  # which their own echo asks for too
-        torso = motion.names.index("torso")
-        place = lambda t: joints(t)[:, torso : torso + 1]  # noqa: E731
-    return Shade(motion, place, HALF_WIDTH_M * thickness(stature, weight), stature)
+        torso_positions = partial(_position_of_joint, joints, motion.names.index("torso"))
+    return Shade(motion, torso_positions, HALF_WIDTH_M * thickness(stature, weight), stature)
 
 
-def body_paths(
-    person: Person,
-    motion: Motion,
-    antennas: Antennas,
-    wall: Wall | None,
-    waveform: Waveform,
-    number: int = 0,
-    first: Antennas | None = None,
+def _position_of_joint(positions: Callable[[Float], Float], joint: int, t: Float) -> Float:
+    """Position [3, 1, M] of one joint of a motion at times t [M] (s), m."""
+    return positions(t)[:, joint : joint + 1]
+
+
+def make_body_paths(
+    person: Person, motion: Motion, link: Link, number: int = 0
 ) -> SegmentPaths | SurfacePaths | None:
     """Make the paths of the segments of a motion, or of their surfaces (`body.scatterers`).
 
     Args:
         person: person who moves.
         motion: their motion, or a `ScattererSubset` of it.
-        antennas: antennas between which the paths run.
-        wall: wall between, or None.
-        waveform: waveform whose duration and window say how many points segments have.
+        link: antennas, wall and waveform of a channel.
         number: number of the motion among several, which names random streams.
-        first: antennas of the first channel of an array, which say how many points segments have;
-            None for `antennas`.
 
     Returns:
         The paths, or None where no segment belongs to the joints.
     """
     body, config = body_of(person, motion), person.scene.config
-    kept = tuple(
-        sorted({n for joint in motion.names for n in segments_of_joint(joint, body.segments)})
+    segments = sorted(
+        {n for joint in motion.names for n in segments_of_joint(joint, body.segments)}
     )
-    if not kept:
+    if not segments:
         return None
-    most, seen = config.body.points_per_segment, (antennas, waveform.fc, wall)
+    largest_count, numbers = config.body.points_per_segment, tuple(segments)
+    antennas, wall, waveform, first = link
     if config.body.scatterers == "surfaces":
         rng = person.stream(f"surface/{number}")
-        return SurfacePaths(
-            body, draw_surface(len(body.segments), min(most, POINTS), rng), *seen, kept
-        )
+        surface = draw_surface(len(body.segments), min(largest_count, POINTS), rng)
+        return SurfacePaths(body, surface, antennas, waveform.fc, wall, numbers)
     duration, prf = waveform.duration, waveform.prf
     window = frames_of(config, duration, prf, waveform.f0).length / prf
-    counts = point_counts(body, first or antennas, waveform.wavelength, window, duration, most)
-    points = tuple(
-        _tapered(draw_points(count, person.own_stream(f"body/{number}/{one.name}")))
-        for one, count in zip(body.segments, counts, strict=True)
+    counts = point_counts(
+        body, first or antennas, waveform.wavelength, window, duration, largest_count
     )
-    fast = compiled.pays(sum(counts[s] for s in kept) * waveform.n_pulses)
-    return SegmentPaths(body, points, *seen, config.body.shadowing, kept, fast)
+    points = tuple(
+        _tapered(draw_points(count, person.own_stream(f"body/{number}/{segment.name}")))
+        for segment, count in zip(body.segments, counts, strict=True)
+    )
+    fast = compiled.pays(sum(counts[s] for s in numbers) * waveform.n_pulses)
+    return SegmentPaths(
+        body, points, antennas, waveform.fc, wall, config.body.shadowing, numbers, fast
+    )
 
 
 def _tapered(points: Points) -> Points:

@@ -25,16 +25,11 @@ from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion
 from radhar_cli.motion.reflectors import TONES, Reflectors
 from radhar_cli.motion.segments import landmark_names, segments_between, thickness
-from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.randomness import NOISE, stream
 from radhar_cli.numerics.rounding import half_up
 from radhar_cli.processing import canceller
 from radhar_cli.processing.cfar import CellAveraging
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.gate import Gate, around, interval
-from radhar_cli.processing.signal import Signal
-from radhar_cli.processing.stft import Stft
-from radhar_cli.processing.track import Track
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.impulse import Impulse
@@ -326,35 +321,6 @@ def canceller_of(config: AnyConfig, prf: float) -> canceller.Canceller:
     return canceller.HighPass(
         highpass.order, highpass.cutoff(prf), highpass.zero_phase, highpass.remove_mean
     )
-
-
-def gate_of(config: AnyConfig, ranges: Float, torso: Float | None) -> Gate:
-    """Make the gate of a config.
-
-    Args:
-        config: config whose `processing.gate_m` counts.
-        ranges: ranges of the bins, m.
-        torso: range of the torso in the middle of every frame [frames], m; None for a gate of fixed
-            ranges.
-    """
-    within = config.processing.gate_m
-    if isinstance(within, tuple):
-        return interval(*within, ranges)
-    assert torso is not None
-    return around(torso, within, ranges)
-
-
-def gate_in_windows(c: AnyConfig, after: Signal, frames: Frames, track: Track) -> Gate:
-    """Make the gate of a config for every window of a signal.
-
-    Args:
-        c: config whose `processing.gate_m` counts.
-        after: range bins after the canceller.
-        frames: windows of the signal.
-        track: track of the torso.
-    """
-    assert after.ranges is not None
-    return gate_of(c, after.ranges, track.range_at(Stft(after, frames).time.values))
 
 
 def max_samples(config: AnyConfig) -> int:

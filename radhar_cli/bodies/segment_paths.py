@@ -104,12 +104,12 @@ class Body:
     @cached_property
     def radii(self) -> Float:
         """Semi-axes of the segments across [S, 1], m."""
-        return self.thickness * np.array([[one.radius] for one in self.segments])
+        return self.thickness * np.array([[segment.radius] for segment in self.segments])
 
     @cached_property
     def flatness(self) -> Float:
         """Flatness of the segments [S, 1]."""
-        return np.array([[one.flatness] for one in self.segments])
+        return np.array([[segment.flatness] for segment in self.segments])
 
     def at(self, t: Float) -> SegmentPositions:
         """Places of the segments at times t [M] (s)."""
@@ -131,9 +131,14 @@ class Body:
 
 
 def point_counts(
-    body: Body, antennas: Antennas, wavelength: float, window: float, duration: float, most: int
+    body: Body,
+    antennas: Antennas,
+    wavelength: float,
+    window: float,
+    duration: float,
+    largest_count: int,
 ) -> tuple[int, ...]:
-    """Number of points that each segment needs: n = min(ceil(2 dv T_w/lambda), most), 1 or more.
+    """Number of points that each segment needs: n = min(ceil(2 dv T_w/lambda), largest), 1 or more.
 
     dv is the largest difference of the radial speeds of the segment's ends: n points are less than
     a Doppler cell of the window T_w apart, so that no gaps show between their lines.
@@ -144,18 +149,19 @@ def point_counts(
         wavelength: lambda, m.
         window: T_w, s.
         duration: duration of the recording, s.
-        most: largest number of points of a segment.
+        largest_count: largest number of points of a segment.
     """
-    count = int(np.clip(RATES_PER_SECOND * duration, 64, MAX_RATES))
-    t = np.linspace(0, duration, count)
+    times = int(np.clip(RATES_PER_SECOND * duration, 64, MAX_RATES))
+    t = np.linspace(0, duration, times)
     placed = body.at(np.concatenate([t, t + RATE_STEP_S]))
-    apart = np.zeros((len(body.segments), count))
+    speed_difference = np.zeros((len(body.segments), times))
     for antenna in (antennas.tx, antennas.rx):
         start, end = (leg(p, antenna) for p in (placed.start, placed.end))
-        longer = end - start
-        apart += 0.5 * (longer[:, count:] - longer[:, :count]) / RATE_STEP_S
-    cells = 2 * np.abs(apart).max(axis=1) * window / wavelength
-    return tuple(min(max(ceil(one), 1), most) for one in cells.tolist())
+        difference = end - start
+        change = difference[:, times:] - difference[:, :times]
+        speed_difference += 0.5 * change / RATE_STEP_S
+    cells = 2 * np.abs(speed_difference).max(axis=1) * window / wavelength
+    return tuple(min(max(ceil(count), 1), largest_count) for count in cells.tolist())
 
 
 @dataclass(frozen=True)
@@ -168,8 +174,8 @@ class SegmentPaths(OfMotion):
     fc: float  # carrier, Hz
     wall: Wall | None  # the slab between, or None
     shadowing: bool  # whether trunk and thighs hide what is behind them
-    # numbers of the segments whose paths are wanted; the others hide these all the same
-    kept: tuple[int, ...]
+    # numbers of the segments that scatter; the others hide these all the same
+    scattering: tuple[int, ...]
     compiled: bool = False  # whether numba makes them, in air and where both legs go the same way
 
     @property
@@ -184,12 +190,12 @@ class SegmentPaths(OfMotion):
         The first are of |w|^2, w d, w e, w f, |d|^2, |e|^2 = |f|^2 for |w + x d + y e + z f|^2: w
         is the way to the middle of a segment, d that along it, e and f are across.
         """
-        some = [self.points[s] for s in self.kept]
-        x, share = (np.concatenate([one[part] for one in some]) for part in (0, 2))
-        y, z = np.concatenate([one.across for one in some], axis=1)
-        one, wavelength = np.ones(x.size), SPEED_OF_LIGHT / self.fc
-        share = share * amplitude(one, one, REFLECTANCE * one, self.antennas.gain, wavelength)
-        rows = np.stack([one, 2 * x, 2 * y, 2 * z, x * x, y * y + z * z]) / SPEED_OF_LIGHT**2
+        points = [self.points[s] for s in self.scattering]
+        x, share = (np.concatenate([of_segment[part] for of_segment in points]) for part in (0, 2))
+        y, z = np.concatenate([of_segment.across for of_segment in points], axis=1)
+        ones, wavelength = np.ones(x.size), SPEED_OF_LIGHT / self.fc
+        share = share * amplitude(ones, ones, REFLECTANCE * ones, self.antennas.gain, wavelength)
+        rows = np.stack([ones, 2 * x, 2 * y, 2 * z, x * x, y * y + z * z]) / SPEED_OF_LIGHT**2
         return np.vstack([rows, share]).T.copy()
 
     @cached_property
@@ -201,14 +207,15 @@ class SegmentPaths(OfMotion):
     @cached_property
     def _first(self) -> Index:
         """Number of the first point of each segment, and of all points [S + 1]."""
-        kept = np.isin(np.arange(len(self.points)), self.kept)
-        return np.cumsum([0, *(kept * self._sizes[2, :, 0])]).astype(np.intp)
+        scatters = np.isin(np.arange(len(self.points)), self.scattering)
+        return np.cumsum([0, *(scatters * self._sizes[2, :, 0])]).astype(np.intp)
 
     def places(self, t: Float) -> tuple[Float, Index]:
         """Middles of the segments, which shadows fall on, as `PlacedPaths.places`."""
-        placed = self.body.at(t)
-        middles: Float = 0.5 * (placed.start + placed.end)[:, list(self.kept)]
-        return middles, np.repeat(np.arange(len(self.kept)), np.diff(self._first)[list(self.kept)])
+        placed, segments = self.body.at(t), list(self.scattering)
+        middles: Float = 0.5 * (placed.start + placed.end)[:, segments]
+        counts = np.diff(self._first)[segments]
+        return middles, np.repeat(np.arange(len(segments)), counts)
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s), segment by segment."""
@@ -216,9 +223,9 @@ class SegmentPaths(OfMotion):
         delay, strength = np.empty((2, self._first[-1], t.size))
         if self.compiled and self.wall is None and legs[0] == legs[1]:
             sizes, hide = self._sizes[:, :, 0].T.copy(), np.array(self._occluders, np.intp)
-            scene, made = self._seen_at(self._middle), (delay, strength)
+            scene, results = self._scene_from(self._middle), (delay, strength)
             fill = machine_code(ellipsoid.fill_paths, *ellipsoid.CALLED)
-            fill(tuple(placed), scene, sizes, hide, self._first, self._table, made)
+            fill(tuple(placed), scene, sizes, hide, self._first, self._table, results)
             if (field := self.antennas.field(0.5 * (placed.start + placed.end))) is not None:
                 strength *= np.repeat(field, np.diff(self._first), axis=0)
             return Paths(delay, strength)
@@ -226,23 +233,24 @@ class SegmentPaths(OfMotion):
         still = np.logical_and.reduce([_constant(part) for part in placed])
         cosine = np.empty((2, len(delay), t.size)) if self.wall and self.wall.layers else None
         for first in range(0, t.size, BLOCK):
-            some = slice(first, first + BLOCK)
+            block = slice(first, first + BLOCK)
             self._fill(
-                SegmentPositions(*(part[..., some] for part in placed)),
+                SegmentPositions(*(part[..., block] for part in placed)),
                 still,
-                delay[:, some],
-                strength[:, some],
-                None if cosine is None else cosine[..., some],
+                delay[:, block],
+                strength[:, block],
+                None if cosine is None else cosine[..., block],
             )
         through = Through.of(self.wall.layers, cosine) if self.wall is not None else None
         return Paths(delay, strength, through)
 
     @property
     def _middle(self) -> Point:
+        """Middle between the antennas, m."""
         x, y, z = (0.5 * np.add(self.antennas.tx, self.antennas.rx)).tolist()
         return x, y, z
 
-    def _seen_at(self, place: Point) -> tuple[Float, float, float]:
+    def _scene_from(self, place: Point) -> tuple[Float, float, float]:
         """Scene of `ellipsoid.fill_products` in which shadows are seen from a place (m)."""
         places = np.array([self.antennas.tx, self.antennas.rx, place]).T.copy()
         return places, SPEED_OF_LIGHT / self.fc, SOFTNESS
@@ -250,11 +258,12 @@ class SegmentPaths(OfMotion):
     @property
     def _occluders(self) -> list[int]:
         """Numbers of the segments that hide others."""
-        return [o for o, one in enumerate(self.body.segments) if one.occludes and self.shadowing]
+        segments = enumerate(self.body.segments)
+        return [o for o, segment in segments if segment.occludes and self.shadowing]
 
-    def _seen(self, placed: SegmentPositions, place: Point) -> tuple[Float, Float]:
+    def _products(self, placed: SegmentPositions, place: Point) -> tuple[Float, Float]:
         """Frames [11, S, M] and products [12, S, M], with shadows seen from a place."""
-        block, scene = np.concatenate(placed), self._seen_at(place)
+        block, scene = np.concatenate(placed), self._scene_from(place)
         frames = np.empty((FRAME_ROWS, *block.shape[1:]))
         products = np.empty((PRODUCT_ROWS, *block.shape[1:]))
         ellipsoid.fill_products(block, scene, self._sizes, frames, products, EVERY)
@@ -274,26 +283,30 @@ class SegmentPaths(OfMotion):
     ) -> None:
         """Fill in delays and amplitudes [I, block] of all points, and angles at a layered wall."""
         if self.antennas.legs[0] == self.antennas.legs[1]:
-            frames, products = self._seen(placed, self._middle)
+            frames, products = self._products(placed, self._middle)
         else:
-            frames, products = self._seen(placed, self.antennas.tx)
-            behind = self._seen(placed, self.antennas.rx)[1][STRENGTH]
+            frames, products = self._products(placed, self.antennas.tx)
+            behind = self._products(placed, self.antennas.rx)[1][STRENGTH]
             products[STRENGTH] = np.sqrt(products[STRENGTH] * behind)
         if (field := self.antennas.field(frames[CENTRE : CENTRE + 3])) is not None:
             products[STRENGTH] *= field
         frame = frame_of(placed) if self.wall is not None else None
-        for s in self.kept:
-            some = slice(self._first[s], self._first[s + 1])
+        for s in self.scattering:
+            points = slice(self._first[s], self._first[s + 1])
             rows = products[:, s, :1] if still[s] else products[:, s]
-            seconds = [self._table[some, :PER_STRENGTH] @ rows[leg] for leg in SQUARES]
-            tx, rx = (np.sqrt(np.maximum(one, 0, out=one), out=one) for one in seconds)
-            np.subtract(tx + rx, products[EARLIER, s], out=delay[some])
-            np.multiply(self._table[some, PER_STRENGTH:], products[STRENGTH, s], out=strength[some])
+            squares = [self._table[points, :PER_STRENGTH] @ rows[leg] for leg in SQUARES]
+            tx, rx = (np.sqrt(np.maximum(square, 0, out=square), out=square) for square in squares)
+            np.subtract(tx + rx, products[EARLIER, s], out=delay[points])
+            np.multiply(
+                self._table[points, PER_STRENGTH:], products[STRENGTH, s], out=strength[points]
+            )
             if self.wall is not None and frame is not None:
-                p, given = positions(frame, s, self.points[s]), (self.antennas, self.wall, self.fc)
-                angles = pass_wall(p, *given, delay[some], strength[some])
+                p = positions(frame, s, self.points[s])
+                angles = pass_wall(
+                    p, self.antennas, self.wall, self.fc, delay[points], strength[points]
+                )
                 if cosine is not None:
-                    cosine[:, some] = angles
+                    cosine[:, points] = angles
 
 
 def frame_of(placed: SegmentPositions) -> Frame:
@@ -310,5 +323,6 @@ def positions(frame: Frame, s: int, points: Points) -> Float:
 
 
 def _constant(p: Float) -> Bool:
+    """Whether each segment [S] stays where it is, by positions [3, S, M]."""
     same: Bool = (p == p[..., :1]).all(axis=(0, 2))
     return same

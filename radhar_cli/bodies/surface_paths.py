@@ -44,7 +44,7 @@ TREMOR_HZ = (2.0, 8.0)
 TONES = 4
 
 
-class Drawn(NamedTuple):
+class SurfacePoints(NamedTuple):
     """Drawn numbers of a body's points and of its tremor.
 
     Attributes:
@@ -64,7 +64,7 @@ class Drawn(NamedTuple):
     phase: Float
 
 
-def draw_surface(segments: int, points: int, rng: np.random.Generator) -> Drawn:
+def draw_surface(segments: int, points: int, rng: np.random.Generator) -> SurfacePoints:
     """Draw points of each segment, spread evenly along it, and the tones of the tremor.
 
     Args:
@@ -77,7 +77,7 @@ def draw_surface(segments: int, points: int, rng: np.random.Generator) -> Drawn:
     along = (np.arange(points) + rng.random(shape)) / points
     around = rng.uniform(-SPREAD, SPREAD, shape)
     rate = rng.uniform(*TREMOR_HZ, (segments + 1, TONES))
-    return Drawn(
+    return SurfacePoints(
         np.repeat(np.arange(segments), points),
         along.ravel(),
         around.ravel(),
@@ -92,11 +92,11 @@ class SurfacePaths(OfMotion):
     """A source of paths: `PathSource` for surfaces seen through air or a wall."""
 
     body: Body  # whose segments
-    drawn: Drawn = field(repr=False)  # their points
+    drawn: SurfacePoints = field(repr=False)  # their points
     antennas: Antennas  # where the legs start and end
     fc: float  # carrier, Hz
     wall: Wall | None  # the slab between, or None
-    kept: tuple[int, ...]  # numbers of the segments whose paths are wanted
+    scattering: tuple[int, ...]  # numbers of the segments whose points scatter
 
     @property
     def motion(self) -> Motion:  # type: ignore[override]
@@ -106,13 +106,13 @@ class SurfacePaths(OfMotion):
     def places(self, t: Float) -> tuple[Float, Index]:
         """Middles of the segments, which shadows fall on, as `PlacedPaths.places`."""
         placed, segment = self.body.at(t), self.drawn.segment
-        return 0.5 * (placed.start + placed.end), segment[np.isin(segment, self.kept)]
+        return 0.5 * (placed.start + placed.end), segment[np.isin(segment, self.scattering)]
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s)."""
         places = tuple(way.antenna(self._centre()) for way in self.antennas.legs)
         p, field_ = cached_result(
-            self.motion, ("surface", places), t, lambda: self._seen(t, *places)
+            self.motion, ("surface", places), t, lambda: self._scatter(t, *places)
         )
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
@@ -121,7 +121,7 @@ class SurfacePaths(OfMotion):
         if self.wall is not None:
             cosine = pass_wall(p, self.antennas, self.wall, self.fc, tau, a)
             layers = self.wall.layers
-        chosen = np.isin(self.drawn.segment, self.kept)
+        chosen = np.isin(self.drawn.segment, self.scattering)
         tau -= (np.angle(self.drawn.weight) / (2 * pi * self.fc))[:, None]  # less than lambda/2
         return Paths(tau, a, Through.of(layers, cosine)).only(chosen)
 
@@ -132,14 +132,14 @@ class SurfacePaths(OfMotion):
         x, y, z = np.mean(self.antennas.places, axis=0)
         return (x, y, z)
 
-    def _seen(self, t: Float, tx: Point, rx: Point) -> tuple[Float, Float]:
+    def _scatter(self, t: Float, tx: Point, rx: Point) -> tuple[Float, Float]:
         """Positions [3, I, M] (m) of the points, and their fields sqrt(sigma) [I, M] (m).
 
         They face the array, or the direction between those from which its legs come.
         """
         drawn, placed = self.drawn, self.body.at(t)
-        way = placed.end - placed.start
-        axis = unit(way)
+        span = placed.end - placed.start
+        axis = unit(span)
         middle = 0.5 * (placed.start + placed.end)
         sight = unit(np.array(tx)[:, None, None] - middle)
         if tx != rx:
@@ -150,7 +150,7 @@ class SurfacePaths(OfMotion):
         s = drawn.segment
         cosine, sine = np.cos(drawn.around)[:, None], np.sin(drawn.around)[:, None]
         outwards = cosine * facing[:, s] + sine * aside[:, s]
-        p = placed.start[:, s] + drawn.along[:, None] * way[:, s]
+        p = placed.start[:, s] + drawn.along[:, None] * span[:, s]
         p += DEPTH * self.body.radii[s] * outwards
         p += self._tremor(t)[s] * sight[:, s]
         normal = np.maximum(cosine * across[s], 0) ** NORMAL_POWER

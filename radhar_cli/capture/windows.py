@@ -29,7 +29,7 @@ from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import refuse_outside, text_of
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.power_map import MapImage
-from radhar_cli.products.table import image_of
+from radhar_cli.products.images import draw_measured_map
 from radhar_cli.scene import nominal_scene
 
 MAX_MANIFEST = 2**20  # bytes
@@ -288,7 +288,7 @@ class WindowFactory:
         for name in config.maps:
             power_map = results.maps[name]
             columns = replace(power_map.columns, values=power_map.columns.values - start)
-            images[name] = image_of(config, replace(power_map, columns=columns))
+            images[name] = draw_measured_map(config, replace(power_map, columns=columns))
         confidence = nan if results.track is None else float(results.track.confidence.mean())
         return SampleRow(StoredSample(images), np.array([number, start, confidence]))
 

@@ -6,6 +6,7 @@ from pydantic import AfterValidator
 
 from radhar_cli.config.number import value_error
 from radhar_cli.extensions import is_known, own_products
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import MAP_KINDS
 
 MAP_NAMES = tuple(MAP_KINDS)
@@ -14,7 +15,7 @@ MAP_NAMES = tuple(MAP_KINDS)
 MIN_LOOPS = 4  # of a frame: of 2 or fewer, a Hann window keeps one
 
 
-FRAME_MAPS = ("range_doppler", "range_azimuth", "range_elevation", "points")
+FRAME_MAPS = (*FRAME_MAP_KINDS, "points")
 
 
 # What comes with the points, and with any of these maps.

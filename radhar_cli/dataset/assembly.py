@@ -28,7 +28,8 @@ from radhar_cli.errors import UnfinishedError
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.processes.progress import Progress
-from radhar_cli.scene_checks.validity import flagged, warnings
+from radhar_cli.scene_checks.flags import describe_flags
+from radhar_cli.scene_checks.warnings import collect_warnings
 
 SCENES_DIGEST = "scenes_sha256"
 CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"
@@ -76,9 +77,9 @@ def assemble(
                 describe_columns(file, config)
                 text.flush()
                 file.attrs[SCENES_DIGEST] = digest_of(table)
-                messages = flagged(flags.counts, count)
+                messages = describe_flags(flags.counts, count)
                 if isinstance(config, Config):
-                    messages = warnings(config, flags.counts, count)
+                    messages = collect_warnings(config, flags.counts, count)
                 describe_file(file, config, messages)
                 file.attrs[DIGESTS] = json.dumps(attribute_digests(file), sort_keys=True)
             remember(unfinished)

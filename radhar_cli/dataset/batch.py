@@ -27,7 +27,9 @@ from radhar_cli.processes.time_limit import time_limit
 from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.validity import Flags, draw_valid_scene, warnings
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene_checks.flags import Flags
+from radhar_cli.scene_checks.warnings import collect_warnings
 
 CHECKED_SCENES = 24  # before a build; each is checked as it is made
 
@@ -69,7 +71,7 @@ def check_scenes(
             progress.advance(1)
     counts = {flag: sum(flag in flags for _, flags in drawn) for flag in Flags}
     # Without the motions that they hold.
-    return [replace(scene) for scene, _ in drawn], warnings(config, counts, len(drawn))
+    return [replace(scene) for scene, _ in drawn], collect_warnings(config, counts, len(drawn))
 
 
 def leave_if_orphaned(parent_pid: int) -> None:

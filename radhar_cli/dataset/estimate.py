@@ -20,7 +20,7 @@ from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processes.time_limit import time_limit
 from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.products.table import plan_images
-from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 
 PROBES = 24
 PROBE_SECONDS = 8.0

@@ -13,8 +13,9 @@ import numpy as np
 
 from radhar_cli.activities.activity import Activity
 from radhar_cli.config.data_set import AnyConfig
-from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.numerics.arrays import Index
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
+from radhar_cli.processing.map_kind import MAP_KINDS
 
 # Of dataset.h5; 3: labels are 0 to C - 1 in the order of the config.
 SCHEMA_VERSION = 3
@@ -82,29 +83,29 @@ def columns(config: AnyConfig) -> Parts:
 
 
 TIME = ("slow time", "s")
-# {map of a board: (quantity, unit) of rows, of columns} of the frames on its sheet.
-_SHEETS = {
-    "range_doppler": (("range", "m"), ("radial speed", "m/s")),
-    "range_azimuth": (("range", "m"), ("azimuth", "degree")),
-    "range_elevation": (("range", "m"), ("elevation", "degree")),
-    "points": (("up", "m"), ("right", "m")),
-}
+POINTS_AXES = (("up", "m"), ("right", "m"))  # of the front views of points
 
 
 def row_axis(name: str) -> tuple[str, str]:
     """Quantity and unit of the rows of a map; generic words for a map of the user's own."""
-    if name in _SHEETS:
-        return _SHEETS[name][0]
-    if name not in MAP_NAMES:
+    if name == "points":
+        return POINTS_AXES[0]
+    if name in FRAME_MAP_KINDS:
+        rows = FRAME_MAP_KINDS[name].rows
+        return rows.quantity, rows.unit
+    if name not in MAP_KINDS:
         return "rows of the product", "1"
-    return ("range", "m") if name == "rtm" else ("Doppler frequency", "Hz")
+    return ("Doppler frequency", "Hz") if MAP_KINDS[name].is_doppler_time else ("range", "m")
 
 
 def column_axis(name: str) -> tuple[str, str]:
     """Quantity and unit of the columns of a map; generic words for a map of the user's own."""
-    if name in _SHEETS:
-        return _SHEETS[name][1]
-    return TIME if name in MAP_NAMES else ("columns of the product", "1")
+    if name == "points":
+        return POINTS_AXES[1]
+    if name in FRAME_MAP_KINDS:
+        columns = FRAME_MAP_KINDS[name].columns
+        return columns.quantity, columns.unit
+    return TIME if name in MAP_KINDS else ("columns of the product", "1")
 
 
 def row_bytes(config: AnyConfig) -> int:

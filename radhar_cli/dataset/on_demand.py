@@ -23,7 +23,7 @@ from radhar_cli.processes.worker_process import one_thread
 from radhar_cli.products.plan import Plan
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene import ByIdentity
-from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.single_scene.simulate import activity_of
 
 

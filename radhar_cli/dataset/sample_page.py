@@ -19,11 +19,11 @@ from radhar_cli.figures import scene_page
 from radhar_cli.figures.scene_page import Entry, SceneView, ShownBody
 from radhar_cli.figures.sides import bones
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
-from radhar_cli.processing.frame_maps import doppler_axis, range_axis
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
 from radhar_cli.scene import Scene, nominal_scene
-from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 
 MOST = 50  # samples of a page
 
@@ -128,13 +128,11 @@ def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] =
 
 def _frames(data: Dataset, row: int, board: Board, view: SceneView) -> Iterator[Entry]:
     """Yield the plots of the stored frame maps."""
-    for name in FRAME_MAPS[:3]:
+    for name, kind in FRAME_MAP_KINDS.items():
         if name in data.products:
-            columns = doppler_axis(board)
-            if name != "range_doppler":
-                columns = Axis(name.removeprefix("range_"), "degree", np.arange(-90.0, 91.0))
-            grey = _product(data, row, name, (board.n_fft, columns.values.size))
-            look, axes = (data.config.image, "decibel"), (columns, range_axis(board))
+            rows, columns = kind.rows.of(board), kind.columns.of(board)
+            grey = _product(data, row, name, (rows.values.size, columns.values.size))
+            look, axes = (data.config.image, "decibel"), (columns, rows)
             yield scene_page.heat(view, name, grey, look, axes, _times(board, len(grey)))
 
 

@@ -14,18 +14,13 @@ from radhar_cli.figures.maps_panel import title
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.figures.sides import Advance, Film, SideView, bones, colour_bar
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.processing.frame_maps import FrameMaps
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, FrameMaps
 from radhar_cli.processing.points import Cloud
 from radhar_cli.radar.board import Board
 from radhar_cli.single_scene.simulate import Simulation
 
 COLUMNS = 6
 TINY = float(np.finfo(np.float32).tiny)  # instead of the largest power of black maps
-NAMES = {
-    "range_doppler": "range-Doppler",
-    "range_azimuth": "range-azimuth",
-    "range_elevation": "range-elevation",
-}
 
 
 @dataclass(frozen=True)
@@ -65,7 +60,7 @@ def draw_frames(content: BoardFrames, path: Path) -> None:
     for row, (name, frame_maps) in zip(grid, maps.items(), strict=False):
         for axes, frame in zip(row, chosen, strict=True):
             drawn = _draw_map(axes, frame_maps, frame, content)
-            axes.set_title(f"{NAMES[name]}, {middles[frame]:.2f} s", fontsize=8)
+            axes.set_title(f"{FRAME_MAP_KINDS[name].title}, {middles[frame]:.2f} s", fontsize=8)
         row[0].set_ylabel("range (m)", fontsize=7)
         figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB").ax.tick_params(labelsize=6)
     if cloud is not None:

@@ -14,14 +14,13 @@ from matplotlib.colors import to_hex
 
 from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.image import ImageConfig
-from radhar_cli.figures.frames_panel import NAMES
 from radhar_cli.figures.maps_panel import TITLES, alias_doppler
 from radhar_cli.figures.maps_panel import title as title_of
 from radhar_cli.figures.sides import limbs
 from radhar_cli.files.replacing import write_text
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Float, Index, Levels
-from radhar_cli.processing.frame_maps import FrameMaps
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, FrameMaps
 from radhar_cli.processing.image import levels, reduced_map, signed_levels
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.products.run import record
@@ -207,7 +206,8 @@ def heat(
     packed = (base64.b64encode(one.astype("<f4").tobytes()).decode() for one in values)
     shape = "{}, {}".format(*values.shape[1:])
     z = [{"dtype": "f4", "bdata": data, "shape": shape} for data in packed]
-    title = {**TITLES, **NAMES}.get(name, name)
+    frame_map = FRAME_MAP_KINDS.get(name)
+    title = TITLES.get(name, name) if frame_map is None else frame_map.title
     colours = [(n / 32, to_hex(colormaps[image.colour_map](n / 32))) for n in range(33)]
     trace: Entry = {"type": "heatmap", "name": title, "z": z[0], "colorscale": colours}
     trace |= {"zmin": low, "zmax": high, "colorbar": {"title": {"text": unit}}}

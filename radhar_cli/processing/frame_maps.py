@@ -4,8 +4,10 @@ Spectra are divided by the sum of their window, so that a steady echo of amplitu
 of a bin reads a^2 in all of them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
+from typing import Protocol
 
 import numpy as np
 
@@ -90,16 +92,48 @@ def ascending(count: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     return np.arange(count // 2 - count + 1, count // 2 + 1) % count
 
 
-def doppler_axis(board: Board) -> Axis:
-    """Axis of radial speeds, positive approaching."""
+@dataclass(frozen=True)
+class FrameAxis:
+    """Axis of a frame map, whose values follow from the board.
+
+    Attributes:
+        quantity: what the axis shows.
+        unit: unit of its values.
+        values_of: values of every row or column of a board's map, even, lowest first.
+    """
+
+    quantity: str
+    unit: str
+    values_of: Callable[[Board], Float]
+
+    def of(self, board: Board) -> Axis:
+        """Axis of the maps of a board."""
+        return Axis(self.quantity, self.unit, self.values_of(board))
+
+
+def ranges_of_bins(board: Board) -> Float:
+    """Ranges of all bins of a board [K], m."""
+    ranges: Float = np.arange(board.n_fft) * board.range_step
+    return ranges
+
+
+def speeds_of_bins(board: Board) -> Float:
+    """Radial speeds of the Doppler bins of a board [N], m/s, positive approaching."""
     highest = board.n_doppler // 2
     bins = np.arange(highest - board.n_doppler + 1, highest + 1)
-    return Axis("radial speed", "m/s", bins * board.doppler_step())
+    speeds: Float = bins * board.doppler_step()
+    return speeds
 
 
-def range_axis(board: Board) -> Axis:
-    """Axis of the ranges of all bins."""
-    return Axis("range", "m", np.arange(board.n_fft) * board.range_step)
+def angles_of_beams(board: Board) -> Float:
+    """Angles of the beams of any board, degrees."""
+    return np.arange(-90.0, 91.0)
+
+
+RANGE = FrameAxis("range", "m", ranges_of_bins)
+SPEED = FrameAxis("radial speed", "m/s", speeds_of_bins)
+# Positive left, positive up.
+ANGLES = tuple(FrameAxis(name, "degree", angles_of_beams) for name in ("azimuth", "elevation"))
 
 
 def spectra(cube: Complex, board: Board, remove_mean: bool) -> Iterator[tuple[slice, Complex]]:
@@ -127,7 +161,7 @@ def range_doppler(cube: Complex, board: Board, remove_mean: bool) -> FrameMaps:
     for frames, x in spectra(cube, board, remove_mean):
         mean = (x.real**2 + x.imag**2).mean(axis=2)
         power[frames] = mean[:, order].transpose(0, 2, 1)
-    return FrameMaps(power, range_axis(board), doppler_axis(board), board.middles)
+    return FrameMaps(power, RANGE.of(board), SPEED.of(board), board.middles)
 
 
 def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> FrameMaps:
@@ -138,7 +172,7 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     sin^2(pi (i + 1)/(n + 1)); of several rows as long, powers are averaged. Axis 0 is azimuth,
     positive left, 1 elevation, positive up.
     """
-    angles = np.arange(-90.0, 91.0)
+    angles = angles_of_beams(board)
     rows = longest_rows(board.places, axis)
     taper = np.sin(np.pi * np.arange(1, len(rows[0]) + 1) / (len(rows[0]) + 1)) ** 2
     sines = np.sin(np.radians(angles))[:, None]
@@ -156,5 +190,60 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
             power[frames] += (flat @ pairs.T.astype(flat.dtype)).real
     np.maximum(power, 0, out=power)  # of rounding
     power /= level * len(rows)
-    name = "azimuth" if axis == 0 else "elevation"
-    return FrameMaps(power, range_axis(board), Axis(name, "degree", angles), board.middles)
+    return FrameMaps(power, RANGE.of(board), ANGLES[axis].of(board), board.middles)
+
+
+class MakeFrameMaps(Protocol):
+    """Function that makes the maps of a cube."""
+
+    def __call__(self, cube: Complex, board: Board, remove_mean: bool) -> FrameMaps:
+        """Make the maps of a cube.
+
+        Args:
+            cube: Samples [frame, loop, virtual, sample].
+            board: The board that took them.
+            remove_mean: Whether the mean over the loops of a frame is taken out.
+        """
+
+
+@dataclass(frozen=True)
+class FrameMapKind:
+    """Kind of a map of a board's frames: all that radhar knows of it, a line of FRAME_MAP_KINDS.
+
+    Attributes:
+        name: its name in `maps:` and in files.
+        title: its name in figures.
+        make: makes the maps of a cube.
+        rows: axis of the rows.
+        columns: axis of the columns.
+        shows_doppler: whether it needs frames of several loops.
+        array_axis: direction in which it needs the array to extend, 0 across, 1 upwards; None
+            where any array will do.
+    """
+
+    name: str
+    title: str
+    make: MakeFrameMaps
+    rows: FrameAxis
+    columns: FrameAxis
+    shows_doppler: bool = False
+    array_axis: int | None = None
+
+
+def _angle_kind(name: str, title: str, axis: int) -> FrameMapKind:
+    """Kind of a range-angle map."""
+    make = partial(range_angle, axis=axis)
+    return FrameMapKind(name, title, make, RANGE, ANGLES[axis], array_axis=axis)
+
+
+# {name: kind} of every map of a board's frames, in the order of data sets.
+FRAME_MAP_KINDS = {
+    kind.name: kind
+    for kind in (
+        FrameMapKind(
+            "range_doppler", "range-Doppler", range_doppler, RANGE, SPEED, shows_doppler=True
+        ),
+        _angle_kind("range_azimuth", "range-azimuth", 0),
+        _angle_kind("range_elevation", "range-elevation", 1),
+    )
+}

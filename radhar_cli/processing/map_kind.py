@@ -4,8 +4,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import product
 
-_COMPENSATED, _DENOISED = "_compensated", "_denoised"
-
 
 class Transform(StrEnum):
     """Transform that makes a map."""
@@ -27,10 +25,17 @@ class Treatment:
     compensated: bool = False
     denoised: bool = False
 
+    def __str__(self) -> str:
+        return "_".join(self._words) or "raw"
+
     @property
     def suffix(self) -> str:
         """What it adds to the name of a signal or map, such as _compensated_denoised."""
-        return _COMPENSATED * self.compensated + _DENOISED * self.denoised
+        return "".join(f"_{word}" for word in self._words)
+
+    @property
+    def _words(self) -> tuple[str, ...]:
+        return (*["compensated"] * self.compensated, *["denoised"] * self.denoised)
 
 
 UNTREATED = Treatment()

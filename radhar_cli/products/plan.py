@@ -38,11 +38,11 @@ class Plan:
 
     Attributes:
         products: the products, in running order.
-        asked: names of those that were asked for, which are kept.
+        requested: names of those that were asked for, which are not released.
     """
 
     products: tuple[Product, ...]
-    asked: tuple[str, ...]
+    requested: tuple[str, ...]
 
     def __contains__(self, name: str) -> bool:
         return any(product.name == name for product in self.products)
@@ -55,30 +55,33 @@ class Plan:
             product.name: tuple(
                 need
                 for need in product.needs
-                if last[need] == product.name and need not in self.asked
+                if last[need] == product.name and need not in self.requested
             )
             for product in self.products
         }
 
 
-def plan(table: Mapping[str, Product], asked: Iterable[str], given: Iterable[str] = ()) -> Plan:
+def plan(
+    table: Mapping[str, Product], requested: Iterable[str], available: Iterable[str] = ()
+) -> Plan:
     """Plan a request: the products that it needs, in running order.
 
     Args:
         table: every product there is, {name: product}.
-        asked: names of the products that are asked for.
-        given: names of products that are there already.
+        requested: names of the products that are asked for.
+        available: names of products that exist already.
 
     Raises:
-        RadharError: a product is neither in the table nor given.
+        RadharError: a product is neither in the table nor available.
     """
-    asked, ordered, available = tuple(asked), dict[str, Product](), set(given)
+    names, existing = tuple(requested), set(available)
+    ordered: dict[str, Product] = {}
 
     def visit(name: str) -> None:
-        if name in available or name in ordered:
+        if name in existing or name in ordered:
             return
         if name not in table:
-            users = ", ".join(one.name for one in table.values() if name in one.needs)
+            users = ", ".join(row.name for row in table.values() if name in row.needs)
             raise RadharError(
                 f"product {name!r}: is unknown" + (f"; {users} needs it" if users else "")
             )
@@ -86,6 +89,6 @@ def plan(table: Mapping[str, Product], asked: Iterable[str], given: Iterable[str
             visit(need)
         ordered[name] = table[name]
 
-    for name in asked:
+    for name in names:
         visit(name)
-    return Plan(tuple(ordered.values()), asked)
+    return Plan(tuple(ordered.values()), names)

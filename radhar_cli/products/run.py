@@ -9,6 +9,8 @@ from radhar_cli.assembly import physics
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processing.signal import Signal
+from radhar_cli.products.gated import gate_in_windows
+from radhar_cli.products.images import scale_of
 from radhar_cli.products.plan import Plan, Product, plan
 from radhar_cli.products.table import products, products_of_signals
 from radhar_cli.scene import Scene
@@ -30,15 +32,15 @@ class Results:
         return self.products[name]
 
 
-def run(steps: Plan, given: Mapping[str, Any], progress: Progress = NO_PROGRESS) -> Results:
+def run(steps: Plan, inputs: Mapping[str, Any], progress: Progress = NO_PROGRESS) -> Results:
     """Make the products of a plan.
 
     Args:
         steps: the plan.
-        given: products that are there already, {name: product}.
+        inputs: products that exist already, {name: product}.
         progress: is told of every product that is made.
     """
-    available = dict(given)
+    available = dict(inputs)
     results = Results()
     progress.stage("synthesis", len(steps.products), 0, "step")
     for product in steps.products:
@@ -48,25 +50,25 @@ def run(steps: Plan, given: Mapping[str, Any], progress: Progress = NO_PROGRESS)
         for name in steps.released_after[product.name]:
             del available[name]
         progress.advance(1)
-    results.products = {name: available[name] for name in steps.asked}
+    results.products = {name: available[name] for name in steps.requested}
     return results
 
 
 def record(
     scene: Scene,
-    asked: Iterable[str],
+    requested: Iterable[str],
     more: Iterable[Product] = (),
     progress: Progress = NO_PROGRESS,
-    **given: Any,
+    **inputs: Any,
 ) -> Results:
     """Make products of a scene, by name (`radhar_cli.products.table`).
 
     Args:
         scene: what is simulated.
-        asked: names of the products.
+        requested: names of the products.
         more: further products, or others in place of those of the same name.
         progress: is told of every product that is made.
-        given: products that are there already: `motions=`, `antennas=`, `paths=` and so on.
+        inputs: products that exist already: `motions=`, `antennas=`, `paths=` and so on.
             Antennas other than the config's have noise of their own; equal ones have it by
             `channel=1`, `channel=2`, ...
 
@@ -75,25 +77,25 @@ def record(
         SceneError: the scene cannot be simulated, as the message says.
     """
     table = products(scene.config) | {product.name: product for product in more}
-    given = {"scene": scene, **given}
-    return run(plan(table, asked, given), given, progress)
+    inputs = {"scene": scene, **inputs}
+    return run(plan(table, requested, inputs), inputs, progress)
 
 
 def process(
     signal: Signal,
     config: AnyConfig,
-    asked: Iterable[str],
+    requested: Iterable[str],
     more: Iterable[Product] = (),
-    **given: Any,
+    **inputs: Any,
 ) -> Results:
     """Make products of a recorded signal, by name; powers of its channels are added up.
 
     Args:
         signal: sum over range after the canceller, or range bins before it.
         config: processing, image and maps.
-        asked: names of the products.
+        requested: names of the products.
         more: further products, or others in place of those of the same name.
-        given: products that are there already. Compensated maps, and a gate that follows the torso,
+        inputs: products that exist already. Compensated maps, and a gate that follows the torso,
             need `torso_track=`, its `Track`.
 
     Raises:
@@ -101,24 +103,24 @@ def process(
     """
     table = products_of_signals(config) | {product.name: product for product in more}
     duration = signal.pulses / signal.prf
-    given = {
+    inputs = {
         "frames": physics.frames_of(config, duration, signal.prf, signal.f0),
         "fsst_frames": physics.fsst_frames_of(config, duration, signal.prf, signal.f0),
         "canceller": physics.canceller_of(config, signal.prf),
-        **given,
+        "image_scale": scale_of(config),
+        **inputs,
     }
-    if config.image.kind == "cfar":
-        given.setdefault("cfar", physics.cfar_of(config))
-    canceller, track = given["canceller"], given.get("torso_track")
+    canceller, track = inputs["canceller"], inputs.get("torso_track")
     after = signal if signal.ranges is None else signal.cancelled(canceller)
     if track is not None:
-        given["torso_track"] = track.delay_at(after.t + canceller.lost / 2 / signal.prf)
+        inputs["torso_track"] = track.delay_at(after.t + canceller.lost / 2 / signal.prf)
     if signal.ranges is None:
-        given = {"signal": signal, **given}
+        inputs = {"signal": signal, **inputs}
     else:
         if track is not None and config.processing.range_sum == "gated":
-            given["gate"] = physics.gate_in_windows(config, after, given["frames"], track)
+            gate_m = config.processing.gate_m
+            inputs["gate"] = gate_in_windows(after, inputs["frames"], track, gate_m)
         profiles = after.columns(config.image.size_px[1])
         signals = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
-        given = {**signals, "range_axis": signal.ranges, **given}
-    return run(plan(table, asked, given), given)
+        inputs = {**signals, "range_axis": signal.ranges, **inputs}
+    return run(plan(table, requested, inputs), inputs)

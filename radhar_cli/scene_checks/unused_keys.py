@@ -33,17 +33,17 @@ def unused_keys(config: Config) -> list[str]:
     without = {"recordings": "the scenes of a config; it needs radhar generate --recordings"}
     without |= dict(_of_nobody(config, config.chosen_activities, config.activities))
     without |= dict([*_of_other_maps(config), *_without_condition(config)])
-    found = _describe_unused(config, without, same)
-    found += _describe_idle_entries(config, config.chosen_activities, config.activities)
+    lines = _describe_unused(config, without, same)
+    lines += _describe_idle_entries(config, config.chosen_activities, config.activities)
     for number, person in enumerate(config.people, 1):
-        theirs, activities = config.of_person(number), config.activities_of(number)
-        without = dict(_of_nobody(theirs, activities, person.names))
-        unmet = _without_condition(theirs)
+        person_config, activities = config.of_person(number), config.activities_of(number)
+        without = dict(_of_nobody(person_config, activities, person.names))
+        unmet = _without_condition(person_config)
         without |= {key: why for key, why in unmet if key.startswith(_OF_PEOPLE)}
-        lines = _describe_unused(theirs, without, same)
-        lines += _describe_idle_entries(theirs, activities, person.names)
-        found += [f"people.{number - 1}.{line}" for line in lines]
-    return found
+        person_lines = _describe_unused(person_config, without, same)
+        person_lines += _describe_idle_entries(person_config, activities, person.names)
+        lines += [f"people.{number - 1}.{line}" for line in person_lines]
+    return lines
 
 
 def _describe_unused(
@@ -161,6 +161,6 @@ def _drawn_from(value: Any, default: Any) -> bool:
             _drawn_from(getattr(value, name), getattr(default, name))
             for name in type(default).model_fields
         )
-    given: Any = default
-    forms = given.per_activity.values() if isinstance(given, PerActivity) else (given,)
+    number: Any = default
+    forms = number.per_activity.values() if isinstance(number, PerActivity) else (number,)
     return any(support(form)[0] <= value <= support(form)[1] for form in forms)

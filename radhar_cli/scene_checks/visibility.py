@@ -23,10 +23,12 @@ from radhar_cli.assembly.physics import (
     waveform_of,
 )
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
+from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.look import noise_gain, weights
+from radhar_cli.processing.map_kind import MAP_KINDS, RTM
 from radhar_cli.products.noise import noise_law_of
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import amplitude, leg
@@ -55,35 +57,32 @@ def noise_alone(config: Config) -> list[str]:
     if isinstance(law, Silent):
         return []
     scene = nominal_scene(config, config.chosen_activities[0])
-    taken = _losses_db(scene)
+    losses = _losses_db(scene)
     if isinstance(law, Snr):
-        snr, given = law.decibels, f"snr_db = {law.decibels:g}"
+        snr, noise = law.decibels, f"snr_db = {law.decibels:g}"
         if config.snr_reference != "free_space":
-            taken = {}
+            losses = {}
     else:
         snr = _thermal_snr_db(scene)
-        given = f"thermal noise, in which 1 m^2 has {snr:.0f} dB in a raw sample,"
+        noise = f"thermal noise, in which 1 m^2 has {snr:.0f} dB in a raw sample,"
     gains = {name: cell_gain_db(scene, name) for name in config.maps}
     best = max(gains, key=lambda name: gains[name], default="")
     gain = gains.get(best, inf)
-    if snr - sum(taken.values()) + gain > LEAST_CELL_SNR_DB:
+    if snr - sum(losses.values()) + gain > LEAST_CELL_SNR_DB:
         return []
-    causes, keys = [], list[str]()
-    for what, loss in taken.items():
-        if loss > HIDES_DB:
-            causes.append(f"{what} takes {loss:.0f} dB of the echo")
-            keys += _BOARD_KEYS[what] if isinstance(config.radar, BoardRadar) else _KEYS[what]
-    if isinstance(law, Snr):
-        if snr + gain <= LEAST_CELL_SNR_DB:  # whatever wall and beam take
-            causes, keys = [], ["snr_db"]
-        else:
-            keys += ["snr_db", "snr_reference: received"]
-            given += " in free space"
-    else:
-        keys += ["motion.range_m", "radar.transmit_power_dbm", "receiver.noise_figure_db"]
-    both = f"{' and '.join(causes)}, both ways: " if causes else ""
+    large = {obstacle: loss for obstacle, loss in losses.items() if loss > HIDES_DB}
+    last_keys = ["motion.range_m", "radar.transmit_power_dbm", "receiver.noise_figure_db"]
+    if isinstance(law, Snr) and snr + gain <= LEAST_CELL_SNR_DB:  # whatever wall and beam take
+        large, last_keys = {}, ["snr_db"]
+    elif isinstance(law, Snr):
+        last_keys = ["snr_db", "snr_reference: received"]
+        noise += " in free space"
+    causes = [f"{obstacle} takes {loss:.0f} dB of the echo" for obstacle, loss in large.items()]
+    both_ways = f"{' and '.join(causes)}, both ways: " if causes else ""
+    by_obstacle = _BOARD_KEYS if isinstance(config.radar, BoardRadar) else _KEYS
+    keys = [*(key for obstacle in large for key in by_obstacle[obstacle]), *last_keys]
     return [
-        f"{both}at {given} maps show noise alone: {best} gains at most {gain:.0f} dB over it "
+        f"{both_ways}at {noise} maps show noise alone: {best} gains at most {gain:.0f} dB over it "
         f"({', '.join(keys[:-1])}{' or ' if keys[1:] else ''}{keys[-1]})"
     ]
 
@@ -105,12 +104,14 @@ def cell_gain_db(scene: Scene, name: str) -> float:
         board = board_of(scene.radar)
         channels = board.channels
         if name in FRAME_MAPS:
-            loops = 1.0 if name in ("range_azimuth", "range_elevation") else HANN * board.loops
+            is_of_angles = name in FRAME_MAP_KINDS and not FRAME_MAP_KINDS[name].shows_doppler
+            loops = 1.0 if is_of_angles else HANN * board.loops
             return 10 * log10(HANN * board.samples * loops * channels)
     w = waveform_of(scene)
-    if name == "rtm":
+    kind = MAP_KINDS.get(name)
+    if kind == RTM:
         over_range, window = 2.0 if isinstance(w, Impulse) else float(w.n_adc), 1.0
-    elif name in MAP_NAMES:
+    elif kind is not None:
         over_range = _gate_gain(config, w) if _gated(config) else _sum_gain(w)
         window = HANN * _window_pulses(scene, w)
     else:

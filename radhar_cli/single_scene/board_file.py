@@ -12,7 +12,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import COLUMNS, Cloud
-from radhar_cli.products.board import Skeletons
+from radhar_cli.products.board_people import Skeletons
 from radhar_cli.radar.board import Board
 from radhar_cli.single_scene.single_precision import in_single
 

@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from radhar_cli.activities.activity import Activity, activity_named
-from radhar_cli.assembly.bodies import sources_of
+from radhar_cli.assembly.bodies import Link, make_path_sources
 from radhar_cli.assembly.physics import motion_of, reflectors_of
 from radhar_cli.config.checks.signal import problems_of_maps
 from radhar_cli.config.data_set import Config
@@ -29,13 +29,14 @@ from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.look import Look, ProfileSamples
+from radhar_cli.processing.map_kind import MAP_KINDS, TREATMENTS, UNTREATED
 from radhar_cli.processing.points import Cloud
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.products.fallback import EchoAccuracy, Fallback
 from radhar_cli.products.plan import Product
 from radhar_cli.products.run import Results, record
-from radhar_cli.products.table import SIGNALS, received, signal_of
+from radhar_cli.products.signal import receive_echo, signal_name
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.layers import Layers
@@ -44,7 +45,10 @@ from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.scene import Person, Scene, draw_scene, nominal_scene
-from radhar_cli.scene_checks.validity import BLACK, MIN_DISTANCE_M, draw_valid_scene, scene_warnings
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene_checks.flags import BLACK
+from radhar_cli.scene_checks.validity import MIN_DISTANCE_M
+from radhar_cli.scene_checks.warnings import scene_warnings
 from radhar_cli.single_scene.truth import PathTruth, Truth, path_truth, truth
 
 ALL: Literal["all"] = "all"  # instead of names of maps
@@ -179,10 +183,12 @@ def simulate(
     frames = [product for name in maps for product in FRAMES.get(name, ())]
     frames += ["points_kind"] if "points" in maps and config.room.faces else []
     maps = tuple(name for name in maps if name not in FRAMES)
-    of_maps = {"signal", *(signal_of(name) for name in fitting if name in MAP_NAMES)}
-    signals = [name for name in SIGNALS if name in of_maps] if not board else SIGNALS[:1]
+    kinds = [] if board else [MAP_KINDS[name] for name in fitting if name in MAP_KINDS]
+    of_maps = {UNTREATED, *(kind.treatment for kind in kinds)}
+    signals = {str(one): signal_name(one) for one in TREATMENTS if one in of_maps}
     frames += ["cube"] if board and raw and "cube" not in frames else []
-    product_names = [*signals, *maps, *frames, "waveform", "antennas", "wall"] + ["board"] * board
+    product_names = [*signals.values(), *maps, *frames, "waveform", "antennas", "wall"]
+    product_names += ["board"] if board else []
     product_names += ["accuracy"] if config.engine.kind == "direct" else []
     product_names += ["raw_echo"] if raw and not board else []
     raw_rows = [RAW_PROFILES if isinstance(config.radar, ImpulseRadar) else RAW_ECHO]
@@ -203,9 +209,7 @@ def simulate(
         motion=motion,
         joint=None if joint is None else echoing_motion.names[0],
         maps={name: recorded[name] for name in maps},
-        signals={
-            name.removeprefix("signal").lstrip("_") or "raw": recorded[name] for name in signals
-        },
+        signals={treatment: recorded[name] for treatment, name in signals.items()},
         truth=truth(motion, **radar),
         others=[
             Other(person, one, truth(one, **radar))
@@ -232,8 +236,9 @@ def _paths(scene: Scene, motions: tuple[Motion, ...], recorded: Results) -> Path
     """Evaluate all paths at the pulses that a range-time map shows."""
     w: Waveform = recorded["waveform"]
     shown = shown_pulses(w.n_pulses, scene.config.image.size_px[1])
-    seen = (recorded["antennas"], recorded["wall"], w, reflectors_of(scene))
-    return path_truth(sources_of(scene, motions, *seen), w.times(shown.astype(float)))
+    link = Link(recorded["antennas"], recorded["wall"], w)
+    sources = make_path_sources(scene, motions, link, reflectors_of(scene))
+    return path_truth(sources, w.times(shown.astype(float)))
 
 
 def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> Scene:
@@ -340,7 +345,7 @@ def raw_profiles(
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
     """
     look = Look.of_all("profiles", ProfileSamples(waveform))
-    r: Float = received(profiles.astype(complex), look, receiver).x[0].real
+    r: Float = receive_echo(profiles.astype(complex), look, receiver).x[0].real
     r = r + steady_profile(*leakage(antennas), waveform)
     if wall is not None:
         _refuse_near_face(scene, antennas, wall)

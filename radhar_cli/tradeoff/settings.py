@@ -11,7 +11,7 @@ from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.number import nominal
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 
 # Of what differs most: a standing person's arms, a walk, a fall.
 QUICK = ("punching", "walking", "walking_to_falling")

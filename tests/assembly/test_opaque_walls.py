@@ -3,7 +3,7 @@
 import pytest
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.scene_checks.validity import config_warnings
+from radhar_cli.scene_checks.warnings import config_warnings
 
 
 @pytest.mark.parametrize(

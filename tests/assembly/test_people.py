@@ -18,7 +18,9 @@ from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
 from radhar_cli.products.run import record
 from radhar_cli.scene import PERSONAL, UNSTEADY, Scene, draw_scene, nominal_scene, scene_numbers
-from radhar_cli.scene_checks.validity import Flags, check_scene, draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene_checks.flags import Flags
+from radhar_cli.scene_checks.validity import check_scene
 from radhar_cli.single_scene.scene_file import write_all
 from radhar_cli.single_scene.simulate import simulate
 

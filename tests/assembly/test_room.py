@@ -16,7 +16,7 @@ from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.products.run import record
 from radhar_cli.scene import Scene, draw_scene, scene_numbers
-from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500, "adc_rate_hz": 1e6}
 STRONG = {"position_m": [3.0, 1.0, 1.0], "rcs_dbsm": 10, "residual_m": 1e-4, "highest_hz": 5}

@@ -16,7 +16,10 @@ from radhar_cli.dataset.scene_fields import fields
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene, nominal_scene
-from radhar_cli.scene_checks.validity import Flags, check_scene, config_warnings, draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene_checks.flags import Flags
+from radhar_cli.scene_checks.validity import check_scene
+from radhar_cli.scene_checks.warnings import config_warnings
 from radhar_cli.single_scene.scene_file import write_all
 from radhar_cli.single_scene.simulate import simulate
 

@@ -23,8 +23,8 @@ from radhar_cli.dataset.table import entries
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.products.run import record
 from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.scene_checks.unused_keys import unused_keys
-from radhar_cli.scene_checks.validity import draw_valid_scene
 
 WALKING = activity_named("walking")
 RADAR = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 1000}

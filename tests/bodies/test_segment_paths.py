@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activities.activity import ACTIVITIES, activity_named
-from radhar_cli.assembly.bodies import body_paths
+from radhar_cli.assembly.bodies import Link, make_body_paths
 from radhar_cli.assembly.physics import motion_of
 from radhar_cli.bodies.segment_paths import (
     REFLECTANCE,
@@ -35,7 +35,7 @@ from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene import Scene, draw_scene, nominal_scene
-from radhar_cli.scene_checks.validity import scene_warnings
+from radhar_cli.scene_checks.warnings import scene_warnings
 from radhar_cli.single_scene.simulate import simulate
 
 FC = 77e9
@@ -396,7 +396,7 @@ class TestOneJoint:
         one = ScattererSubset(person, (JOINTS.index("right_ankle"),))
         kept = record(scene, ["paths"], motions=(one,))["paths"]
         names = [part.name for part in SEGMENTS]
-        assert [names[n] for n in kept.kept] == ["right_shank", "right_foot"]
+        assert [names[n] for n in kept.scattering] == ["right_shank", "right_foot"]
         t = np.linspace(0, 1.5, 40)
         sizes = [points.share.size for points in whole.points]
         first = sum(sizes[: names.index("right_shank")])
@@ -498,4 +498,5 @@ def test_no_segments_no_paths():
     found = record(scene, ["antennas", "waveform"])
     ball = replace(WithSword(None, None))
     only = ScattererSubset(ball, (3,))
-    assert body_paths(scene.people[0], only, found["antennas"], None, found["waveform"]) is None
+    link = Link(found["antennas"], None, found["waveform"])
+    assert make_body_paths(scene.people[0], only, link) is None

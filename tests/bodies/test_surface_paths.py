@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from radhar_cli.assembly.bodies import body_paths
+from radhar_cli.assembly.bodies import Link, make_body_paths
 from radhar_cli.assembly.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.bodies.motion_paths import leg
 from radhar_cli.bodies.surface_paths import DEPTH, FACING_DBSM, SurfacePaths, draw_surface
@@ -31,7 +31,7 @@ def scene(seed: int = 1) -> Scene:
 def source(seed: int = 1) -> SurfacePaths:
     one = scene(seed)
     motion = motion_of(one.people[0])
-    made = body_paths(one.people[0], motion, antennas_of(one), None, waveform_of(one))
+    made = make_body_paths(one.people[0], motion, Link(antennas_of(one), None, waveform_of(one)))
     assert made is not None
     return made
 
@@ -105,7 +105,7 @@ def test_several_channels_evaluate_a_body_once() -> None:
     antennas, w = antennas_of(one), waveform_of(one)
     for shift in (0.0, 0.01, 0.02):
         moved = replace(antennas, tx=(0.4, -0.1 + shift, 1.5), rx=(0.4, 0.1 - shift, 1.5))
-        made = body_paths(one.people[0], held, moved, None, w)
+        made = make_body_paths(one.people[0], held, Link(moved, None, w))
         assert made is not None
         made(T)
     assert len(asked) == 1

@@ -14,7 +14,7 @@ from radhar_cli.config import load_config, resolved
 from radhar_cli.config.data_set import MeasuredConfig
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.learning.images.opening import open_images
-from radhar_cli.products.table import image_of
+from radhar_cli.products.images import draw_measured_map
 from radhar_cli.single_scene.simulate import simulate
 
 CONFIG = """
@@ -79,7 +79,7 @@ def test_windows_are_samples(recordings: Path, tmp_path: Path) -> None:
         config = data.config
         with Recording(recordings / "p2/walking.h5") as one:
             part = maps_of(one, config, ["stft"], 0.5, 1.5)
-        image = image_of(config, part.maps["stft"])
+        image = draw_measured_map(config, part.maps["stft"])
         assert np.array_equal(data.maps["stft"][row], image.levels)
     assert len([*(tmp_path / "set/png/stft").rglob("*.png")]) == 28
 

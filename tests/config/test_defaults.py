@@ -9,7 +9,9 @@ import pytest
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
-from radhar_cli.scene_checks.validity import Flags, draw_valid_scene, warnings
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene_checks.flags import Flags
+from radhar_cli.scene_checks.warnings import collect_warnings
 
 ROOT = Path(__file__).resolve().parents[2]
 README_ONCE = """
@@ -78,7 +80,7 @@ def test_people_of_the_defaults_stay_clear_of_the_radar_and_in_its_band() -> Non
 def test_the_demo_builds_without_a_warning() -> None:
     config = load_config(ROOT / "configs/quickstart.yaml")
     counts, _ = checked(config, [*range(len(Rows.of(config)))])
-    assert warnings(config, counts) == []
+    assert collect_warnings(config, counts) == []
 
 
 def test_people_who_start_near_the_radar_pass_it(tmp_path: Path) -> None:

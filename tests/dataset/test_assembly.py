@@ -29,7 +29,7 @@ from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import Scene, draw_scene, scene_numbers
-from radhar_cli.scene_checks.validity import Flags
+from radhar_cli.scene_checks.flags import Flags
 
 
 def stub_draw(config: Config, activity: Activity, index: int) -> tuple[Scene, Flags]:

@@ -42,7 +42,7 @@ from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Person, Scene, nominal_scene
-from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.single_scene.simulate import RAW_ECHO
 
 C = 299_792_458.0

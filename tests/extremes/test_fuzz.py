@@ -20,8 +20,9 @@ from radhar_cli.products.run import Results, run
 from radhar_cli.products.run import record as record_scene
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene import draw_scene
-from radhar_cli.scene_checks import validity
-from radhar_cli.scene_checks.validity import draw_valid_scene, scene_warnings
+from radhar_cli.scene_checks import drawing
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene_checks.warnings import scene_warnings
 
 SEED = 20261121
 BLOCKS, CONFIGS = 10, 220
@@ -110,7 +111,7 @@ def names(keys: list[str], broken: str) -> bool:
 def test_maps_or_a_clear_refusal(
     block: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(validity, "MAX_ATTEMPTS", 10)  # `on_invalid: redraw` draws 1000 times
+    monkeypatch.setattr(drawing, "MAX_ATTEMPTS", 10)  # `on_invalid: redraw` draws 1000 times
     drawer = Drawer(SEED, block)
     mapped = refused = broken_refused = named = 0
     for _ in range(CONFIGS):

@@ -27,7 +27,7 @@ from radhar_cli.activities.activity import activity_named
 from radhar_cli.config import Config
 from radhar_cli.products.table import plan_images
 from radhar_cli.products.run import run
-from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.processes.worker_process import prepare_process
 
 prepare_process()

@@ -30,7 +30,7 @@ from radhar_cli.motion.skeleton import JOINTS, PARENTS, SKELETON
 from radhar_cli.products.run import record as record_scene
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import draw_scene, nominal_scene
-from radhar_cli.scene_checks.validity import scene_warnings
+from radhar_cli.scene_checks.warnings import scene_warnings
 
 DIRECT_DB = -60.0  # the promise of docs/physics/engines.md
 # Rounding of a phase of C cycles is about C 2^-52 turns; over the PRF it is compared with the

@@ -16,7 +16,7 @@ from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.track import PulseTrack
 from radhar_cli.products.run import process
 from radhar_cli.products.run import record as record_scene
-from radhar_cli.products.table import SIGNALS
+from radhar_cli.products.signal import SIGNALS
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.scene import nominal_scene
 from radhar_cli.single_scene.simulate import RAW_ECHO, simulate

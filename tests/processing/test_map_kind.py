@@ -1,12 +1,12 @@
 """Kinds of maps, and the names that configs and files have for them."""
 
 import pytest
-from radhar_cli.config.schema import MAP_NAMES
 
 from radhar_cli.processing.map_kind import (
     DOPPLER_TIME_KINDS,
     MAP_KINDS,
     RTM,
+    TREATMENTS,
     UNTREATED,
     MapKind,
     Transform,
@@ -14,8 +14,12 @@ from radhar_cli.processing.map_kind import (
 )
 
 
-def test_names_are_those_of_the_config_in_its_order() -> None:
-    assert tuple(MAP_KINDS) == tuple(MAP_NAMES)
+def test_names_are_those_that_configs_and_files_have() -> None:
+    assert tuple(MAP_KINDS) == (
+        "rtm",
+        *("stft", "stft_denoised", "stft_compensated", "stft_compensated_denoised"),
+        *("fsst", "fsst_denoised", "fsst_compensated", "fsst_compensated_denoised"),
+    )
 
 
 @pytest.mark.parametrize("name", MAP_KINDS)
@@ -34,6 +38,15 @@ def test_a_name_says_what_is_done() -> None:
 def test_other_names_are_refused(name: str) -> None:
     with pytest.raises(ValueError, match="should be one of rtm, stft"):
         MapKind.parse(name)
+
+
+def test_a_treatment_has_a_name_of_its_own() -> None:
+    assert [str(treatment) for treatment in TREATMENTS] == [
+        "raw",
+        "denoised",
+        "compensated",
+        "compensated_denoised",
+    ]
 
 
 def test_all_but_the_range_time_map_show_doppler() -> None:

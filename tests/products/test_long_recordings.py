@@ -22,7 +22,8 @@ from radhar_cli.products.plan import plan
 from radhar_cli.products.run import Results, record, run
 from radhar_cli.products.table import plan_images, products
 from radhar_cli.scene import Scene, draw_scene
-from radhar_cli.scene_checks import validity as validity_module
+from radhar_cli.scene_checks import check_grid
+from radhar_cli.scene_checks.validity import check_scene
 
 ROOT = Path(__file__).resolve().parents[2]
 WINDOW = {"window_s": 0.1}
@@ -90,7 +91,7 @@ def test_signals_are_released_after_their_last_use(engine):
 
     config = Config.model_validate(SMALL | {"engine": {"kind": engine}})
     table = {name: noted(product) for name, product in products(config).items()}
-    asked = plan_images(config).asked
+    asked = plan_images(config).requested
     recording = run(plan(table, asked, ["scene"]), {"scene": scene_of(config)})
     gc.collect()
     assert max(held) <= 2
@@ -129,10 +130,10 @@ def test_checking_a_scene_in_chunks_finds_the_same(monkeypatch):
     """Near, behind a wall, leaving the half-band: whatever there is to find, and when."""
     for more in ({}, {"wall": {}}, {"motion": {"range_m": 0.6, "angle_deg": 180}}):
         scene = scene_of(Config.model_validate(SMALL | more | {"duration_s": 4.0}))
-        whole = validity_module.check_scene(scene)
+        whole = check_scene(scene)
         with monkeypatch.context() as patch:
-            patch.setattr(validity_module, "GRID_CHUNK", 11)
-            assert validity_module.check_scene(scene) == whole
+            patch.setattr(check_grid, "GRID_CHUNK", 11)
+            assert check_scene(scene) == whole
 
 
 _PROGRAM = (

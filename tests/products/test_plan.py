@@ -10,6 +10,7 @@ from radhar_cli.bodies import motion_paths
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.motion.paper.body import PaperBody
+from radhar_cli.products import paths as scene_paths
 from radhar_cli.products import table as products
 from radhar_cli.products.plan import Plan, plan
 from radhar_cli.products.run import record, run
@@ -24,7 +25,7 @@ OWN_HOP = {"processing": {"fsst_hop_pulses": 1}}
 
 # What runs besides the images themselves. Written by hand: change it only where the physics needs
 # another product.
-SCENE = "waveform antennas wall motions paths canceller receiver"
+SCENE = "image_scale waveform antennas wall motions paths canceller receiver"
 SIGNAL = f"{SCENE} direct echo accuracy signal"
 NOISE = "channel signal_power noise_sigma noise"
 NOISY = f"{SIGNAL} {NOISE}"
@@ -128,7 +129,7 @@ def test_only_a_wall_is_crossed(monkeypatch):
     for module, name in (
         (motion_paths, "pass_wall"),
         (motion_paths, "wall_delay"),
-        (products, "wall_of"),
+        (scene_paths, "wall_of"),
     ):
         original = getattr(module, name)
 

@@ -11,7 +11,8 @@ from radhar_cli.config import Config
 from radhar_cli.products.run import record
 from radhar_cli.radar.wall import Wall
 from radhar_cli.scene import Scene, nominal_scene
-from radhar_cli.scene_checks.validity import Flags, check_scene
+from radhar_cli.scene_checks.flags import Flags
+from radhar_cli.scene_checks.validity import check_scene
 
 T = np.linspace(0, 4, 50)
 

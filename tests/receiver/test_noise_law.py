@@ -13,7 +13,7 @@ from radhar_cli.products.run import record
 from radhar_cli.receiver.noise_law import Silent, Snr, Thermal
 from radhar_cli.scene import Scene, nominal_scene
 from radhar_cli.scene_checks.unused_keys import unused_keys
-from radhar_cli.scene_checks.validity import config_warnings
+from radhar_cli.scene_checks.warnings import config_warnings
 from radhar_cli.single_scene.simulate import RAW_ECHO
 
 BOLTZMANN, T0 = 1.380649e-23, 290.0

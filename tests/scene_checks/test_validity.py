@@ -23,18 +23,13 @@ from radhar_cli.products.run import record
 from radhar_cli.radar.wall import crossing, extra_delay
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Scene, draw_scene, nominal_scene, scene_numbers
-from radhar_cli.scene_checks import validity as module
-from radhar_cli.scene_checks.validity import (
-    Approach,
-    Flags,
-    SceneCheck,
-    check_scene,
-    config_warnings,
-    draw_valid_scene,
-    scene_warnings,
-    sweep_shift,
-    warnings,
-)
+from radhar_cli.scene_checks import drawing
+from radhar_cli.scene_checks.check_grid import check_grids
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene_checks.flags import BEHIND_M, Flags
+from radhar_cli.scene_checks.sweep import sweep_shift
+from radhar_cli.scene_checks.validity import Approach, SceneCheck, check_scene
+from radhar_cli.scene_checks.warnings import collect_warnings, config_warnings, scene_warnings
 
 C = 299_792_458.0
 WALKING = activity_named("walking")
@@ -228,7 +223,7 @@ def by_kind(config: Config) -> dict[str, tuple[int, str]]:
         for index in range(config.samples_per_class)
     ]
     counts = {flag: sum(flag in flags for flags in found) for flag in Flags}
-    return {w["kind"]: (w["recordings"], w["message"]) for w in warnings(config, counts)}
+    return {w["kind"]: (w["recordings"], w["message"]) for w in collect_warnings(config, counts)}
 
 
 def test_warnings_at_the_papers_free_space_settings() -> None:
@@ -449,14 +444,14 @@ def test_a_scatterer_at_an_antenna_stops_unless_redrawn(on_invalid: str) -> None
 
 def test_a_band_that_is_too_short_for_people_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """Walkers who start 9 to 12 m away, with a half-band of 7.5 m."""
-    monkeypatch.setattr(module, "MAX_ATTEMPTS", 3)
+    monkeypatch.setattr(drawing, "MAX_ATTEMPTS", 3)
     config = Config(radar={"bandwidth_hz": 4e9})
     with pytest.raises(SceneError, match=r"half-band, with .*; a smaller radar.bandwidth_hz"):
         draw_valid_scene(config, WALKING, 0)
 
 
 def test_no_valid_scene_ends_the_redraws(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "MAX_ATTEMPTS", 3)
+    monkeypatch.setattr(drawing, "MAX_ATTEMPTS", 3)
     about = {**PERSON["motion"], "range_m": {"uniform": [1.99, 2.01]}}
     config = with_antenna_at("S1", np.array([2.0, 0.0, 1.51]), on_invalid="redraw", motion=about)
     with pytest.raises(SceneError, match=r"stationary/4: .* 3 draws .*head comes to .*range_m"):
@@ -529,7 +524,7 @@ def test_a_torso_that_leaves_a_fixed_gate_is_warned_of(gate_m, leaves):
             "processing": {"range_sum": "gated", "gate_m": gate_m},
         }
     )
-    messages = module.scene_warnings(draw_scene(config, activity_named("walking"), 0))
+    messages = scene_warnings(draw_scene(config, activity_named("walking"), 0))
     assert (
         any("the torso leaves the ranges of processing.gate_m" in one for one in messages) == leaves
     )
@@ -553,7 +548,7 @@ def test_the_echo_needs_no_other_instants_than_the_check(monkeypatch, scatterers
     assert checked.size > 1000 > max(t.size for t in asked[1:])
     # The grid is no coarser than what the motion needs, and ends with the recording.
     motion, shared = scene.people[0].held["motion"], True
-    each = next(module._grid(motion, waveform_of(scene), shared))[2]
+    each = next(check_grids(motion, waveform_of(scene), shared)).pulses
     assert np.diff(each).max() <= waveform_of(scene).prf / 120
     assert each[0] == 0
     assert each[-1] >= waveform_of(scene).n_pulses - 1
@@ -607,7 +602,7 @@ def test_nobody_walks_past_the_radar_in_shipped_configs_without_walls(name: str)
         for index in range(40):
             scene = draw_scene(config, activity, index)
             torso = motion_of(scene.people[0]).torso(np.linspace(0, scene.seconds, 30))
-            assert torso[0].min() > scene.radar.tx_m[0] - module.BEHIND_M, (activity.slug, index)
+            assert torso[0].min() > scene.radar.tx_m[0] - BEHIND_M, (activity.slug, index)
 
 
 SLOW = Waveform(fc=24e9, bandwidth=5e8, chirp=0.05, adc_rate=2e4, prf=19, duration=0.2)
@@ -668,7 +663,7 @@ def test_the_warning_of_a_slow_sweep_has_the_shift_and_the_remedies() -> None:
     assert "by 2.5 m at 1 m/s, with 0.05 s a sweep and cells of 0.3 m" in said
     for key in ("engine.motion_in_chirp", "engine.kind: cube", "radar.dwell_s", "radar.steps"):
         assert key in said
-    (counted,) = warnings(config, {Flags.SWEEP: 1})
+    (counted,) = collect_warnings(config, {Flags.SWEEP: 1})
     assert counted["kind"] == "sweep"
     assert said in counted["message"]
 

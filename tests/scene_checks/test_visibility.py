@@ -10,8 +10,8 @@ from helpers.boards import CFG
 from radhar_cli.config.data_set import Config
 from radhar_cli.products.run import record
 from radhar_cli.scene import nominal_scene
-from radhar_cli.scene_checks.validity import config_warnings
 from radhar_cli.scene_checks.visibility import LEAST_CELL_SNR_DB, cell_gain_db
+from radhar_cli.scene_checks.warnings import config_warnings
 
 K24: dict[str, Any] = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 1000}
 RADARS: dict[str, dict[str, Any]] = {

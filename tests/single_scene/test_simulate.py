@@ -14,7 +14,7 @@ from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene import draw_scene
-from radhar_cli.scene_checks.validity import draw_valid_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.single_scene.scene_file import describe, write_all
 from radhar_cli.single_scene.simulate import Simulation, map_names, scene_of, simulate
 

@@ -1,0 +1,55 @@
+"""What a receiver of one channel does to an echo: noise, other impairments, and the canceller."""
+
+from collections.abc import Iterator
+
+from radhar_cli.assembly.physics import canceller_of, channel_of, impairments_of
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.processing import ProcessingConfig
+from radhar_cli.processing.canceller import Canceller
+from radhar_cli.products.noise import noise_products
+from radhar_cli.products.plan import Product
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.receiver.impairment import Impairment
+from radhar_cli.receiver.noise import WhiteNoise
+from radhar_cli.scene import Scene
+
+
+def receiver_products(config: Config) -> Iterator[Product]:
+    """Rows of the canceller, the noise and the other impairments of one receive channel."""
+    does = _describe_canceller(config.processing)
+    yield Product("canceller", ("scene", "waveform"), make_canceller, does)
+    if not config.has_noise:
+        yield Product("receiver", (), make_ideal_receiver, "nothing: no noise")
+        return
+    yield Product("channel", ("scene", "antennas"), channel_of, "whose noise it is")
+    yield from noise_products(config, "channel")
+    needs = ("scene", "noise", "waveform")
+    yield Product("receiver", needs, make_receiver, "noise, interference")
+
+
+def make_canceller(scene: Scene, waveform: Waveform) -> Canceller:
+    """Make the canceller of static echoes that a scene asks for."""
+    return canceller_of(scene.config, waveform.prf)
+
+
+def make_ideal_receiver() -> tuple[Impairment, ...]:
+    """Make a receiver that adds nothing to the echo."""
+    return ()
+
+
+def make_receiver(scene: Scene, noise: WhiteNoise, waveform: Waveform) -> tuple[Impairment, ...]:
+    """Make the impairments of a receiver in the order in which they act: white noise first."""
+    return (noise, *impairments_of(scene, noise, waveform))
+
+
+def _describe_canceller(processing: ProcessingConfig) -> str:
+    """Describe the canceller that `processing.clutter` names, in one line."""
+    match processing.clutter:
+        case "difference":
+            return "first difference of the pulses"
+        case "mean":
+            return "the mean of the recording is taken out"
+        case "none":
+            return "nothing is taken out"
+    both_ways = ", both ways" if processing.highpass.zero_phase else ""
+    return f"high-pass of order {processing.highpass.order}{both_ways}"

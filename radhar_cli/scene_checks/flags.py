@@ -1,0 +1,93 @@
+"""Flags of a scene: what there is to warn of, and how that is said."""
+
+from collections.abc import Mapping
+from enum import IntFlag
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.radar import BoardRadar
+from radhar_cli.motion.files.motion import SEAM
+from radhar_cli.scene_checks.sweep import describe_slow_sweep
+
+BODY_RADIUS_M = 0.2  # of the upper body about the torso, horizontally
+BEHIND_M = 1.0  # this far behind the radar nobody is meant to be
+FLAG_TYPE = np.uint16
+
+
+class Flags(IntFlag):
+    """What there is to warn of in a scene; FLAG_TYPE in the files of a build."""
+
+    WALL = 1
+    HALF_BAND = 2
+    ALIASING = 4
+    FALLBACK = 8
+    FLOOR = 16
+    GATE = 32
+    RUNS_OUT = 64
+    BLACK = 128
+    SEAM = 256
+    RADAR = 512
+    BEHIND = 1024
+    SWEEP = 2048
+
+
+BLACK = (
+    "a map is black: nothing is left of the echo (after canceller, wall and distance), or nothing "
+    "above the CFAR's threshold, or a cloud has no point"
+)
+ANGLES_ALIAS = (
+    "; transmitters take turns, so that its angles are wrong, too, by the phase of the wrong speed"
+)
+WORDING = {
+    Flags.WALL: "the body passes through the wall, or leaves room.box_m",
+    Flags.HALF_BAND: "a scatterer leaves the range half-band and its echo the kept bins",
+    Flags.ALIASING: "a joint moves faster than the Doppler PRF/2 and aliases",
+    Flags.FALLBACK: "computed by the cube (engine.fallback)",
+    Flags.FLOOR: "a scatterer goes below the floor",
+    Flags.GATE: "the torso leaves the ranges of processing.gate_m",
+    Flags.RUNS_OUT: "the motion file ends before the recording while a joint moves: the person "
+    "stops within half a second and stays (past_end: loop goes on; duration_s, section_s)",
+    Flags.SEAM: f"the motion file is repeated though its end is unlike its beginning: joints slide "
+    f"more than {SEAM:g} m from one to the other (past_end: rest; section_s)",
+    Flags.BLACK: BLACK,
+    Flags.RADAR: "a person walks through the radar: the torso comes within "
+    f"{BODY_RADIUS_M:g} m of an antenna (motion.range_m, motion.angle_deg, duration_s)",
+    Flags.BEHIND: f"a person walks past the radar, to more than {BEHIND_M:g} m behind it "
+    "(motion.range_m, motion.angle_deg, duration_s)",
+    Flags.SWEEP: "positions are frozen during a sweep, in which a joint is so fast that its echo "
+    "belongs more than a range cell elsewhere",
+}
+
+
+def describe_flag(flag: Flags, config: Config | None) -> str:
+    """Say what a flag means, of scenes of a config where there is one."""
+    radar = None if config is None else config.radar
+    if flag is Flags.ALIASING and isinstance(radar, BoardRadar):
+        turns = len(radar.header.order) > 1
+        return WORDING[flag] + ANGLES_ALIAS * turns
+    if flag is Flags.SWEEP and config is not None:
+        return f"{WORDING[flag]}: {describe_slow_sweep(config)}"
+    return WORDING[flag]
+
+
+def describe_flags(
+    counts: Mapping[Flags, int], recordings: int, config: Config | None = None
+) -> list[dict[str, Any]]:
+    """Say what there is to warn of: [{kind, recordings, message}].
+
+    Args:
+        counts: number of recordings with each flag.
+        recordings: number of all recordings.
+        config: their config, or None.
+    """
+    return [
+        {
+            "kind": str(flag.name).lower(),
+            "recordings": n,
+            "message": f"{n} of {recordings} recordings: {describe_flag(flag, config)}",
+        }
+        for flag, n in counts.items()
+        if n
+    ]

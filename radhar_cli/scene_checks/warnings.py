@@ -1,0 +1,114 @@
+"""What is said of a config or a scene before anything is computed."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.assembly.physics import antennas_of, waveform_of, ways_of
+from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar
+from radhar_cli.errors import SceneError
+from radhar_cli.processing.map_kind import MAP_KINDS
+from radhar_cli.radar.propagation import leg
+from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.scene_checks.drawing import CROWDED, describe_crowd, find_crowded, suggest_cure
+from radhar_cli.scene_checks.flags import Flags, describe_flag, describe_flags
+from radhar_cli.scene_checks.unused_keys import unused_keys
+from radhar_cli.scene_checks.validity import check_scene
+from radhar_cli.scene_checks.visibility import noise_alone
+
+
+def config_warnings(config: Config) -> list[str]:
+    """Say which keys and lines have no effect or alias, and whether maps are noise alone."""
+    radar = config.radar
+    header_lines = _header_warnings(config, radar) if isinstance(radar, BoardRadar) else ()
+    return [
+        *unused_keys(config),
+        *tone_warnings(config),
+        *header_lines,
+        *noise_alone(config),
+        *_folding_warnings(config),
+    ]
+
+
+def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
+    """Say which lines of `radar.cfg` have no effect, and which key has none because of it."""
+    header = radar.header
+    for line in header.unknown:
+        yield f"radar.cfg: {line} is not known and has no effect"
+    frame_s = header.loops * len(header.order) * header.slot_s
+    window_s = config.processing.window_s if _gives_window(config) else None
+    if window_s is not None and window_s > frame_s:
+        yield (
+            f"processing.window_s has no effect beyond the {frame_s:.3g} s of a frame's chirps "
+            f"(radar.cfg): it is {window_s:g} s"
+        )
+    for line in header.not_simulated:
+        yield f"radar.cfg: {line} switches on what is not simulated: it has no effect"
+
+
+def _gives_window(config: Config) -> bool:
+    """Whether a config gives the window of maps that it asks for."""
+    kinds = [MAP_KINDS[name] for name in config.maps if name in MAP_KINDS]
+    has_windows = any(kind.is_doppler_time for kind in kinds)
+    return has_windows and "window_s" in config.processing.model_fields_set
+
+
+def _folding_warnings(config: Config) -> list[str]:
+    """Say that some echoes by way of faces come from beyond the ranges that the radar has."""
+    if config.room.faces is None or isinstance(config.radar, CwRadar | ImpulseRadar):
+        return []
+    farthest, reach = 0.0, 0.0
+    for activity in config.chosen_activities:
+        scene = nominal_scene(config, activity)
+        antennas, motion = antennas_of(scene), scene.people[0].motion
+        p = np.array([motion.range_m or 0.0, motion.cross_range_m or 0.0, 1.0])[:, None, None]
+        for tx, rx in ways_of(scene):
+            both_legs = leg(tx.image(p), antennas.tx) + leg(rx.image(p), antennas.rx)
+            farthest = max(farthest, float(both_legs[0, 0]) / 2)
+        reach = waveform_of(scene).half_band_range
+    if farthest < reach:
+        return []
+    return [
+        f"echoes by way of room.faces come from up to {farthest:.3g} m, beyond the range half-band "
+        f"of {reach:.3g} m: they are missing from maps, or alias (radar.adc_rate_hz, room.order)"
+    ]
+
+
+def scene_warnings(scene: Scene) -> list[str]:
+    """Check one scene, which keeps 5 cm from antennas, and return what to warn of, in words."""
+    number = find_crowded(scene)
+    if number is not None:
+        raise SceneError(f"{scene.name}: {describe_crowd(number)}; {CROWDED}")
+    check = check_scene(scene)
+    if check.too_close:
+        raise SceneError(f"{scene.name}: {check.invalid}; {suggest_cure(scene.people[0], check)}")
+    lines = [describe_flag(flag, scene.config) for flag in Flags if flag in check.flags]
+    if check.outside[1] and check.invalid is not None:
+        lines[0] = check.invalid
+    return lines + config_warnings(scene.config) + timing_warnings(scene.config, (scene.activity,))
+
+
+def collect_warnings(
+    config: Config, counts: Mapping[Flags, int], recordings: int | None = None
+) -> list[dict[str, Any]]:
+    """Say once per run what there is to warn of: [{kind, recordings, message}].
+
+    Args:
+        config: config of the recordings.
+        counts: number of recordings with each flag.
+        recordings: number of all recordings; None for those of the config.
+    """
+    recordings = recordings or sum(map(config.samples_of, config.chosen_activities))
+    messages = [
+        {"kind": "config", "recordings": recordings, "message": message}
+        for message in config_warnings(config)
+    ]
+    timings = [
+        {"kind": "timing", "recordings": config.samples_of(activity), "message": message}
+        for activity in config.chosen_activities
+        for message in timing_warnings(config, (activity,))
+    ]
+    return [*describe_flags(counts, recordings, config), *messages, *timings]

@@ -16,9 +16,9 @@ GENERAL = {
 }
 # Packages that are not yet through; one that is comes off this list and stays off.
 PENDING = {
-    "activities", "assembly", "bodies", "capture", "code_identity", "commands", "config", "dataset",
-    "echo", "extensions", "figures", "files", "motion", "processing", "products",
-    "radar", "scene", "scene_checks", "single_scene", "tradeoff",
+    "activities", "assembly", "capture", "code_identity", "commands", "config", "dataset", "echo",
+    "extensions", "figures", "files", "motion", "processing", "radar", "scene", "single_scene",
+    "tradeoff",
 }
 # fmt: on
 LONGEST_FUNCTION = 45  # lines, docstring left out

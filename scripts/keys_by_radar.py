@@ -43,7 +43,7 @@ from radhar_cli.products.table import plan_images, products
 from radhar_cli.scene import draw_scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.scene_checks.warnings import config_warnings
-from radhar_cli.single_scene.simulate import RAW_ECHO, RAW_PROFILES
+from radhar_cli.single_scene.raw_echo import RAW_ECHO, RAW_PROFILES
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/reference/keys.md"
 CFG = """

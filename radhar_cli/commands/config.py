@@ -39,25 +39,27 @@ def init(
         str | None,
         typer.Option(
             "--radar",
-            help="A short config for a TI board: its .cfg file, or a name such as iwr6843isk.",
+            help="Write a short config for a TI board, given by its .cfg file or its name, such as "
+            "iwr6843isk.",
         ),
     ] = None,
     minimal: Annotated[
-        bool, typer.Option("--minimal", help="About 15 lines instead of every key.")
+        bool, typer.Option("--minimal", help="Write about 15 lines instead of every key.")
     ] = False,
     preset: Annotated[
         str | None,
         typer.Option(
             "--preset",
             metavar="NAME",
-            help="A config of radhar's folder configs: quickstart, human/room, train/paper, ...; "
-            "a wrong name lists them all.",
+            help="Write a config that radhar comes with, such as quickstart, human/room or "
+            "train/paper; a wrong name lists them all.",
         ),
     ] = None,
 ) -> None:
-    """Write a config to start from: minimal, whole, of a board, shipped.
+    """Write a config to start from: minimal, complete, for a board, or a preset.
 
-    What documents call configs/human/room.yaml is `--preset human/room` where there is no clone.
+    Where the documentation names configs/human/room.yaml, an installed radhar has `--preset
+    human/room`.
 
     Example:
 
@@ -113,7 +115,9 @@ def show(
 
 
 def schema(
-    out: Annotated[Path | None, typer.Argument(help="File to write; the terminal if none.")] = None,
+    out: Annotated[
+        Path | None, typer.Argument(help="File to write. The default is standard output.")
+    ] = None,
     train: Training = False,
 ) -> None:
     """Print the JSON schema of configs, for editors that complete keys.

@@ -33,7 +33,11 @@ def generate(
     ] = None,
     batch: Annotated[
         int | None,
-        typer.Option(min=1, help="Number of samples per batch; changes no byte of the result."),
+        typer.Option(
+            min=1,
+            help="Number of samples that a worker makes before it writes them. The data set has "
+            "the same bytes whatever it is.",
+        ),
     ] = None,
     dry_run: Annotated[
         bool,
@@ -42,7 +46,11 @@ def generate(
         ),
     ] = False,
     shard: Annotated[
-        str | None, typer.Option(metavar="K/N", help="Make only part K of N, for `radhar merge`.")
+        str | None,
+        typer.Option(
+            metavar="K/N",
+            help="Make only part K of N of the data set; `radhar merge` puts the parts together.",
+        ),
     ] = None,
     cluster: Annotated[
         str | None,
@@ -73,7 +81,7 @@ def generate(
         from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part, print_plan
         from radhar_cli.config.data_set import Config, ConfigOfRecordings
         from radhar_cli.config.reading import load_config
-        from radhar_cli.dataset.build import build
+        from radhar_cli.dataset.build import build, build_part
         from radhar_cli.dataset.estimate import jobs_that_pay
         from radhar_cli.dataset.layout import Rows
         from radhar_cli.dataset.parts import DataSetPart
@@ -83,32 +91,35 @@ def generate(
         prepare_process()
         kind = Config if recordings is None else ConfigOfRecordings
         loaded, factory = load_config(config, with_tolerance(set_, tolerance), kind), None
-        made: AnyConfig = loaded
+        data_config: AnyConfig = loaded
         if recordings is not None:
             if shard is not None or cluster is not None:
                 raise ConfigError("--recordings: cannot be combined with --shard or --cluster")
-            made, factory = _measured(loaded, recordings)
+            data_config, factory = _config_of_recordings(loaded, recordings)
         elif loaded.recordings is not None:
             raise ConfigError(
                 f"{config}: recordings: --recordings MANIFEST should say where they lie"
             )
         if dry_run:
-            print_plan(made, jobs)
-        else:
-            jobs = jobs or (cores() if factory else jobs_that_pay(loaded))
-            part = None if shard is None else DataSetPart.parse(shard)
-            most = min(jobs, len(Rows.of(made)))
-            where = nullcontext(jobs) if cluster is None else on_cluster(cluster, most)
-            with BarProgress() as progress, where as jobs:
-                outcome = build(made, out, jobs, progress, overwrite, batch, factory, part)
-            interrupts.complete(str(out) if part is None else f"part {part} of {out}")
-            if part is None:
-                print_outcome(made, outcome)
-            else:
-                print_part(outcome, out, str(part))
+            print_plan(data_config, jobs)
+            return
+        jobs = jobs or (cores() if factory else jobs_that_pay(loaded))
+        workers = min(jobs, len(Rows.of(data_config)))
+        processes = nullcontext(jobs) if cluster is None else on_cluster(cluster, workers)
+        if shard is not None:
+            part = DataSetPart.parse(shard)
+            with BarProgress() as bars, processes as jobs:
+                outcome = build_part(data_config, out, part, jobs, bars, overwrite, batch)
+            interrupts.complete(f"part {part} of {out}")
+            print_part(outcome, out, str(part))
+            return
+        with BarProgress() as bars, processes as jobs:
+            outcome = build(data_config, out, jobs, bars, overwrite, batch, factory)
+        interrupts.complete(str(out))
+        print_outcome(data_config, outcome)
 
 
-def _measured(config: "Config", manifest: Path) -> "tuple[AnyConfig, RowFactory]":
+def _config_of_recordings(config: "Config", manifest: Path) -> "tuple[AnyConfig, RowFactory]":
     """The config of a data set of recordings, and what makes its rows."""
     from radhar_cli.capture.windows import WindowFactory, warnings_of, with_recordings
     from radhar_cli.scene_checks.unused_keys import unused_keys

@@ -16,12 +16,18 @@ def merge(
         typer.Argument(help="Parts, or folders that hold parts, in addition to those below OUT."),
     ] = None,
     jobs: Annotated[
-        int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes that write PNGs.")
+        int | None,
+        typer.Option(
+            "--jobs",
+            "-j",
+            min=1,
+            help="Number of processes that write PNGs. The default is one for each core.",
+        ),
     ] = None,
 ) -> None:
     """Merge the parts of a data set, which are not changed.
 
-    If rows are missing, prints them and the --shard that makes them; the exit status is then 1.
+    Missing rows are listed with the --shard options that make them; the exit status is then 1.
 
     Example:
 

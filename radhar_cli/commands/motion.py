@@ -13,7 +13,9 @@ def motion(
     config: Annotated[Path, typer.Argument(help="YAML config that the scene is drawn from.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="BVH file to write, such as walk.bvh.")],
     activity: Activity = None,
-    index: Annotated[int, typer.Option(min=0, help="Number of the sample within its class.")] = 0,
+    index: Annotated[
+        int, typer.Option(min=0, help="Number of the sample within its class, from 0.")
+    ] = 0,
     nominal: Nominal = False,
     rate: Annotated[float, typer.Option(min=1, max=10_000, help="Frames per second.")] = 120.0,
     overwrite: Replace = False,

@@ -29,12 +29,13 @@ Activity: TypeAlias = Annotated[
     ),
 ]
 Nominal: TypeAlias = Annotated[
-    bool, typer.Option("--nominal", help="Use nominal values instead of drawn ones.")
+    bool, typer.Option("--nominal", help="Use the middle of every range instead of random values.")
 ]
 Maps: TypeAlias = Annotated[
     str | None,
     typer.Option(
-        help="Comma-separated names of maps, or `all` that the radar makes; overrides the config."
+        help="Comma-separated names of maps, or `all` for every map that the radar makes; "
+        "overrides the config."
     ),
 ]
 Figures: TypeAlias = Annotated[
@@ -58,11 +59,11 @@ Tolerance: TypeAlias = Annotated[
 
 
 @contextmanager
-def resumable(kept: str) -> Iterator[None]:
+def resumable(work: str) -> Iterator[None]:
     """Context of work that Ctrl-C (status 130) or SIGTERM (status 143) may end.
 
     Args:
-        kept: what is kept then, for the message.
+        work: what is kept then, for the message.
 
     Raises:
         typer.Exit: the work was ended so, with that status.
@@ -77,7 +78,7 @@ def resumable(kept: str) -> Iterator[None]:
             raise
         if interrupts.tell_once():
             how = "interrupted" if status == INTERRUPTED else "terminated"
-            tell(f"\n{how}: {kept} is kept; the same command resumes", err=True)
+            tell(f"\n{how}: {work} is kept; the same command resumes", err=True)
         raise typer.Exit(status) from None
 
 

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import AnyMap
+from radhar_cli.commands.options import Replace, refuse_to_replace
 from radhar_cli.commands.tell import report, tell
 
 
@@ -16,9 +17,13 @@ def preview(
     out: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--out", help="PNG file. The default is preview_<map>.png beside the data."
+            "-o",
+            "--out",
+            help="PNG file to write, which should be new. The default is preview_<map>.png beside "
+            "the data; the one of an earlier preview is replaced.",
         ),
     ] = None,
+    overwrite: Replace = False,
 ) -> None:
     """Draw a contact sheet of a data set: some samples of every class.
 
@@ -30,6 +35,8 @@ def preview(
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.reading import open_dataset
 
+    if out is not None:
+        refuse_to_replace(out, overwrite, "sheet.png")
     with open_dataset(dataset) as data:
         name = data.map_name(map_)
         path = out or data.path.parent / f"preview_{name}.png"

@@ -60,7 +60,7 @@ def process(
     from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.scene import nominal_scene
     from radhar_cli.scene_checks.unused_keys import unused_keys
-    from radhar_cli.single_scene.simulate import map_names
+    from radhar_cli.single_scene.request import map_names
 
     loaded = load_config(config, set_ or [], ConfigOfRecordings)
     fixed = nominal_scene(loaded, loaded.every_class[0]).config

@@ -106,7 +106,7 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
         dataset=folder / DATASET,
         bytes=size,
         samples=outcome.samples,
-        made=outcome.made,
+        made=outcome.new_samples,
         pngs=outcome.pngs,
         classes=_class_counts(rows),
         split=split,
@@ -117,7 +117,7 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
         tell(f"{folder} is complete: {counted(outcome.samples, 'sample')}; nothing to do")
         return
     samples = counted(outcome.samples, "sample")
-    tell(f"{folder / DATASET}: {samples}, {outcome.made} new, {_mib(size)}")
+    tell(f"{folder / DATASET}: {samples}, {outcome.new_samples} new, {_mib(size)}")
     tell(f"  {rows.counts_text}; " + ", ".join(f"{count} {part}" for part, count in split.items()))
     tell(f"  check it: radhar verify {folder}")
 
@@ -130,9 +130,9 @@ def print_part(outcome: "BuildOutcome", out: Path, part: str) -> None:
         out: folder of the data set.
         part: the part, as K/N.
     """
-    report(folder=outcome.folder, part=part, samples=outcome.samples, made=outcome.made)
+    report(folder=outcome.folder, part=part, samples=outcome.samples, made=outcome.new_samples)
     samples = counted(outcome.samples, "sample")
-    tell(f"{outcome.folder}: part {part} is complete: {samples}, {outcome.made} new")
+    tell(f"{outcome.folder}: part {part} is complete: {samples}, {outcome.new_samples} new")
     tell(f"  when all parts are: radhar merge {out}")
 
 

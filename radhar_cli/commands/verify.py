@@ -15,7 +15,11 @@ def verify(
     ] = 24,
     motion: Annotated[
         Path | None,
-        typer.Option("--motion", help="Folder that the paths of motion files are relative to."),
+        typer.Option(
+            "--motion",
+            help="Folder of the motion files. Without it, samples that follow files are not "
+            "synthesised again.",
+        ),
     ] = None,
 ) -> None:
     """Check a data set, and synthesise some of its samples again.

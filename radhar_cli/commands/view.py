@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import needs
+from radhar_cli.commands.options import Replace, refuse_to_replace
 from radhar_cli.commands.tell import report, tell
 
 
@@ -20,8 +21,14 @@ def view(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="HTML file. The default is view.html beside the data."),
+        typer.Option(
+            "-o",
+            "--out",
+            help="HTML file to write, which should be new. The default is view.html beside the "
+            "data; the one of an earlier view is replaced.",
+        ),
     ] = None,
+    overwrite: Replace = False,
 ) -> None:
     """Make a web page that plays samples of a data set.
 
@@ -38,6 +45,8 @@ def view(
     from radhar_cli.dataset.sample_page import choose_rows, sample_entries
     from radhar_cli.figures.scene_page import write_page
 
+    if out is not None:
+        refuse_to_replace(out, overwrite, "view.html")
     with open_dataset(dataset) as data:
         rows = choose_rows(data, sample or [])
         path = out or data.path.parent / "view.html"

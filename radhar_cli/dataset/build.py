@@ -7,6 +7,7 @@ shards it finds; dataset.h5 comes last, so that a folder with one is complete.
 import errno
 import uuid
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -48,14 +49,14 @@ class BuildOutcome:
 
     folder: Path  # the output folder
     samples: int  # in the data set
-    made: int  # of them, synthesised by this run
+    new_samples: int  # of them, synthesised by this run
     pngs: int  # PNG files written by this run outside of batches
     warnings: list[dict[str, Any]] = field(default_factory=list)  # physical ones
 
     @property
     def already_complete(self) -> bool:
         """Whether nothing was missing."""
-        return self.made == 0 and self.pngs == 0
+        return self.new_samples == 0 and self.pngs == 0
 
 
 def build(
@@ -66,7 +67,6 @@ def build(
     overwrite: bool = False,
     batch_size: int | None = None,
     factory: RowFactory | None = None,
-    part: DataSetPart | None = None,
 ) -> BuildOutcome:
     """Build the data set of `config` in `folder`, or resume it; do nothing where it is complete.
 
@@ -78,28 +78,73 @@ def build(
         overwrite: start over where the folder holds another data set of radhar.
         batch_size: number of samples of a shard; it changes no byte of the result.
         factory: makes the rows of a data set that is not simulated.
-        part: make only the rows of this part, in its folder below `folder`.
 
     Raises:
         ConfigError: `output.products` names what the radar does not make, or no array.
         FolderError: the folder holds other files or another data set, or another run writes there.
         UnfinishedError: the disk is full or cannot be written; the same command resumes.
     """
-    if isinstance(config, Config):
-        plan_images(config)  # refuses products before scenes are checked
+    _refuse_unknown_products(config)
+    folder = folder.absolute()
+    with _held_folder(folder, config, overwrite):
+        return Build(config, folder, jobs, progress, factory).build_all(batch_size)
+
+
+def build_part(
+    config: AnyConfig,
+    folder: Path,
+    part: DataSetPart,
+    jobs: int,
+    progress: Progress,
+    overwrite: bool = False,
+    batch_size: int | None = None,
+) -> BuildOutcome:
+    """Make the rows of one part of a data set, in its folder below `folder`, or resume it.
+
+    Args:
+        config: that of the data set.
+        folder: output folder of the data set.
+        part: the part.
+        jobs: number of worker processes.
+        progress: is told of every sample and warning.
+        overwrite: start over where the folder holds another data set of radhar.
+        batch_size: number of samples of a shard; it changes no byte of the result.
+
+    Raises:
+        ConfigError: `output.products` names what the radar does not make, or no array.
+        FolderError: there are fewer samples than parts, or parts of another N; else as `build`.
+        UnfinishedError: the disk is full or cannot be written; the same command resumes.
+    """
+    _refuse_unknown_products(config)
     folder, count = folder.absolute(), len(Rows.of(config))
-    if part is not None:
-        if part.of > count:
-            raise FolderError(
-                f"--shard {part}: there are {count} samples; should be at most K/{count}"
-            )
-        refuse_other_cuts(folder, part)
-        folder = part.folder(folder)
+    if part.of > count:
+        raise FolderError(f"--shard {part}: there are {count} samples; should be at most K/{count}")
+    refuse_other_cuts(folder, part)
+    folder = part.folder(folder)
+    with _held_folder(folder, config, overwrite, part):
+        return Build(config, folder, jobs, progress).build_part(part, batch_size)
+
+
+def _refuse_unknown_products(config: AnyConfig) -> None:
+    """Refuse products that the radar does not make, before scenes are checked."""
+    if isinstance(config, Config):
+        plan_images(config)
+
+
+@contextmanager
+def _held_folder(
+    folder: Path, config: AnyConfig, overwrite: bool, part: DataSetPart | None = None
+) -> Iterator[None]:
+    """Hold a folder that is taken for a data set, or a part of it, as `reserve`.
+
+    Raises:
+        FolderError: the folder holds other files or another data set, or another run writes there.
+        UnfinishedError: the disk is full or cannot be written.
+    """
     try:
         with folder_lock(folder):
             reserve(folder, config, overwrite, None if part is None else str(part))
-            work = Build(config, folder, jobs, progress, factory)
-            return work.build_all(batch_size) if part is None else work.build_part(part, batch_size)
+            yield
     except OSError as error:
         raise disk_error(folder, error) from error
 
@@ -126,8 +171,8 @@ class Build:
             clean_up(self.folder)
             return BuildOutcome(self.folder, len(self.split), 0, pngs)
         self.warn_of_split()
-        shards, made, warnings = self._complete_shards(range(len(self.split)), batch_size)
-        return self.assemble(shards, made, warnings)
+        shards, new_samples, warnings = self._complete_shards(range(len(self.split)), batch_size)
+        return self.assemble(shards, new_samples, warnings)
 
     def warn_of_split(self) -> None:
         """Warn of parts of the split that lack samples."""
@@ -137,7 +182,7 @@ class Build:
     def assemble(
         self,
         shards: list[Shard],
-        made: int,
+        new_samples: int,
         given_warnings: Sequence[dict[str, Any]] = (),
         remedy: Callable[[Runs], str] | None = None,
     ) -> BuildOutcome:
@@ -145,7 +190,7 @@ class Build:
 
         Args:
             shards: shards that hold every row once.
-            made: number of rows that this run has made.
+            new_samples: number of rows that this run has made.
             given_warnings: warnings that were given before.
             remedy: advice on runs of missing rows, if not to run the same command again.
 
@@ -157,15 +202,15 @@ class Build:
             self._say_warnings([warning for warning in stored if warning not in given_warnings])
             pngs = self._write_missing_files(source)
         clean_up(self.folder)
-        return BuildOutcome(self.folder, len(self.split), made, pngs, stored)
+        return BuildOutcome(self.folder, len(self.split), new_samples, pngs, stored)
 
     def build_part(self, part: DataSetPart, batch_size: int | None) -> BuildOutcome:
         """Make the shards of a part; `radhar merge` puts them together and writes the PNGs."""
         rows, self.png = part.rows(len(self.split)), False
         (self.folder / WORK / BUILT).unlink(missing_ok=True)
-        _, made, warnings = self._complete_shards(rows, batch_size)
+        _, new_samples, warnings = self._complete_shards(rows, batch_size)
         (self.folder / WORK / BUILT).touch()
-        return BuildOutcome(self.folder, len(rows), made, 0, warnings)
+        return BuildOutcome(self.folder, len(rows), new_samples, 0, warnings)
 
     def _say_warnings(self, messages: Sequence[dict[str, Any]]) -> None:
         for warning in messages:
@@ -236,8 +281,8 @@ class Build:
 
 def _batch_size(samples: int, jobs: int, sample_bytes: int) -> int:
     """Number of samples of a batch, for so many samples and processes."""
-    most = min(max(BATCH, samples // (SHARE * jobs)), MAX_BATCH, BATCH_BYTES // sample_bytes)
-    return max(1, min(most, -(-samples // (4 * jobs))))
+    largest = min(max(BATCH, samples // (SHARE * jobs)), MAX_BATCH, BATCH_BYTES // sample_bytes)
+    return max(1, min(largest, -(-samples // (4 * jobs))))
 
 
 def disk_error(folder: Path, error: OSError) -> UnfinishedError:

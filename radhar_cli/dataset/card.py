@@ -79,7 +79,7 @@ def write_card(source: Path, folder: Path) -> None:
             (map_name for map_name in data.config.maps if map_name != "rtm"), data.config.maps[0]
         )
         if GALLERY in missing:
-            write_whole(folder, folder / GALLERY, gallery_png(data, name))
+            write_whole(folder, folder / GALLERY, draw_gallery(data, name))
         if CARD not in missing:
             return
         more: dict[str, Any] = {}
@@ -88,10 +88,11 @@ def write_card(source: Path, folder: Path) -> None:
             more["configs"] = hub_configs(data.config, data.split)
             reading += _READING_PNGS.format(name)
         picture = f"![{name}, one sample of each class]({GALLERY})"
-        write_whole(folder, folder / CARD, card(data, more, f"{picture}\n\n{reading}").encode())
+        text = compose_card(data, more, f"{picture}\n\n{reading}")
+        write_whole(folder, folder / CARD, text.encode())
 
 
-def gallery_png(data: Dataset, name: str) -> bytes:
+def draw_gallery(data: Dataset, name: str) -> bytes:
     """Draw map `name` of the first sample of each of the first 16 classes; return the PNG file."""
     order, table = Rows.of(data.config), colour_table(data.config.image.colour_map)
     classes = list(order.classes())[:16]
@@ -109,7 +110,7 @@ def gallery_png(data: Dataset, name: str) -> bytes:
     return buffer.getvalue()
 
 
-def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
+def compose_card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
     """Write the text of README.md.
 
     Args:
@@ -153,26 +154,29 @@ def _table(head: Sequence[str], lines: Sequence[Sequence[object]]) -> str:
 
 
 def _summary(data: Dataset) -> str:
+    """Say what the data set holds: samples, maps, where they come from, how they are split."""
     config, (height, width) = data.config, data.config.image.size_px
     maps = len(config.maps)
     if isinstance(config, MeasuredConfig):
         window = config.recordings.window_s
-        what = f"what a radar recorded of people, cut into windows of {window:g} s."
+        content = f"what a radar recorded of people, cut into windows of {window:g} s."
     else:
         whom = "several moving people" if config.people else "one moving person"
         where = "through a wall" if config.wall is not None else "in free space"
-        what = f"what an FMCW radar sees of {whom} {where}, simulated from the movement to the map."
+        view = f"what an FMCW radar sees of {whom} {where}"
+        content = f"{view}, simulated from the movement to the map."
     split = "Samples are split one by one."
     if config.split.subjects is not None:
         split = f"Split by person: none of the {config.split.subjects} is in two of its parts."
     return (
         f"{len(data):,} samples of {len(config.chosen_activities)} classes, {maps} "
-        f"map{'s' * (maps > 1)} of each, {height} x {width} pixels: {what} {split}\n\n"
+        f"map{'s' * (maps > 1)} of each, {height} x {width} pixels: {content} {split}\n\n"
         "`scenes.csv` and /scene of dataset.h5 have the numbers that were drawn for each sample."
     )
 
 
 def _maps(data: Dataset) -> str:
+    """Write the table of maps with their axes, and what a level means."""
     lines = []
     for name in data.config.maps:
         reach = "/extent of dataset.h5"
@@ -192,6 +196,7 @@ def _maps(data: Dataset) -> str:
 
 
 def _classes(data: Dataset) -> str:
+    """Write the table of classes with their labels and the samples in each split."""
     present, lines = data.present_splits, []
     for label, (activity, rows) in enumerate(Rows.of(data.config).classes()):
         counts = np.bincount(data.split[rows], minlength=len(SPLITS))
@@ -208,6 +213,7 @@ def _classes(data: Dataset) -> str:
 
 
 def _making(data: Dataset) -> str:
+    """Say which command, seed and versions make the data set again."""
     config = data.config
     library_versions = ", ".join(
         f"{library} {version}" for library, version in data.versions.items()
@@ -221,6 +227,7 @@ def _making(data: Dataset) -> str:
 
 
 def _limits(data: Dataset) -> list[str]:
+    """List the known biases and limits of the data set, those that its build warned of first."""
     config, notes = data.config, [str(warning["message"]) for warning in data.warnings]
     if isinstance(config, MeasuredConfig):
         return [*notes, "config.yaml names files and persons as the recordings' manifest does"]

@@ -17,7 +17,7 @@ def label_names(config: AnyConfig) -> tuple[str, ...]:
     return (*PHASES, *(activity.slug for activity in config.every_class if activity.number > 12))
 
 
-def column_labels(scene: Scene, motion: Motion, image: MapImage, names: Sequence[str]) -> Levels:
+def label_columns(scene: Scene, motion: Motion, image: MapImage, names: Sequence[str]) -> Levels:
     """Label each column of an image with what is under way at the time of its middle.
 
     A motion that names no phases, or others than PHASES, is labelled with its class.

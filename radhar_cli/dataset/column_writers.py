@@ -74,7 +74,7 @@ class ChunkWriter:
     def __init__(self, file: h5py.File, check: Callable[[], None], config: AnyConfig) -> None:
         self._check, self._count = check, len(Rows.of(config))
         self._run = max(1, min(RUN, RUN_BYTES // layout.row_bytes(config)))
-        self._parts = layout.chunked(config)
+        self._parts = layout.large_datasets(config)
         self._targets = {
             name: chunked_dataset(file, name, self._count, config).id for name in self._parts
         }
@@ -105,11 +105,11 @@ class ChunkWriter:
 
 
 class SmallColumnWriter:
-    """Copies the small columns: checksums, counts, entropies, edges, labels (`layout.columns`)."""
+    """Copies the small columns: checksums, counts, entropies, edges, labels."""
 
     def __init__(self, file: h5py.File, config: AnyConfig) -> None:
         count = len(Rows.of(config))
-        self._parts = layout.columns(config)
+        self._parts = layout.small_datasets(config)
         self._targets = {
             name: _BufferedColumn(file.create_dataset(name, (count, *shape), dtype))
             for name, (dtype, shape) in self._parts.items()

@@ -78,8 +78,8 @@ def digest_of(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def read_bytes(path: Path, most: int = MAX_TEXT) -> bytes:
-    """Read a regular file of at most `most` bytes.
+def read_bytes(path: Path, max_bytes: int = MAX_TEXT) -> bytes:
+    """Read a regular file of at most `max_bytes` bytes.
 
     Raises:
         FolderError: the path is no regular file, too large, or cannot be read.
@@ -87,10 +87,10 @@ def read_bytes(path: Path, most: int = MAX_TEXT) -> bytes:
     """
     try:
         size = regular_size(path)
-        if size > most:
-            raise FolderError(f"{path}: is {size} bytes; should be at most {most}")
+        if size > max_bytes:
+            raise FolderError(f"{path}: is {size} bytes; should be at most {max_bytes}")
         with path.open("rb") as file:
-            return file.read(most)
+            return file.read(max_bytes)
     except FileNotFoundError:
         raise
     except OSError as error:

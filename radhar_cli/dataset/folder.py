@@ -101,7 +101,7 @@ def remove_unfinished(folder: Path) -> None:
 
 def refuse_foreign_files(
     folder: Path,
-    ours: str,
+    content: str,
     allowed: Sequence[str] = (WORK,),
     error: type[RadharError] = FolderError,
 ) -> None:
@@ -109,7 +109,7 @@ def refuse_foreign_files(
 
     Args:
         folder: the folder.
-        ours: what it lacks, for the message: "radhar data set".
+        content: what it lacks, for the message: "radhar data set".
         allowed: names that it may hold.
         error: type of the error.
 
@@ -119,17 +119,19 @@ def refuse_foreign_files(
     held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
     names = [name for name in held if name not in allowed and not name.startswith(UNFINISHED)]
     if names:
-        raise error(f"{folder}: holds {', '.join(names[:5])} but no {ours}; choose an empty folder")
+        raise error(
+            f"{folder}: holds {', '.join(names[:5])} but no {content}; choose an empty folder"
+        )
 
 
 def refuse_differences(
-    folder: Path, ours: str, differing: list[str], error: type[RadharError] = FolderError
+    folder: Path, content: str, differing: list[str], error: type[RadharError] = FolderError
 ) -> None:
     """Refuse a folder that holds another data set, or another run.
 
     Args:
         folder: the folder.
-        ours: what it holds, for the message: "data set".
+        content: what it holds, for the message: "data set".
         differing: a line for each difference; none of them is no reason to refuse.
         error: type of the error.
 
@@ -138,7 +140,7 @@ def refuse_differences(
     """
     if differing:
         raise error(
-            f"{folder}: holds another {ours}; it differs in\n  "
+            f"{folder}: holds another {content}; it differs in\n  "
             + "\n  ".join(differing)
             + "\nchoose another folder, or --overwrite to start this one over"
         )

@@ -36,7 +36,7 @@ def walk(file: h5py.File) -> None:
     Links to other files are not followed.
     """
     _read_attributes(file)
-    seen, groups = set(), [file.id]
+    walked, groups = set(), [file.id]
     while groups:
         group = groups.pop()
         for name in _names(group):
@@ -45,8 +45,8 @@ def walk(file: h5py.File) -> None:
                     continue
                 item = h5py.h5o.open(group, name)
                 address = h5py.h5o.get_info(item).addr
-                if isinstance(item, h5py.h5g.GroupID) and address not in seen:
-                    seen.add(address)
+                if isinstance(item, h5py.h5g.GroupID) and address not in walked:
+                    walked.add(address)
                     groups.append(item)
                     _read_attributes(h5py.Group(item))
                 elif isinstance(item, h5py.h5d.DatasetID):
@@ -93,12 +93,12 @@ def main() -> None:
             walk(file)
 
 
-def _limit(kind: int, most: int) -> None:
+def _limit(kind: int, value: int) -> None:
     """Set a soft limit of this process, on a system that has it and has no stricter one."""
     import resource
 
     with suppress(ValueError, OSError):
-        resource.setrlimit(kind, (most, resource.getrlimit(kind)[1]))
+        resource.setrlimit(kind, (value, resource.getrlimit(kind)[1]))
 
 
 if __name__ == "__main__":

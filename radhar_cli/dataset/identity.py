@@ -19,21 +19,21 @@ _OWN: list[tuple[tuple[Any, ...], str]] = []
 
 def own_digest() -> str | None:
     """Digest of the code of the products and activities that the user added; None without any."""
-    own = (*own_products(), *own_activities())
-    if not own:
+    parts = (*own_products(), *own_activities())
+    if not parts:
         return None
-    for added, digest in _OWN:
-        if len(own) == len(added) and all(map(operator.is_, own, added)):
+    for digested, digest in _OWN:
+        if len(parts) == len(digested) and all(map(operator.is_, parts, digested)):
             return digest
-    products = [(one.name, one.needs, one.make) for one in own_products()]
-    classes = [(one.slug, one.uses, one.motion) for one in own_activities()]
-    _OWN[:] = [(own, code_digest([*products, *classes], extensions()))]
+    products = [(product.name, product.needs, product.make) for product in own_products()]
+    classes = [(activity.slug, activity.uses, activity.motion) for activity in own_activities()]
+    _OWN[:] = [(parts, code_digest([*products, *classes], extensions()))]
     return _OWN[0][1]
 
 
 def versions() -> dict[str, str]:
     """Versions of the libraries that decide the bytes of a data set, by name."""
-    own = own_digest()
+    digest = own_digest()
     import h5py
     import isal
     import numpy as np
@@ -49,7 +49,7 @@ def versions() -> dict[str, str]:
         "isal": isal.__version__,
         "numba": installed("numba") or "none",
         "pyfftw": installed("pyfftw") or "none",
-        **({} if own is None else {"own": own}),
+        **({} if digest is None else {"own": digest}),
     }
 
 

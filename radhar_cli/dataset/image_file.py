@@ -111,8 +111,7 @@ def _header_problem(image: Image.Image, size: tuple[int, int] | None) -> str | N
             "(--resize brings it there, of train with --init)"
         )
     if not 1 <= min(height, width) <= max(height, width) <= MAX_SIDE:
-        most = f"{MAX_SIDE} x {MAX_SIDE}"
-        return f"is {height} x {width} px; should be from 1 x 1 to {most}"
+        return f"is {height} x {width} px; should be from 1 x 1 to {MAX_SIDE} x {MAX_SIDE}"
     if getattr(image, "is_animated", False):
         return "holds several pictures; should hold one"
     if image.mode in ("I", "F"):

@@ -40,7 +40,7 @@ Parts: TypeAlias = dict[str, tuple[str, tuple[int, ...]]]
 SPLIT_FOLDERS = ("train", "val", "test")
 
 
-def chunked(config: AnyConfig) -> Parts:
+def large_datasets(config: AnyConfig) -> Parts:
     """Type and shape of a sample's part of each large dataset of dataset.h5, one sample a chunk.
 
     The checksums of each lie at `checksum_of` its name.
@@ -66,9 +66,9 @@ def count_of(name: str) -> str:
     return f"products/{name}_count"
 
 
-def columns(config: AnyConfig) -> Parts:
+def small_datasets(config: AnyConfig) -> Parts:
     """Type and shape of a sample's part of each small dataset, beside the large ones and /scene."""
-    parts: Parts = {checksum_of(name): ("S64", ()) for name in chunked(config)}
+    parts: Parts = {checksum_of(name): ("S64", ()) for name in large_datasets(config)}
     parts |= {count_of(name): ("i8", ()) for name in config.stored}
     if config.people:
         parts |= {LABELS: ("u1", (len(config.every_class),))}
@@ -110,7 +110,7 @@ def column_axis(name: str) -> tuple[str, str]:
 
 def row_bytes(config: AnyConfig) -> int:
     """Bytes of the large datasets of one sample, before compression."""
-    return sum(np.dtype(t).itemsize * prod(shape) for t, shape in chunked(config).values())
+    return sum(np.dtype(t).itemsize * prod(shape) for t, shape in large_datasets(config).values())
 
 
 def is_incomplete(folder: Path) -> bool:

@@ -82,8 +82,8 @@ def _find_parts(folders: Iterable[Path]) -> list[_Place]:
                 number = DataSetPart.parse(named["part"], f"{part}: part")
                 places[part] = _Place(number, part, named)
             elif not inner.is_dir():
-                what = "is not a part that `radhar generate --shard` made"
-                raise FolderError(f"{part}: {what if part.is_dir() else 'no such folder'}")
+                reason = "is not a part that `radhar generate --shard` made"
+                raise FolderError(f"{part}: {reason if part.is_dir() else 'no such folder'}")
     if not places:
         raise FolderError(
             f"{', '.join(map(str, folders))}: no part of a data set; "

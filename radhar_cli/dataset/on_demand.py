@@ -16,7 +16,7 @@ from radhar_cli.activities.activity import Activity, know_activities, own_activi
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import as_config
 from radhar_cli.dataset import scene_fields
-from radhar_cli.dataset.layout import chunked
+from radhar_cli.dataset.layout import large_datasets
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import ConfigError
 from radhar_cli.processes.worker_process import one_thread
@@ -24,7 +24,7 @@ from radhar_cli.products.plan import Plan
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene import ByIdentity
 from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.single_scene.simulate import activity_of
+from radhar_cli.single_scene.request import activity_of
 
 
 def sample(
@@ -62,9 +62,9 @@ class Sample(dict[str, Any]):
     def __repr__(self) -> str:
         scene = sum(name.startswith("scene/") for name in self)
         shapes = {name: list(getattr(value, "shape", ())) for name, value in self.items()}
-        shown = [f"{name} {shape}" for name, shape in shapes.items() if len(shape) > 1]
-        rest = len(self) - scene - len(shown)
-        return f"<Sample: {', '.join(shown)}; {scene} scene fields, {rest} others>"
+        arrays = [f"{name} {shape}" for name, shape in shapes.items() if len(shape) > 1]
+        others = len(self) - scene - len(arrays)
+        return f"<Sample: {', '.join(arrays)}; {scene} scene fields, {others} others>"
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Recipe:
             synthesised = synthesise(scene, self._plan, self.config)
         sample = Sample(label=label, sample_key=np.array([label, index]))
         sample.update(synthesised.columns)
-        for name, (_, shape) in chunked(self.config).items():
+        for name, (_, shape) in large_datasets(self.config).items():
             sample[name] = np.ascontiguousarray(synthesised.chunk(name, shape))
         all_fields = scene_fields.fields(self.config)
         fields = tuple(field for field in all_fields if field is not scene_fields.ERROR)

@@ -72,4 +72,8 @@ def rows_by_part(runs: Sequence[tuple[int, int]], of: int, count: int) -> list[D
         count: number of rows of the data set.
     """
     parts = [(part, part.rows(count)) for part in (DataSetPart(of, n) for n in range(1, of + 1))]
-    return [one for one, rows in parts if any(a < rows.stop and b > rows.start for a, b in runs)]
+    return [
+        part
+        for part, rows in parts
+        if any(first < rows.stop and stop > rows.start for first, stop in runs)
+    ]

@@ -88,7 +88,7 @@ class Dataset(Closing):
         names: tuple[str, ...] = config.maps
         self.large = {
             name: file.chunks(name, dtype, (count, *shape))
-            for name, (dtype, shape) in layout.chunked(config).items()
+            for name, (dtype, shape) in layout.large_datasets(config).items()
         }
         self.maps = {name: self.large[f"maps/{name}"] for name in names}
         self.sample_key = file.column("sample_key", np.int64, (count, 2))
@@ -100,7 +100,7 @@ class Dataset(Closing):
             self.scene["subject"] = file.column("scene/subject", np.int64, (count,))
         small = {
             name: file.column(name, dtype, (count, *shape))
-            for name, (dtype, shape) in layout.columns(config).items()
+            for name, (dtype, shape) in layout.small_datasets(config).items()
         }
         self.sha256 = {name: small[layout.checksum_of(name)] for name in self.large}
         named = (f"scene/{field.name}" for field in self.fields)

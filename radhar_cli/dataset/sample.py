@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.config.data_set import Config, MeasuredConfig
-from radhar_cli.dataset.column_labels import column_labels, label_names
+from radhar_cli.dataset.column_labels import label_columns, label_names
 from radhar_cli.dataset.layout import COLUMN_LABEL, LABELS, PERSON_LABEL
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError
@@ -53,7 +53,7 @@ class StoredSample(NamedTuple):
         return values | labels
 
     def chunk(self, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
-        """Array of this sample in a large dataset (`layout.chunked`), in the shape given."""
+        """Array of this sample in a large dataset (`layout.large_datasets`), in the shape given."""
         kind, _, map_name = name.partition("/")
         if kind == "maps":
             return self.images[map_name].levels
@@ -97,7 +97,7 @@ def synthesise(scene: Scene, plan: Plan, config: Config) -> StoredSample:
     if scene.config.output.column_labels:
         motion = recording["motions"][0]
         names = label_names(config)
-        labels = {n: column_labels(scene, motion, image, names) for n, image in images.items()}
+        labels = {n: label_columns(scene, motion, image, names) for n, image in images.items()}
     accuracy: EchoAccuracy | None = recording.products.get("accuracy")
     slow_time = None
     if scene.config.output.slow_time:

@@ -15,8 +15,9 @@ from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.errors import FolderError, RadharError
-from radhar_cli.figures import scene_page
-from radhar_cli.figures.scene_page import Entry, SceneView, ShownBody
+from radhar_cli.figures.page_plots import LevelScale, MapLevels, PointFrames, plot_map, plot_space
+from radhar_cli.figures.scene_page import Entry, make_entry
+from radhar_cli.figures.scene_view import MovingBody, SceneView, frame_times, view_scene
 from radhar_cli.figures.sides import bones
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
@@ -69,33 +70,46 @@ def _sample_entry(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> 
     """Make the entry of a row, whose maps have these edges by name."""
     config, (activity, index) = data.config, Rows.of(data.config)[row]
     scene, notes = _scene(data, row)
-    spans = (extents[name][:2] for name in data.maps if column_axis(name)[1] == "s")
-    view, maps, cloud = SceneView(scene_page.clock(*next(spans, (0.0, 0.0)))), list[Entry](), None
+    board, likely_scene = None, scene
+    if scene is None and isinstance(config, Config):
+        likely_scene = nominal_scene(config, activity)
+    if likely_scene is not None and isinstance(likely_scene.radar, BoardRadar):
+        board = board_of(likely_scene.radar, likely_scene.seconds)
     if scene is not None:
-        view = scene_page.moving(scene, tuple(map(motion_of, scene.people)))
-    board = None
-    drawn = scene or (nominal_scene(config, activity) if isinstance(config, Config) else None)
-    if drawn is not None and isinstance(drawn.radar, BoardRadar):
-        board = board_of(drawn.radar, drawn.seconds)
-        view = view if scene is not None else _stored_joints(data, row, board, view)
-    for name in data.maps:
-        if name not in FRAME_MAPS:  # whose images are sheets of what is stored as frames
-            grey, (left, right, bottom, top) = data.maps[name][row], extents[name]
-            columns = Axis(*column_axis(name), _cells(left, right, grey.shape[1]))
-            axes = columns, Axis(*row_axis(name), _cells(bottom, top, grey.shape[0]))
-            look = (config.image, config.image.kind)
-            maps.append(scene_page.heat(view, name, grey[None, ::-1], look, axes))
+        view = view_scene(scene, tuple(map(motion_of, scene.people)))
+    else:
+        spans = (extents[name][:2] for name in data.maps if column_axis(name)[1] == "s")
+        view = SceneView(frame_times(*next(spans, (0.0, 0.0))))
+        view = view if board is None else _stored_joints(data, row, board, view)
+    plots = [plot_map(view, stored_map) for stored_map in _maps(data, row, extents)]
+    cloud = None
     if board is not None:
-        maps += _frames(data, row, board, view)
-        if "points" in data.products:
-            points, start = _product(data, row, "points", (8,)), _product(data, row, "points_start")
-            cloud = _times(board, len(start) - 1), start.astype(int), points
+        plots += [plot_map(view, frames) for frames in _frames(data, row, board)]
+        cloud = _stored_points(data, row, board) if "points" in data.products else None
+    if view.bodies or cloud is not None:
+        plots = [plot_space(view, cloud, board if scene is not None else None), *plots]
     stored = {f.key: data.scene[f.name].rows(row, row + 1)[0] / f.factor for f in data.fields}
     numbers = {key: value for key, value in stored.items() if np.isfinite(value)}
     title = f"{activity.label} {activity.slug}/{index}, {SPLITS[data.split[row]]}"
-    if view.bodies or cloud:
-        maps = [scene_page.space(view, cloud, board if scene is not None else None), *maps]
-    return scene_page.entry(view, maps, title, notes, numbers)
+    return make_entry(view, plots, title, notes, numbers)
+
+
+def _maps(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Iterator[MapLevels]:
+    """Yield the stored maps of a row, but for sheets of what is stored as frames."""
+    image = data.config.image
+    for name in data.maps:
+        if name not in FRAME_MAPS:
+            grey, (left, right, bottom, top) = data.maps[name][row], extents[name]
+            columns = Axis(*column_axis(name), _cells(left, right, grey.shape[1]))
+            rows = Axis(*row_axis(name), _cells(bottom, top, grey.shape[0]))
+            scale = LevelScale.of(image, image.kind)
+            yield MapLevels(name, grey[None, ::-1], scale, columns, rows)
+
+
+def _stored_points(data: Dataset, row: int, board: Board) -> PointFrames:
+    """Read the stored points of a row."""
+    points, start = _product(data, row, "points", (8,)), _product(data, row, "points_start")
+    return PointFrames(_times(board, len(start) - 1), start.astype(int), points)
 
 
 def _cells(low: float, high: float, cells: int) -> NDArray[Any]:
@@ -117,7 +131,7 @@ def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] =
     values = np.atleast_1d(data.products[name][row])
     stored_shape = values.shape[1:]
     expected_shape = tuple(
-        n or stored_shape[at] if at < len(stored_shape) else n for at, n in enumerate(shape)
+        n or stored_shape[axis] if axis < len(stored_shape) else n for axis, n in enumerate(shape)
     )
     least = {"points": 0, "points_start": 2}.get(name, 1)
     if stored_shape != expected_shape or len(values) < least or values.dtype.kind not in "iuf":
@@ -126,14 +140,14 @@ def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] =
     return values
 
 
-def _frames(data: Dataset, row: int, board: Board, view: SceneView) -> Iterator[Entry]:
-    """Yield the plots of the stored frame maps."""
+def _frames(data: Dataset, row: int, board: Board) -> Iterator[MapLevels]:
+    """Yield the stored frame maps of a row."""
+    scale = LevelScale.of(data.config.image, "decibel")
     for name, kind in FRAME_MAP_KINDS.items():
         if name in data.products:
             rows, columns = kind.rows.of(board), kind.columns.of(board)
             grey = _product(data, row, name, (rows.values.size, columns.values.size))
-            look, axes = (data.config.image, "decibel"), (columns, rows)
-            yield scene_page.heat(view, name, grey, look, axes, _times(board, len(grey)))
+            yield MapLevels(name, grey, scale, columns, rows, _times(board, len(grey)))
 
 
 def _stored_joints(data: Dataset, row: int, board: Board, view: SceneView) -> SceneView:
@@ -147,7 +161,7 @@ def _stored_joints(data: Dataset, row: int, board: Board, view: SceneView) -> Sc
     names = JOINTS if known else [f"joint {n}" for n in range(count)]
     still = np.concatenate([joints, np.zeros((*joints.shape[:3], 1))], axis=3)
     ends = bones(still, PARENTS if known else (None,) * count)
-    bodies = [ShownBody(f"person {n}", names, ends[:, n]) for n in range(ends.shape[1])]
+    bodies = [MovingBody(f"person {n}", names, ends[:, n]) for n in range(ends.shape[1])]
     return view._replace(time=_times(board, len(joints)), bodies=bodies)
 
 

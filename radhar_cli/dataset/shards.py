@@ -16,7 +16,7 @@ import numpy as np
 
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.dataset.layout import WORK, checksum_of, chunked, count_of
+from radhar_cli.dataset.layout import WORK, checksum_of, count_of, large_datasets
 from radhar_cli.dataset.png import deflate
 from radhar_cli.dataset.sample import SampleRow
 from radhar_cli.errors import SceneError, UnfinishedError
@@ -82,7 +82,7 @@ def shard_folder(folder: Path) -> Path:
 
 def chunked_dataset(file: h5py.File, name: str, count: int, config: AnyConfig) -> h5py.Dataset:
     """Create an empty large dataset [count, ...], one sample a chunk, compressed."""
-    dtype, shape = chunked(config)[name]
+    dtype, shape = large_datasets(config)[name]
     level = config.output.hdf5_level
     return file.create_dataset(
         name,
@@ -115,7 +115,7 @@ def encode_shard(
     samples = [row.sample for row in rows]
     # Not libver="latest", whose groups hold the time at which they were made.
     with h5py.File(buffer, "w", userblock_size=USER_BLOCK) as file:
-        for name, (dtype, shape) in chunked(config).items():
+        for name, (dtype, shape) in large_datasets(config).items():
             target, checksums = chunked_dataset(file, name, len(samples), config), []
             for row, sample in enumerate(samples):
                 raw = np.asarray(sample.chunk(name, shape), dtype).tobytes()

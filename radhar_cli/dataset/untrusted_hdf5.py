@@ -372,14 +372,11 @@ class Column:
             if not self._filters:
                 values: NDArray[Any] = self._dataset[key]
                 return values.astype(self.dtype, copy=False)
-            out = np.empty([one.stop - one.start for one in key], self.dtype)
+            out = np.empty([span.stop - span.start for span in key], self.dtype)
             for piece in self._dataset.iter_chunks(key):
                 corner = tuple(s.start // c * c for s, c in zip(piece, self.chunk, strict=True))
-                here, inside = (
-                    tuple(slice(s.start - f, s.stop - f) for s, f in zip(piece, first, strict=True))
-                    for first in ([one.start for one in key], corner)
-                )
-                out[here] = self._piece(corner)[inside]
+                in_block = _relative(piece, [span.start for span in key])
+                out[in_block] = self._piece(corner)[_relative(piece, corner)]
             return out
 
     def stored(self, row: int) -> tuple[int, bytes]:
@@ -433,6 +430,14 @@ class NumberColumn(Column):
         """Read a block of numbers by parts [..., part], two for complex and compound numbers."""
         values = np.ascontiguousarray(self.block(key))
         return values.view(self.number).reshape(*values.shape, self.parts)
+
+
+def _relative(piece: Sequence[slice], origin: Sequence[int]) -> tuple[slice, ...]:
+    """Slices of a piece, counted from an origin."""
+    return tuple(
+        slice(span.start - first, span.stop - first)
+        for span, first in zip(piece, origin, strict=True)
+    )
 
 
 def _filters(dataset: h5py.Dataset, where: str, *allowed: list[int]) -> list[int]:

@@ -21,13 +21,15 @@ from radhar_cli.dataset.image_tables import image_tables
 from radhar_cli.dataset.layout import COLUMN_LABEL, CONFIG, PNG, SCENES, WORK, Rows, checksum_of
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
-from radhar_cli.dataset.sample import synthesise
+from radhar_cli.dataset.sample import StoredSample, synthesise
 from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.dataset.untrusted_hdf5 import DIGESTS
 from radhar_cli.errors import FolderError
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processes.worker_process import prepare_process
+from radhar_cli.processing.power_map import MapImage
 from radhar_cli.products.table import plan_images
+from radhar_cli.scene import Scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 
 # Of a mask's pixels that may differ under other versions of the libraries.
@@ -77,21 +79,21 @@ def verify(
             for library, here in versions().items()
             if stored[library] != here
         ]
-        if _structure(data, report):
-            _checksums(data, report, progress)
-            _attributes(data, report)
+        if _verify_structure(data, report):
+            _verify_checksums(data, report, progress)
+            _verify_attributes(data, report)
             if isinstance(data.config, Config):  # recordings may lie anywhere
                 _resynthesise(data, data.config, samples, report, motion, progress)
             if (beside / PNG).is_dir():
-                _pngs(data, beside, report, progress)
+                _verify_pngs(data, beside, report, progress)
             elif (beside / WORK).is_dir() and data.config.output.png:
                 report.problems.append(f"{PNG}: is missing; `radhar generate` makes it again")
             if (beside / WORK).is_dir():
-                _config_and_table(data, beside, report)
+                _verify_config_and_table(data, beside, report)
         return report
 
 
-def _structure(data: Dataset, report: Verification) -> bool:
+def _verify_structure(data: Dataset, report: Verification) -> bool:
     """Compare labels, splits, keys and persons with the config; return whether all agree."""
     config = data.config
     rows = Rows.of(config)
@@ -110,7 +112,7 @@ def _structure(data: Dataset, report: Verification) -> bool:
     return not report.problems
 
 
-def _checksums(data: Dataset, report: Verification, progress: Progress) -> None:
+def _verify_checksums(data: Dataset, report: Verification, progress: Progress) -> None:
     """Compare every large and small dataset with its checksum."""
     progress.stage("checksums", len(data) * len(data.large), 0, "checksum")
     for name, chunks in data.large.items():
@@ -119,7 +121,7 @@ def _checksums(data: Dataset, report: Verification, progress: Progress) -> None:
             if hashlib.sha256(chunks[row].tobytes()).hexdigest().encode() != stored[row]:
                 report.problems.append(f"/{name}[{row}]: does not match its checksum")
             progress.advance(1)
-    stored_digests = _mapping(data, "columns_sha256", report)
+    stored_digests = _read_mapping(data, "columns_sha256", report)
     for name, column in data.small.items():
         if name.startswith(checksum_of("")):
             continue
@@ -130,7 +132,7 @@ def _checksums(data: Dataset, report: Verification, progress: Progress) -> None:
             report.problems.append(f"/{name}: does not match its checksum")
 
 
-def _mapping(data: Dataset, name: str, report: Verification) -> dict[str, Any]:
+def _read_mapping(data: Dataset, name: str, report: Verification) -> dict[str, Any]:
     """Read an attribute of the file that should be a mapping; report any other."""
     value = data.file.json(name)
     if isinstance(value, dict):
@@ -139,9 +141,10 @@ def _mapping(data: Dataset, name: str, report: Verification) -> dict[str, Any]:
     return {}
 
 
-def _attributes(data: Dataset, report: Verification) -> None:
+def _verify_attributes(data: Dataset, report: Verification) -> None:
     """Compare the names and attributes in the file with those of its build."""
-    stored_digests, built_digests = data.file.attribute_digests(), _mapping(data, DIGESTS, report)
+    stored_digests = data.file.attribute_digests()
+    built_digests = _read_mapping(data, DIGESTS, report)
     for name in sorted(stored_digests.keys() | built_digests.keys()):
         if stored_digests.get(name) != built_digests.get(name):
             problem = "attributes differ from those that were built"
@@ -150,7 +153,7 @@ def _attributes(data: Dataset, report: Verification) -> None:
             report.problems.append(f"{name}: {problem}")
 
 
-def _config_and_table(data: Dataset, folder: Path, report: Verification) -> None:
+def _verify_config_and_table(data: Dataset, folder: Path, report: Verification) -> None:
     """Compare config.yaml and scenes.csv with what dataset.h5 says."""
     for name in (CONFIG, SCENES):
         if not (folder / name).exists():
@@ -174,10 +177,7 @@ def _resynthesise(
     """Synthesise some samples again, and compare all that is stored of them."""
     config = config if motion is None else set_motion_folder(config, motion)
     rows, plan = Rows.of(config), plan_images(config)
-    columns = data.fields
-    scene_values = {field.name: data.scene[field.name][:] for field in columns}
-    entropies = {name: data.entropy(name) for name in data.maps}
-    tolerated_levels, is_mask = 1 if report.other_versions else 0, config.image.kind == "cfar"
+    comparison = _SampleComparison(data, config, report)
     chosen_rows = rows.spread(samples)
     progress.stage("samples again", len(chosen_rows), 0)
     for number, row in enumerate(chosen_rows):
@@ -187,58 +187,85 @@ def _resynthesise(
             report.unmade += 1
             continue
         scene, _ = draw_valid_scene(config, activity, index)
-        drawn = zip(columns, scene_fields.values(scene, columns), strict=True)
-        for column, value in drawn:
+        comparison.compare(row, scene, synthesise(scene, plan, config))
+        report.resynthesised += 1
+
+
+class _SampleComparison:
+    """Compares samples synthesised again with those that are stored; problems go to the report."""
+
+    def __init__(self, data: Dataset, config: Config, report: Verification) -> None:
+        self._data, self._report = data, report
+        self._is_bitwise = not report.other_versions
+        self._is_mask = config.image.kind == "cfar"
+        self._labels = label_names(config)
+        self._scene_values = {field.name: data.scene[field.name][:] for field in data.fields}
+        self._entropies = {name: data.entropy(name) for name in data.maps}
+
+    def compare(self, row: int, scene: Scene, sample: StoredSample) -> None:
+        """Compare all that is stored of a row."""
+        self._compare_numbers(row, scene)
+        self._compare_arrays(row, scene.name, sample)
+        self._compare_labels(row, scene.name, sample)
+        for name, image in sample.images.items():
+            self._compare_image(row, scene.name, name, image)
+
+    def _say(self, problem: str) -> None:
+        self._report.problems.append(problem)
+
+    def _compare_numbers(self, row: int, scene: Scene) -> None:
+        """Compare the numbers of a scene with those of /scene, but for the measured error."""
+        columns = self._data.fields
+        drawn_numbers = scene_fields.values(scene, columns)
+        for column, value in zip(columns, drawn_numbers, strict=True):
             if column is scene_fields.ERROR:
                 continue
-            stored_value = scene_values[column.name][row]
-            drawn_value = value * column.factor
-            if not np.isclose(stored_value, drawn_value, rtol=1e-12, atol=0, equal_nan=True):
-                report.problems.append(
-                    f"/scene/{column.name}[{row}]: {stored_value} instead of {drawn_value}"
-                )
-        synthesised = synthesise(scene, plan, config)
-        for name, stored in data.large.items():
+            stored, drawn = self._scene_values[column.name][row], value * column.factor
+            if not np.isclose(stored, drawn, rtol=1e-12, atol=0, equal_nan=True):
+                self._say(f"/scene/{column.name}[{row}]: {stored} instead of {drawn}")
+
+    def _compare_arrays(self, row: int, scene_name: str, sample: StoredSample) -> None:
+        """Compare power, slow time and products."""
+        for name, stored in self._data.large.items():
             if not name.startswith("maps/"):
-                expected = synthesised.chunk(name, stored.shape[1:])
-                if not _matches(stored[row], expected, bitwise=not report.other_versions):
-                    report.problems.append(f"/{name}[{row}] ({scene.name}): differs")
-        for name, expected in synthesised.products.items():
-            stored_value = data.products[name][row]
-            if not _matches(stored_value, expected, bitwise=not report.other_versions):
-                report.problems.append(f"/products/{name}[{row}] ({scene.name}): differs")
-        for name, labels in synthesised.labels.items():
-            if (data.small[name].rows(row, row + 1)[0] != labels).any():
-                report.problems.append(f"/{name}[{row}] ({scene.name}): is not {labels.tolist()}")
-        for name, labels in synthesised.column_labels.items():
-            wrong_columns = int(
-                np.count_nonzero(data.column_label[name].rows(row, row + 1)[0] != labels)
-            )
-            # Under other versions a phase may begin a column later: rounding.
-            if wrong_columns > len(label_names(config)) * tolerated_levels:
-                report.problems.append(
-                    f"/{COLUMN_LABEL}/{name}[{row}]: {wrong_columns} wrong columns"
-                )
-        for name, image in synthesised.images.items():
-            difference = np.abs(data.maps[name][row].astype(int) - image.levels)
-            largest_difference, share = int(difference.max()), float(np.mean(difference > 0))
-            report.worst_level = max(report.worst_level, largest_difference)
-            # A cell at its threshold is set or not: whole levels, but few of them.
-            if (
-                share > MASK_SHARE * tolerated_levels
-                if is_mask
-                else largest_difference > tolerated_levels
-            ):
-                amount = (
-                    f"in {share:.2%} of its pixels"
-                    if is_mask
-                    else f"by up to {largest_difference} grey levels"
-                )
-                report.problems.append(f"/maps/{name}[{row}] ({scene.name}): differs {amount}")
-            entropy = float(entropies[name][row])
-            if abs(entropy - image.entropy) > 1e-3 * max(1.0, image.entropy):
-                report.problems.append(f"/entropy/{name}[{row}]: {entropy}, not {image.entropy}")
-        report.resynthesised += 1
+                expected = sample.chunk(name, stored.shape[1:])
+                if not _matches(stored[row], expected, self._is_bitwise):
+                    self._say(f"/{name}[{row}] ({scene_name}): differs")
+        for name, expected in sample.products.items():
+            if not _matches(self._data.products[name][row], expected, self._is_bitwise):
+                self._say(f"/products/{name}[{row}] ({scene_name}): differs")
+
+    def _compare_labels(self, row: int, scene_name: str, sample: StoredSample) -> None:
+        """Compare the labels of people, and of the columns of images."""
+        for name, labels in sample.labels.items():
+            if (self._data.small[name].rows(row, row + 1)[0] != labels).any():
+                self._say(f"/{name}[{row}] ({scene_name}): is not {labels.tolist()}")
+        # Under other versions a phase may begin a column later: rounding.
+        tolerated = 0 if self._is_bitwise else len(self._labels)
+        for name, labels in sample.column_labels.items():
+            stored = self._data.column_label[name].rows(row, row + 1)[0]
+            wrong_columns = int(np.count_nonzero(stored != labels))
+            if wrong_columns > tolerated:
+                self._say(f"/{COLUMN_LABEL}/{name}[{row}]: {wrong_columns} wrong columns")
+
+    def _compare_image(self, row: int, scene_name: str, name: str, image: MapImage) -> None:
+        """Compare the levels of an image, and the entropy of its map."""
+        difference = np.abs(self._data.maps[name][row].astype(int) - image.levels)
+        largest, share = int(difference.max()), float(np.mean(difference > 0))
+        self._report.worst_level = max(self._report.worst_level, largest)
+        if self._is_mask:  # a cell at its threshold is set or not: whole levels, but few of them
+            is_off, amount = share > self._tolerated(MASK_SHARE), f"in {share:.2%} of its pixels"
+        else:
+            is_off, amount = largest > self._tolerated(1), f"by up to {largest} grey levels"
+        if is_off:
+            self._say(f"/maps/{name}[{row}] ({scene_name}): differs {amount}")
+        entropy = float(self._entropies[name][row])
+        if abs(entropy - image.entropy) > 1e-3 * max(1.0, image.entropy):
+            self._say(f"/entropy/{name}[{row}]: {entropy}, not {image.entropy}")
+
+    def _tolerated(self, rounding: float) -> float:
+        """What of a difference is tolerated: that of rounding under other versions, else none."""
+        return 0.0 if self._is_bitwise else rounding
 
 
 def _matches(stored: NDArray[Any], expected: NDArray[Any], bitwise: bool) -> bool:
@@ -260,7 +287,7 @@ def _matches(stored: NDArray[Any], expected: NDArray[Any], bitwise: bool) -> boo
     return near and np.array_equal(np.isnan(stored), is_nan)
 
 
-def _pngs(data: Dataset, folder: Path, report: Verification, progress: Progress) -> None:
+def _verify_pngs(data: Dataset, folder: Path, report: Verification, progress: Progress) -> None:
     """Compare the PNG files, and the tables beside them, with the maps."""
     config = data.config
     rows, split = Rows.of(config), split_rows(config)

@@ -44,10 +44,10 @@ def curves_png(
             axes.plot(x, train, "--", **style, lw=1, alpha=0.6, label=label + "training")
             axes.plot(x, val, "-", **style, lw=1.8, label=label + "validation")
             if name in best and best[name] in x:
-                kept = x.index(best[name])
-                axes.plot(x[kept], val[kept], "*", color=colour, markersize=11)
-    for axes, what in ((left, f"{score} (%)"), (right, f"loss ({loss})")):
-        axes.set(xlabel="epoch", ylabel=what)
+                place = x.index(best[name])
+                axes.plot(x[place], val[place], "*", color=colour, markersize=11)
+    for axes, quantity in ((left, f"{score} (%)"), (right, f"loss ({loss})")):
+        axes.set(xlabel="epoch", ylabel=quantity)
         axes.grid(alpha=0.3)
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     right.set_yscale("log")  # a spike leaves the rest of the curve its room

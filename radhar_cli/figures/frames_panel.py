@@ -27,7 +27,8 @@ TINY = float(np.finfo(np.float32).tiny)  # instead of the largest power of black
 class BoardFrames:
     """Content of a page of frames of a board, simulated or measured."""
 
-    made: Mapping[str, Any]  # {name: FrameMaps}, and `cloud`, `skeletons` where there are some
+    # {name: FrameMaps}, and `cloud`, `skeletons` where there are some
+    products: Mapping[str, Any]
     board: Board  # whose frames
     image: ImageConfig  # dynamic range and colours
     title: str  # one line above
@@ -51,8 +52,8 @@ def of_simulation(simulation: Simulation) -> BoardFrames:
 
 def draw_frames(content: BoardFrames, path: Path) -> None:
     """Write frames.png: maps in dB below the peak of all frames, and the cloud from the radar."""
-    maps = {name: map_ for name, map_ in content.made.items() if isinstance(map_, FrameMaps)}
-    cloud, middles = content.made.get("cloud"), content.board.middles
+    maps = {name: map_ for name, map_ in content.products.items() if isinstance(map_, FrameMaps)}
+    cloud, middles = content.products.get("cloud"), content.board.middles
     chosen = np.linspace(0, content.board.frames - 1, COLUMNS).round().astype(int).tolist()
     rows = len(maps) + (cloud is not None)
     figure = page(2.6 * COLUMNS + 1, 2.7 * rows + 0.6, apart=0.06)
@@ -101,13 +102,13 @@ def draw_cloud(content: BoardFrames, path: Path, advance: Advance) -> None:
 
 def _joints(content: BoardFrames) -> Float:
     """Joints [frame, person, joint, 3], m; nobody where none are known, as in captures."""
-    skeletons = content.made.get("skeletons")
+    skeletons = content.products.get("skeletons")
     return np.empty((content.board.frames, 0, 0, 3)) if skeletons is None else skeletons.positions
 
 
 def _moment(content: BoardFrames, frame: int) -> tuple[Float, Float, Float]:
     """Points [n, 3], their speeds [n] and bones [bone, 2, 3] of a frame, m and m/s."""
-    cloud: Cloud = content.made["cloud"]
+    cloud: Cloud = content.products["cloud"]
     points = cloud.points[cloud.start[frame] : cloud.start[frame + 1]]
     ends = [bones(body, content.parents) for body in _joints(content)[frame]]
     return points[:, :3], points[:, 3], np.concatenate([np.empty((0, 2, 3)), *ends])
@@ -115,7 +116,7 @@ def _moment(content: BoardFrames, frame: int) -> tuple[Float, Float, Float]:
 
 def _limits(content: BoardFrames) -> tuple[Float, float]:
     """Lowest and highest (ahead, left, up) to draw [3, 2], m, and the highest speed, m/s."""
-    points, joints = content.made["cloud"].points, _joints(content).reshape(-1, 3)
+    points, joints = content.products["cloud"].points, _joints(content).reshape(-1, 3)
     places = joints if len(joints) else points[:, :3]
     limits = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
     if len(places):

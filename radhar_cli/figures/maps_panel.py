@@ -75,8 +75,8 @@ def draw_map(axes: Axes, name: str, page_content: MapsPage) -> AxesImage:
         look |= {"vmin": -image.dynamic_range_db, "vmax": 0}
     else:
         cells = power_map.real
-        most = float(np.quantile(np.abs(cells), 1 - image.clipped)) or 1.0
-        look |= {"vmin": -most, "vmax": most}
+        largest = float(np.quantile(np.abs(cells), 1 - image.clipped)) or 1.0
+        look |= {"vmin": -largest, "vmax": largest}
     cells = columns_that_show(cells)
     extent = (left, right, low / unit, high / unit)
     drawn = axes.imshow(cells, extent=extent, interpolation="antialiased", **look)

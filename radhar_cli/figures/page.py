@@ -43,11 +43,11 @@ def page_of_rows(
     figure = page(size[0] * columns + margin[0], size[1] * len(rows) + margin[1])
     panels = figure.subplots(len(rows), columns, squeeze=False)
     filled: list[tuple[Axes, T]] = []
-    for row, (name, shown) in zip(panels, rows.items(), strict=True):
-        for panel in row[len(shown) :]:
+    for row, (name, contents) in zip(panels, rows.items(), strict=True):
+        for panel in row[len(contents) :]:
             panel.set_axis_off()
         row[0].set_ylabel(name, fontsize=7)
-        filled += zip(row, shown, strict=False)
+        filled += zip(row, contents, strict=False)
     return figure, filled
 
 

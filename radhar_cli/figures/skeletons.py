@@ -27,8 +27,8 @@ def skeletons_png(pairs: Sequence[tuple[Float, Float, str]], parents: Parents, t
     figure = page(2.1 * len(pairs), 5.4)
     grid = figure.subplots(len(SIDES), len(pairs), squeeze=False)
     for row, (side, (across, sign)) in zip(grid, SIDES.items(), strict=True):
-        for axes, (true, found, caption) in zip(row, pairs, strict=True):
-            for joints, colour, name in ((true, "0.6", "true"), (found, "tab:red", "found")):
+        for axes, (true, estimated, caption) in zip(row, pairs, strict=True):
+            for joints, colour, name in ((true, "0.6", "true"), (estimated, "tab:red", "found")):
                 x, z = sign * joints[:, across], joints[:, 2]
                 for bone in bones(joints, parents):
                     axes.plot(sign * bone[:, across], bone[:, 2], color=colour, linewidth=1.6)

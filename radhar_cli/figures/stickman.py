@@ -27,11 +27,11 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
         advance: called with 1 after every frame.
     """
     truth = simulation.truth
-    everybody = [(truth, simulation.motion)]
-    everybody += [(one.truth, one.motion) for one in simulation.others]
-    alone = len(everybody) == 1
+    people = [(truth, simulation.motion)]
+    people += [(other.truth, other.motion) for other in simulation.others]
+    alone = len(people) == 1
     middle = truth.positions.mean(axis=1) * (alone, alone, 0)
-    tracks = [joint for one, _ in everybody for joint in one.positions.swapaxes(0, 1)]
+    tracks = [joint for person, _ in people for joint in person.positions.swapaxes(0, 1)]
     bounds = [((p - middle).min(axis=0), (p - middle).max(axis=0)) for p in tracks]
     low = np.min([least for least, _ in bounds], axis=0) - 0.1
     high = np.max([most for _, most in bounds], axis=0) + 0.1
@@ -52,14 +52,14 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
         t = frame / FRAMES_PER_SECOND
         pulse = int(np.searchsorted(truth.time, t).clip(max=truth.time.size - 1))
         lines = []
-        for one, motion in everybody:
-            hips = None if one.hip_joints is None else one.hip_joints[pulse]
-            lines.append(limbs(one.positions[pulse], motion.parents, hips))
-        here, under_way = middle[pulse], truth.phases[truth.phase_label[pulse]]
+        for person, motion in people:
+            hips = None if person.hip_joints is None else person.hip_joints[pulse]
+            lines.append(limbs(person.positions[pulse], motion.parents, hips))
+        centre_now, phase = middle[pulse], truth.phases[truth.phase_label[pulse]]
         clock = f"t = {t:.2f} s"
-        clock += f", at x = {here[0]:.1f} m, y = {here[1]:.1f} m" if alone else ""
-        clock += "" if under_way == WHOLE else f"   {under_way}"
-        joints, ends = truth.positions[pulse] - here, np.concatenate(lines) - here
+        clock += f", at x = {centre_now[0]:.1f} m, y = {centre_now[1]:.1f} m" if alone else ""
+        clock += "" if phase == WHOLE else f"   {phase}"
+        joints, ends = truth.positions[pulse] - centre_now, np.concatenate(lines) - centre_now
         film.show(joints, -truth.radial_velocity[pulse], ends, clock)
         for line in cursor:
             line.set_xdata([t, t])

@@ -32,10 +32,10 @@ def pictures_png(
         The PNG file.
     """
     figure, panels = page_of_rows(rows, (2.0, 1.75), (1.2, 0.8))
-    for panel, one in panels:
+    for panel, picture in panels:
         look: dict[str, Any] = {"cmap": "viridis", "vmin": 0, "vmax": 255, "aspect": "auto"}
-        panel.imshow(one.levels, extent=one.extent, interpolation="nearest", **look)
-        panel.set_title(one.words, fontsize=7)
+        panel.imshow(picture.levels, extent=picture.extent, interpolation="nearest", **look)
+        panel.set_title(picture.words, fontsize=7)
         panel.locator_params(nbins=4)
         panel.tick_params(labelsize=6, length=2)
         panel.label_outer()

@@ -30,22 +30,22 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
         board: board that the frames are of.
         config: config of the scene, or of the processing of a recording.
     """
-    for name, one in frames.items():
-        if isinstance(one, FrameMaps):
-            _write_maps(file, name, one)
-        elif isinstance(one, Cloud):
-            _write_cloud(file, one, board)
-        elif isinstance(one, Skeletons):
-            _write_skeletons(file, one)
+    for name, product in frames.items():
+        if isinstance(product, FrameMaps):
+            _write_maps(file, name, product)
+        elif isinstance(product, Cloud):
+            _write_cloud(file, product, board)
+        elif isinstance(product, Skeletons):
+            _write_skeletons(file, product)
         elif name == "cube":
-            file["cube"] = in_single(one)
+            file["cube"] = in_single(product)
             file["cube"].attrs["axes"] = ["frame", "loop", "virtual", "sample"]
             file["cube"].attrs["meaning"] = "raw samples for unit transmit power"
         elif name == "points_kind":
-            file[name] = one
+            file[name] = product
             file[name].attrs["kinds"] = kinds_of(config)
         else:
-            file[name] = one
+            file[name] = product
             file[name].attrs["meaning"] = "number of the person, -1 of none"
     radar = config.radar
     assert isinstance(radar, BoardRadar)
@@ -66,6 +66,7 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
 
 
 def _write_maps(file: h5py.File, name: str, maps: FrameMaps) -> None:
+    """Write the maps of all frames to /<name>, and their axes to /axes/<name>."""
     dataset = file.create_dataset(name, data=in_single(maps.power), compression="gzip")
     dataset.attrs["axes"] = ["frame", maps.rows.name, maps.columns.name]
     dataset.attrs["meaning"] = "power for unit transmit power: a steady echo of amplitude a is a^2"
@@ -76,6 +77,7 @@ def _write_maps(file: h5py.File, name: str, maps: FrameMaps) -> None:
 
 
 def _write_cloud(file: h5py.File, cloud: Cloud, board: Board) -> None:
+    """Write the points of all frames to /points, and where each frame begins to /points_start."""
     file["points"], file["points_start"] = cloud.points, cloud.start
     file["points"].attrs["columns"] = COLUMNS
     file["points"].attrs["units"] = ["m", "m", "m", "m/s", "1", "dB", "bin", "bin"]
@@ -85,6 +87,7 @@ def _write_cloud(file: h5py.File, cloud: Cloud, board: Board) -> None:
 
 
 def _write_skeletons(file: h5py.File, skeletons: Skeletons) -> None:
+    """Write joints to /skeleton, their velocities to /skeleton_velocity, their names."""
     file["skeleton"], file["skeleton_velocity"] = skeletons.positions, skeletons.velocities
     for name, unit in (("skeleton", "m"), ("skeleton_velocity", "m/s")):
         file[name].attrs["unit"] = unit

@@ -16,12 +16,12 @@ from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.single_scene.simulate import activity_of, scene_of
+from radhar_cli.single_scene.request import activity_of, scene_of
 
 _HIP = JOINTS.index("hip")
 
 
-def sampled(motion: Motion, t: Float) -> Float:
+def sample_joints(motion: Motion, t: Float) -> Float:
     """Sample positions of the thirteen joints and of the right and left hip joint.
 
     Args:
@@ -72,4 +72,5 @@ def scene_bvh(
     frames = round(scene.seconds * rate) + 1
     if frames > MAX_FRAMES:
         raise ConfigError(f"{frames} frames; should be at most {MAX_FRAMES}: --rate, duration_s")
-    return bvh_text(sampled(motion_of(scene.people[0]), np.arange(frames) / rate), rate), frames
+    joints = sample_joints(motion_of(scene.people[0]), np.arange(frames) / rate)
+    return bvh_text(joints, rate), frames

@@ -43,8 +43,8 @@ def write_scene(simulation: Simulation, path: Path) -> None:
             write_frames(file, simulation.frames, simulation.board, simulation.config)
         _write_truth(file, simulation)
         file.attrs["scene"] = json.dumps(describe(simulation))
-        own = keep_used_files(simulation.config, simulation.activity.slug)
-        file.attrs["config"] = json.dumps(resolved(own))
+        config = keep_used_files(simulation.config, simulation.activity.slug)
+        file.attrs["config"] = json.dumps(resolved(config))
         file.attrs["radhar_version"] = __version__
 
 
@@ -65,6 +65,7 @@ def write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
 
 
 def _write_truth(file: h5py.File, simulation: Simulation) -> None:
+    """Write the truth of everybody in a scene, and of its paths, to /truth."""
     _write_person(file.create_group("truth"), simulation.truth, simulation.motion)
     for person, motion, truth in simulation.others:
         group = file.create_group(f"truth/person_{person.number}")
@@ -80,7 +81,7 @@ def _write_truth(file: h5py.File, simulation: Simulation) -> None:
 
 def _write_person(group: h5py.Group, truth: Truth, motion: Motion) -> None:
     """Write the truth of one person to a group."""
-    meant: dict[str, dict[str, Any]] = {
+    attributes_of: dict[str, dict[str, Any]] = {
         "time": {"unit": "s"},
         "positions": {"unit": "m", "axes": ["pulse", "joint", "x y z"]},
         "hip_joints": {"unit": "m", "axes": ["pulse", "right left", "x y z"]},
@@ -88,7 +89,7 @@ def _write_person(group: h5py.Group, truth: Truth, motion: Motion) -> None:
         "doppler": {"unit": "Hz, positive approaching, before aliasing"},
         "phase_label": {"meaning": list(truth.phases)},
     }
-    for name, attributes in meant.items():
+    for name, attributes in attributes_of.items():
         if (values := getattr(truth, name)) is not None:
             group[name] = values
             group[name].attrs.update(attributes)
@@ -102,7 +103,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
     return {
         "activity": {"label": scene.activity.label, "slug": scene.activity.slug},
         "seed": scene.config.seed,
-        "people": [one.person.activity.slug for one in simulation.others],
+        "people": [other.person.activity.slug for other in simulation.others],
         "motion_file": _motion_file(simulation.motion),
         "joint": simulation.joint,
         "engine": "cube (fallback)" if fallback else kind,
@@ -118,7 +119,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
             "highest_speed_mps": waveform.highest_speed,
         },
         "warnings": simulation.warnings,
-        "entropy_bits": {name: one.entropy for name, one in simulation.maps.items()},
+        "entropy_bits": {name: power_map.entropy for name, power_map in simulation.maps.items()},
     }
 
 
@@ -165,10 +166,10 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         write_scene(simulation, folder / SCENE_FILE)
         write_text(folder / SCENE_JSON, json.dumps(describe(simulation), indent=2) + "\n")
-        own = keep_used_files(simulation.config, simulation.activity.slug)
+        config = keep_used_files(simulation.config, simulation.activity.slug)
         command = f"radhar simulate {SCENE_YAML} -o OUT --index {simulation.scene.index}"
         head = f"# One scene, nothing left to draw: {command}\n"
-        write_text(folder / SCENE_YAML, head + as_yaml(own))
+        write_text(folder / SCENE_YAML, head + as_yaml(config))
         for drawn in DRAWN:  # of an earlier scene
             (folder / drawn).unlink(missing_ok=True)
     except OSError as error:

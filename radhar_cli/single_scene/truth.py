@@ -68,29 +68,30 @@ class PathTruth(NamedTuple):
     bounces: Index
 
 
-def path_truth(sources: list[OwnedPaths], t: Float) -> PathTruth:
+def evaluate_path_truth(sources: list[OwnedPaths], t: Float) -> PathTruth:
     """Evaluate the paths of all sources, I in all, at times t [M] (s)."""
-    paths = [one.source(t) for one in sources]
-    counts = [len(one.delay) for one in paths]
-    first = Counter[tuple[int, tuple[Leg, Leg]]]()  # scatterer of a person by these legs
+    paths = [owned.source(t) for owned in sources]
+    counts = [len(path.delay) for path in paths]
+    next_scatterer = Counter[tuple[int, tuple[Leg, Leg]]]()  # of a person by these legs
     scatterers = []
-    for one, count in zip(sources, counts, strict=True):
-        begin = first[one[1:]]
-        scatterers.append(np.arange(begin, begin + count))
-        first[one[1:]] += count
-    bounces = [sum(len(way.faces) for way in one.legs) for one in sources]
+    for owned, count in zip(sources, counts, strict=True):
+        person_and_legs = owned[1:]
+        first = next_scatterer[person_and_legs]
+        scatterers.append(np.arange(first, first + count))
+        next_scatterer[person_and_legs] += count
+    bounces = [sum(len(leg.faces) for leg in owned.legs) for owned in sources]
     return PathTruth(
         t,
-        np.concatenate([one.delay for one in paths]),
-        np.concatenate([one.amplitude for one in paths]),
-        np.repeat([names_of(one.legs) for one in sources], counts).tolist(),
-        np.repeat([one.person for one in sources], counts),
+        np.concatenate([path.delay for path in paths]),
+        np.concatenate([path.amplitude for path in paths]),
+        np.repeat([names_of(owned.legs) for owned in sources], counts).tolist(),
+        np.repeat([owned.person for owned in sources], counts),
         np.concatenate(scatterers),
         np.repeat(bounces, counts),
     )
 
 
-def truth(
+def evaluate_truth(
     motion: Motion,
     antennas: Antennas,
     wall: Wall | None,

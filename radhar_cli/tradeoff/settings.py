@@ -10,6 +10,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.number import nominal
 from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.room import WallConfig
 from radhar_cli.scene import Scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 
@@ -103,6 +104,20 @@ BEAM = "radar.beam={azimuth_deg: 70, elevation_deg: 30}"
 
 def _switch_settings(config: Config) -> list[Setting]:
     """Settings of physics and transforms that a config may leave out."""
+    switches = _common_switches(config)
+    if config.motion.model == "human" and not config.people:
+        switches.append(switch_off_by_default("another person, who walks", "people=[{}]"))
+    if not isinstance(config.radar, BoardRadar) and config.radar.beam is None:
+        switches.append(switch_off_by_default("beams of 70 x 30 degrees", BEAM))
+    if config.room.faces is None and config.room.back_wall_m is None:
+        switches += _room_switches()
+    if config.wall is not None:
+        switches += _wall_switches(config.wall)
+    return switches
+
+
+def _common_switches(config: Config) -> list[Setting]:
+    """Settings that every config may have."""
     body_kind, clutter = config.body.scatterers, config.processing.clutter
     other_body_kind = "points" if body_kind == "segments" else "segments"
     dense, in_chirp = "processing.fsst_hop_pulses=1", (*CUBE, "engine.motion_in_chirp=true")
@@ -113,22 +128,14 @@ def _switch_settings(config: Config) -> list[Setting]:
         "noise corner at PRF/20": (*DIRECT, f"receiver.noise_corner_hz={prf / 20:g}"),
         "interference line at PRF/8": (*DIRECT, f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"),
     }
-    switches = [
+    return [
         switch_off_by_default(
             f"scatterers: {other_body_kind} instead of {body_kind}",
             f"body.scatterers={other_body_kind}",
         ),
         switch_with_baseline("shadowing", bodies, "segments without shadowing"),
         switch_with_baseline("range_sum: gated instead of coherent", gates, "the coherent STFT"),
-        *(
-            switch_with_baseline(
-                f"clutter: {kind} instead of {clutter}",
-                [(f"processing.clutter={one}",) for one in (kind, clutter)],
-                "the default",
-            )
-            for kind in CLUTTER
-            if kind != clutter
-        ),
+        *(_clutter_switch(kind, clutter) for kind in CLUTTER if kind != clutter),
         switch_off_by_default("room: 3 reflectors", "room.reflectors=[{}, {}, {}]"),
         *(Setting("switch", name, on, DIRECT, on, noisy=True) for name, on in noises.items()),
         switch_off_by_default("residual video phase", "radar.residual_video_phase=true"),
@@ -139,32 +146,38 @@ def _switch_settings(config: Config) -> list[Setting]:
             "the FSST at the STFT's hop",
         ),
     ]
-    if config.motion.model == "human" and not config.people:
-        switches.append(switch_off_by_default("another person, who walks", "people=[{}]"))
-    if not isinstance(config.radar, BoardRadar) and config.radar.beam is None:
-        switches.append(switch_off_by_default("beams of 70 x 30 degrees", BEAM))
-    if config.room.faces is None and config.room.back_wall_m is None:
-        order_2 = (*CORRIDOR, "room.order=2")
-        switches += [
-            switch_off_by_default("a corridor of concrete, 8 m wide", *CORRIDOR),
-            switch_off_by_default("the corridor with two bounces", *order_2),
-            switch_with_baseline(
-                "the same seen by beams", [(*CORRIDOR, BEAM), (BEAM,)], "beams in the open"
-            ),
-        ]
-    if config.wall is not None:
-        on, off = ((*CUBE, "wall.rays=plane", f"wall.echoes={kind}") for kind in ("exact", "none"))
-        switches += [
-            Setting("switch", "reflections inside the wall", on, off, on, off, "the cube"),
-            *(
-                switch_off_by_default(f"{rays} rays", f"wall.rays={rays}")
-                for rays in ("straight", "plane", "refracted")
-                if rays != config.wall.rays
-            ),
-            switch_off_by_default("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
-            switch_off_by_default("Fresnel, parallel", "wall.fresnel=parallel"),
-        ]
-    return switches
+
+
+def _clutter_switch(kind: str, default: str) -> Setting:
+    """Setting of another canceller than that of the config."""
+    overrides = [(f"processing.clutter={canceller}",) for canceller in (kind, default)]
+    return switch_with_baseline(f"clutter: {kind} instead of {default}", overrides, "the default")
+
+
+def _room_switches() -> list[Setting]:
+    """Settings of rooms, for a config without one."""
+    return [
+        switch_off_by_default("a corridor of concrete, 8 m wide", *CORRIDOR),
+        switch_off_by_default("the corridor with two bounces", *CORRIDOR, "room.order=2"),
+        switch_with_baseline(
+            "the same seen by beams", [(*CORRIDOR, BEAM), (BEAM,)], "beams in the open"
+        ),
+    ]
+
+
+def _wall_switches(wall: WallConfig) -> list[Setting]:
+    """Settings of rays and reflections, for a config with a wall."""
+    on, off = ((*CUBE, "wall.rays=plane", f"wall.echoes={kind}") for kind in ("exact", "none"))
+    return [
+        Setting("switch", "reflections inside the wall", on, off, on, off, "the cube"),
+        *(
+            switch_off_by_default(f"{rays} rays", f"wall.rays={rays}")
+            for rays in ("straight", "plane", "refracted")
+            if rays != wall.rays
+        ),
+        switch_off_by_default("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
+        switch_off_by_default("Fresnel, parallel", "wall.fresnel=parallel"),
+    ]
 
 
 def switch_with_baseline(name: str, on_off: Sequence[Sequence[str]], off_name: str) -> Setting:

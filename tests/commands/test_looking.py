@@ -79,6 +79,20 @@ def test_preview_and_inspect(small_set, tmp_path):
     assert found["samples"] == 9
 
 
+def test_preview_replaces_its_own_sheet_and_no_other_file(small_set, tmp_path):
+    out = Path(copytree(small_set, tmp_path / "set"))
+    for _ in range(2):
+        ok("preview", out, "--map", "stft", "--per-class", 1)
+    named = tmp_path / "photo.png"
+    named.write_text("mine")
+    refused = radhar("preview", out, "--map", "stft", "-o", named)
+    assert refused.returncode == 2
+    assert f"{named}: already exists; --overwrite replaces it" in refused.stderr
+    assert named.read_text() == "mine"
+    ok("preview", out, "--map", "stft", "--per-class", 1, "-o", named, "--overwrite")
+    assert named.read_bytes() == (out / "preview_stft.png").read_bytes()
+
+
 def test_simulate_refuses_a_folder_of_other_things(tmp_path):
     config, out = small_config(tmp_path), tmp_path / "out"
     once = ("simulate", config, "-a", "S8", "--no-figures", "--maps", "rtm", "-o")

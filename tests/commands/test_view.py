@@ -113,7 +113,10 @@ def test_view_shows_the_first_sample_of_each_class(small_set, tmp_path):
     assert headings(maps) == ["range-time map", "STFT", "FSST, compensated"]
     assert float(found[1]["numbers"]["motion.speed_mps"]) > 0
     assert [one["name"] for one in space["data"]] == ["S8 walking", "radar"]
-    ok("view", small_set, "-o", page, "--sample", "S8/2", "--sample", "punching/1")
+    refused = radhar("view", small_set, "-o", page)
+    assert refused.returncode == 2
+    assert f"{page}: already exists; --overwrite replaces it" in refused.stderr
+    ok("view", small_set, "-o", page, "--overwrite", "--sample", "S8/2", "--sample", "punching/1")
     assert [one["title"][:9] for one in scenes(page)] == ["S8 walkin", "S2 punchi"]
 
 

@@ -108,7 +108,7 @@ def test_a_shard_that_vanishes_is_named_and_made_again(
         build(config, folder, 1, AtAssembly(lose_two), batch_size=2)
     assert not (folder / "dataset.h5").exists()
     assert not list((folder / ".radhar").rglob("unfinished/*"))
-    assert build(config, folder, 1, Listener(), batch_size=3).made == 4
+    assert build(config, folder, 1, Listener(), batch_size=3).new_samples == 4
     assert fingerprint(folder) == fingerprint(whole)
 
 
@@ -137,7 +137,7 @@ def test_a_damaged_shard_is_made_again_and_a_foreign_one_kept(
     second.write_bytes(foreign)
     (work / "shards" / "notes.txt").write_text("mine")
     notes = Listener()
-    assert build(config, tmp_path / "set", 1, notes).made == 8
+    assert build(config, tmp_path / "set", 1, notes).new_samples == 8
     assert [m.rpartition(": ")[2] for m in notes.messages if "shards" in m] == [
         "does not match its checksum; its rows are made again",
         "belongs to another data set; its rows are made again",

@@ -89,7 +89,7 @@ def test_an_unfinished_build_resumes_with_another_batch_size(config, small_set, 
         make(config, folder, batch_size=2)
     assert [(s.start, s.stop) for s in list_shards(folder)] == [(0, 2), (2, 4)]
     outcome = make(config, folder, batch_size=3)
-    assert outcome.made == 5, "the four finished samples are not made again"
+    assert outcome.new_samples == 5, "the four finished samples are not made again"
     assert fingerprint(folder) == fingerprint(small_set)
 
 
@@ -131,7 +131,7 @@ def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(config, small_set, 
     make(without, folder)
     assert not (folder / "png").exists()
     outcome = make(config, folder)
-    assert outcome.made == 0
+    assert outcome.new_samples == 0
     assert outcome.pngs == 27
     with_pngs, right = fingerprint(folder), fingerprint(small_set)
     assert {k: v for k, v in with_pngs.items() if k.startswith("png")} == {

@@ -14,7 +14,7 @@ from helpers.listener import Listener
 from helpers.small import fingerprint, small_config
 
 from radhar_cli.config import load_config
-from radhar_cli.dataset.build import build
+from radhar_cli.dataset.build import build, build_part
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.merge import merge
 from radhar_cli.dataset.parts import DataSetPart
@@ -85,7 +85,7 @@ def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path):
     build(config, tmp_path / "alone", 1, Listener())
     build(config, tmp_path / "loky", 2, Listener())
     for number in (2, 1):
-        build(config, tmp_path / "shards", 1, Listener(), part=DataSetPart(2, number))
+        build_part(config, tmp_path / "shards", DataSetPart(2, number), 1, Listener())
     merge(tmp_path / "shards", [], 1, Listener())
     shutil.rmtree(tmp_path / "shards/parts")
     made = generate("local", tmp_path / "dask", "--jobs", "2")
@@ -125,7 +125,7 @@ def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(cluster, 
     refused = generate(address, tmp_path / "set")
     output, _ = refused.communicate(timeout=100)
     assert (refused.returncode, "no dask scheduler answers" in output) == (2, True), output
-    made = build(config, tmp_path / "set", 1, Listener()).made
+    made = build(config, tmp_path / "set", 1, Listener()).new_samples
     assert 0 < made < 18
     assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
 

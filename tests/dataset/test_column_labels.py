@@ -13,7 +13,7 @@ from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS
 from radhar_cli.assembly.physics import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset.build import build
-from radhar_cli.dataset.column_labels import column_labels, label_names
+from radhar_cli.dataset.column_labels import label_columns, label_names
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.verify import verify
 from radhar_cli.motion.phases import PHASES
@@ -112,5 +112,5 @@ def test_a_motion_without_phases_is_labelled_with_its_class(config):
     scene = nominal_scene(config, config.chosen_activities[0])
     image = MapImage(np.zeros((4, 6), np.uint8), 0.0, (0.0, 1.0, 0.0, 1.0))
     names = label_names(config)
-    found = column_labels(scene, Silent(motion_of(scene.people[0]), (0,)), image, names)
+    found = label_columns(scene, Silent(motion_of(scene.people[0]), (0,)), image, names)
     assert [names[number] for number in found] == ["coming_home"] * 6

@@ -113,7 +113,7 @@ def test_a_build_of_many_shards_resumes_near_its_end(tmp_path, monkeypatch):
     monkeypatch.setattr(build_module, "run_batch", lambda batch: stub_shard(batch, SIZE, made))
     allow_a_second(tmp_path, monkeypatch, SLOW_WALK)
     outcome = build(config, tmp_path / "set", 1, Listener(), batch_size=1)
-    assert (outcome.samples, outcome.made) == (SHARDS, 1)
+    assert (outcome.samples, outcome.new_samples) == (SHARDS, 1)
 
 
 def test_a_file_that_takes_for_ever_is_refused_among_sound_ones(tmp_path, monkeypatch):

@@ -13,7 +13,7 @@ from helpers.listener import Listener
 from helpers.small import fingerprint, small_config
 
 from radhar_cli.config import load_config
-from radhar_cli.dataset.build import build
+from radhar_cli.dataset.build import build, build_part
 from radhar_cli.dataset.merge import merge
 from radhar_cli.dataset.parts import DataSetPart
 from radhar_cli.dataset.reading import open_dataset
@@ -46,7 +46,7 @@ def made(config, tmp_path_factory):
     """All four parts of a data set, for tests to copy."""
     out = tmp_path_factory.mktemp("parts") / "set"
     for number in (3, 1, 4, 2):
-        build(config, out, 1, Listener(), part=DataSetPart(4, number), batch_size=1 + number % 2)
+        build_part(config, out, DataSetPart(4, number), 1, Listener(), batch_size=1 + number % 2)
     return out
 
 
@@ -78,14 +78,14 @@ def test_gaps_and_damage_name_the_parts_to_run_again(config, out, whole):
     shard.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
     with pytest.raises(UnfinishedError, match=r"rows 4-5 \(2 of 9\).* make .* --shard 3/4, then"):
         merge(out, [], 1, Listener())
-    build(config, out, 1, Listener(), part=DataSetPart(4, 3))
+    build_part(config, out, DataSetPart(4, 3), 1, Listener())
     with pytest.raises(
         UnfinishedError, match=r"rows 0-1 \(2 of 9\).* make .* --shard 1/4, then"
     ) as told:
         merge(out, [], 1, Listener())
     assert f"{shard} does not match its checksum" in str(told.value)
     assert not (out / "dataset.h5").exists()
-    assert build(config, out, 1, Listener(), part=DataSetPart(4, 1)).made == 2
+    assert build_part(config, out, DataSetPart(4, 1), 1, Listener()).new_samples == 2
     merge(out, [], 1, Listener())
     assert merged(out) == whole
 
@@ -96,7 +96,7 @@ def test_damaged_shards_are_replaced_by_shards_of_other_rows(config, out, whole)
     for shard in damaged:
         shard.path.write_bytes(shard.path.read_bytes()[:-1])
     notes = Listener()
-    assert build(config, out, 1, notes, part=DataSetPart(4, 2), batch_size=2).made == 2
+    assert build_part(config, out, DataSetPart(4, 2), 1, notes, batch_size=2).new_samples == 2
     assert len(notes.messages) >= 2
     merge(out, [], 1, Listener())
     assert merged(out) == whole
@@ -109,20 +109,20 @@ def test_nothing_unfinished_is_left_in_a_part_or_the_whole(made, out):
 
 
 def test_a_finished_part_makes_nothing_again(config, out):
-    assert build(config, out, 1, Listener(), part=DataSetPart(4, 2)).already_complete
+    assert build_part(config, out, DataSetPart(4, 2), 1, Listener()).already_complete
 
 
 def test_parts_of_something_else_are_refused(config, out, tmp_path):
     other = config.model_copy(update={"seed": 8})
     with pytest.raises(FolderError, match="holds parts of 4; this would be part 1/3"):
-        build(config, out, 1, Listener(), part=DataSetPart(3, 1))
+        build_part(config, out, DataSetPart(3, 1), 1, Listener())
     with pytest.raises(FolderError, match="should be at most K/9"):
-        build(config, tmp_path / "ten", 1, Listener(), part=DataSetPart(10, 1))
+        build_part(config, tmp_path / "ten", DataSetPart(10, 1), 1, Listener())
     with pytest.raises(FolderError, match="differs in\n  seed: 7 there, 8 here"):
-        build(other, out, 1, Listener(), part=DataSetPart(4, 1))
+        build_part(other, out, DataSetPart(4, 1), 1, Listener())
     with pytest.raises(FolderError, match="radhar merge"):
         build(config, out, 1, Listener())
-    build(other, tmp_path / "other", 1, Listener(), part=DataSetPart(4, 2))
+    build_part(other, tmp_path / "other", DataSetPart(4, 2), 1, Listener())
     with pytest.raises(FolderError, match="seed: 7 there, 8 here"):
         merge(out, [tmp_path / "other"], 1, Listener())
     with pytest.raises(FolderError, match="no such folder"):
@@ -183,6 +183,6 @@ def test_the_program_makes_killed_parts_whole(whole, tmp_path):
 def test_parts_of_two_builds_of_radhar_are_not_merged(config, out, monkeypatch):
     monkeypatch.setattr("radhar_cli.dataset.identity.build_version", lambda: "0.1.0+another")
     part = DataSetPart(4, 2)
-    build(config, out, 1, Listener(), part=part, overwrite=True)
+    build_part(config, out, part, 1, Listener(), overwrite=True)
     with pytest.raises(FolderError, match=r'versions\.radhar: "0\.1\.0\+[0-9a-f]{12}"'):
         merge(out, [], 1, Listener())

@@ -43,7 +43,7 @@ from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Person, Scene, nominal_scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.single_scene.simulate import RAW_ECHO
+from radhar_cli.single_scene.raw_echo import RAW_ECHO
 
 C = 299_792_458.0
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500}

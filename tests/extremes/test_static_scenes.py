@@ -19,7 +19,8 @@ from radhar_cli.products.run import record as record_scene
 from radhar_cli.products.signal import SIGNALS
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.scene import nominal_scene
-from radhar_cli.single_scene.simulate import RAW_ECHO, simulate
+from radhar_cli.single_scene.raw_echo import RAW_ECHO
+from radhar_cli.single_scene.simulate import simulate
 
 ALL = [f"{kind}{name}" for name in MAP_NAMES for kind in ("", "image:")]
 

@@ -12,7 +12,7 @@ from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.writing import bvh_text
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene import nominal_scene
-from radhar_cli.single_scene.motion_file import sampled
+from radhar_cli.single_scene.motion_file import sample_joints
 
 # {bone: (the one it hangs on, the joint at its end)}, in tree order.
 BONES = {
@@ -43,7 +43,7 @@ def frames(activity: str = "walking", seconds: float = 3.0, rate: float = 120.0)
         }
     )
     motion = motion_of(nominal_scene(config, activity_named(activity)).people[0])
-    return sampled(motion, np.arange(round(seconds * rate) + 1) / rate)
+    return sample_joints(motion, np.arange(round(seconds * rate) + 1) / rate)
 
 
 def write_bvh(path: Path, positions: Float, rate: float = 120.0) -> Path:

@@ -18,7 +18,8 @@ from radhar_cli.products.run import record as record_scene
 from radhar_cli.products.table import plan_images
 from radhar_cli.receiver.noise import white_noise
 from radhar_cli.scene import Scene, draw_scene
-from radhar_cli.single_scene.simulate import map_names, simulate
+from radhar_cli.single_scene.request import map_names
+from radhar_cli.single_scene.simulate import simulate
 
 RADAR = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 500, "adc_rate_hz": 2e6}
 BASE = {

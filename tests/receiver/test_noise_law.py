@@ -14,7 +14,7 @@ from radhar_cli.receiver.noise_law import Silent, Snr, Thermal
 from radhar_cli.scene import Scene, nominal_scene
 from radhar_cli.scene_checks.unused_keys import unused_keys
 from radhar_cli.scene_checks.warnings import config_warnings
-from radhar_cli.single_scene.simulate import RAW_ECHO
+from radhar_cli.single_scene.raw_echo import RAW_ECHO
 
 BOLTZMANN, T0 = 1.380649e-23, 290.0
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 250}

@@ -8,7 +8,7 @@ import numpy as np
 from radhar_cli.assembly.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.scene import draw_scene
-from radhar_cli.single_scene.truth import Truth, truth
+from radhar_cli.single_scene.truth import Truth, evaluate_truth
 
 
 def spare_bytes(seconds: float) -> tuple[int, Truth]:
@@ -26,7 +26,7 @@ def spare_bytes(seconds: float) -> tuple[int, Truth]:
     motion.positions(np.zeros(1))  # what is worked out once
     tracemalloc.start()
     try:
-        made = truth(motion, antennas_of(scene), None, waveform_of(scene))
+        made = evaluate_truth(motion, antennas_of(scene), None, waveform_of(scene))
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

@@ -15,8 +15,9 @@ from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene import draw_scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.single_scene.request import map_names, scene_of
 from radhar_cli.single_scene.scene_file import describe, write_all
-from radhar_cli.single_scene.simulate import Simulation, map_names, scene_of, simulate
+from radhar_cli.single_scene.simulate import Simulation, simulate
 
 ROOT = Path(__file__).resolve().parents[2]
 FREE = ROOT / "configs/paper/figures_free_space.yaml"

@@ -85,13 +85,13 @@ def feature_map(clouds: Clouds, frame: int) -> NDArray[np.float32]:
 
     Points are in ascending order of x, then y, then z; the first 64 stay, zeros follow.
     """
-    here = clouds.frame == frame
-    x, y, z = clouds.xyz[here].T
-    rows = np.column_stack([x, y, z, clouds.doppler[here], clouds.amplitude[here]])
-    rows = rows[np.lexsort((z, y, x))][: SIDE * SIDE]
-    found = np.zeros((SIDE * SIDE, 5), np.float32)
-    found[: len(rows)] = rows
-    return found.reshape(SIDE, SIDE, 5)
+    in_frame = clouds.frame == frame
+    x, y, z = clouds.xyz[in_frame].T
+    points = np.column_stack([x, y, z, clouds.doppler[in_frame], clouds.amplitude[in_frame]])
+    points = points[np.lexsort((z, y, x))][: SIDE * SIDE]
+    features = np.zeros((SIDE * SIDE, 5), np.float32)
+    features[: len(points)] = points
+    return features.reshape(SIDE, SIDE, 5)
 
 
 def kinect_joints(joints: Float) -> Float:
@@ -100,26 +100,26 @@ def kinect_joints(joints: Float) -> Float:
     Args:
         joints: positions [..., 13, 3] of JOINTS, m, in any right-handed axes.
     """
-    at = dict(zip(JOINTS, np.moveaxis(joints, -2, 0), strict=True))
-    across = at["left_shoulder"] - at["right_shoulder"]
-    middle = (at["left_shoulder"] + at["right_shoulder"]) / 2
+    joint = dict(zip(JOINTS, np.moveaxis(joints, -2, 0), strict=True))
+    across = joint["left_shoulder"] - joint["right_shoulder"]
+    middle = (joint["left_shoulder"] + joint["right_shoulder"]) / 2
     places = {
-        "SpineBase": at["hip"],
-        "SpineMid": at["torso"],
+        "SpineBase": joint["hip"],
+        "SpineMid": joint["torso"],
         "SpineShoulder": middle,
-        "Neck": middle + NECK * (at["head"] - middle),
-        "Head": at["head"],
+        "Neck": middle + NECK * (joint["head"] - middle),
+        "Head": joint["head"],
     }
     for side, sign in (("left", 1), ("right", -1)):
-        knee, ankle = at[f"{side}_knee"], at[f"{side}_ankle"]
+        knee, ankle = joint[f"{side}_knee"], joint[f"{side}_ankle"]
         shank = ankle - knee
         ahead = np.moveaxis(unit(cross(*(np.moveaxis(v, -1, 0) for v in (shank, across)))), 0, -1)
         length = np.linalg.norm(shank, axis=-1, keepdims=True)
         of_side = {
-            "Shoulder": at[f"{side}_shoulder"],
-            "Elbow": at[f"{side}_elbow"],
-            "Wrist": at[f"{side}_hand"],
-            "Hip": at["hip"] + sign * HIP_ASIDE * across,
+            "Shoulder": joint[f"{side}_shoulder"],
+            "Elbow": joint[f"{side}_elbow"],
+            "Wrist": joint[f"{side}_hand"],
+            "Hip": joint["hip"] + sign * HIP_ASIDE * across,
             "Knee": knee,
             "Ankle": ankle,
             "Foot": ankle + FOOT_AHEAD * length * ahead + FOOT_BELOW * shank,
@@ -132,8 +132,9 @@ def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write featuremap_<split>.npy, labels_<split>.npy and frames_<split>.npy of all three splits.
 
     Raises:
-        FolderError: its skeletons are not of the thirteen joints.
+        FolderError: there are no points, or skeletons are not of the thirteen joints.
     """
+    _require_points(data, "mars")
     counts, joints = data.products["points_start"].counts - 1, data.products["skeleton"].shape[2]
     if joints != len(JOINTS):
         raise FolderError(
@@ -171,7 +172,12 @@ def _new_array(path: Path, kind: np.dtype[Any], shape: tuple[int, ...]) -> NDArr
 
 
 def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write <Split>/<class>/<sample>.txt of messages RadarScan, a record a point."""
+    """Write <Split>/<class>/<sample>.txt of messages RadarScan, a record a point.
+
+    Raises:
+        FolderError: there are no points.
+    """
+    _require_points(data, "ros")
     radar = data.config.radar
     assert isinstance(radar, BoardRadar)  # no other radar has points
     header = radar.header
@@ -224,7 +230,12 @@ def _radar_scans(c: Clouds, period_s: float, middle: int) -> str:
 
 
 def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write <split>/<class>/<sample>.csv into a folder, with the columns TI."""
+    """Write <split>/<class>/<sample>.csv into a folder, with the columns TI.
+
+    Raises:
+        FolderError: there are no points.
+    """
+    _require_points(data, "ti")
 
     def columns(c: Clouds) -> Sequence[Any]:
         noise = 20 * np.log10(np.maximum(c.amplitude, 1e-9)) - c.snr_db
@@ -233,6 +244,14 @@ def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
 
     _write_csv(data, folder, TI, columns, progress)
     _describe(data, folder, f"{_TI}\n\n{_READ_CSV}")
+
+
+def _require_points(data: Dataset, name: str) -> None:
+    """Require that a data set has points, for the format of that name."""
+    if "points" not in data.products:
+        raise FolderError(
+            f"{data.path}: has no points; {name} needs a board's data set, maps: [points]"
+        )
 
 
 def _ti_axes(places: Float) -> Float:
@@ -255,18 +274,28 @@ def _describe(data: Dataset, folder: Path, reading: str) -> None:
 
 
 def _of_split(data: Dataset, split: int) -> Iterator[Entry]:
+    """Yield the samples of a split, in the order of the table."""
     return (entry for entry in entries(data) if entry.split == split)
 
 
 def _write_csv(
     data: Dataset, folder: Path, head: Sequence[str], columns: Columns, progress: Progress
 ) -> None:
+    """Write <split>/<class>/<sample>.csv of every sample, a line a point.
+
+    Args:
+        data: the data set.
+        folder: folder of the files.
+        head: names of the columns.
+        columns: function that gives the columns of a sample's clouds.
+        progress: is told of every sample.
+    """
     rows = Rows.of(data.config)
     for split, part in data.present_splits.items():
         for entry in _of_split(data, split):
             path = folder / part / entry.label / f"{rows.name(entry.row)}.csv"
             path.parent.mkdir(parents=True, exist_ok=True)
-            values = [np.asarray(one).tolist() for one in columns(clouds_of(data, entry.row))]
+            values = [np.asarray(column).tolist() for column in columns(clouds_of(data, entry.row))]
             with path.open("w", newline="", encoding="utf-8") as file:
                 writer = csv.writer(file, lineterminator="\n")
                 writer.writerow(head)

@@ -13,7 +13,7 @@ from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.processes.progress import Progress
 
-# Module and function of each format.
+# Module and function of each format; the function refuses what a data set of it must have.
 FORMATS = {
     "parquet": ("parquet", "write"),
     "webdataset": ("webdataset", "write"),
@@ -42,10 +42,6 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
     module, function = FORMATS[to]
     write: Writer = getattr(import_module(f"radhar_cli.dataset.formats.{module}"), function)
     with open_dataset(path) as data:
-        if module == "clouds" and "points" not in data.products:
-            raise FolderError(
-                f"{path}: has no points; {to} needs a board's data set, maps: [points]"
-            )
         scratch = out.absolute().with_name(f".{out.name}.unfinished")
         refuse_links(scratch.parent, scratch)
         unfinished = scratch / "set"

@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.dataset.card import card
+from radhar_cli.dataset.card import compose_card
 from radhar_cli.dataset.formats.stored_png import checked_png
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.png import colour_table
@@ -39,12 +39,12 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
     for name in data.config.maps:
         (folder / name).mkdir()
         for split, part in data.present_splits.items():
-            for number, (files, here) in enumerate(_files_of_split(data, split)):
+            for number, (files, samples) in enumerate(_files_of_split(data, split)):
                 path = folder / name / f"{part}-{number:05d}-of-{files:05d}.parquet"
                 with pq.ParquetWriter(path, schema, use_dictionary=False) as file:
-                    while some := list(islice(here, group)):
-                        file.write_table(_table(data, name, some, schema))
-                        progress.advance(len(some) if name == data.config.maps[0] else 0)
+                    while rows := list(islice(samples, group)):
+                        file.write_table(_table(data, name, rows, schema))
+                        progress.advance(len(rows) if name == data.config.maps[0] else 0)
     parts = data.present_splits.values()
     names = {str(label): name for label, name in enumerate(data.classes)}
     label = {"name": "label", "dtype": {"class_label": {"names": names}}}
@@ -58,17 +58,17 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
         for name in data.maps
     ]
     reading = READING.format(data.config.maps[0])
-    (folder / CARD).write_text(card(data, {"configs": configs}, reading), encoding="utf-8")
+    (folder / CARD).write_text(compose_card(data, {"configs": configs}, reading), encoding="utf-8")
     (folder / CONFIG).write_text(as_yaml(data.config), encoding="utf-8")
 
 
 def _files_of_split(data: Dataset, split: int) -> Iterator[tuple[int, Iterator[Entry]]]:
     """The files that a split is cut into: how many there are, and the samples of each."""
-    most = max(1, FILE_BYTES // prod(data.config.image.size_px))
-    here = (entry for entry in entries(data) if entry.split == split)
-    files = -(-int((data.split == split).sum()) // most)
+    file_samples = max(1, FILE_BYTES // prod(data.config.image.size_px))
+    samples = (entry for entry in entries(data) if entry.split == split)
+    files = -(-int((data.split == split).sum()) // file_samples)
     for _ in range(files):
-        yield files, islice(here, most)
+        yield files, islice(samples, file_samples)
 
 
 def _number_features(config: AnyConfig) -> list[dict[str, str]]:
@@ -80,25 +80,26 @@ def _number_features(config: AnyConfig) -> list[dict[str, str]]:
 
 def schema_of(config: AnyConfig) -> pa.Schema:
     """Columns of the Parquet files; the card says what `datasets` makes of them."""
-    kinds = {one["name"]: one["dtype"] for one in _number_features(config)}
+    kinds = {feature["name"]: feature["dtype"] for feature in _number_features(config)}
     image = pa.struct([("bytes", pa.binary()), ("path", pa.string())])
     columns = [("image", image), ("label", pa.int64())]
     return pa.schema([*columns, *((name, pa.type_for_alias(kind)) for name, kind in kinds.items())])
 
 
-def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa.Table:
-    rows, numbers = Rows.of(data.config), zip(*(entry.values for entry in here), strict=True)
+def _table(data: Dataset, name: str, samples: list[Entry], schema: pa.Schema) -> pa.Table:
+    """Table of samples with their images of a map, a row group of a file."""
+    rows, numbers = Rows.of(data.config), zip(*(entry.values for entry in samples), strict=True)
     colours = colour_table(data.config.image.colour_map)
     images = [
-        {"bytes": checked_png(data, colours, name, one.row), "path": rows.file_name(one.row)}
-        for one in here
+        {"bytes": checked_png(data, colours, name, entry.row), "path": rows.file_name(entry.row)}
+        for entry in samples
     ]
     columns = [
         images,
-        [entry.number for entry in here],
-        [entry.place for entry in here],
-        *([[entry.labels for entry in here]] if data.config.people else []),
+        [entry.number for entry in samples],
+        [entry.place for entry in samples],
+        *([[entry.labels for entry in samples]] if data.config.people else []),
         *([None if v != v else v for v in values] for values in numbers),
     ]
-    arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]
+    arrays = [pa.array(column, field.type) for column, field in zip(columns, schema, strict=True)]
     return pa.Table.from_arrays(arrays, schema=schema)

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.dataset.card import card
+from radhar_cli.dataset.card import compose_card
 from radhar_cli.dataset.formats.stored_png import checked_png
 from radhar_cli.dataset.layout import CARD, CLASSES, CONFIG, Rows
 from radhar_cli.dataset.png import colour_table
@@ -57,7 +57,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
         for name in data.maps
     ]
     reading = READING.format(name=data.config.maps[0], last=last)
-    (folder / CARD).write_text(card(data, {"configs": configs}, reading), encoding="utf-8")
+    (folder / CARD).write_text(compose_card(data, {"configs": configs}, reading), encoding="utf-8")
     (folder / CONFIG).write_text(as_yaml(data.config), encoding="utf-8")
     (folder / CLASSES).write_text("".join(f"{name}\n" for name in data.classes), encoding="utf-8")
 

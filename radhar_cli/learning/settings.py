@@ -45,14 +45,14 @@ else:
     TaskName = Literal[tuple(TASKS)]  # which messages, schemas and tables list
 
 
-def _added_task(value: Any, check: ValidatorFunctionWrapHandler) -> Any:
+def _check_task(value: Any, check: ValidatorFunctionWrapHandler) -> Any:
     """Accept a task that an extension has added since; have any other value checked."""
     load_extensions()
     return value if isinstance(value, str) and value in TASKS else check(value)
 
 
 # Its serializer knows no list of names: pydantic's own warns of one that an extension has added.
-Target = Annotated[TaskName, WrapValidator(_added_task), PlainSerializer(str, return_type=str)]
+Target = Annotated[TaskName, WrapValidator(_check_task), PlainSerializer(str, return_type=str)]
 
 
 class ScheduleConfig(Section):
@@ -180,6 +180,7 @@ class TrainConfig(Section):
 
     @model_validator(mode="after")
     def _fits(self) -> "TrainConfig":
+        load_extensions()  # which may add the network
         if self.warmup_epochs > self.epochs:
             raise value_error("should have warmup_epochs of at most epochs")
         if TASKS[self.target].of_sequences and sequences_of(self.model) is None:

@@ -59,6 +59,18 @@ def test_a_network_and_a_task_go_through_every_command(tmp_path: Path) -> None:
     assert "run finds brightness; that figure is of classes" in refused.stderr
 
 
+@pytest.mark.usefixtures("added")
+def test_a_network_alone_learns_classes(tmp_path: Path) -> None:
+    data, run = split_tree(tmp_path / "tree", train=2, val=1), tmp_path / "run"
+    settings = [word for setting in QUICK for word in ("--set", setting)]
+    extensions.load_extensions.cache_clear()
+    done = radhar("train", data, "-o", run, "--model", "pooling", *settings, "--set", "epochs=1")
+    assert done.returncode == 0, done.stderr
+    assert json.loads((run / "metrics.json").read_text())["parameters"] == 16 * 3 + 3
+    done = radhar("predict", run, data)
+    assert done.stdout.count("walking") >= 9
+
+
 def test_what_was_not_added_is_refused_with_what_there_is(tmp_path: Path) -> None:
     data = split_tree(tmp_path / "tree")
     done = radhar("train", data, "-o", tmp_path / "run", "--target", "brightness")

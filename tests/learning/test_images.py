@@ -17,6 +17,7 @@ from learning.patterns import clear_line, settings, split_tree, stripes, tree
 from PIL import Image
 
 from radhar_cli.config import load_config
+from radhar_cli.dataset import reading
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.image_file import luminance, read_gray, read_rgb
 from radhar_cli.errors import ConfigError, FolderError
@@ -216,6 +217,21 @@ def test_image_sets_are_pickled_without_open_files(made):
     again = pickle.loads(pickle.dumps(images.pixels))
     assert again._open == {}
     assert np.array_equal(again.read(1), first)
+
+
+@pytest.mark.parametrize(("kind", "channels"), [("rgb", 3), ("gray", 1)])
+def test_a_data_set_is_opened_once_in_a_process(made, monkeypatch, kind, channels):
+    opened, validate = [], reading.validated
+
+    def counted(*arguments):
+        opened.append(arguments)
+        return validate(*arguments)
+
+    monkeypatch.setattr(reading, "validated", counted)
+    images = open_images(made, "rtm", kind)
+    assert images.pixels.read(0).shape == (*images.size, channels)
+    assert images.take(np.array([1, 2])).pixels.read(1).nbytes == 32 * 32 * channels
+    assert len(opened) == 1
 
 
 def look_at_all(root):

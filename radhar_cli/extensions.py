@@ -40,11 +40,11 @@ def own_products() -> tuple[Any, ...]:
     return tuple(_PRODUCTS.values())
 
 
-def know_products(own: Iterable[Any]) -> None:
+def know_products(products: Iterable[Any]) -> None:
     """Replace the products that were added here by those of another process."""
-    own = tuple(own)
+    by_name = {product.name: product for product in products}
     _PRODUCTS.clear()
-    _PRODUCTS.update((product.name, product) for product in own)
+    _PRODUCTS.update(by_name)
 
 
 @contextmanager

@@ -161,8 +161,8 @@ def know_activities(activities: Iterable[Activity]) -> None:
 
 def is_new_slug(slug: str) -> bool:
     """Whether a user-defined class may have this name: not one of the twelve, fit for a folder."""
-    taken = slug in _BY_NAME or slug == DEFAULT
-    return not taken and slug.isascii() and slug.isidentifier() and slug == slug.lower()
+    is_reserved = slug in _BY_NAME or slug == DEFAULT
+    return not is_reserved and slug.isascii() and slug.isidentifier() and slug == slug.lower()
 
 
 def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> Activity:

@@ -123,13 +123,14 @@ def _code_of(code: CodeType) -> Any:
 def _sources(modules: Iterable[str], extensions: tuple[str, ...]) -> Iterator[Path]:
     """Sources of the user's modules of these names, and of those that they have imported."""
     packages = {name.partition(".")[0] for name in extensions}
-    waiting, seen = [*modules, *extensions], set[str]()
+    waiting = [*modules, *extensions]
+    visited: set[str] = set()
     while waiting:
         name = waiting.pop()
         package, module = name.partition(".")[0], sys.modules.get(name)
-        if name in seen or module is None or package == OURS:
+        if name in visited or module is None or package == OURS:
             continue
-        seen.add(name)
+        visited.add(name)
         path = _file_of(module)
         if path is None or (package not in packages and _is_installed(path)):
             continue

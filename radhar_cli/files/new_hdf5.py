@@ -74,8 +74,8 @@ def new_hdf5(path: Path, final: Path) -> Iterator[tuple[h5py.File, Callable[[], 
                 with h5py.File(disk, "w") as file:
                     yield file, check
             finally:
-                for one, handler in before.items():
-                    signal.signal(one, handler)
+                for signal_, handler in before.items():
+                    signal.signal(signal_, handler)
                 check()  # before what came of it
     except OSError as error:
         error.filename = error.filename or str(final)

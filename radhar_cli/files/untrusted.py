@@ -58,8 +58,8 @@ def refuse_outside(path: Path, folder: Path) -> None:
         raise FolderError(f"{path}: is a link to {target}, which lies outside of {folder}")
 
 
-def read_text(path: Path, most: int) -> str:
-    """Read the text of a regular file of at most `most` bytes in UTF-8.
+def read_text(path: Path, max_bytes: int) -> str:
+    """Read the text of a regular file of at most `max_bytes` bytes in UTF-8.
 
     Raises:
         OSError: the file cannot be read, is larger, or is not a regular file.
@@ -67,22 +67,22 @@ def read_text(path: Path, most: int) -> str:
     """
     regular_size(path)
     with path.open("rb") as file:
-        data = file.read(most + 1)
-    if len(data) > most:
-        raise OSError(errno.EFBIG, f"holds more than {most} bytes", str(path))
+        data = file.read(max_bytes + 1)
+    if len(data) > max_bytes:
+        raise OSError(errno.EFBIG, f"holds more than {max_bytes} bytes", str(path))
     return data.decode()
 
 
-def text_of(path: Path, most: int, refused: type[RadharError]) -> str:
+def text_of(path: Path, max_bytes: int, refused: type[RadharError]) -> str:
     """Read the text of a file that a user named (`read_text`).
 
     Args:
         path: regular file in UTF-8.
-        most: largest size, bytes.
+        max_bytes: largest size, bytes.
         refused: class of the error that says why the file cannot be read.
     """
     try:
-        return read_text(path, most)
+        return read_text(path, max_bytes)
     except FileNotFoundError:
         raise refused(f"{path}: no such file") from None
     except (OSError, ValueError) as error:  # no UTF-8; no name of a file

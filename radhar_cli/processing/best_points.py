@@ -145,8 +145,8 @@ def _offset(level: Float, bin_: int, cyclic: bool) -> float:
     """Offset (bins, -1/2 to 1/2) of a peak by a parabola through three logarithms of power."""
     if level.size < 3 or (not cyclic and not 0 < bin_ < level.size - 1):
         return 0.0
-    before, here, after = level[(bin_ + INTERVALS) % level.size]
-    curve = before - 2 * here + after
+    before, peak, after = level[(bin_ + INTERVALS) % level.size]
+    curve = before - 2 * peak + after
     return float(np.clip((before - after) / (2 * curve), -0.5, 0.5)) if curve < 0 else 0.0
 
 

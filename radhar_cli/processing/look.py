@@ -167,12 +167,12 @@ def weights(waveform: Waveform) -> Complex:
     n = np.arange(waveform.n_adc) - waveform.n0
     # A geometric series; its ratio is 1 where n - n0 = 0 mod N_FFT.
     angle = np.pi * n / waveform.n_fft
-    whole = np.isclose(np.sin(angle), 0, atol=1e-12)
+    is_pole = np.isclose(np.sin(angle), 0, atol=1e-12)
     with np.errstate(invalid="ignore", divide="ignore"):
         series = np.exp(1j * (waveform.n_bins - 1) * angle) * (
             np.sin(waveform.n_bins * angle) / np.sin(angle)
         )
-    return np.where(whole, waveform.n_bins, series)
+    return np.where(is_pole, waveform.n_bins, series)
 
 
 def noise_gain(waveform: Waveform) -> float:
@@ -257,8 +257,8 @@ class Look:
         for first in range(0, stop, BLOCK):
             held = np.concatenate([held, following(min(BLOCK, stop - first))], axis=1)
             begin = min(first + BLOCK, stop) - held.shape[1]
-            here = slice(*np.searchsorted(pulses, [begin, begin + held.shape[1] - reach]))
+            columns = slice(*np.searchsorted(pulses, [begin, begin + held.shape[1] - reach]))
             for lag, tap in enumerate(self.taps):
-                x[:, here] += tap * held[:, pulses[here] - begin + lag]
+                x[:, columns] += tap * held[:, pulses[columns] - begin + lag]
             held = held[:, held.shape[1] - reach :]
         return x

@@ -157,7 +157,7 @@ def _peaks(d: Float, grouping: tuple[bool, bool]) -> Bool:
 
 
 def _angles(
-    symbols: Complex, board: Board, second: float | None, whole: bool
+    symbols: Complex, board: Board, second: float | None, integer: bool
 ) -> tuple[Index, Float, Float, Float]:
     """Directions of the first peak over angle of each symbol, and of second peaks.
 
@@ -165,7 +165,7 @@ def _angles(
         symbols: Samples [n, virtual] of the detected cells.
         board: The board.
         second: Least height of a second peak over the first; None for no second peaks.
-        whole: Whether heights are whole numbers.
+        integer: Whether heights are whole numbers.
 
     Returns:
         Number of the symbol, intensity, and direction sines to the right and up [points].
@@ -175,14 +175,14 @@ def _angles(
     row, upper, aside, above = elevation_pair(board)
     spectra = scipy.fft.fft(symbols[:, row], BINS)
     heights = np.abs(spectra) / len(row)
-    heights = np.floor(heights) if whole else heights
+    heights = np.floor(heights) if integer else heights
     n = np.arange(len(symbols))
     bins = heights.argmax(axis=1)
     if second is not None:
         other_heights = np.where(_flanks(heights, bins), -1, heights)
         least, second_bins = second * heights[n, bins], other_heights.argmax(axis=1)
         with_second = np.flatnonzero(
-            other_heights[n, second_bins] > (np.floor(least) if whole else least)
+            other_heights[n, second_bins] > (np.floor(least) if integer else least)
         )
         with_second = with_second[: MAX_POINTS - n.size]
         n, bins = np.concatenate([n, with_second]), np.concatenate([bins, second_bins[with_second]])

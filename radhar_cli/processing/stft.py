@@ -71,8 +71,8 @@ class Stft:
     @cached_property
     def blocks(self) -> list[slice]:
         """Frames of every block: of BLOCK_COEFFICIENTS coefficients, or one frame."""
-        count, most = self.starts.size, max(1, BLOCK_COEFFICIENTS // self.size)
-        return [slice(first, min(first + most, count)) for first in range(0, count, most)]
+        count, length = self.starts.size, max(1, BLOCK_COEFFICIENTS // self.size)
+        return [slice(first, min(first + length, count)) for first in range(0, count, length)]
 
     def transform(
         self, row: Complex, frames: slice, window: Float, magnitudes: bool = False
@@ -104,8 +104,8 @@ class Stft:
             is_shown = self._shown(block)
             total: Float | None = None
             for channel in self.signal.x:
-                for x, shown in zip(channel, is_shown, strict=True):
-                    shown_frames = np.flatnonzero(shown)
+                for x, is_in_gate in zip(channel, is_shown, strict=True):
+                    shown_frames = np.flatnonzero(is_in_gate)
                     if not shown_frames.size:
                         continue
                     first, last = int(shown_frames[0]), int(shown_frames[-1]) + 1
@@ -113,11 +113,11 @@ class Stft:
                     magnitude = self.transform(x, frames, self.frames.window, magnitudes=True)
                     if not self.magnitudes:
                         magnitude *= magnitude
-                    if total is None and shown_frames.size == shown.size:
+                    if total is None and shown_frames.size == is_in_gate.size:
                         total = magnitude
                         continue
                     if total is None:
-                        total = np.zeros((shown.size, self.size), magnitude.dtype)
+                        total = np.zeros((is_in_gate.size, self.size), magnitude.dtype)
                     if shown_frames.size == len(magnitude):  # the usual case: frames without a gap
                         total[first:last] += magnitude
                     else:
@@ -133,5 +133,5 @@ class Stft:
         if self.gate is None:
             return np.ones((rows.size, block.stop - block.start), bool)
         first = np.broadcast_to(self.gate.first - self.signal.first, self.starts.size)[block]
-        shown: Bool = (first <= rows) & (rows < first + self.gate.count)
-        return shown
+        is_shown: Bool = (first <= rows) & (rows < first + self.gate.count)
+        return is_shown

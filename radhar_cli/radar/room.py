@@ -64,7 +64,7 @@ class Face(NamedTuple):
 
     name: str
     axis: int
-    at: float  # where it cuts the axis, m
+    offset: float  # coordinate at which it cuts the axis, m
     eps: complex = 1.0  # relative permittivity
     parallel: bool = True  # whether the antennas' field is parallel to it
     constant_reflection: float | None = None  # coefficient of a bounce, whatever the angle
@@ -113,11 +113,11 @@ class Leg(NamedTuple):
 
     def field(self, image: Float, antenna: Point) -> Float:
         """Field [...] after the bounces of legs from an antenna to images [3, ...] (m)."""
-        way = image - np.reshape(antenna, (3,) + (1,) * (image.ndim - 1))
-        distance = np.maximum(np.sqrt((way * way).sum(axis=0)), np.finfo(float).tiny)
+        ray = image - np.reshape(antenna, (3,) + (1,) * (image.ndim - 1))
+        distance = np.maximum(np.sqrt((ray * ray).sum(axis=0)), np.finfo(float).tiny)
         field: Float = np.ones(distance.shape)
         for face in self.faces:
-            field *= face.reflection_coefficient(np.abs(way[face.axis]) / distance)
+            field *= face.reflection_coefficient(np.abs(ray[face.axis]) / distance)
         return field
 
     @property
@@ -126,7 +126,7 @@ class Leg(NamedTuple):
         sign, shift = np.ones(3), np.zeros(3)
         for face in reversed(self.faces):  # M_f1 is the last that acts on p
             sign[face.axis] *= -1
-            shift[face.axis] = 2 * face.at - shift[face.axis]
+            shift[face.axis] = 2 * face.offset - shift[face.axis]
         return sign, shift
 
 

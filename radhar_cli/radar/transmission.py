@@ -58,9 +58,9 @@ def pass_wall(
 
 def _cosine(p: Float, antenna: Point, wall: Wall) -> Float:
     """Cosines [I, M] of the angle at which legs meet the wall; NaN beside it."""
-    way = p - np.reshape(antenna, (3,) + (1,) * (p.ndim - 1))
+    ray = p - np.reshape(antenna, (3,) + (1,) * (p.ndim - 1))
     with np.errstate(invalid="ignore"):
-        cosine = np.abs(way[0]) / np.sqrt((way * way).sum(axis=0))
+        cosine = np.abs(ray[0]) / np.sqrt((ray * ray).sum(axis=0))
     straight = crossing(p, antenna, wall)
     return np.where(both_faces(straight, cosine, wall), cosine, np.nan)
 

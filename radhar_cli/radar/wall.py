@@ -152,10 +152,10 @@ def plane_wave(
     D (sqrt(n^2 - 1 + cos^2) - cos)/c and the chord D/sqrt(1 - (1 - cos^2)/n^2), n = Re sqrt(eps).
     A ray that does not pass both x faces keeps its own chord.
     """
-    way = p - np.reshape(antenna, (3,) + (1,) * (p.ndim - 1))
-    reach = np.sqrt(np.sum(way * way, axis=0))
+    ray = p - np.reshape(antenna, (3,) + (1,) * (p.ndim - 1))
+    reach = np.sqrt(np.sum(ray * ray, axis=0))
     with np.errstate(invalid="ignore", divide="ignore"):
-        cos = np.abs(way[0]) / reach
+        cos = np.abs(ray[0]) / reach
         n, depth = wall.refractive_index.real, wall.size[0]
         both = both_faces(straight, cos, wall)
         steps = (n - 1) * (n + 1)

@@ -133,8 +133,8 @@ def read_bvh(data: bytes, where: str) -> Bvh:
     """
     motion = _MOTION.search(data, 0, MAX_HEADER)
     if motion is None:
-        what = "has no line MOTION" if b"HIERARCHY" in data[:MAX_HEADER] else "is not a BVH file"
-        raise motion_file_error(where, f"{what} in its first MiB")
+        problem = "has no line MOTION" if b"HIERARCHY" in data[:MAX_HEADER] else "is not a BVH file"
+        raise motion_file_error(where, f"{problem} in its first MiB")
     joints = _hierarchy(data[: motion.start()].decode("utf-8", "replace"), where)
     line = data.count(b"\n", 0, motion.start()) + 1
     head = _FRAMES.match(data, motion.end())

@@ -57,9 +57,14 @@ class MotionRecording(Protocol):
         ...
 
 
-def motion_file_error(where: str, what: str) -> MotionFileError:
-    """Error to raise about a file, or about a file and a line (`where`)."""
-    return MotionFileError(f"{where}: {what}")
+def motion_file_error(where: str, problem: str) -> MotionFileError:
+    """Error to raise about a file, or about a file and a line.
+
+    Args:
+        where: FILE, or FILE:LINE.
+        problem: What is wrong there, and what would be right.
+    """
+    return MotionFileError(f"{where}: {problem}")
 
 
 def with_ancestors(joints: Sequence[int], parents: Sequence[int | None]) -> list[int]:

@@ -2,7 +2,6 @@
 
 import pytest
 
-from radhar_cli.config import MAP_NAMES
 from radhar_cli.processing.map_kind import (
     DOPPLER_TIME_KINDS,
     MAP_KINDS,

@@ -113,5 +113,5 @@ def _within_limits(
         limits_hz = np.array(limits_mps) * 2 * stft.signal.f0 / SPEED_OF_LIGHT
         limits_hz += 1e-9 * np.array([-1, 1]) * stft.signal.prf
         bins = slice(*np.searchsorted(frequency.values, limits_hz).tolist())
-    shown = replace(frequency, values=frequency.values[bins])
-    return DopplerPower(compute, bins, stft.exponent, shown, stft.time)
+    frequency = replace(frequency, values=frequency.values[bins])
+    return DopplerPower(compute, bins, stft.exponent, frequency, stft.time)

@@ -112,8 +112,9 @@ class DirectEcho:
 
     def _settings(self, aim_db: float) -> Settings:
         chosen = settings(aim_db, self.waveform, self.source.highest_frequency)
-        strict = self.double or first_aim(self.tolerance_db) < SINGLE_DB
-        return chosen._replace(single=False, cubic=False) if strict else chosen
+        if self.double:
+            return chosen._replace(single=False, cubic=False)
+        return chosen._replace(single=chosen.single and first_aim(self.tolerance_db) >= SINGLE_DB)
 
     def _error(self, y: Complex, motion: PathsAtKnots, unit: float) -> float:
         """Measured relative L2 error (dB) of y, in units of `unit`, after the canceller."""

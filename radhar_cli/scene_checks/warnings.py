@@ -9,6 +9,7 @@ from radhar_cli.assembly.physics import antennas_of, waveform_of, ways_of
 from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar
+from radhar_cli.echo.accuracy import COARSEST_DB
 from radhar_cli.errors import SceneError
 from radhar_cli.processing.map_kind import MAP_KINDS
 from radhar_cli.radar.propagation import leg
@@ -30,7 +31,19 @@ def config_warnings(config: Config) -> list[str]:
         *header_lines,
         *noise_alone(config),
         *_folding_warnings(config),
+        *_loose_tolerance(config),
     ]
+
+
+def _loose_tolerance(config: Config) -> Iterator[str]:
+    """Say that a tolerance looser than the default saves next to no time."""
+    tolerance_db = config.engine.tolerance_db
+    computed = config.engine.kind == "direct" and not isinstance(config.radar, ImpulseRadar)
+    if computed and tolerance_db > COARSEST_DB:
+        yield (
+            f"engine.tolerance_db: {tolerance_db:g} saves less than a tenth of a sample's time: "
+            f"the default, {COARSEST_DB:g}, is as cheap"
+        )
 
 
 def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:

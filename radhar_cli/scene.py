@@ -1,22 +1,26 @@
 """(config, class, index) -> one scene: a config with nothing left to draw."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
 from math import nan
-from typing import Any, TypeAlias, cast
+from typing import Any, Protocol, cast
 
 import numpy as np
 
 from radhar_cli.activities.activity import Activity
 from radhar_cli.config.annotations import Mark, of_kind
+from radhar_cli.config.classes import FilesConfig, SequenceConfig
 from radhar_cli.config.data_set import AnyConfig, Config
-from radhar_cli.config.number import Choice, Distribution, Number, is_fixed, nominal, quantile
+from radhar_cli.config.motion import EARLIER_KEYS, FALLS, Falls, MotionConfig, TimingConfig
+from radhar_cli.config.number import Choice, Number, is_fixed, nominal, quantile
 from radhar_cli.config.paths import at, changed, each_number
-from radhar_cli.config.people import FALLS, Falls, PersonConfig
+from radhar_cli.config.people import PersonConfig, SubjectConfig
 from radhar_cli.config.radar import SceneRadar
-from radhar_cli.config.section import PerActivity, Section, for_activity
+from radhar_cli.config.receiver import ReceiverConfig
+from radhar_cli.config.room import RoomConfig, WallConfig
+from radhar_cli.config.section import for_activity
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.numerics.randomness import PERSON, SCENE, stream
 
@@ -40,7 +44,7 @@ PERSONAL, UNSTEADY = (
 )
 # Redrawing a scene outside the model changes what the person does, not the radar or the person.
 REDRAWN = ("motion.", "timing.", "classes.")
-FALL = "motion.fall"
+FALL = "motion.falling.direction"
 # What a walk may overlap, by at most MAX_OVERLAP of its duration, as low down no legs are long
 # enough for a step; falls to the side not at all, as their feet are not planted.
 OVERLAPPED = {
@@ -51,38 +55,81 @@ OVERLAPPED = {
 }
 MAX_OVERLAP = 0.3
 MAX_PLACES = 100  # drawn for a person who comes too near to others
-Draw: TypeAlias = Callable[[str], float]
-OfOther: TypeAlias = Callable[[int, str], float]
 
 
-class Numbers:
-    """A section of a scene's config, with its numbers as floats.
+class Draw(Protocol):
+    """Random choices of one person in one scene; what one key gets depends on no other key."""
 
-    Raises:
-        TypeError: of a number that is still to be drawn, when it is read.
+    def number(self, key: str, number: Number) -> float:
+        """Draw the number of a dotted key."""
+
+    def index(self, key: str, count: int) -> int:
+        """Draw one of `count` things, from 0 on."""
+
+    def happens(self, key: str, probability: float) -> bool:
+        """Draw whether something of a probability happens."""
+
+
+@dataclass(frozen=True)
+class NominalDraw:
+    """The middle of everything, as nominal scenes have it."""
+
+    def number(self, key: str, number: Number) -> float:
+        """Return the middle of a number; 0 of what people do not repeat."""
+        return 0.0 if key in UNSTEADY else nominal(number)
+
+    def index(self, key: str, count: int) -> int:
+        """Return the middle one."""
+        return min(count // 2, count - 1)
+
+    def happens(self, key: str, probability: float) -> bool:
+        """Return whether it happens as often as not, or more often."""
+        return probability >= 0.5
+
+
+@dataclass(frozen=True)
+class SeededDraw:
+    """Draws by random streams, one for each key, named by seed, class, index and key.
+
+    Keys that have moved since an earlier version keep its streams, and so their numbers.
+
+    Attributes:
+        seed: Seed of the data set.
+        activity: Class of the sample.
+        sample: Number of the sample within its class.
+        attempt: Number of earlier draws of the person's motion that could not be used.
+        subject: Number of a named person, whose personal numbers are drawn once; None without.
+        person: Place in `people`, from 1 on; 0 for the sample's main person.
     """
 
-    def __init__(self, section: Section) -> None:
-        self._section = section
+    seed: int
+    activity: Activity
+    sample: int
+    attempt: int = 0
+    subject: int | None = None
+    person: int = 0
 
-    def __getattr__(self, name: str) -> Any:
-        return _plain(getattr(self._section, name))
+    def number(self, key: str, number: Number) -> float:
+        """Draw the number of a dotted key, by its quantile function."""
+        return quantile(number, self._share(key))
 
+    def index(self, key: str, count: int) -> int:
+        """Draw one of `count` things, from 0 on."""
+        return min(int(self._share(key) * count), count - 1)
 
-def _plain(value: Any) -> Any:
-    """A value of a section with its numbers as floats; sections in it are `Numbers`."""
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return float(value)
-    if isinstance(value, (Distribution, PerActivity)):
-        raise TypeError(f"{value!r} should have been drawn; this is not the config of a scene")
-    if isinstance(value, tuple):
-        return tuple(map(_plain, value))
-    return Numbers(value) if isinstance(value, Section) else value
+    def happens(self, key: str, probability: float) -> bool:
+        """Draw whether something of a probability happens."""
+        return self._share(key) < probability
 
-
-def _section(name: str) -> cached_property[Any]:
-    """Property of an object with a `config`: that section of it, with its numbers as floats."""
-    return cached_property(lambda self: _plain(getattr(self.config, name)))
+    def _share(self, key: str) -> float:
+        """Draw the share, 0 to 1, of a key's distribution that lies below its draw."""
+        name = EARLIER_KEYS.get(key, key)
+        if self.subject is not None and key in PERSONAL:
+            return stream(self.seed, PERSON, self.subject, name=name).random()
+        attempt = self.attempt if key.startswith(REDRAWN) else 0
+        name = f"people.{self.person}.{name}" if self.person else name
+        place = (self.activity.index, self.sample, attempt)
+        return stream(self.seed, SCENE, *place, name=name).random()
 
 
 @dataclass(frozen=True)
@@ -95,7 +142,6 @@ class Person:
         config: config whose `subject`, `motion`, `timing` and `classes` are theirs.
         number: 0 for the sample's main person, else their place in `people`, from 1 on.
         held: what was made of them and is needed again, by name.
-        subject, motion, timing: sections of the config, with their numbers as floats.
     """
 
     scene: "Scene"
@@ -104,7 +150,20 @@ class Person:
     number: int = 0
     held: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
 
-    subject, motion, timing = map(_section, ("subject", "motion", "timing"))
+    @property
+    def subject(self) -> SubjectConfig[float]:
+        """Body of the person."""
+        return cast(SubjectConfig[float], self.config.subject)
+
+    @property
+    def motion(self) -> MotionConfig[float]:
+        """How the person moves."""
+        return cast(MotionConfig[float], self.config.motion)
+
+    @property
+    def timing(self) -> TimingConfig[float]:
+        """When the person moves."""
+        return cast(TimingConfig[float], self.config.timing)
 
     @property
     def prefix(self) -> str:
@@ -116,10 +175,11 @@ class Person:
         """Duration of the recording, s."""
         return float(self.scene.seconds)
 
-    @cached_property
-    def own_class(self) -> Any:
-        """Section of `classes` for the person's activity, with its numbers as floats."""
-        return _plain(self.config.classes[self.activity.slug])
+    @property
+    def own_class(self) -> SequenceConfig[float] | FilesConfig[float]:
+        """Section of `classes` for the person's activity."""
+        section = self.config.classes[self.activity.slug]
+        return cast(SequenceConfig[float] | FilesConfig[float], section)
 
     def stream(self, name: str) -> np.random.Generator:
         """Random stream of a name, for what this person does in this scene."""
@@ -150,7 +210,6 @@ class Scene:
         index: number of the sample within its class; names its noise, with the seed and the class.
         subject: number of the person, or None where every sample is a person of its own.
         attempt: how often the scene was redrawn (`on_invalid: redraw`).
-        radar, wall, room, receiver, seconds, snr_db: sections and numbers of the config, as floats.
     """
 
     config: Config
@@ -159,13 +218,35 @@ class Scene:
     subject: int | None = None
     attempt: int = 0
 
-    wall, room, receiver = map(_section, ("wall", "room", "receiver"))
-    seconds, snr_db = map(_section, ("duration_s", "snr_db"))
-
     @property
     def radar(self) -> SceneRadar:
         """Radar of the scene."""
         return fixed_radar(self.config)
+
+    @property
+    def wall(self) -> WallConfig[float] | None:
+        """Wall between radar and people; None in free space."""
+        return cast(WallConfig[float] | None, self.config.wall)
+
+    @property
+    def room(self) -> RoomConfig[float]:
+        """What stands in the room, and its faces."""
+        return cast(RoomConfig[float], self.config.room)
+
+    @property
+    def receiver(self) -> ReceiverConfig[float]:
+        """Noise and interference of the receiver."""
+        return cast(ReceiverConfig[float], self.config.receiver)
+
+    @property
+    def seconds(self) -> float:
+        """Duration of the recording, s."""
+        return cast(float, self.config.duration_s)
+
+    @property
+    def snr_db(self) -> float | None:
+        """SNR of a raw sample, dB; None where noise is thermal, or none."""
+        return cast(float | None, self.config.snr_db)
 
     @property
     def name(self) -> str:
@@ -207,84 +288,73 @@ def draw_scene(
             empty for none.
     """
     subject = subject_of(config, index)
-
-    def at_share(key: str) -> float:
-        if subject is not None and key in PERSONAL:
-            return stream(config.seed, PERSON, subject, name=key).random()
-        redrawn = attempt if key.startswith(REDRAWN) else 0
-        return stream(config.seed, SCENE, activity.index, index, redrawn, name=key).random()
-
-    def of_other(number: int, key: str) -> float:
-        attempts = people_attempts[number - 1] if people_attempts else 0
-        redrawn = attempts if key.startswith(REDRAWN) else 0
-        name = f"people.{number}.{key}"
-        return stream(config.seed, SCENE, activity.index, index, redrawn, name=name).random()
-
-    fixed = _draw_config(config, activity, at_share, subject)
+    draw = SeededDraw(config.seed, activity, index, attempt, subject)
+    fixed = _draw_config(config, activity, draw, subject)
     if config.people:
-        fixed = changed(fixed, {"people": _draw_people(config, of_other)})
+        attempts = people_attempts or (0,) * len(config.people)
+        draws = [
+            SeededDraw(config.seed, activity, index, attempts[number - 1], person=number)
+            for number in range(1, len(config.people) + 1)
+        ]
+        fixed = changed(fixed, {"people": draw_people(config, draws)})
     return Scene(fixed, activity, index, subject, attempt)
 
 
 def nominal_scene(config: Config, activity: Activity) -> Scene:
     """Make the scene with every number at its middle, and nothing that people do not repeat."""
-    fixed = _draw_config(config, activity, None, None)
+    fixed = _draw_config(config, activity, NominalDraw(), None)
     if config.people:
-        fixed = changed(fixed, {"people": _draw_people(config, None)})
+        draws = [NominalDraw()] * len(config.people)
+        fixed = changed(fixed, {"people": draw_people(config, draws)})
     return Scene(fixed, activity, 0)
 
 
-def _draw_config(
-    config: Config, activity: Activity, at_share: Draw | None, subject: int | None
-) -> Config:
+def _draw_config(config: Config, activity: Activity, draw: Draw, subject: int | None) -> Config:
     """Draw the config of one person's scene.
 
     Args:
         config: config in which the person's numbers are at the top level.
         activity: what the person does.
-        at_share: share, 0 to 1, of the distribution of a key at which its number lies; None for the
-            middle of all, and nothing unsteady.
+        draw: random choices, or the middle of everything.
         subject: number of the person, or None without named persons.
     """
-
-    def draw(key: str, number: Number) -> float:
-        return nominal(number) if at_share is None else quantile(number, at_share(key))
-
     fixed = _fix_numbers(config, activity, draw)
-    if at_share is None:
-        fixed = changed(fixed, dict.fromkeys(UNSTEADY, 0.0))
-    if isinstance(fixed.motion.fall, Falls):
-        fixed = changed(fixed, {FALL: fixed.motion.fall.drawn(at_share(FALL) if at_share else 0.5)})
-    if config.files_of(activity) is not None:
-        share = at_share(f"classes.{activity.slug}.file") if at_share else 0.5
-        fixed = _with_file(fixed, activity, share, subject)
+    falling = fixed.motion.falling.direction
+    if isinstance(falling, Falls):
+        directions = sorted(falling.choice, key=FALLS.index)
+        fixed = changed(fixed, {FALL: directions[draw.index(FALL, len(directions))]})
+    files = config.files_of(activity)
+    if files is not None and files.file is None:
+        fixed = _with_file(fixed, activity, draw, subject)
     return _with_possible_overlap(fixed, activity)
 
 
-def _draw_people(config: Config, at_share: OfOther | None) -> tuple[PersonConfig, ...]:
-    """Draw `people`, with nothing left to draw; who is not there has a share of 0."""
-    drawn = []
-    for number, person in enumerate(config.people, 1):
-        share = partial(at_share, number) if at_share else None
-        activities = config.activities_of(number)
-        place = min(
-            int((share("activity") if share else 0.5) * len(activities)), len(activities) - 1
-        )
-        activity = activities[place]
-        present = person.share > (share("share") if share else 0.5 - 1e-9)
-        fixed = _draw_config(_of_person(ByIdentity(config), number), activity, share, None)
-        own_classes = {slug: c for slug, c in fixed.classes.items() if slug == activity.slug}
-        drawn.append(
-            PersonConfig.model_construct(
-                activity=activity.slug,
-                share=float(present),
-                subject=fixed.subject,
-                motion=fixed.motion,
-                timing=fixed.timing,
-                classes=own_classes or None,
-            )
-        )
-    return tuple(drawn)
+def draw_people(config: Config, draws: Sequence[Draw]) -> tuple[PersonConfig, ...]:
+    """Draw `people`, with nothing left to draw; who is not there has a share of 0.
+
+    Args:
+        config: config of the data set.
+        draws: random choices of each of `people`.
+    """
+    numbered = enumerate(zip(config.people, draws, strict=True), 1)
+    return tuple(_draw_person(config, number, person, draw) for number, (person, draw) in numbered)
+
+
+def _draw_person(config: Config, number: int, person: PersonConfig, draw: Draw) -> PersonConfig:
+    """Draw what one of `people`, 1 the first, is and does in a scene."""
+    activities = config.activities_of(number)
+    activity = activities[draw.index("activity", len(activities))]
+    is_present = draw.happens("share", person.share)
+    fixed = _draw_config(_of_person(ByIdentity(config), number), activity, draw, None)
+    movements = {slug: c for slug, c in fixed.classes.items() if slug == activity.slug}
+    return PersonConfig.model_construct(
+        activity=activity.slug,
+        share=float(is_present),
+        subject=fixed.subject,
+        motion=fixed.motion,
+        timing=fixed.timing,
+        classes=movements or None,
+    )
 
 
 def _with_possible_overlap(config: Config, activity: Activity) -> Config:
@@ -293,7 +363,9 @@ def _with_possible_overlap(config: Config, activity: Activity) -> Config:
     key = OVERLAPPED.get(activity.slug)
     if key is None or config.motion.model != "human":
         return config
-    sideways = activity.slug == "walking_to_falling" and config.motion.fall == "sideways"
+    sideways = (
+        activity.slug == "walking_to_falling" and config.motion.falling.direction == "sideways"
+    )
     most = 0.0 if sideways else MAX_OVERLAP * getattr(timing, key)
     capped = {"timing.overlap_s": min(timing.overlap_s, most)}
     if key == "rise_duration_s" and timing.walk_start_s is not None:
@@ -302,20 +374,19 @@ def _with_possible_overlap(config: Config, activity: Activity) -> Config:
     return changed(config, capped)
 
 
-def _with_file(config: Config, activity: Activity, u: float, subject: int | None) -> Config:
-    """Choose the motion file of an activity, the one at a fraction u of the draws.
+def _with_file(config: Config, activity: Activity, draw: Draw, subject: int | None) -> Config:
+    """Choose the motion file of an activity.
 
     Named persons have files of their own, as long as there are enough: then training and validation
     share none.
     """
-    one = config.files_of(activity)
-    if one is None or one.file is not None:
-        return config
-    files = range(len(one.files))
+    section = config.files_of(activity)
+    assert section is not None
+    files = range(len(section.files))
     if subject is not None:
         files = files[subject :: config.split.subjects] or files
-    drawn = files[min(int(u * len(files)), len(files) - 1)]
-    return changed(config, {f"classes.{activity.slug}.file": drawn})
+    key = f"classes.{activity.slug}.file"
+    return changed(config, {key: files[draw.index(key, len(files))]})
 
 
 def subject_of(config: Config, index: int) -> int | None:
@@ -343,7 +414,8 @@ def numbers(config: Config) -> list[tuple[str, Any]]:
 def number_at(scene: Scene, key: str) -> float:
     """Number of a scene under a dotted key, such as `radar.tx_m.0` or `people.0.motion.range_m`.
 
-    It is NaN where the scene does not depend on such a number. `motion.fall` is its place in FALLS.
+    It is NaN where the scene does not depend on such a number. `motion.falling.direction` is its
+    place in FALLS.
     """
     config, activity = scene.config, scene.activity
     if key.startswith("people."):
@@ -383,7 +455,7 @@ def file_keys(config: Config) -> tuple[str, ...]:
 def scene_numbers(scene: Scene) -> dict[str, float]:
     """Numbers that a scene depends on, {dotted key: number}, in the units of the keys.
 
-    `motion.fall` is its place in FALLS.
+    `motion.falling.direction` is its place in FALLS.
     """
     keys = (*(key for key, _ in numbers(scene.config)), FALL, *file_keys(scene.config))
     used = (key for key in keys if scene.config.depends_on(scene.activity, key))
@@ -444,7 +516,7 @@ def redrawn(config: Config, activity: Activity) -> Redrawn:
     drawn_again += personal if config.split.subjects is None else []
     files = config.files_of(activity)
     listed = files is not None and files.file is None and len(files.files) > 1
-    if listed or isinstance(config.motion.fall, Falls):
+    if listed or isinstance(config.motion.falling.direction, Falls):
         return Redrawn.CHOICES
     if not drawn_again:
         return Redrawn.NOTHING
@@ -452,12 +524,12 @@ def redrawn(config: Config, activity: Activity) -> Redrawn:
     return Redrawn.CHOICES if chosen else Redrawn.NUMBERS
 
 
-def _fix_numbers(
-    config: Config, activity: Activity, draw: Callable[[str, Number], float]
-) -> Config:
+def _fix_numbers(config: Config, activity: Activity, draw: Draw) -> Config:
     """Fix the numbers of a config; those that its activity does not depend on at their middle."""
     fixed, drawn = _fixed_and_drawn(ByIdentity(config), activity)
-    values = {key: draw(key, number) for key, number in drawn.items()}
+    values = {key: draw.number(key, number) for key, number in drawn.items()}
+    if isinstance(draw, NominalDraw):
+        values |= dict.fromkeys(UNSTEADY, 0.0)
     if fixed.subject.weight_kg is None:
         height: Any = values.get("subject.height_m", fixed.subject.height_m)
         values["subject.weight_kg"] = default_weight(height)

@@ -605,7 +605,8 @@ from radhar_cli.config import load_config
 from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene
 def once(seconds):
-    config = load_config(sys.argv[1], ["snr_db=null", "motion.lane_m=4", f"duration_s={seconds}"])
+    overrides = ["snr_db=null", "motion.walking.lane_m=4", f"duration_s={seconds}"]
+    config = load_config(sys.argv[1], overrides)
     walking = next(one for one in config.chosen_activities if one.slug == "walking")
     scene = draw_scene(config, walking, 0)
     start = time.process_time()

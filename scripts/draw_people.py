@@ -25,7 +25,7 @@ from radhar_cli.scene import draw_scene
 ROOT = Path(__file__).resolve().parents[1]
 OVERRIDES = (
     "motion.angle_deg=180",
-    "motion.lane_m={per_activity: {default: 0, S8: 3}}",
+    "motion.walking.lane_m={per_activity: {default: 0, S8: 3}}",
     "on_invalid=keep",
 )
 CELL, VIEW, PIXELS_PER_METRE = 150, 120, 52
@@ -115,7 +115,12 @@ def draw_falls(index: int, out: Path) -> None:
     rows = []
     for sequence, direction in FALLS:
         own = f"classes={{own: {{sequence: [{sequence.replace(' ', ', ')}]}}}}"
-        chosen = [own, "activities=[own]", f"motion.fall={direction}", "motion.angle_deg=180"]
+        chosen = [
+            own,
+            "activities=[own]",
+            f"motion.falling.direction={direction}",
+            "motion.angle_deg=180",
+        ]
         chosen.append("motion.range_m={uniform: [4, 6]}")  # the file's has classes by name
         config = load_config(ROOT / "configs/human/older.yaml", chosen)
         motion = motion_of(draw_scene(config, config.chosen_activities[0], index).people[0])

@@ -32,15 +32,32 @@ WALK: dict[str, Any] = {"activities": ["walking"], "snr_db": None, "on_invalid":
 CROSSING: dict[str, Any] = {
     "radar": {"carrier_hz": 24e9, "bandwidth_hz": 2e9, "prf_hz": 2000},
     "duration_s": 4,
-    "motion": {"range_m": 2.0, "cross_range_m": -0.9, "angle_deg": 31, "speed_mps": 1.17},
+    "motion": {
+        "range_m": 2.0,
+        "cross_range_m": -0.9,
+        "angle_deg": 31,
+        "walking": {"speed_mps": 1.17},
+    },
     "people": [
-        {"motion": {"range_m": 7, "cross_range_m": 0.9, "angle_deg": 211, "speed_mps": 1.17}}
+        {
+            "motion": {
+                "range_m": 7,
+                "cross_range_m": 0.9,
+                "angle_deg": 211,
+                "walking": {"speed_mps": 1.17},
+            }
+        }
     ],
 }
 CORNER: dict[str, Any] = {
     "radar": {"carrier_hz": 24e9, "bandwidth_hz": 2e9, "prf_hz": 2000},
     "duration_s": 4,
-    "motion": {"range_m": 5.5, "cross_range_m": -1.5, "angle_deg": 150, "speed_mps": 1.0},
+    "motion": {
+        "range_m": 5.5,
+        "cross_range_m": -1.5,
+        "angle_deg": 150,
+        "walking": {"speed_mps": 1.0},
+    },
 }
 CORNER_WALLS = {
     "box_m": {"x": [-1, 7], "y": [-9, 1.5], "height": 2.8},
@@ -50,7 +67,7 @@ CORNER_WALLS = {
 RINGING: dict[str, Any] = {
     "radar": {"carrier_hz": 1e9, "bandwidth_hz": 2e9, "prf_hz": 256, "adc_rate_hz": 5e6},
     "duration_s": 4,
-    "motion": {"range_m": 6, "angle_deg": 180, "speed_mps": 0.8},
+    "motion": {"range_m": 6, "angle_deg": 180, "walking": {"speed_mps": 0.8}},
     "engine": {"kind": "cube"},
 }
 WALL = {"center_m": [1, 0, 1.25], "size_m": [0.24, 8, 3], "eps_r": 6, "loss_tangent": 0.03}

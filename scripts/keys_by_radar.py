@@ -119,7 +119,7 @@ SITUATIONS: dict[str, dict[str, Any]] = {
     "processing.range_sum": {"maps": ["stft"]},
     "wall.layers": {"wall.echoes": "exact", "engine.kind": "cube"},
     "engine.motion_in_chirp": {"engine.kind": "cube"},
-    "motion.lane_start": {"motion.lane_m": 3.0},
+    "motion.walking.lane_start": {"motion.walking.lane_m": 3.0},
 }
 # Keys that only change together: {key: other keys and their values}.
 TOGETHER: dict[str, dict[str, Any]] = {
@@ -148,7 +148,7 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "cloud.pfa": (0.05,),
     "on_invalid": ("error",),
     "body.points_per_segment": (3,),
-    "motion.fall": ("backward",),
+    "motion.falling.direction": ("backward",),
     "subject.weight_kg": (90.0,),
     "split.by": ("subject",),
     "split.train": (1.0,),

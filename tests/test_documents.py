@@ -115,7 +115,7 @@ def movement(path: Path) -> None:
 def capture(path: Path) -> None:
     """Of TI's card, and what Studio says of the radar."""
     (path.parent / "setup.mmwave.json").write_text(json.dumps(CARD.studio()))
-    motion = {"range_m": 2, "angle_deg": 0, "speed_mps": 0.7}
+    motion = {"range_m": 2, "angle_deg": 0, "walking": {"speed_mps": 0.7}}
     walker = Config.model_validate({"duration_s": 4.2, "activities": ["S8"], "motion": motion})
     beat = echo(CARD, body(walker), round(4.2e3 / CARD.period_ms), 0)
     words(beat, len(CARD.transmitters)).tofile(path)

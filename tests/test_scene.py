@@ -38,8 +38,8 @@ DRAWN: dict[str, Any] = {
         "range_m": {"uniform": [2, 3]},
         "cross_range_m": {"uniform": [-1, 1]},
         "angle_deg": {"uniform": [-30, 30]},
-        "speed_mps": {"uniform": [1, 2]},
-        "gait_hz": {"vary": [1, 0.1]},
+        "walking": {"speed_mps": {"uniform": [1, 2]}},
+        "paper": {"gait_hz": {"vary": [1, 0.1]}},
     },
     "timing": {
         "walk_stop_s": {"uniform": [1, 2]},
@@ -101,8 +101,14 @@ def test_a_scene_is_the_same_in_whatever_order_it_is_drawn() -> None:
             {"motion.range_m"},
         ),
         (
-            {"motion": {**DRAWN["motion"], "angle_deg": 0, "arm_deg": {"uniform": [0, 9]}}},
-            {"motion.angle_deg", "motion.arm_deg"},
+            {
+                "motion": {
+                    **DRAWN["motion"],
+                    "angle_deg": 0,
+                    "paper": {**DRAWN["motion"]["paper"], "arm_deg": {"uniform": [0, 9]}},
+                }
+            },
+            {"motion.angle_deg", "motion.paper.arm_deg"},
         ),
         (
             {"timing": {**DRAWN["timing"], "blend_s": {"choice": [0.15, 0.45]}}},
@@ -160,9 +166,17 @@ def test_draws_follow_their_distribution() -> None:
 @pytest.mark.parametrize(
     ("slug", "paper", "human"),
     [
-        ("stationary", set(), {"motion.shuffle_hz"}),
-        ("kicking", {"motion.thigh_deg"}, {"motion.kick_hz", "motion.strike_scale"}),
-        ("sitting_down", {"timing.seat_start_s"}, {"motion.seat_height", "timing.seat_start_s"}),
+        ("stationary", set(), {"motion.idle.shuffle_hz"}),
+        (
+            "kicking",
+            {"motion.paper.thigh_deg"},
+            {"motion.striking.kick_hz", "motion.striking.strike_scale"},
+        ),
+        (
+            "sitting_down",
+            {"timing.seat_start_s"},
+            {"motion.sitting.seat_height", "timing.seat_start_s"},
+        ),
         ("walking_to_falling", {"timing.blend_s"}, {"timing.overlap_s"}),
     ],
 )
@@ -172,7 +186,9 @@ def test_a_scene_holds_what_its_activity_uses(slug: str, paper: set[str], human:
         keys = set(scene_numbers(draw_scene(config, activity_named(slug), 0)))
         assert some | {"motion.range_m", "motion.angle_deg", "wall.eps_r"} <= keys
         assert not others & keys
-        assert ("motion.fidget_hz" in keys) == ("subject.pulse_hz" in keys) == (model == "human")
+        assert (
+            ("motion.idle.fidget_hz" in keys) == ("subject.pulse_hz" in keys) == (model == "human")
+        )
 
 
 def test_numbers_may_differ_by_activity() -> None:
@@ -196,7 +212,7 @@ def test_the_nominal_scene_is_the_middle_of_everything() -> None:
         "subject.height_m": 1.7,
         "motion.range_m": 2.5,
         "motion.angle_deg": 0.0,
-        "motion.gait_hz": 1.0,
+        "motion.paper.gait_hz": 1.0,
         "timing.fall_duration_s": 0.8,
         "snr_db": 10.0,
         "radar.tx_m.2": 1.5,
@@ -234,11 +250,11 @@ def test_a_person_has_a_body_and_a_gait_but_no_fixed_place() -> None:
     assert same == {
         "subject.height_m",
         "subject.weight_kg",
-        "motion.speed_mps",
-        "motion.gait_hz",
-        "motion.thigh_deg",
-        "motion.calf_deg",
-        "motion.arm_deg",
+        "motion.walking.speed_mps",
+        "motion.paper.gait_hz",
+        "motion.paper.thigh_deg",
+        "motion.paper.calf_deg",
+        "motion.paper.arm_deg",
     }
 
 

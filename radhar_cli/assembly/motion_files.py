@@ -28,6 +28,7 @@ def file_motion(person: Person) -> FileMotion:
     assert files_config is not None
     assert files_config.file is not None
     numbers = person.own_class
+    assert isinstance(numbers, FilesConfig)
     path, checksum = [*files_config.files.items()][files_config.file]
     if folder is None:
         raise MotionFileError(f"{path}: where the files of {slug} lie is not known: motion.folder")

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from radhar_cli.activities.activity import MOVEMENTS
+from radhar_cli.config.classes import SequenceConfig
+from radhar_cli.config.motion import FallName, Falls, MotionConfig
 from radhar_cli.motion.human.falling import (
     FallBackward,
     FallForward,
@@ -50,7 +52,7 @@ from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene import Numbers, Person
+from radhar_cli.scene import Person
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -119,15 +121,15 @@ def _first_begin(person: Person) -> float:
         "falling_to_walking": timing.rise_start_s,
     }
     rates: dict[str, float] = {
-        "punching": motion.punch_hz,
-        "kicking": motion.kick_hz,
-        "body_rotating": motion.rotation_hz,
+        "punching": motion.striking.punch_hz,
+        "kicking": motion.striking.kick_hz,
+        "body_rotating": motion.rotating.rotation_hz,
     }
     if timing.walk_begin_s is not None:
         starts["walking"] = timing.walk_begin_s
     slug = person.activity.slug
     if slug in rates and (rate := rates[slug]):
-        phase: float = motion.cycle_phase % 1
+        phase: float = motion.repeating.cycle_phase % 1
         return -phase / rate
     return starts.get(slug, 0.0)
 
@@ -164,7 +166,7 @@ def _movements_and_pauses(person: Person) -> tuple[tuple[Movement, ...], tuple[f
 
 def _add_steps(person: Person, movements: tuple[Movement, ...]) -> tuple[Movement, ...]:
     """Put a step before and after the movements, as the activity has them."""
-    length = person.motion.step_m
+    length = person.motion.transitions.step_m
     rng = person.stream("motion.step_m/ways")
     if not length:
         return movements
@@ -188,6 +190,7 @@ def _time_of_rest(movements: Iterable[Movement], begin: float) -> float:
 def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
     """Movements of a class that is a sequence, and the pause before each, s."""
     sequence = person.own_class
+    assert isinstance(sequence, SequenceConfig)
     movements = list[Movement]()
     for place, (name, duration_s) in enumerate(
         zip(sequence.sequence, sequence.durations_s, strict=True)
@@ -220,12 +223,14 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
     """
     motion = person.motion
     seat = Seat(
-        height=motion.seat_height, recline=radians(motion.recline_deg), lap=motion.hands_on_lap
+        height=motion.sitting.seat_height,
+        recline=radians(motion.sitting.recline_deg),
+        lap=motion.sitting.hands_on_lap,
     )
-    rise = Rise(lean=radians(motion.lean_deg))
-    scale = motion.strike_scale
+    rise = Rise(lean=radians(motion.sitting.lean_deg))
+    scale = motion.striking.strike_scale
     paces, sizes = _repetitions(person, ceil(3 * person.seconds) + 8, place)
-    bend = motion.bend_deg
+    bend = motion.grabbing.bend_deg
     lags = _lags(person, place)
     sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
     moving = 2.5 if duration is None else duration
@@ -234,18 +239,18 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
         walk=person.timing.walk_stop_s,
         standing_first=person.timing.walk_begin_s is not None,
         punch=Punch(
-            frequency=scale * motion.punch_hz,
+            frequency=scale * motion.striking.punch_hz,
             paces=_nonzero_tuple(scale * paces),
             sizes=_nonzero_tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
         ),
         kick=Kick(
-            frequency=scale * motion.kick_hz,
+            frequency=scale * motion.striking.kick_hz,
             paces=_nonzero_tuple(scale * paces),
             sizes=_nonzero_tuple(sizes),
         ),
         grab=Grab(
             down=moving * 1.2 / 2.5,
-            dwell=motion.dwell_s,
+            dwell=motion.grabbing.dwell_s,
             up=moving * 1.3 / 2.5,
             thigh=radians(-62) * bend / 72,
             trunk=radians(bend),
@@ -255,8 +260,8 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
         sit_down=_with_duration(duration, sitting),
         stand_up=_with_duration(duration, StandUp(seat=seat, rise=rise, lags=lags[1])),
         turn=Turn(
-            frequency=motion.rotation_hz,
-            angle=radians(motion.turn_deg),
+            frequency=motion.rotating.rotation_hz,
+            angle=radians(motion.rotating.turn_deg),
             paces=_nonzero_tuple(paces),
             sizes=_nonzero_tuple(sizes),
         ),
@@ -265,13 +270,13 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
         fall_off_seat=_fall_off_seat(seat, person, 1.0 if duration is None else duration),
         fall_on_rising=_fall_off_seat(seat, person, 1.7 if duration is None else duration, 0.5),
         stumble=_with_duration(duration, _stumble(person)),
-        trip=radians(motion.stumble_deg),
+        trip=radians(motion.falling.stumble_deg),
         get_up=_with_duration(duration, GetUp()),
         try_to_get_up=_with_duration(duration, TryToGetUp()),
         turn_around=_with_duration(duration, AROUND),
-        exercise_period=motion.exercise_period,
+        exercise_period=motion.exercises.period,
         exercise_paces=_nonzero_tuple(paces),
-        exercise_sizes=_nonzero_tuple(motion.exercise_size * np.minimum(sizes, 1.05)),
+        exercise_sizes=_nonzero_tuple(motion.exercises.size * np.minimum(sizes, 1.05)),
     )
 
 
@@ -283,7 +288,7 @@ def _with_duration(duration: float | None, movement: M) -> M:
 def _lags(person: Person, place: int) -> tuple[Lags, Lags]:
     """Lags of the joints in going down, and in coming up."""
     rng = person.stream(f"motion.joint_lag/{place}")
-    share, channels = person.motion.joint_lag, (*LEGS_AND_TRUNK, *SHOULDERS, *ELBOWS)
+    share, channels = person.motion.transitions.joint_lag, (*LEGS_AND_TRUNK, *SHOULDERS, *ELBOWS)
     down, up = (
         Lags(share, dict(zip(channels, rng.random(len(channels)).tolist(), strict=True)))
         for _ in range(2)
@@ -299,10 +304,10 @@ def _side(person: Person) -> float:
 def _fall(person: Person, duration: float | None, caught: bool = False) -> Fall:
     """Fall from standing, broken by the hands or not."""
     motion = person.motion
-    if motion.fall == "forward":
-        prone, heels = OnFours() if caught else Prone(), radians(motion.heels_deg)
+    if _fall_direction(person) == "forward":
+        prone, heels = OnFours() if caught else Prone(), radians(motion.falling.heels_deg)
         return _with_duration(duration, FallForward(prone=prone, heels=heels))
-    if motion.fall == "backward":
+    if _fall_direction(person) == "backward":
         return _with_duration(duration, FallBackward(supine=Sitting() if caught else Supine()))
     aside = FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)
     return _with_duration(duration, aside)
@@ -320,19 +325,26 @@ def _fall_off_seat(
         rising_share: Share of it for which the person rises first.
     """
     rising, duration = rising_share * total_duration, (1 - 0.75 * rising_share) * total_duration
-    if person.motion.fall == "sideways":
+    if _fall_direction(person) == "sideways":
         return FallSideways(duration, _side(person), seat=seat, rising=rising)
-    return FallFromSeat(duration, person.motion.fall == "forward", rising, seat)
+    return FallFromSeat(duration, _fall_direction(person) == "forward", rising, seat)
+
+
+def _fall_direction(person: Person) -> FallName:
+    """Direction in which the person falls or stumbles."""
+    direction = person.motion.falling.direction
+    assert not isinstance(direction, Falls)  # drawn with the scene
+    return direction
 
 
 def _stumble(person: Person) -> StepTo:
     """Stumble in the direction in which the person would fall."""
     motion = person.motion
-    stumble = STUMBLES[motion.fall]
-    pitch = radians(motion.stumble_deg)
-    if motion.fall == "forward":
+    stumble = STUMBLES[_fall_direction(person)]
+    pitch = radians(motion.falling.stumble_deg)
+    if _fall_direction(person) == "forward":
         return replace(stumble, pitch=pitch)
-    if motion.fall == "backward":
+    if _fall_direction(person) == "backward":
         return replace(stumble, pitch=-0.4 * pitch)
     side = _side(person)
     return replace(stumble, place=Place(0.0, side * stumble.place.left), lean=side * 0.4 * pitch)
@@ -343,19 +355,19 @@ def _gait(person: Person, place: int) -> Gait:
     motion = person.motion
     strides = ceil(person.seconds / MIN_STRIDE_S) + 8
     rng = person.stream(f"motion.speed_variation/{place}")
-    variation = motion.speed_variation
+    variation = motion.walking.speed_variation
     # The duration of a stride is the difference of two deviations.
     jitter, widths = (
         share * variation * rng.standard_normal(strides) for share in (8**-0.5, 1 / 3)
     )
     return Gait(
-        speed=motion.speed_mps,
-        period_scale=motion.period_scale,
-        phase=motion.cycle_phase,
-        arm_swing=motion.arm_swing,
-        trunk_pitch=radians(motion.trunk_pitch_deg),
-        half_width=motion.step_width / 2,
-        start=motion.speed_up,
+        speed=motion.walking.speed_mps,
+        period_scale=motion.walking.period_scale,
+        phase=motion.repeating.cycle_phase,
+        arm_swing=motion.walking.arm_swing,
+        trunk_pitch=radians(motion.walking.trunk_pitch_deg),
+        half_width=motion.walking.step_width / 2,
+        start=motion.walking.speed_up,
         ragged=_waves(motion, variation, RAGGED_HZ, 0.7),
         jitter=_nonzero_tuple(np.clip(jitter, -0.03, 0.03)),
         widths=_nonzero_tuple(np.clip(widths, -0.02, 0.03)),
@@ -366,10 +378,10 @@ def _gait(person: Person, place: int) -> Gait:
 def _lane(person: Person, place: int) -> Lane | None:
     """Lane of a walker who turns round, a part of which may lie behind them; or None."""
     motion = person.motion
-    if not (length := motion.lane_m):
+    if not (length := motion.walking.lane_m):
         return None
     to_left = person.stream(f"motion.lane_m/side/{place}").random() < 0.5
-    first = (1 - motion.lane_start) * length
+    first = (1 - motion.walking.lane_start) * length
     return Lane(length, first, side=1.0 if to_left else -1.0)
 
 
@@ -383,14 +395,16 @@ def _repetitions(person: Person, count: int, place: int) -> tuple[Float, Float]:
     motion = person.motion
     tempo = person.stream(f"motion.tempo_jitter/{place}").standard_normal(count)
     size = person.stream(f"motion.size_jitter/{place}").standard_normal(count)
-    paces = np.clip(1 + motion.tempo_jitter * tempo, 0.7, 1.4)
-    return paces, np.clip(1 + motion.size_jitter * size, 0.6, 1.15)
+    paces = np.clip(1 + motion.repeating.tempo_jitter * tempo, 0.7, 1.4)
+    return paces, np.clip(1 + motion.repeating.size_jitter * size, 0.6, 1.15)
 
 
-def _waves(motion: Numbers, deviation: float, rates: Iterable[float], first: float) -> Waves:
-    """Low-pass waves of a standard deviation that have been going on for `motion.idle_phase_s`."""
+def _waves(
+    motion: MotionConfig[float], deviation: float, rates: Iterable[float], first: float
+) -> Waves:
+    """Low-pass waves of a standard deviation that have been going on for `motion.idle.phase_s`."""
     f = tuple(rates)
-    phases = np.array(spread_phases(len(f), first)) + 2 * pi * np.array(f) * motion.idle_phase_s
+    phases = np.array(spread_phases(len(f), first)) + 2 * pi * np.array(f) * motion.idle.phase_s
     return Waves.low_pass(deviation, tuple(phases % (2 * pi)), f) if deviation else Waves()
 
 
@@ -398,7 +412,7 @@ def _idle(person: Person, physique: Physique, movements: tuple[Movement, ...]) -
     """Sway, breath and fidgets of a person."""
     subject = person.subject
     motion = person.motion
-    idle_s = motion.idle_phase_s
+    idle_s = motion.idle.phase_s
     sway = Sway(
         _waves(motion, subject.sway_ahead_m, _SWAY_HZ, 0.0),
         _waves(motion, subject.sway_aside_m, _SWAY_HZ, 0.3),
@@ -429,8 +443,8 @@ def _fidgets(person: Person) -> Iterable[Fidget]:
     """Fidgets that people make all the time."""
     motion = person.motion
     rng = person.stream("motion.fidget_size")
-    for start_s in _poisson_instants(person, motion.fidget_hz, "motion.fidget_hz/times", -1.0):
-        yield _draw_fidget(rng, motion.fidget_size, start_s, (0.5, 1.8))
+    for start_s in _poisson_instants(person, motion.idle.fidget_hz, "motion.fidget_hz/times", -1.0):
+        yield _draw_fidget(rng, motion.idle.fidget_size, start_s, (0.5, 1.8))
 
 
 def _settling_fidgets(person: Person, movements: tuple[Movement, ...]) -> Iterable[Fidget]:
@@ -439,7 +453,7 @@ def _settling_fidgets(person: Person, movements: tuple[Movement, ...]) -> Iterab
     if slug not in STEPS:
         return
     begin = _first_begin(person)
-    if size := motion.settle_size:
+    if size := motion.transitions.settle_size:
         rng = person.stream("motion.settle_size/fidgets")
         count = next(
             n for n, movement in enumerate(movements, 1) if not isinstance(movement, StepTo)
@@ -471,7 +485,7 @@ def _add_shuffles(
     rng = person.stream("motion.shuffle_hz/places")
     shuffles, pauses = [], []
     for start_s in _poisson_instants(
-        person, person.motion.shuffle_hz, "motion.shuffle_hz/times", rest_s
+        person, person.motion.idle.shuffle_hz, "motion.shuffle_hz/times", rest_s
     ):
         place = Place(*(np.array(SHUFFLE_SIZES) * np.clip(rng.standard_normal(3), -2, 2)).tolist())
         if start_s >= rest_s:

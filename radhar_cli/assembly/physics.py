@@ -20,6 +20,7 @@ from radhar_cli.config.radar import (
     ImpulseRadar,
     SfcwRadar,
 )
+from radhar_cli.config.room import DielectricConfig, LayerConfig
 from radhar_cli.motion.paper.activities import PaperGait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion
@@ -34,7 +35,7 @@ from radhar_cli.radar.board import Board
 from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.layers import Layer, Layers
-from radhar_cli.radar.materials import permittivity
+from radhar_cli.radar.materials import Material, permittivity
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.room import FACES, Box, Face, Leg, names_of, reflected_legs
 from radhar_cli.radar.wall import Wall
@@ -43,7 +44,7 @@ from radhar_cli.receiver.flicker import FlickerNoise
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.interference import InterferenceLine
 from radhar_cli.receiver.noise import WhiteNoise
-from radhar_cli.scene import Numbers, Person, Scene, nominal_scene
+from radhar_cli.scene import Person, Scene, nominal_scene
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -137,13 +138,13 @@ def wall_of(scene: Scene) -> Wall | None:
     radar, wall = scene.radar, scene.wall
     if wall is None:
         return None
-    (depth, *across), eps_r, loss_tangent = wall.size_m, wall.eps_r, wall.loss_tangent
-    layers: tuple[Layer, ...] = (Layer(depth, eps_r * (1 - 1j * loss_tangent)),)
-    if wall.layers is not None:
-        layers = tuple(
-            Layer(one.thickness_m, one.material or one.eps_r * (1 - 1j * one.loss_tangent))
-            for one in wall.layers
-        )
+    depth, width, height = wall.size_m
+    eps_r, loss_tangent = wall.eps_r, wall.loss_tangent
+    if wall.layers is None:
+        assert depth is not None  # refused where the config is read
+        layers: tuple[Layer, ...] = (Layer(depth, eps_r * (1 - 1j * loss_tangent)),)
+    else:
+        layers = tuple(map(_layer, wall.layers))
         depth = sum(layer.thickness for layer in layers)
         middle = np.array(radar.carrier_hz + radar.bandwidth_hz / 2)
         n = sum(layer.thickness * np.sqrt(layer.eps(middle)) for layer in layers) / depth
@@ -152,13 +153,21 @@ def wall_of(scene: Scene) -> Wall | None:
     exact = Layers(layers, parallel=radar.polarisation == "horizontal")
     return Wall(
         center=wall.center_m,
-        size=(depth, *across),
+        size=(depth, width, height),
         eps_r=eps_r,
         loss_tangent=loss_tangent,
         rays=wall.rays,
         fresnel=wall.fresnel,
         layers=exact if wall.echoes == "exact" else None,
     )
+
+
+def _layer(layer: LayerConfig[float]) -> Layer:
+    """Layer of a wall: of a material, or of a permittivity."""
+    if layer.material is not None:
+        return Layer(layer.thickness_m, layer.material)
+    assert layer.eps_r is not None  # refused where the config is read
+    return Layer(layer.thickness_m, layer.eps_r * (1 - 1j * layer.loss_tangent))
 
 
 def motion_of(person: Person) -> Motion:
@@ -245,7 +254,7 @@ def kinds_of(config: Config) -> list[str]:
     return ["-/-", *map(names_of, ways_of(scene))]
 
 
-def _permittivity(material: str | Numbers, frequency: float) -> complex:
+def _permittivity(material: Material | DielectricConfig[float], frequency: float) -> complex:
     if isinstance(material, str):
         return complex(permittivity(material, np.array(frequency)))
     return complex(material.eps_r * (1 - 1j * material.loss_tangent))
@@ -297,12 +306,12 @@ def _paper_body(person: Person) -> PaperBody:
         start=(motion.range_m, motion.cross_range_m),
         angle=radians(motion.angle_deg),
         gait=PaperGait(
-            frequency=motion.gait_hz,
-            thigh=radians(motion.thigh_deg),
-            calf=radians(motion.calf_deg),
-            arm=radians(motion.arm_deg),
-            turn=radians(motion.turn_deg),
-            speed=motion.speed_mps,
+            frequency=motion.paper.gait_hz,
+            thigh=radians(motion.paper.thigh_deg),
+            calf=radians(motion.paper.calf_deg),
+            arm=radians(motion.paper.arm_deg),
+            turn=radians(motion.rotating.turn_deg),
+            speed=motion.walking.speed_mps,
         ),
         timing=Timing(**{one.name: getattr(timing, f"{one.name}_s") for one in fields(Timing)}),
     )

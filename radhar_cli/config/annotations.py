@@ -334,7 +334,8 @@ def _is_section(kind: Any) -> TypeGuard[type[BaseModel]]:
 def _flat(about: Any) -> Iterator[Any]:
     """Annotations of a field, those inside of unions with null included."""
     for one in about.metadata if isinstance(about, FieldInfo) else about.__metadata__:
-        yield from one.metadata if isinstance(one, FieldInfo) else (one,)
+        inner = one.metadata if isinstance(one, FieldInfo) else getattr(one, "bounds", (one,))
+        yield from inner
     inner = about.annotation if isinstance(about, FieldInfo) else about.__origin__
     for one in (inner, *get_args(inner)):
         if hasattr(one, "__metadata__"):

@@ -2,14 +2,23 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, Any, ClassVar, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias, cast
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator, model_validator
 
 from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, Activity, is_new_slug
 from radhar_cli.activities.vocabulary import advice_on
-from radhar_cli.config.number import Choice, Number, Seconds, support, uniform, value_error, within
-from radhar_cli.config.section import Section
+from radhar_cli.config.number import (
+    NOT_NEGATIVE,
+    SECONDS,
+    Choice,
+    Number,
+    support,
+    uniform,
+    value_error,
+    within,
+)
+from radhar_cli.config.section import N, Section, default_draw
 from radhar_cli.errors import did_you_mean
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
@@ -20,19 +29,19 @@ MIN_MOVEMENT_S = 0.3
 FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
 
 
-class SequenceConfig(Section):
+class SequenceConfig(Section, Generic[N]):
     """A class of your own: movements one after the other, joined at rest."""
 
     sequence: Annotated[tuple[str, ...], Field(min_length=1, max_length=64)]
     """Movements of the class in order, by their names (docs/guide/motion.md)."""
-    durations_s: tuple[Seconds | None, ...] = ()
+    durations_s: tuple[Annotated[N | None, NOT_NEGATIVE, SECONDS], ...] = ()
     """Duration of each movement; null is the usual one, and of the last movement until the
     recording ends."""
-    pauses_s: tuple[Seconds, ...] = ()
+    pauses_s: tuple[Annotated[N, NOT_NEGATIVE, SECONDS], ...] = ()
     """Time at rest before each movement; left out, there is none."""
 
     @model_validator(mode="after")
-    def _joined(self) -> "SequenceConfig":
+    def _joined(self) -> "SequenceConfig[N]":
         count, last = len(self.sequence), len(self.sequence) - 1
         if not self.durations_s:
             object.__setattr__(self, "durations_s", (None,) * count)
@@ -51,7 +60,7 @@ class SequenceConfig(Section):
                     f"should be joined at rest: {name} begins {movement.before}, "
                     f"{self.sequence[n - 1]} ends {state}"
                 )
-            if duration is not None and not support(duration)[0] >= MIN_MOVEMENT_S:
+            if duration is not None and not support(cast(Number, duration))[0] >= MIN_MOVEMENT_S:
                 raise value_error(f"should have durations_s from {MIN_MOVEMENT_S} s on")
             if movement.seconds is None and duration is None and n < last:
                 raise value_error(f"should have a duration of {name}, which something follows")
@@ -65,10 +74,10 @@ MAX_FILES = 1500  # of all classes together
 MAX_PATH_LENGTH = 240
 
 
-Share01 = Annotated[Number, within(0, 1)]
+SHARE = within(0, 1)
 
 
-class FilesConfig(Section):
+class FilesConfig(Section, Generic[N]):
     """A class whose motion is recorded: BVH, AMC or npz files; a list of them is enough."""
 
     files: dict[str, str]
@@ -92,11 +101,11 @@ class FilesConfig(Section):
     loop."""
     file: Annotated[int, Field(ge=0, strict=True)] | None = None
     """Number of the one file that is used, from 0; null draws one."""
-    start: Share01 = uniform(0.0, 1.0)
+    start: Annotated[N, SHARE] = default_draw(uniform(0.0, 1.0))
     """Place in the section at which a recording begins, 0 at the earliest, 1 at the latest."""
-    playback_speed: Annotated[Number, within(0.25, 4)] = uniform(0.9, 1.1)
+    playback_speed: Annotated[N, within(0.25, 4)] = default_draw(uniform(0.9, 1.1))
     """Playback rate, seconds of the file per second of the recording."""
-    mirror: Share01 = Choice(choice=(0, 1))
+    mirror: Annotated[N, SHARE] = default_draw(Choice(choice=(0, 1)))
     """Whether left and right are exchanged: 1 exchanges them."""
 
     NUMBERS: ClassVar = ("start", "playback_speed", "mirror")
@@ -132,7 +141,7 @@ class FilesConfig(Section):
         return value
 
     @model_validator(mode="after")
-    def _one_of_them(self) -> "FilesConfig":
+    def _one_of_them(self) -> "FilesConfig[N]":
         if self.file is not None and self.file >= len(self.files):
             raise value_error(f"should have a file below {len(self.files)}, the number of files")
         if self.skeleton is not None:
@@ -152,7 +161,8 @@ def _class_kind(value: Any) -> str:
 
 
 ClassConfig: TypeAlias = Annotated[
-    Annotated[SequenceConfig, Tag("<movements>")] | Annotated[FilesConfig, Tag("<recordings>")],
+    Annotated[SequenceConfig[N], Tag("<movements>")]
+    | Annotated[FilesConfig[N], Tag("<recordings>")],
     Discriminator(_class_kind),
 ]
 

@@ -1,13 +1,13 @@
 """What an image of a map shows."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Generic, Literal
 
 from pydantic import BeforeValidator, Field, field_validator
 
 from radhar_cli.config.acting import SPECTRA
 from radhar_cli.config.annotations import ActsIf
-from radhar_cli.config.number import Decibel, Positive, Real, require, uniform, value_error, within
-from radhar_cli.config.section import Section
+from radhar_cli.config.number import DECIBEL, POSITIVE, Real, require, uniform, value_error, within
+from radhar_cli.config.section import N, Section, default_draw
 from radhar_cli.errors import did_you_mean
 
 DEFAULT_COLOUR_MAP = "viridis"
@@ -19,7 +19,7 @@ Pixels = Annotated[int, Field(ge=2, le=8192, strict=True)]
 Cells = Annotated[int, Field(ge=0, le=4096, strict=True)]
 
 
-class CfarConfig(Section):
+class CfarConfig(Section, Generic[N]):
     """Cell-averaging CFAR of `image.kind: cfar`; cells are pixels, (rows, columns) on each side.
 
     With `domain: decibel` the map's median is put at floor_db: a factor of decibels needs a zero.
@@ -29,13 +29,13 @@ class CfarConfig(Section):
     """Guard cells on each side, [rows, columns] of pixels, left out of the average."""
     training: tuple[Cells, Cells] = (50, 10)
     """Training cells on each side, [rows, columns] of pixels, averaged."""
-    pfa: Annotated[Positive, within(1e-12, 0.999)] = 0.31
+    pfa: Annotated[N, POSITIVE, within(1e-12, 0.999)] = default_draw(0.31)
     """False alarm rate in exponentially distributed power, which gives the threshold."""
     domain: Literal["power", "decibel"] = "decibel"
     """Quantity that is averaged and compared."""
-    floor_db: Annotated[Decibel, within(0, 200, "dB"), ActsIf("image.cfar.domain", "decibel")] = (
-        uniform(10.0, 30.0)
-    )
+    floor_db: Annotated[
+        N, DECIBEL, within(0, 200, "dB"), ActsIf("image.cfar.domain", "decibel")
+    ] = default_draw(uniform(10.0, 30.0))
     """Level at which the map's median is put with `domain: decibel`: the threshold is then a factor
     of decibels."""
     edges: Literal["wrap", "shrink"] = "wrap"

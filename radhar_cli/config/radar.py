@@ -13,7 +13,6 @@ from radhar_cli.config.annotations import GIVEN, ActsIf, ActsIfAny, ByModel
 from radhar_cli.config.maps import MIN_LOOPS
 from radhar_cli.config.number import (
     ANGLE,
-    COORDINATE,
     DECIBEL,
     NOT_NEGATIVE,
     POSITIVE,
@@ -21,7 +20,7 @@ from radhar_cli.config.number import (
     value_error,
     within,
 )
-from radhar_cli.config.section import Filled, Flag, N, Section, default_draw
+from radhar_cli.config.section import Filled, Flag, N, Section, VectorOf, default_draw
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processing.map_kind import MapKind, Transform
 from radhar_cli.radar.board import (
@@ -142,13 +141,9 @@ class _Band(_Pulses[N], Generic[N]):
 class _AntennaPair(AnyRadar[N], Generic[N]):
     """Keys of a transmitting and a receiving antenna."""
 
-    tx_m: tuple[Annotated[N, COORDINATE], Annotated[N, COORDINATE], Annotated[N, COORDINATE]] = (
-        default_draw((0.4, -0.1, 1.5))
-    )
+    tx_m: VectorOf[N] = default_draw((0.4, -0.1, 1.5))
     """Place of the transmitter: range, cross-range, height."""
-    rx_m: tuple[Annotated[N, COORDINATE], Annotated[N, COORDINATE], Annotated[N, COORDINATE]] = (
-        default_draw((0.4, 0.1, 1.5))
-    )
+    rx_m: VectorOf[N] = default_draw((0.4, 0.1, 1.5))
     """Place of the receiver: range, cross-range, height."""
     antenna_gain_dbi: Annotated[N, DECIBEL, within(-150, 150, "dBi")] = default_draw(6.0)
     """Gain of each antenna at its boresight."""
@@ -302,9 +297,7 @@ class BoardRadar(_Emission[N], Generic[N]):
     """TI board that the .cfg runs on; it decides the antenna array."""
     array: ArrayConfig | None = None
     """Antenna array used instead of the device's."""
-    position_m: tuple[
-        Annotated[N, COORDINATE], Annotated[N, COORDINATE], Annotated[N, COORDINATE]
-    ] = default_draw((0.0, 0.0, 1.0))
+    position_m: VectorOf[N] = default_draw((0.0, 0.0, 1.0))
     """Position of the board: range, cross-range, height."""
     yaw_deg: Annotated[N, ANGLE] = default_draw(0.0)
     """Angle of the board's boresight from the x axis, positive to the left."""

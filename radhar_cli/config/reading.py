@@ -14,6 +14,7 @@ from radhar_cli.config.annotations import range_of, sections
 from radhar_cli.config.classes import FilesConfig, SequenceConfig
 from radhar_cli.config.data_set import Config, ConfigOfRecordings
 from radhar_cli.config.documents import BASE, OTHER_NAMES, Places, cfg_text, read_on_bases
+from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.motion_files import resolve_files
 from radhar_cli.config.number import FORMS
 from radhar_cli.config.radar import RADARS, AnyRadar, FmcwRadar, kind_of_radar
@@ -57,6 +58,8 @@ ABSENT = {
 
 _OF_LAYERS = "is a key of layers: wall.layers: [{material: concrete}], or wall.eps_r"
 MISPLACED = {"wall.material": _OF_LAYERS, "wall.thickness_m": _OF_LAYERS}
+
+MOVED_KEYS = {earlier: key for key, earlier in EARLIER_KEYS.items()}
 
 
 class Override(NamedTuple):
@@ -335,6 +338,9 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
         return absent
     if misplaced := MISPLACED.get(".".join(map(str, names))):
         return misplaced
+    of_person = names[2:] if names[:1] == ["people"] else names
+    if moved := MOVED_KEYS.get(".".join(map(str, of_person))):
+        return f"is now {moved}"
     place: type[BaseModel] | None = kind
     inner = document
     for name in names[:-1]:

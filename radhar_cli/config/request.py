@@ -29,20 +29,16 @@ from radhar_cli.config.annotations import (
     at,
     conditions,
     of_kind,
+    section,
 )
 from radhar_cli.config.classes import Classes, FilesConfig, class_activities
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES, OF_FRAMES, OF_POINTS, Maps
+from radhar_cli.config.motion import MotionConfig, TimingConfig
 from radhar_cli.config.number import Decibel, Positive, nominal, uniform, value_error, within
 from radhar_cli.config.output import OutputConfig, SplitConfig
-from radhar_cli.config.people import (
-    BodyConfig,
-    MotionConfig,
-    PersonConfig,
-    SubjectConfig,
-    TimingConfig,
-)
+from radhar_cli.config.people import BodyConfig, PersonConfig, SubjectConfig
 from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
 from radhar_cli.config.radar import BoardRadar, FmcwRadar, Radar
 from radhar_cli.config.receiver import BOARD_NOISE_FIGURE_DB, ReceiverConfig
@@ -163,7 +159,7 @@ class Request(Section):
         changed = _missing_defaults(self)
         for key, default in of_kind(Request, ByModel):
             name, _, rest = key.rpartition(".")
-            holder = getattr(self, name) if name else self
+            holder = at(self, name) if name else self
             if holder is None or rest not in type(holder).model_fields:
                 continue  # no wall, or a radar that has no band
             if getattr(holder, rest) is None:
@@ -177,8 +173,14 @@ class Request(Section):
             _fill_for_board(self, self.radar, changed)
         for name, value in changed.pop("", {}).items():
             object.__setattr__(self, name, value)
-        for name, values in changed.items():
-            object.__setattr__(self, name, _with_defaults(getattr(self, name), values))
+        for name, values in sorted(changed.items(), key=lambda item: -item[0].count(".")):
+            outer, _, inner = name.partition(".")
+            if inner:  # a group of motion, which lies in it
+                filled_group = _with_defaults(at(self, name), values)
+                changed_outer = _with_defaults(getattr(self, outer), {inner: filled_group})
+            else:
+                changed_outer = _with_defaults(getattr(self, outer), values)
+            object.__setattr__(self, outer, changed_outer)
         if self.people:
             filled = tuple(self._filled_person(n) for n in range(1, len(self.people) + 1))
             object.__setattr__(self, "people", filled)
@@ -330,8 +332,9 @@ def _with_defaults(section: S, values: Mapping[str, Any]) -> S:
 def _missing_defaults(c: Request) -> dict[str, dict[str, Any]]:
     """{section: {key: number}} of numbers by activity that have no default: that of the key."""
     by_model, changed = dict(of_kind(Request, ByModel)), dict[str, dict[str, Any]]()
-    for name in ("", "motion", "timing"):
-        holder: BaseModel = getattr(c, name) if name else c
+    groups = [key for key, field in MotionConfig.model_fields.items() if section(field)]
+    for name in ("", "motion", *(f"motion.{group}" for group in groups), "timing"):
+        holder: BaseModel = at(c, name) if name else c
         for key, field in type(holder).model_fields.items():
             value = getattr(holder, key)
             if not isinstance(value, PerActivity) or DEFAULT in value.per_activity:

@@ -12,16 +12,28 @@ from itertools import pairwise
 from textwrap import dedent
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, NamedTuple, TypeAlias
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    Tag,
+)
+from pydantic_core import CoreSchema
 from typing_extensions import TypeVar
 
 from radhar_cli.activities.activity import DEFAULT, TWELVE, Activity
-from radhar_cli.config.number import Number, value_error
+from radhar_cli.config.number import COORDINATE, Bounds, Number, value_error
 
 Flag: TypeAlias = Annotated[bool, Field(strict=True)]
 T = TypeVar("T")
 N = TypeVar("N", default=Number)  # what a number of a section is: a law of draws, or a float
 
+VectorOf: TypeAlias = tuple[
+    Annotated[N, COORDINATE], Annotated[N, COORDINATE], Annotated[N, COORDINATE]
+]
 
 if TYPE_CHECKING:
     Filled: TypeAlias = Annotated[T, "null in a file; filled in by the model of motion"]
@@ -116,6 +128,32 @@ By: TypeAlias = Annotated[
     Annotated[T, Tag("<same>")] | Annotated[PerActivity[T], Tag("<per_activity>")],
     Discriminator(_kind),
 ]
+
+
+B = TypeVar("B", default=By[Number])  # what such a number is: a law by activity, or a float
+
+
+@dataclass(frozen=True)
+class ByActivity:
+    """Annotation of a number that may differ by activity, and lies within bounds for each.
+
+    Attributes:
+        bounds: Bounds of every draw.
+        null: Whether it may be null in a file.
+    """
+
+    bounds: tuple[Bounds, ...]
+    null: bool = False
+
+    def __init__(self, *bounds: Bounds, null: bool = False) -> None:
+        object.__setattr__(self, "bounds", bounds)
+        object.__setattr__(self, "null", null)
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        number: Any = By[Annotated[(Number, *self.bounds)]]  # type: ignore[misc]
+        return handler.generate_schema(number | None if self.null else number)
 
 
 def by_activity(default: Number, **others: Number) -> PerActivity[Number]:

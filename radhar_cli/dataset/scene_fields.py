@@ -1,6 +1,7 @@
 """The drawn numbers of a scene as columns: SI for dataset.h5, config units for scenes.csv.
 
-A column is named after the last part of its key, without the unit: `motion.speed_mps` is `speed`.
+A column is named after the last part of its key, without the unit: `motion.walking.speed_mps` is
+`speed`.
 Where two keys of a config end alike, or a table has a column of that name already, the section
 stands before it: `radar_dwell` and `motion_dwell`. Should these be alike too, the names are the
 keys themselves, which are unique and hold a dot, which no other name does.
@@ -14,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.config.data_set import AnyConfig, MeasuredConfig
+from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.room import FacesConfig
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene import FALL, Scene, file_keys, keys_of_people, number_at, numbers
@@ -111,7 +113,8 @@ def _field(key: str) -> Field:
         if not place:  # of files
             return Field(key, f"{slug}_{name}", "1", 1.0)
         return Field(key, f"{slug}_{name.removesuffix('s_s')}_{place[0]}", "s", 1.0)
-    path, _, axis = key.rpartition(".") if key[-1].isdigit() else (key, "", "")
+    path = EARLIER_KEYS.get(key, key)  # by which columns are named
+    path, _, axis = path.rpartition(".") if path[-1].isdigit() else (path, "", "")
     section, _, name = path.rpartition(".")
     stem, _, suffix = name.rpartition("_")
     unit = _UNITS.get(suffix, "1")

@@ -39,7 +39,7 @@ def number_names(config: AnyConfig) -> list[str]:
     same = {scene_fields.ERROR.key}  # which is measured, not drawn
     if isinstance(config, Config):
         same |= {key for key, number in numbers(config) if _is_same(config, key, number)}
-        same |= {FALL} if isinstance(config.motion.fall, str) else set()
+        same |= {FALL} if isinstance(config.motion.falling.direction, str) else set()
     names = [field.name for field in scene_fields.fields(config) if field.key not in same]
     return [*names, "subject"] if config.split.subjects is not None else names
 

@@ -172,8 +172,8 @@ def _suggest_room(person: Person, check: SceneCheck) -> str:
     if not check.outside[1]:
         return f"{keys} should leave room"
     human = person.number or person.config.motion.model == "human"
-    turns = human and "walking" in person.activity.movements and not person.motion.lane_m
-    turn = f"{prefix}motion.lane_m lets people turn round; " if turns else ""
+    turns = human and "walking" in person.activity.movements and not person.motion.walking.lane_m
+    turn = f"{prefix}motion.walking.lane_m lets people turn round; " if turns else ""
     return f"{turn}{keys}, room.box_m and duration_s should leave room"
 
 

@@ -17,8 +17,8 @@ from radhar_cli.config.annotations import (
     of_kind,
 )
 from radhar_cli.config.data_set import Config
+from radhar_cli.config.motion import MotionConfig
 from radhar_cli.config.number import support
-from radhar_cli.config.people import MotionConfig
 from radhar_cli.config.room import WallConfig
 from radhar_cli.config.section import PerActivity
 from radhar_cli.scene import FALL, numbers

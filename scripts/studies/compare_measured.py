@@ -34,7 +34,7 @@ SHOWN_MPS = (-3.0, 6.0)
 KINDS = {
     "human, segments": [],
     "human, points": ["body.scatterers=points"],
-    "paper": ["motion.model=paper", "body.scatterers=points", "motion.speed_mps=1.1"],
+    "paper": ["motion.model=paper", "body.scatterers=points", "motion.walking.speed_mps=1.1"],
 }
 # Where the statistics of measured walkers lie, with some room.
 BANDS = {

@@ -1,6 +1,7 @@
 """Compare how far people move, and how long, with measured maps of five activities.
 
-    python scripts/studies/people_against_measured.py MASKS.npz [-n 24] [--set motion.lane_m=3]
+    python scripts/studies/people_against_measured.py MASKS.npz [-n 24]
+        [--set motion.walking.lane_m=3]
 
 MASKS.npz: `masks` [K, 256, 32], bits of 256 x 256 Doppler-time masks, `label` into `classes`; from
 "Radar signatures of human activities" (University of Glasgow, CC BY 4.0) as masked by
@@ -36,12 +37,12 @@ CLASSES = {
 SCENES = (
     "radar={carrier_hz: 5.8e9, bandwidth_hz: 400e6, prf_hz: 1000, adc_rate_hz: 1e6, chirp_s: 1e-4}",
     "duration_s=5",
-    "motion.speed_mps={normal: [1.1, 0.15], min: 0.7, max: 1.5}",
+    "motion.walking.speed_mps={normal: [1.1, 0.15], min: 0.7, max: 1.5}",
     "motion.angle_deg={per_activity: {default: {uniform: [165, 195]}, S8: {choice: [0, 180]}}}",
     "motion.range_m={per_activity: {default: {uniform: [2, 4]}, S8: {uniform: [3.5, 5]}, "
     "S12: {uniform: [4.5, 6]}}}",
     "motion.cross_range_m=0",
-    "motion.fall=forward",
+    "motion.falling.direction=forward",
     "timing.walk_stop_s={uniform: [0.5, 1.5]}",
     "on_invalid=keep",
 )

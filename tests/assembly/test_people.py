@@ -6,12 +6,13 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from helpers.movements import in_groups
 
 from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, activity_named
 from radhar_cli.assembly.physics import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.checks.people import HUMAN_LIMITS
-from radhar_cli.config.people import FALLS
+from radhar_cli.config.motion import EARLIER_KEYS, FALLS
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.human.motion import HumanMotion
@@ -36,7 +37,7 @@ STIFF = 1e-9  # m
 
 def people(motion: dict[str, Any] | None = None, **more: Any) -> Config:
     return Config.model_validate(
-        {"duration_s": 6.0, "motion": {"model": "human"} | (motion or {})} | more
+        {"duration_s": 6.0, "motion": {"model": "human"} | in_groups(motion or {})} | more
     )
 
 
@@ -86,10 +87,14 @@ def at_the_limits(rng: np.random.Generator) -> Config:
         if section and name != "walk_start_s":
             high = 4.0 if section == "timing" and high > 4 else high  # s, of a recording of 5 s
             at = rng.choice([low, high]) if rng.random() < 0.5 else rng.uniform(low, high)
-            document[section][name] = float(at)
+            section, *group = section.split(".")
+            inner = document[section]
+            for part in group:
+                inner = inner.setdefault(part, {})
+            inner[name] = float(at)
     document["motion"] |= {
-        "turn_deg": float(rng.uniform(-90, 90)),
-        "fall": str(rng.choice(["forward", "backward", "sideways"])),
+        "rotating": {"turn_deg": float(rng.uniform(-90, 90))},
+        "falling": {"direction": str(rng.choice(["forward", "backward", "sideways"]))},
     }
     return Config.model_validate(document)
 
@@ -306,7 +311,7 @@ def test_persons_keep_their_body_and_gait() -> None:
     scenes = [draw_scene(config, activity_named("walking"), index) for index in (1, 5)]
     one, again = (scene_numbers(scene) for scene in scenes)
     assert {key for key in PERSONAL if key in one and one[key] != again[key]} == set()
-    assert one["motion.idle_phase_s"] != again["motion.idle_phase_s"]
+    assert one["motion.idle.phase_s"] != again["motion.idle.phase_s"]
 
 
 def test_keys_of_the_other_model_are_ignored() -> None:
@@ -317,14 +322,16 @@ def test_keys_of_the_other_model_are_ignored() -> None:
     }.items():
         plain = Config(motion={"model": model})
         more = Config(
-            motion={"model": model, **keys}, timing={"overlap_s": 99 * (model == "paper")}
+            motion={"model": model, **in_groups(keys)},
+            timing={"overlap_s": 99 * (model == "paper")},
         )
         a, b = (draw_scene(config, walking, 0) for config in (plain, more))
         assert scene_numbers(a) == scene_numbers(b)
         np.testing.assert_array_equal(
             motion_of(a.people[0]).positions(t), motion_of(b.people[0]).positions(t)
         )
-        assert not {f"motion.{key}" for key in keys} & set(scene_numbers(a))
+        keys_of_other = {key for key, earlier in EARLIER_KEYS.items() if earlier[7:] in keys}
+        assert not keys_of_other & set(scene_numbers(a))
 
 
 @pytest.mark.parametrize("slug", ["sitting_to_walking", "falling_to_walking"])
@@ -350,13 +357,18 @@ def test_falls_go_in_the_configured_direction(fall: str) -> None:
     assert p[2].max() < 0.6
     where = {"forward": ahead, "backward": -ahead, "sideways": abs(left)}
     assert where[fall] > 1.0
-    assert scene_numbers(scene)["motion.fall"] == ["forward", "backward", "sideways"].index(fall)
+    assert scene_numbers(scene)["motion.falling.direction"] == [
+        "forward",
+        "backward",
+        "sideways",
+    ].index(fall)
 
 
 def test_directions_of_falls_are_drawn() -> None:
     config = people({"fall": {"choice": ["forward", "forward", "sideways"]}})
     falls = [
-        draw_scene(config, activity_named("S12"), index).config.motion.fall for index in range(90)
+        draw_scene(config, activity_named("S12"), index).config.motion.falling.direction
+        for index in range(90)
     ]
     assert 40 < falls.count("forward") < 80
     assert falls.count("sideways") == 90 - falls.count("forward")
@@ -461,7 +473,9 @@ def test_impossible_sequences_are_refused(
 @pytest.mark.parametrize("name", [name for name in MOVEMENTS if name.startswith("falling")])
 def test_whoever_falls_however_tries_to_get_up_and_stands(name: str, direction: str) -> None:
     own = {"sequence": [name, "trying_to_get_up", "getting_up", "stationary"]}
-    config = people(classes={"own": own}, activities=["own"], motion={"fall": direction})
+    config = people(
+        classes={"own": own}, activities=["own"], motion={"falling": {"direction": direction}}
+    )
     motion = moving(draw_scene(config, config.chosen_activities[0], 0))
     names = [phase.name for phase in motion.phases]
     assert [n for n in names if n != "standing up"][1:] == [
@@ -481,7 +495,9 @@ def test_the_papers_model_has_no_sequences(tmp_path: Path) -> None:
         load_config(path)
 
 
-@pytest.mark.parametrize(("key", "value"), [("motion.speed_mps", 0), ("subject.height_m", 0.5)])
+@pytest.mark.parametrize(
+    ("key", "value"), [("motion.walking.speed_mps", 0), ("subject.height_m", 0.5)]
+)
 def test_human_limits_apply_to_the_human_model(key: str, value: float) -> None:
     section = key.partition(".")[0]
     for model, slugs, refused in [
@@ -505,11 +521,13 @@ def document(key: str, value: float) -> dict[str, Any]:
         "motion": {"model": "human"},
         "classes": {"squats": {"sequence": ["squatting"]}, "trips": {"sequence": ["tripping"]}},
     }
-    if key == "motion.lane_start":  # which acts on lanes alone
-        base["motion"]["lane_m"] = 3.0
-    if not section:
-        return base | {name: value}
-    return base | {section: base.get(section, {}) | {name: value}}
+    if key == "motion.walking.lane_start":  # which acts on lanes alone
+        base["motion"]["walking"] = {"lane_m": 3.0}
+    inner = base
+    for part in filter(None, section.split(".")):
+        inner = inner.setdefault(part, {})
+    inner[name] = value
+    return base
 
 
 @pytest.mark.parametrize("key", HUMAN_LIMITS)

@@ -111,7 +111,14 @@ def test_a_wall_behind_people_shows_them_again_with_the_opposite_doppler():
     """At twice the wall's range less theirs; the SNR stays that of the person alone."""
     more = {"body": {"scatterers": "points"}, "duration_s": 2.0, "snr_db": 20}
     more |= {"radar": RADAR | {"adc_rate_hz": 2e6}, "subject": {"height_m": 1.75}}
-    more |= {"motion": {"angle_deg": 180, "range_m": 5, "speed_mps": 0.6, "cycle_phase": 0}}
+    more |= {
+        "motion": {
+            "angle_deg": 180,
+            "range_m": 5,
+            "walking": {"speed_mps": 0.6},
+            "repeating": {"cycle_phase": 0},
+        }
+    }
     mirror = {"back_wall_m": 5.2, "back_wall_reflection_db": 0}
 
     def sides(kind: str, room: dict[str, object]) -> tuple[float, float]:

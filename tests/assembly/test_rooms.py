@@ -32,7 +32,7 @@ WALKING = activity_named("walking")
 
 
 def config(**more: Any) -> Config:
-    motion = {"range_m": 5, "angle_deg": 180, "cross_range_m": 0.5, "speed_mps": 1.0}
+    motion = {"range_m": 5, "angle_deg": 180, "cross_range_m": 0.5, "walking": {"speed_mps": 1.0}}
     document = {"radar": RADAR, "activities": ["walking"], "duration_s": 2, "motion": motion}
     return Config.model_validate(document | {"room": {"box_m": BOX, "faces": FACES}} | more)
 
@@ -113,14 +113,14 @@ def test_a_beam_takes_the_sides() -> None:
 
 
 def test_who_leaves_the_room_is_warned_of() -> None:
-    near = {"range_m": 5, "angle_deg": 180, "cross_range_m": 2.4, "speed_mps": 1.0}
+    near = {"range_m": 5, "angle_deg": 180, "cross_range_m": 2.4, "walking": {"speed_mps": 1.0}}
     inside, outside = (nominal_scene(config(**more), WALKING) for more in ({}, {"motion": near}))
     assert Flags.WALL not in check_scene(inside).flags
     assert Flags.WALL in check_scene(outside).flags
 
 
 def test_who_cannot_stay_in_the_room_is_told_where_they_were(tmp_path: Path) -> None:
-    near = {"range_m": 5, "angle_deg": 180, "cross_range_m": 2.4, "speed_mps": 1.0}
+    near = {"range_m": 5, "angle_deg": 180, "cross_range_m": 2.4, "walking": {"speed_mps": 1.0}}
     for whose, more in (("", {"motion": near}), ("people.0.", {"people": [{"motion": near}]})):
         drawn = rf"{whose}motion.range_m = 5, {whose}motion.cross_range_m = 2.4"
         with pytest.raises(SceneError, match=drawn):

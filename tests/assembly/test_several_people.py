@@ -223,8 +223,8 @@ def test_the_fast_echo_keeps_its_tolerance(scatterers: str, wall: dict[str, Any]
             r"people .*should be empty with motion\.m",
         ),
         (
-            {"people": [{"motion": {"speed_mps": 9}}]},
-            r"people\.0\.motion\.speed_mps .*0\.3 to 2\.8",
+            {"people": [{"motion": {"walking": {"speed_mps": 9}}}]},
+            r"people\.0\.motion\.walking\.speed_mps .*0\.3 to 2\.8",
         ),
         ({"people": [{"share": 2}]}, r"people\.0\.share = 2"),
         ({"people": [{}] * 8}, r"people .*at most 7"),

@@ -38,7 +38,7 @@ PLASTERBOARD = [
 
 DOCUMENT: dict[str, Any] = {
     **{"radar": RADAR, "activities": ["walking"], "duration_s": 1},
-    **{"motion": {"range_m": 4, "angle_deg": 180, "speed_mps": 0.8}},
+    **{"motion": {"range_m": 4, "angle_deg": 180, "walking": {"speed_mps": 0.8}}},
     **{"engine": {"kind": "cube"}, "snr_db": None, "wall": WALL},
 }
 GATED = {"range_sum": "gated", "clutter": "mean"}
@@ -83,7 +83,7 @@ def test_what_ringing_changes() -> None:
 
 
 def test_polarisation_matters_beside_the_wall_normal() -> None:
-    motion = {"range_m": 4, "cross_range_m": 2.5, "angle_deg": 180, "speed_mps": 0.4}
+    motion = {"range_m": 4, "cross_range_m": 2.5, "angle_deg": 180, "walking": {"speed_mps": 0.4}}
     both = [
         echo(motion=motion, radar=RADAR | {"polarisation": one})
         for one in ("vertical", "horizontal")

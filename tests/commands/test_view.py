@@ -111,7 +111,7 @@ def test_view_shows_the_first_sample_of_each_class(small_set, tmp_path):
     assert titles == ["S2 punching/0", "S8 walking/0", "S12 walking_to_falling/0"]
     space, *maps = found[1]["plots"]
     assert headings(maps) == ["range-time map", "STFT", "FSST, compensated"]
-    assert float(found[1]["numbers"]["motion.speed_mps"]) > 0
+    assert float(found[1]["numbers"]["motion.walking.speed_mps"]) > 0
     assert [one["name"] for one in space["data"]] == ["S8 walking", "radar"]
     refused = radhar("view", small_set, "-o", page)
     assert refused.returncode == 2

@@ -18,7 +18,7 @@ README_ONCE = """
 samples_per_class: 300
 radar: {carrier_hz: 24e9, bandwidth_hz: 250e6, prf_hz: 2000}
 subject: {height_m: {uniform: [1.5, 1.9]}}
-motion: {range_m: {uniform: [1, 3]}, speed_mps: {per_activity: {default: 1.5, S12: 1.0}}}
+motion: {range_m: {uniform: [1, 3]}, walking: {speed_mps: {per_activity: {default: 1.5, S12: 1.0}}}}
 snr_db: {choice: [30, 20, 10]}
 maps: [rtm, stft, fsst_compensated]
 """

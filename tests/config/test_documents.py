@@ -83,14 +83,15 @@ def test_a_distribution_is_overridden_as_a_whole(
 
 def test_a_plain_number_replaces_one_by_activity_and_vice_versa(tmp_path: Path) -> None:
     by_activity = "{per_activity: {default: 2, walking: 1}}"
-    write(tmp_path, a=f"motion: {{model: paper, range_m: {by_activity}, gait_hz: 2}}")
+    write(tmp_path, a=f"motion: {{model: paper, range_m: {by_activity}, paper: {{gait_hz: 2}}}}")
     write(
         tmp_path,
-        b=f"base: a.yaml\nmotion: {{range_m: {{uniform: [1, 2]}}, gait_hz: {by_activity}}}",
+        b="base: a.yaml\n"
+        f"motion: {{range_m: {{uniform: [1, 2]}}, paper: {{gait_hz: {by_activity}}}}}",
     )
     motion = load_config(tmp_path / "b.yaml").motion
     assert motion.range_m == Uniform(uniform=(1, 2))
-    assert resolved(motion)["gait_hz"] == {"per_activity": {"default": 2, "walking": 1}}
+    assert resolved(motion)["paper"]["gait_hz"] == {"per_activity": {"default": 2, "walking": 1}}
 
 
 def test_null_removes_a_section(tmp_path: Path) -> None:

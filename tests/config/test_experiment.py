@@ -19,8 +19,9 @@ from radhar_cli.config import (
     timing_warnings,
 )
 from radhar_cli.config.classes import SequenceConfig
+from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.number import Uniform
-from radhar_cli.config.people import MotionConfig, PersonConfig, SubjectConfig
+from radhar_cli.config.people import PersonConfig, SubjectConfig
 from radhar_cli.config.radar import ArrayConfig, BeamConfig
 from radhar_cli.config.receiver import ToneConfig
 from radhar_cli.config.recordings import RecordingsConfig
@@ -71,7 +72,14 @@ POSSIBLE: list[dict[str, Any]] = [
     {"processing": {"stft_fft_length": 2000}},
     {"wall": {}, "radar": {"tx_m": (0.8799, 0.0, 1.0)}},
     {"wall": {"eps_r": 1, "loss_tangent": 0}, "radar": {"tx_m": (0.4, 0.0, 2.6)}},
-    {"motion": {"model": "paper", "speed_mps": 0, "gait_hz": 0, "range_m": -1}},
+    {
+        "motion": {
+            "model": "paper",
+            "walking": {"speed_mps": 0},
+            "paper": {"gait_hz": 0},
+            "range_m": -1,
+        }
+    },
     {"engine": {"kind": "cube", "motion_in_chirp": True}},
     {"motion": {"model": "paper"}, "timing": {"blend_s": 0, "rise_duration_s": 0}},
 ]
@@ -123,13 +131,21 @@ def changed(section: Section, key: str, value: object) -> Any:
 
 
 WITH_WALL = Config(motion={"model": "paper"}, wall={})
+OF_THE_PAPER = {
+    f"motion.{name}"
+    for name in ("speed_mps", "gait_hz", "thigh_deg", "calf_deg", "arm_deg", "turn_deg")
+}
 OF_PEOPLE_ALONE = (
     *(
         f"subject.{name}"
         for name in SubjectConfig.model_fields
         if name not in ("height_m", "weight_kg")
     ),
-    *(f"motion.{name}" for name in list(MotionConfig.model_fields)[10:] if name != "fall"),
+    *(
+        key
+        for key, earlier in EARLIER_KEYS.items()
+        if earlier not in OF_THE_PAPER and key != "motion.falling.direction"
+    ),
     *("timing.grab_start_s", "timing.grab_duration_s", "timing.overlap_s"),
 )
 CHANGES: dict[str, object] = {
@@ -168,14 +184,14 @@ CHANGES: dict[str, object] = {
     "motion.range_m": 2.0,
     "motion.cross_range_m": 0.1,
     "motion.angle_deg": 0.0,
-    "motion.speed_mps": 1.4,
-    "motion.gait_hz": 1.1,
-    "motion.thigh_deg": 30.0,
-    "motion.calf_deg": 45.0,
-    "motion.arm_deg": 35.0,
-    "motion.turn_deg": 45.0,
+    "motion.walking.speed_mps": 1.4,
+    "motion.paper.gait_hz": 1.1,
+    "motion.paper.thigh_deg": 30.0,
+    "motion.paper.calf_deg": 45.0,
+    "motion.paper.arm_deg": 35.0,
+    "motion.rotating.turn_deg": 45.0,
     "motion.model": "human",
-    "motion.fall": "sideways",
+    "motion.falling.direction": "sideways",
     "classes": {"coming_home": SequenceConfig(sequence=("walking",))},
     **dict.fromkeys(OF_PEOPLE_ALONE, 0.123),
     "timing.seat_start_s": 0.6,
@@ -315,7 +331,7 @@ def test_the_identity_tells_a_wall_from_none() -> None:
 def test_the_identity_ignores_how_a_config_is_written() -> None:
     terse = Config(activities=("S8",), motion={"model": "paper", "range_m": 2})
     wordy = Config(
-        motion={"speed_mps": 1.5, "range_m": 2.0, "model": "paper"},
+        motion={"walking": {"speed_mps": 1.5}, "range_m": 2.0, "model": "paper"},
         activities=("walking",),
         seed=1,
         wall=None,

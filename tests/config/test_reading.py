@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import Config, load_config, resolved
+from radhar_cli.config.annotations import at
 from radhar_cli.config.number import Choice, Normal, Uniform, Vary
 from radhar_cli.config.reading import Override, load_section
 from radhar_cli.config.section import for_activity
@@ -73,16 +74,15 @@ def test_every_form_of_a_number(tmp_path: Path) -> None:
           height_m: {uniform: [1.5, 1.9]}
           weight_kg: {normal: [80, 10], min: 50, max: 120}
         motion:
-          speed_mps: {choice: [1, 1.5]}
-          thigh_deg: {vary: [30, 0.2]}
-          gait_hz: 1
+          walking: {speed_mps: {choice: [1, 1.5]}}
+          paper: {thigh_deg: {vary: [30, 0.2]}, gait_hz: 1}
         """,
     )
     assert config.subject.height_m == Uniform(uniform=(1.5, 1.9))
     assert config.subject.weight_kg == Normal(normal=(80, 10), min=50, max=120)
-    assert config.motion.speed_mps == Choice(choice=(1, 1.5))
-    assert config.motion.thigh_deg == Vary(vary=(30, 0.2))
-    assert config.motion.gait_hz == 1.0
+    assert config.motion.walking.speed_mps == Choice(choice=(1, 1.5))
+    assert config.motion.paper.thigh_deg == Vary(vary=(30, 0.2))
+    assert config.motion.paper.gait_hz == 1.0
 
 
 def test_a_number_by_activity_with_slugs_and_labels(tmp_path: Path) -> None:
@@ -103,7 +103,7 @@ def test_a_number_by_activity_with_slugs_and_labels(tmp_path: Path) -> None:
 
 
 def test_slug_and_label_are_the_same_config(tmp_path: Path) -> None:
-    text = "motion: {{speed_mps: {{per_activity: {{default: 1, {}: 2}}}}}}"
+    text = "motion: {{walking: {{speed_mps: {{per_activity: {{default: 1, {}: 2}}}}}}}}"
     assert read(tmp_path, text.format("walking")) == read(tmp_path, text.format("S8"))
 
 
@@ -140,10 +140,10 @@ def test_the_last_of_repeated_overrides_wins(tmp_path: Path) -> None:
 
 
 def test_an_override_changes_one_key_only_where_values_share_an_anchor(tmp_path: Path) -> None:
-    text = "motion: {thigh_deg: &swing {vary: [30, 0.2]}, calf_deg: *swing}"
-    config = read(tmp_path, text, "motion.calf_deg.vary=[45, 0.1]")
-    assert config.motion.calf_deg == Vary(vary=(45, 0.1))
-    assert config.motion.thigh_deg == Vary(vary=(30, 0.2))
+    text = "motion: {paper: {thigh_deg: &swing {vary: [30, 0.2]}, calf_deg: *swing}}"
+    config = read(tmp_path, text, "motion.paper.calf_deg.vary=[45, 0.1]")
+    assert config.motion.paper.calf_deg == Vary(vary=(45, 0.1))
+    assert config.motion.paper.thigh_deg == Vary(vary=(30, 0.2))
 
 
 @pytest.mark.parametrize("override", ["seed", "=3", "radar..prf_hz=3", ".seed=3", "radar.=3"])
@@ -301,13 +301,13 @@ BROKEN = [
     Broken("maps: [sfft]", '1: maps.0 = "sfft"', "should be 'rtm', 'stft'"),
     Broken("maps: []", "1: maps = []", "at least 1"),
     Broken(
-        "motion:\n  gait_hz:\n    per_activity: {}",
-        "3: motion.gait_hz.per_activity = {}",
+        "motion:\n  paper: {gait_hz:\n    {per_activity: {}}}",
+        "3: motion.paper.gait_hz.per_activity = {}",
         "should name one activity or more, or `default`",
     ),
     Broken(
-        "motion:\n  gait_hz: {per_activity: {default: 1, jogging: 2}}",
-        "2: motion.gait_hz.per_activity.jogging = 2.0",
+        "motion:\n  paper: {gait_hz: {per_activity: {default: 1, jogging: 2}}}",
+        "2: motion.paper.gait_hz.per_activity.jogging = 2.0",
         "'jogging' is not an activity; no model moves like this; motion files can",
     ),
     Broken(
@@ -345,13 +345,13 @@ BROKEN = [
         "at most samples_per_class = 2 of walking",
     ),
     Broken(
-        "motion:\n  gait_hz: {per_activity: {default: 1, S8: 1, walking: 2}}",
-        '2: motion.gait_hz.per_activity = {"default": 1, "S8": 1, "walking": 2}',
+        "motion:\n  paper: {gait_hz: {per_activity: {default: 1, S8: 1, walking: 2}}}",
+        '2: motion.paper.gait_hz.per_activity = {"default": 1, "S8": 1, "walking": 2}',
         "walking once",
     ),
     Broken(
-        "motion:\n  gait_hz:\n    per_activity:\n      default: 1\n      S8: -1",
-        "5: motion.gait_hz.per_activity.S8 = -1",
+        "motion:\n  paper: {gait_hz:\n    {per_activity:\n      {default: 1,\n      S8: -1}}}",
+        "5: motion.paper.gait_hz.per_activity.S8 = -1",
         "0 or more",
     ),
     # Sections that contradict themselves.
@@ -520,8 +520,9 @@ def test_an_unknown_key_of_lists_and_mappings_is_named(
             'motion.range_m.normal.1 = "x": should be a valid number',
         ),
         (
-            "motion: {speed_mps: {per_activity: {walking: {choice: [1, x]}}}}",
-            'motion.speed_mps.per_activity.walking.choice.1 = "x": should be a valid number',
+            "motion: {walking: {speed_mps: {per_activity: {walking: {choice: [1, x]}}}}}",
+            "motion.walking.speed_mps.per_activity.walking.choice.1 = "
+            '"x": should be a valid number',
         ),
         ("wall: {layers: [{material: beton}]}", 'wall.layers.0.material = "beton": should be'),
         ("wall: {layers: []}", "wall.layers = []: should have at least 1 item, not 0"),
@@ -709,17 +710,17 @@ def test_activities_that_are_not_named_keep_the_default_of_the_key(tmp_path: Pat
     """That of the model where the key has one, whether it is a number or differs by activity."""
     text = "classes: {run: {sequence: [walking]}}\nactivities: [walking, kicking, run]\n"
     usual = read(tmp_path, text)
-    for key in ("speed_mps", "range_m", "cross_range_m", "gait_hz", "angle_deg"):
+    for key in ("walking.speed_mps", "range_m", "cross_range_m", "paper.gait_hz", "angle_deg"):
         given = read(
             tmp_path, text, f"motion.{key}={{per_activity: {{run: {{uniform: [2, 2.5]}}}}}}"
         )
-        before, after = (getattr(config.motion, key) for config in (usual, given))
+        before, after = (at(config, f"motion.{key}") for config in (usual, given))
         for activity in given.chosen_activities:
             kept = for_activity(before, activity)
             changed = Uniform(uniform=(2, 2.5)) if activity.slug == "run" else kept
             assert for_activity(after, activity) == changed
         again = Config.model_validate(given.model_dump(mode="json"))
-        assert getattr(again.motion, key) == after
+        assert at(again, f"motion.{key}") == after
     given = read(tmp_path, text, "samples_per_class={per_activity: {run: 7}}")
     kept = usual.samples_of(usual.chosen_activities[0])
     assert [given.samples_of(one) for one in given.chosen_activities] == [kept, kept, 7]
@@ -734,9 +735,9 @@ KINDS += ("{vary: [3, 0.1]}",)
 )
 def test_messages_show_numbers_as_yaml_has_them(tmp_path: Path, number: str) -> None:
     """Walking is at most 2.8 m/s; the value is shown as it may be written, and never as Python."""
-    (line,) = mistakes(tmp_path, f"motion: {{speed_mps: {number}}}")
+    (line,) = mistakes(tmp_path, f"motion: {{walking: {{speed_mps: {number}}}}}")
     assert "with motion.model: human" in line
     shown, _ = parse_yaml(line.split("speed_mps = ")[1].split(": should")[0], "message")
-    (again,) = mistakes(tmp_path, "{}", f"motion.speed_mps={json.dumps(shown)}")
+    (again,) = mistakes(tmp_path, "{}", f"motion.walking.speed_mps={json.dumps(shown)}")
     assert again.partition(" = ")[2] == line.partition(" = ")[2]
     assert "per_activity=" not in line

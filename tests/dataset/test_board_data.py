@@ -166,7 +166,7 @@ def test_a_data_set_in_which_nobody_moves_is_black_and_says_so(
     more = (
         *("activities=[stationary]", "receiver.noise_figure_db=null", "body.scatterers=points"),
         "subject={sway_ahead_m: 0, sway_aside_m: 0, chest_m: 0, heart_m: 0}",
-        *("motion={range_m: 2, fidget_hz: 0, shuffle_hz: 0}", "duration_s=0.2"),
+        *("motion={range_m: 2, idle: {fidget_hz: 0, shuffle_hz: 0}}", "duration_s=0.2"),
     )
     options = [word for one in more for word in ("--set", one)]
     out = tmp_path / "still"

@@ -342,7 +342,7 @@ def test_scenes_csv_has_the_numbers_of_the_file(small_set):
         column = header.index("motion.angle_deg")
         degrees = np.degrees(file["scene/angle"][:])
     assert np.allclose([float(row[column]) for row in rows], degrees, rtol=1e-12)
-    assert rows[0][header.index("motion.thigh_deg")] == ""
+    assert rows[0][header.index("motion.paper.thigh_deg")] == ""
 
 
 def test_resolved_config_builds_the_same_identity(config, small_set):

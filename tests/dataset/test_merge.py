@@ -24,7 +24,8 @@ from radhar_cli.errors import FolderError, UnfinishedError
 CHANGES = [
     "maps=[rtm, stft]",
     "image.size_px=16",
-    "motion.speed_mps={per_activity: {walking: 1.4, default: 1.5}}",  # no alphabetical order
+    # in no alphabetical order
+    "motion.walking.speed_mps={per_activity: {walking: 1.4, default: 1.5}}",
 ]
 
 

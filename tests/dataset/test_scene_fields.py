@@ -24,7 +24,7 @@ EVERYTHING = Config(motion={"model": "paper"}, wall={})
         ("radar.antenna_gain_dbi", "antenna_gain", "dBi", 1),
         ("subject.height_m", "height", "m", 1),
         ("motion.angle_deg", "angle", "rad", pi / 180),
-        ("motion.speed_mps", "speed", "m/s", 1),
+        ("motion.walking.speed_mps", "speed", "m/s", 1),
         ("wall.center_m.1", "wall_center_y", "m", 1),
         ("wall.eps_r", "wall_eps_r", "1", 1),
         ("snr_db", "snr", "dB", 1),
@@ -50,7 +50,7 @@ def test_every_number_of_every_activity_has_one_column():
 def test_only_the_chosen_activities_and_parts_have_columns():
     keys = {field.key for field in fields(Config(activities=("S1",), snr_db=None))}
     assert not any(key.startswith(("timing.", "wall.")) for key in keys)
-    assert {"snr_db", "motion.speed_mps"}.isdisjoint(keys)
+    assert {"snr_db", "motion.walking.speed_mps"}.isdisjoint(keys)
     assert {"subject.weight_kg", "motion.range_m"} <= keys
 
 
@@ -83,7 +83,7 @@ def test_the_table_is_in_config_units_with_nan_where_a_number_does_not_apply():
                 assert value == known[field.key]
             else:
                 assert np.isnan(value)
-    speed = [field.key for field in columns].index("motion.speed_mps")
+    speed = [field.key for field in columns].index("motion.walking.speed_mps")
     assert np.isnan(table[0, speed])
     assert table[1, speed] == 1.5
 
@@ -161,10 +161,13 @@ def keys_of(**document):
 def test_names_that_two_keys_share_have_the_section_before_them():
     alone = keys_of(activities=["walking"], radar=SFCW)
     assert alone["dwell"] == "radar.dwell_s"
-    assert keys_of(activities=["grabbing"])["dwell"] == "motion.dwell_s"
+    assert keys_of(activities=["grabbing"])["dwell"] == "motion.grabbing.dwell_s"
     both = keys_of(activities=["walking", "grabbing"], radar=SFCW)
     assert "dwell" not in both
-    assert (both["radar_dwell"], both["motion_dwell"]) == ("radar.dwell_s", "motion.dwell_s")
+    assert (both["radar_dwell"], both["motion_dwell"]) == (
+        "radar.dwell_s",
+        "motion.grabbing.dwell_s",
+    )
 
 
 def test_a_class_called_grab_shares_no_name_with_the_grabbing_of_the_twelve():

@@ -54,7 +54,7 @@ def random_config(rng: np.random.Generator) -> dict:
             "model": "paper",
             "range_m": {"uniform": [0.8, 8]},
             "angle_deg": {"uniform": [-180, 180]},
-            "gait_hz": {"uniform": [0.3, 3]},
+            "paper": {"gait_hz": {"uniform": [0.3, 3]}},
         },
         # Both phases of an activity within however short a recording.
         "timing": {

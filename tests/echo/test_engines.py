@@ -53,7 +53,7 @@ CASES = {
     | {"radar": radar(77, 4, 5000), "processing": {"range_reference": "start"}},
     "residual video phase": FAST | {"radar": radar(77, 4, 2000, residual_video_phase=True)},
     "hard switch": FAST | {"radar": radar(77, 4, 2000), "timing": SOON | {"blend_s": 0}},
-    "fast gait": FAST | {"radar": radar(77, 4, 3000), "motion": {"gait_hz": 2.5}},
+    "fast gait": FAST | {"radar": radar(77, 4, 3000), "motion": {"paper": {"gait_hz": 2.5}}},
     "past the antennas": FAST
     | {"radar": radar(77, 4, 3000), "motion": {"range_m": 1.2, "angle_deg": 180}},
 }

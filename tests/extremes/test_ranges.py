@@ -64,11 +64,14 @@ RIGHT: dict[str, dict[str, Any]] = {
     **{f"stature {h} m": {"subject": {"height_m": h}} for h in (0.1, 0.3, 3.0, 10.0)},
     **{f"weight {w:g} kg": {"subject": {"weight_kg": w}} for w in (1e-3, 1e6)},
     **{
-        f"gait {g:g} Hz": {"radar": {"prf_hz": 5000}, "motion": WALK | {"gait_hz": g}}
+        f"gait {g:g} Hz": {"radar": {"prf_hz": 5000}, "motion": WALK | {"paper": {"gait_hz": g}}}
         for g in (0, 1e-9, 50, 1000)
     },
     **{
-        f"speed {s:g} m/s": {"radar": {"prf_hz": 5000}, "motion": WALK | {"speed_mps": s}}
+        f"speed {s:g} m/s": {
+            "radar": {"prf_hz": 5000},
+            "motion": WALK | {"walking": {"speed_mps": s}},
+        }
         for s in (0, 1e4)
     },
 }
@@ -94,7 +97,7 @@ def test_signal(name: str, case: dict[str, Any], error: float) -> None:
 
 def test_a_gait_of_0_stands_still() -> None:
     """Punching without a rhythm is a posture: nothing is left after the MTI."""
-    motion = WALK | {"gait_hz": 0}
+    motion = WALK | {"paper": {"gait_hz": 0}}
     for engine in ("cube", "direct"):
         assert not signal(config_of(engine, motion=motion), "punching").any()
 

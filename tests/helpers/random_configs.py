@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from helpers.movements import in_groups
 from pydantic import BaseModel
 
 from radhar_cli.activities.activity import ACTIVITIES
@@ -237,7 +238,7 @@ class Drawer:
         self.maybe(motion, 0.4, "gait_hz", lambda: self.by_activity(lambda: self.log(1e-9, 1e3)))
         for key in ("speed_mps", "gait_hz"):
             self.maybe(motion, 0.1, key, lambda: 0)
-        return motion
+        return in_groups(motion)
 
     def people(self, document: Document) -> None:
         """Make the document one of people: what they use within what people do."""
@@ -246,15 +247,22 @@ class Drawer:
             section, _, name = key.rpartition(".")
             if section:
                 draw = lambda low=low, high=high: float(self.rng.uniform(low, high))  # noqa: E731
-                self.maybe(sections[section], 0.4, name, lambda draw=draw: self.number(draw))
+                inner: Document = sections
+                for part in section.split("."):
+                    inner = inner.setdefault(part, {})
+                self.maybe(inner, 0.4, name, lambda draw=draw: self.number(draw))
         fall = self.pick(("sideways", {"choice": ["forward", "backward", "sideways"]}))
-        self.maybe(sections["motion"], 0.4, "fall", lambda: fall)
+        falling = sections["motion"].setdefault("falling", {})
+        self.maybe(falling, 0.4, "direction", lambda: fall)
         for section, numbers in sections.items():
             document[section] = document.get(section, {}) | numbers
         for key in HUMAN_LIMITS:  # what was drawn for the paper's model is no people's
             section, _, name = key.rpartition(".")
-            if section and name not in sections[section]:
-                document[section].pop(name, None)
+            drawn, inner = sections, document
+            for part in filter(None, section.split(".")):
+                drawn, inner = drawn.get(part, {}), inner.get(part, {})
+            if section and name not in drawn:
+                inner.pop(name, None)
         self.maybe(
             document, 0.4, "people", lambda: [self.other() for _ in range(self.pick((1, 2)))]
         )

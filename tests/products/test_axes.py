@@ -86,7 +86,7 @@ def only_the_torso(monkeypatch):
 # A torso at the height of the antennas that walks radially: its distance is x less 0.4 m.
 RADIAL = {
     "subject": {"height_m": 1.8},
-    "motion": {"model": "paper", "range_m": 3.4, "angle_deg": 0, "speed_mps": 1.0},
+    "motion": {"model": "paper", "range_m": 3.4, "angle_deg": 0, "walking": {"speed_mps": 1.0}},
 }
 
 
@@ -112,7 +112,7 @@ def test_time_axis_is_the_centre_of_the_frames(name, with_mti):
         "range_m": 2.0,
         "cross_range_m": -2.0,
         "angle_deg": 90,
-        "speed_mps": 1.0,
+        "walking": {"speed_mps": 1.0},
     }
     recording = record(
         radar,

@@ -348,7 +348,7 @@ def test_one_channel_has_points_without_angles(path: Path) -> None:
 STILL = (
     "activities=[stationary]",
     "subject={sway_ahead_m: 0, sway_aside_m: 0, chest_m: 0, heart_m: 0}",
-    "motion={range_m: 2, fidget_hz: 0, shuffle_hz: 0}",
+    "motion={range_m: 2, idle: {fidget_hz: 0, shuffle_hz: 0}}",
     "snr_db=null",
     QUIET,
 )

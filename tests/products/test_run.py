@@ -37,7 +37,7 @@ def torso_legs(scene: Scene, t: np.ndarray) -> np.ndarray:
     """Distance from transmitter to torso to receiver [M], m, for the motion AWAY."""
     v = scene_numbers(scene)
     torso = [
-        v["motion.range_m"] + v["motion.speed_mps"] * t,
+        v["motion.range_m"] + v["motion.walking.speed_mps"] * t,
         0.0,
         1.2 * v["subject.height_m"] / 1.8,
     ]
@@ -81,7 +81,7 @@ def test_compensation_stops_the_torso(scenario, kind):
 @pytest.mark.usefixtures("only_the_torso")
 def test_the_delay_of_the_wall_is_compensated_too():
     """From 1 m to 1.12 m the walker is in the wall and 2.4 times as slow to the radar."""
-    slow = {"motion": AWAY | {"range_m": 0.9, "speed_mps": 0.3}, "duration_s": 1.0}
+    slow = {"motion": AWAY | {"range_m": 0.9, "walking": {"speed_mps": 0.3}}, "duration_s": 1.0}
     recording = record(THROUGH_WALL, "signal_compensated", "signal", **slow)
     phase = np.unwrap(np.angle(recording["signal_compensated"].x[0, 0]))
     turned = np.unwrap(np.angle(recording["signal"].x[0, 0]))

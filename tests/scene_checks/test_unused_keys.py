@@ -14,14 +14,18 @@ PUNCHING: dict[str, Any] = {"activities": ["punching"]}
     ("document", "said"),
     [
         (
-            PUNCHING | {"motion": {"speed_mps": 2}},
-            ["motion.speed_mps has no effect with activities: [punching]; it needs walking"],
+            PUNCHING | {"motion": {"walking": {"speed_mps": 2}}},
+            [
+                "motion.walking.speed_mps has no effect with activities: [punching]; "
+                "it needs walking"
+            ],
         ),
         (
-            PUNCHING | {"motion": {"dwell_s": 2, "lane_m": 2}},
+            PUNCHING | {"motion": {"grabbing": {"dwell_s": 2}, "walking": {"lane_m": 2}}},
             [
-                "motion.lane_m has no effect with activities: [punching]; it needs walking",
-                "motion.dwell_s has no effect with activities: [punching]; it needs grabbing",
+                "motion.walking.lane_m has no effect with activities: [punching]; it needs walking",
+                "motion.grabbing.dwell_s has no effect with activities: [punching]; "
+                "it needs grabbing",
             ],
         ),
         (
@@ -32,32 +36,34 @@ PUNCHING: dict[str, Any] = {"activities": ["punching"]}
             ],
         ),
         (
-            {"motion": {"stumble_deg": 20}},
+            {"motion": {"falling": {"stumble_deg": 20}}},
             [
-                "motion.stumble_deg has no effect with activities: all; "
+                "motion.falling.stumble_deg has no effect with activities: all; "
                 "it needs stumbling or tripping"
             ],
         ),
         (
-            PUNCHING | {"motion": {"exercise_size": 0.6}},
-            ["motion.exercise_size has no effect with activities: [punching]; it needs exercises"],
+            PUNCHING | {"motion": {"exercises": {"size": 0.6}}},
+            ["motion.exercises.size has no effect with activities: [punching]; it needs exercises"],
         ),
         (
-            PUNCHING | {"motion": {"model": "paper", "lane_m": 2, "thigh_deg": 20}},
+            PUNCHING
+            | {"motion": {"model": "paper", "walking": {"lane_m": 2}, "paper": {"thigh_deg": 20}}},
             [
-                "motion.thigh_deg has no effect with activities: [punching]; it needs kicking, "
+                "motion.paper.thigh_deg has no effect with activities: [punching]; "
+                "it needs kicking, "
                 "walking, sitting_to_walking, walking_to_sitting, falling_to_walking or "
                 "walking_to_falling",
-                "motion.lane_m has no effect with motion.model: paper",
+                "motion.walking.lane_m has no effect with motion.model: paper",
             ],
         ),
-        ({"activities": ["walking"], "motion": {"speed_mps": 2, "lane_m": 2}}, []),
-        ({"motion": {"speed_mps": 2, "dwell_s": 2}}, []),
+        ({"activities": ["walking"], "motion": {"walking": {"speed_mps": 2, "lane_m": 2}}}, []),
+        ({"motion": {"walking": {"speed_mps": 2}, "grabbing": {"dwell_s": 2}}}, []),
         (
             {
                 "activities": ["staggering"],
                 "classes": {"staggering": {"sequence": ["stumbling"]}},
-                "motion": {"stumble_deg": 20},
+                "motion": {"falling": {"stumble_deg": 20}},
             },
             [],
         ),
@@ -82,21 +88,29 @@ def test_numbers_that_no_activity_uses_are_said(document: Any, said: list[str]) 
 def test_entries_of_activities_that_do_not_use_them_are_said_once(
     entries: Any, idle: str | None
 ) -> None:
-    motion = {"speed_mps": {"per_activity": entries}}
+    motion = {"walking": {"speed_mps": {"per_activity": entries}}}
     document = {"activities": ["walking", "punching"], "motion": motion}
     found = unused_keys(Config.model_validate(document))
     expected = (
-        f"motion.speed_mps.per_activity.{idle} has no effect with activities: "
+        f"motion.walking.speed_mps.per_activity.{idle} has no effect with activities: "
         "[walking, punching]: nobody uses it"
     )
     assert found == [expected] * (idle is not None)
 
 
 def test_of_other_people_too() -> None:
-    other = {"activity": "punching", "motion": {"range_m": 5, "speed_mps": 2, "lane_start": 0.3}}
-    document = {"activities": ["walking"], "motion": {"speed_mps": 2}, "people": [other]}
+    other = {
+        "activity": "punching",
+        "motion": {"range_m": 5, "walking": {"speed_mps": 2, "lane_start": 0.3}},
+    }
+    document = {
+        "activities": ["walking"],
+        "motion": {"walking": {"speed_mps": 2}},
+        "people": [other],
+    }
     assert unused_keys(Config.model_validate(document)) == [
-        "people.0.motion.speed_mps has no effect with activities: [punching]; it needs walking",
-        "people.0.motion.lane_start has no effect with motion.lane_m: 0.0; "
-        "it needs motion.lane_m above 0",
+        "people.0.motion.walking.speed_mps has no effect with activities: [punching]; "
+        "it needs walking",
+        "people.0.motion.walking.lane_start has no effect with motion.walking.lane_m: 0.0; "
+        "it needs motion.walking.lane_m above 0",
     ]

@@ -46,10 +46,8 @@ PERSON: dict[str, Any] = {
         "model": "paper",
         "range_m": {"per_activity": {"default": 2, "S8": 1, "S9": 1, "S10": 1, "S11": 1, "S12": 1}},
         "angle_deg": 0,
-        "thigh_deg": 30,
-        "calf_deg": 45,
-        "arm_deg": 35,
-        "turn_deg": 45,
+        "paper": {"thigh_deg": 30, "calf_deg": 45, "arm_deg": 35},
+        "rotating": {"turn_deg": 45},
     },
 }
 FREE_SPACE: dict[str, Any] = PERSON
@@ -314,11 +312,14 @@ def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
             "receiver.noise_figure_db has no effect with snr_db: 30.0; it needs snr_db: null",
         ),
         ({"cloud": {"pfa": 1e-4}}, "cloud has no effect with maps: [stft]"),
-        ({"motion": {"gait_hz": 1.5}}, "motion.gait_hz has no effect with motion.model: human"),
+        (
+            {"motion": {"paper": {"gait_hz": 1.5}}},
+            "motion.paper.gait_hz has no effect with motion.model: human",
+        ),
         ({"timing": {"blend_s": 0.5}}, "timing.blend_s has no effect with motion.model: human"),
         (
-            {"motion": {"model": "paper", "fall": "sideways"}},
-            "motion.fall has no effect with motion.model: paper",
+            {"motion": {"model": "paper", "falling": {"direction": "sideways"}}},
+            "motion.falling.direction has no effect with motion.model: paper",
         ),
         (
             {"motion": {"model": "paper"}, "subject": {"chest_m": 0.01}},
@@ -521,7 +522,7 @@ def test_the_most_serious_reason_is_given(
 )
 def test_a_torso_that_leaves_a_fixed_gate_is_warned_of(gate_m, leaves):
     """From 2 m, 1.5 m/s away for 3 s; a gate around the torso goes with it."""
-    motion = {"model": "paper", "range_m": 2.0, "angle_deg": 0.0, "speed_mps": 1.5}
+    motion = {"model": "paper", "range_m": 2.0, "angle_deg": 0.0, "walking": {"speed_mps": 1.5}}
     config = Config.model_validate(
         {
             "duration_s": 3.0,
@@ -562,7 +563,13 @@ def test_the_echo_needs_no_other_instants_than_the_check(monkeypatch, scatterers
 def walker(model: str, **motion: Any) -> dict[str, Any]:
     return {
         "duration_s": 4,
-        "motion": {"model": model, "range_m": 2.5, "angle_deg": 180, "speed_mps": 1.3, **motion},
+        "motion": {
+            "model": model,
+            "range_m": 2.5,
+            "angle_deg": 180,
+            "walking": {"speed_mps": 1.3},
+            **motion,
+        },
         "activities": ["walking"],
     }
 
@@ -630,7 +637,11 @@ def sweeps(share: float, waveform: str = "sfcw", **engine: Any) -> dict[str, Any
     """A walker whose fastest joint is moved by a share of a cell in a sweep of 24 to 24.5 GHz."""
     document: dict[str, Any] = {
         **{"activities": ["walking"], "duration_s": 2, "maps": ["rtm"], "engine": engine},
-        "motion": {"range_m": 8, "angle_deg": 180, "speed_mps": 1.3, "speed_variation": 0},
+        "motion": {
+            "range_m": 8,
+            "angle_deg": 180,
+            "walking": {"speed_mps": 1.3, "speed_variation": 0},
+        },
         "radar": {"carrier_hz": 24e9, "bandwidth_hz": 5e8, "prf_hz": 400},
     }
     p = at_every_pulse(scene := scene_of(Config(**document)))
@@ -657,7 +668,11 @@ def test_the_warning_of_a_slow_sweep_has_the_shift_and_the_remedies() -> None:
     config = Config.model_validate(
         {
             **{"activities": ["walking"], "duration_s": 3, "maps": ["rtm"], "samples_per_class": 1},
-            "motion": {"range_m": 8, "angle_deg": 180, "speed_mps": 1.3, "speed_variation": 0},
+            "motion": {
+                "range_m": 8,
+                "angle_deg": 180,
+                "walking": {"speed_mps": 1.3, "speed_variation": 0},
+            },
             "radar": {
                 **{"waveform": "sfcw", "carrier_hz": 24e9, "bandwidth_hz": 5e8, "prf_hz": 19},
                 **{"steps": 1000, "dwell_s": 5e-5},
@@ -696,11 +711,14 @@ def room_error(**document):
 
 def test_another_person_who_walks_out_of_the_room_is_named_with_the_remedy():
     """There is no wall, and the sample's own person stands still."""
-    walker = {"activity": "walking", "motion": {"range_m": 4.0, "angle_deg": 0, "speed_mps": 1.2}}
+    walker = {
+        "activity": "walking",
+        "motion": {"range_m": 4.0, "angle_deg": 0, "walking": {"speed_mps": 1.2}},
+    }
     said = room_error(motion=STILL, people=[walker], duration_s=8)
     assert "people.0: the body leaves room.box_m, at x = " in said
     assert ", beyond 7 m, with people.0.motion.range_m = 4" in said
-    assert "people.0.motion.lane_m lets people turn round" in said
+    assert "people.0.motion.walking.lane_m lets people turn round" in said
     assert "wall" not in said
 
 
@@ -708,7 +726,7 @@ def test_a_walker_who_leaves_the_room_is_told_of_the_lane():
     said = room_error(activities=["walking"], motion={"range_m": 5, "angle_deg": 0}, duration_s=8)
     assert "the body leaves room.box_m, at x = " in said
     assert said.endswith(
-        "motion.lane_m lets people turn round; motion.range_m and "
+        "motion.walking.lane_m lets people turn round; motion.range_m and "
         "motion.cross_range_m, room.box_m and duration_s should leave room"
     )
 

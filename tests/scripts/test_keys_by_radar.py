@@ -21,7 +21,7 @@ def test_every_key_acts_or_says_that_it_does_not() -> None:
         assert of_radars[f"radar.{key}"]["board"].word == "warned"
     assert of_radars["processing.overlap_fraction"]["board"].word == "warned"
     assert of_radars["radar.waveform"]["board"].word == "refused"
-    assert of_motion["motion.gait_hz"]["human"].word == "warned"
+    assert of_motion["motion.paper.gait_hz"]["human"].word == "warned"
     for found in (of_radars, of_motion):
         for key, row in found.items():
             assert "effect" in {one.word for one in row.values()} or key in ELSEWHERE

@@ -20,7 +20,7 @@ from radhar_cli.learning.settings import TrainConfig
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIGS = sorted((ROOT / "configs").rglob("*.yaml"))
-ALIASES = "motion:\n  thigh_deg: &a {normal: [30, 5], min: 20}\n  calf_deg: *a\n"
+ALIASES = "motion:\n  paper:\n    thigh_deg: &a {normal: [30, 5], min: 20}\n    calf_deg: *a\n"
 # (first case, cases): a fiftieth of them in every run.
 RUNS = [(0, 40), pytest.param(40, 960, marks=pytest.mark.slow)]
 

@@ -17,7 +17,7 @@ def spare_bytes(seconds: float) -> tuple[int, Truth]:
         {
             "duration_s": seconds,
             "radar": {"prf_hz": 1000.0},
-            "motion": {"model": "human", "lane_m": 4.0},
+            "motion": {"model": "human", "walking": {"lane_m": 4.0}},
             "activities": ["walking"],
         }
     )

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from radhar_cli.activities.activity import ACTIVITIES, DEFAULT, activity_named, own_activities
-from radhar_cli.config.annotations import Limits, People, at, of_kind
+from radhar_cli.config.annotations import Limits, People, annotations, at, of_kind
 from radhar_cli.config.classes import SequenceConfig, class_activities
 from radhar_cli.config.number import MAX_NUMBER, support
 from radhar_cli.config.request import Request
@@ -56,12 +56,8 @@ def unknown_activities(c: Request) -> Iterator[Problem]:
     names = {DEFAULT, *(a.slug for a in (*ACTIVITIES, *own.values(), *own_activities()))}
     keys = ["samples_per_class"]
     of_people = [f"people.{n}." for n in range(len(c.people))]
-    keys += [
-        f"{whose}{name}.{key}"
-        for whose in ("", *of_people)
-        for name in ("motion", "timing")
-        for key in type(at(c, name)).model_fields
-    ]
+    of_movement = [key for key in annotations(Request) if key.startswith(("motion.", "timing."))]
+    keys += [f"{whose}{key}" for whose in ("", *of_people) for key in of_movement]
     for key in keys:
         value = at(c, key)
         for slug, number in value.per_activity.items() if isinstance(value, PerActivity) else ():

@@ -1,0 +1,466 @@
+"""How people move: what each movement takes, and when the phases of an activity begin."""
+
+from typing import Annotated, Generic, Literal
+
+from pydantic import Field
+
+from radhar_cli.activities.activity import ACTIVITIES
+from radhar_cli.config.annotations import (
+    ABOVE_ZERO,
+    PERSONAL,
+    UNSTEADY,
+    ActsIf,
+    ByModel,
+    Paper,
+    People,
+)
+from radhar_cli.config.number import (
+    ANGLE,
+    COORDINATE,
+    FREQUENCY,
+    NOT_NEGATIVE,
+    RATIO,
+    SECONDS,
+    SIGNED,
+    SPEED,
+    normal,
+    uniform,
+    vary,
+)
+from radhar_cli.config.section import B, ByActivity, Section, by_activity, default_draw
+
+FallName = Literal["forward", "backward", "sideways"]
+
+
+FALLS: tuple[FallName, ...] = FallName.__args__  # type: ignore[attr-defined]
+
+
+SEATS = "sitting_down standing_up falling_off_seat falling_on_rising"
+
+
+class Falls(Section):
+    """``{choice: [forward, forward, sideways]}``: one of the directions, equally likely."""
+
+    choice: Annotated[tuple[FallName, ...], Field(min_length=1)]
+
+    def drawn(self, u: float) -> FallName:
+        """The direction at a fraction u, 0 to 1, of the draws."""
+        ordered = sorted(self.choice, key=FALLS.index)
+        return ordered[min(int(u * len(ordered)), len(ordered) - 1)]
+
+
+# People face the radar, and in 6 s walk 8 m towards it: they start far enough away, all within its
+# half-band of 30 m. Classes of one's own may walk all the time.
+_NEARER = {a.slug: uniform(5, 8) if a.walks else uniform(2, 5) for a in ACTIVITIES}
+
+
+del _NEARER["walking"]
+
+
+_HUMAN_RANGE = by_activity(uniform(9.0, 12.0), **_NEARER)
+
+
+_FACING = uniform(150.0, 210.0)
+
+
+_GAIT = "S8 S9 S10 S11 S12"
+
+
+class WalkingConfig(Section, Generic[B]):
+    """How people walk (motion.model: human); the paper's gait takes the speed alone."""
+
+    speed_mps: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SPEED, null=True),
+        People("walking", 0.3, 2.8),
+        Paper(_GAIT),
+        PERSONAL,
+        ByModel(human=normal(1.3, 0.18, 0.7, 2.0), paper=1.5),
+    ] = default_draw(None)
+    """Walking speed."""
+    period_scale: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0.85, 1.05), PERSONAL
+    ] = default_draw(normal(0.95, 0.04, 0.85, 1.05))
+    """Stride time relative to Boulic and Thalmann's."""
+    arm_swing: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0, 2), PERSONAL] = (
+        default_draw(uniform(0.6, 1.3))
+    )
+    """Arm swing of a walker, relative to Boulic and Thalmann's."""
+    trunk_pitch_deg: Annotated[B, ByActivity(ANGLE), People("walking", -5, 15), PERSONAL] = (
+        default_draw(normal(3.0, 2.0, -2.0, 8.0))
+    )
+    """Forward pitch of a walker's trunk."""
+    step_width: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0.02, 0.1), PERSONAL
+    ] = default_draw(normal(0.063, 0.011, 0.03, 0.1))
+    """Distance across between a walker's feet, relative to the stature."""
+    speed_variation: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0, 0.06), UNSTEADY
+    ] = default_draw(uniform(0.0, 0.06))
+    """Standard deviation of a walker's speed over time, relative to the speed; that of the stride
+    times is half as much, that of the step width a third, in metres."""
+    lane_m: Annotated[B, ByActivity(COORDINATE), People("walking", 0, 1000)] = default_draw(0.0)
+    """Length of the lane after which walkers turn round, again and again; 0 is never."""
+    lane_start: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, RATIO),
+        People("walking", 0, 1),
+        ActsIf("motion.walking.lane_m", ABOVE_ZERO),
+    ] = default_draw(uniform(0.0, 1.0))
+    """Share of the first lane that lies behind a walker at 0 s."""
+    speed_up: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0.4, 2)] = (
+        default_draw(0.6)
+    )
+    """Strides in which a walker gains speed from rest."""
+
+
+class PaperGaitConfig(Section, Generic[B]):
+    """The gait, kick and punch of the paper's formulas (motion.model: paper)."""
+
+    gait_hz: Annotated[
+        B, ByActivity(NOT_NEGATIVE, FREQUENCY), Paper(f"S2 S3 S4 S7 {_GAIT}"), PERSONAL
+    ] = default_draw(1.0)
+    """Strides per second in the paper's gait."""
+    thigh_deg: Annotated[B, ByActivity(ANGLE), Paper(f"S3 {_GAIT}"), PERSONAL] = default_draw(
+        vary(30.0, 0.2)
+    )
+    """Peak angle of the thigh in the paper's gait and kick."""
+    calf_deg: Annotated[B, ByActivity(ANGLE), Paper(f"S2 S3 {_GAIT}"), PERSONAL] = default_draw(
+        vary(45.0, 0.2)
+    )
+    """Peak angle of the calf in the paper's gait, punch and kick."""
+    arm_deg: Annotated[B, ByActivity(ANGLE), Paper(f"S2 {_GAIT}"), PERSONAL] = default_draw(
+        vary(35.0, 0.2)
+    )
+    """Peak angle of the arm in the paper's gait and punch."""
+
+
+class RotatingConfig(Section, Generic[B]):
+    """How a body rotates on the spot (S7)."""
+
+    turn_deg: Annotated[
+        B, ByActivity(ANGLE), People("body_rotating", -90, 90), Paper("S7"), PERSONAL
+    ] = default_draw(vary(45.0, 0.2))
+    """Angle through which a rotating body (S7) turns to each side."""
+    rotation_hz: Annotated[
+        B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("body_rotating", 0, 1)
+    ] = default_draw(vary(0.45, 0.2))
+    """Turns of a rotating body (S7), to both sides, per second."""
+
+
+class StrikingConfig(Section, Generic[B]):
+    """How people punch and kick."""
+
+    punch_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("punching", 0.05, 1.1)] = (
+        default_draw(vary(0.7, 0.15))
+    )
+    """Pairs of punches, right and left, per second."""
+    kick_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("kicking", 0.05, 0.6)] = (
+        default_draw(vary(0.45, 0.1))
+    )
+    """Kicks per second."""
+    strike_scale: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("punching kicking", 0.8, 1.25), PERSONAL
+    ] = default_draw(normal(1.0, 0.12, 0.8, 1.25))
+    """Duration of a punch or kick, relative to the usual one."""
+
+
+class ExercisesConfig(Section, Generic[B]):
+    """How exercises are done: squats, jumps, lunges and the like."""
+
+    period: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("exercises", 0.6, 1.8)] = (
+        default_draw(uniform(0.8, 1.3))
+    )
+    """Duration of a repetition of an exercise, relative to the usual one."""
+    size: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("exercises", 0.5, 1.1)] = (
+        default_draw(uniform(0.75, 1.05))
+    )
+    """Extent of the movements of an exercise, relative to the usual one."""
+
+
+class RepeatingConfig(Section, Generic[B]):
+    """How what is done again and again differs from one time to the next."""
+
+    cycle_phase: Annotated[
+        B, ByActivity(SIGNED), People("punching kicking body_rotating walking", -1, 1)
+    ] = default_draw(uniform(-0.5, 0.5))
+    """Initial phase of steady walks, punches, kicks and turns, in cycles."""
+    tempo_jitter: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, RATIO),
+        People("punching kicking body_rotating exercises", 0, 0.2),
+        UNSTEADY,
+    ] = default_draw(uniform(0.0, 0.1))
+    """Relative standard deviation of the time from one punch, kick or turn to the next."""
+    size_jitter: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, RATIO),
+        People("punching kicking body_rotating exercises", 0, 0.15),
+        UNSTEADY,
+    ] = default_draw(uniform(0.0, 0.1))
+    """Relative standard deviation of the size from one punch, kick or turn to the next."""
+
+
+class GrabbingConfig(Section, Generic[B]):
+    """How something is picked up from the floor."""
+
+    bend_deg: Annotated[B, ByActivity(ANGLE), People("grabbing", 30, 85)] = default_draw(
+        normal(72.0, 5.0, 60.0, 85.0)
+    )
+    """Forward pitch of the trunk when something is picked up."""
+    dwell_s: Annotated[B, ByActivity(COORDINATE), People("grabbing", -1, 60)] = default_draw(
+        uniform(0.2, 0.6)
+    )
+    """Time that the hand stays at the floor when something is picked up; below 0 the rise begins
+    before the descent ends, by at most 0.6 of it."""
+
+
+class SittingConfig(Section, Generic[B]):
+    """How people sit down, sit, and stand up."""
+
+    seat_height: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(SEATS, 0.24, 0.33)] = (
+        default_draw(normal(0.285, 0.015, 0.25, 0.32))
+    )
+    """Height of the seated hip, relative to the stature."""
+    lean_deg: Annotated[
+        B, ByActivity(ANGLE), People("sitting_down standing_up", 0, 60), PERSONAL
+    ] = default_draw(normal(42.0, 8.0, 25.0, 58.0))
+    """Forward pitch of the trunk while sitting down or rising."""
+    recline_deg: Annotated[B, ByActivity(ANGLE), People(SEATS, -10, 45)] = default_draw(0.0)
+    """Backward pitch of the trunk in the seat."""
+    hands_on_lap: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(SEATS, 0, 1)] = default_draw(
+        1.0
+    )
+    """Place of a seated person's hands: 0 is beside the seat, 1 on the lap."""
+
+
+class TransitionsConfig(Section, Generic[B]):
+    """What comes with picking up, sitting down and standing up."""
+
+    joint_lag: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, RATIO),
+        People("grabbing sitting_down standing_up", 0, 0.6),
+        UNSTEADY,
+    ] = default_draw(0.0)
+    """Share of a movement by which some joints lead and others lag; which ones differs between
+    recordings."""
+    step_m: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("S4 S5 S6", 0, 0.5), UNSTEADY] = (
+        default_draw(uniform(0.0, 0.5))
+    )
+    """Length of the steps back before sitting down (S5), ahead after standing up (S6) and around
+    picking up (S4)."""
+    settle_size: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("S4 S5 S6", 0, 3), UNSTEADY
+    ] = default_draw(uniform(0.0, 3.0))
+    """Size of the fidgets around the end of a movement, relative to the usual one."""
+
+
+class FallingConfig(Section, Generic[B]):
+    """How people fall, stumble and land."""
+
+    direction: Annotated[
+        FallName | Falls, People("falling falling_off_seat falling_on_rising stumbling")
+    ] = "forward"
+    """Direction of a fall or stumble: forward, backward, sideways, or drawn: {choice: [forward,
+    forward, sideways]}."""
+    heels_deg: Annotated[B, ByActivity(ANGLE), People("falling", 0, 90), UNSTEADY] = default_draw(
+        0.0
+    )
+    """Angle by which the shanks swing up as people land on their knees in a forward fall."""
+    stumble_deg: Annotated[B, ByActivity(ANGLE), People("stumbling tripping", 0, 45)] = (
+        default_draw(uniform(15.0, 40.0))
+    )
+    """Angle of the trunk ahead before a stumble is caught; backwards and sideways it is 0.4 of
+    that."""
+
+
+class IdleConfig(Section, Generic[B]):
+    """What people do who stand or sit."""
+
+    fidget_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("", 0, 2), UNSTEADY] = (
+        default_draw(uniform(0.0, 0.4))
+    )
+    """Fidgets of a standing or seated person per second, in the mean."""
+    fidget_size: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("", 0, 2)] = default_draw(
+        uniform(0.5, 1.5)
+    )
+    """Size of a person's fidgets, relative to the usual one."""
+    shuffle_hz: Annotated[
+        B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("S1 S4", 0, 0.5), UNSTEADY
+    ] = default_draw(uniform(0.0, 0.2))
+    """Steps of some centimetres per second, of who stands (S1, and S4 afterwards)."""
+    phase_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("")] = default_draw(
+        uniform(0.0, 1000.0)
+    )
+    """Time offset of sway, breathing, pulse and speed variation."""
+
+
+class MotionConfig(Section, Generic[B]):
+    """Where people stand, where they head and how they move, by movement and model of motion.
+
+    What another model alone knows is ignored; what is null takes the value of the model.
+    """
+
+    model: Literal["human", "paper", "file"] = "human"
+    """Model of motion: human for measured gaits and movements, paper for the paper's formulas, file
+    for motion files in every class (docs/guide/motion.md)."""
+    folder: Annotated[str | None, Field(exclude=True, max_length=1000)] = None
+    """Folder that paths of motion files are relative to; not part of a data set's identity."""
+    range_m: Annotated[
+        B,
+        ByActivity(COORDINATE, null=True),
+        ByModel(human=_HUMAN_RANGE, paper=uniform(1.0, 3.0), file=uniform(2.0, 4.0)),
+    ] = default_draw(None)
+    """Range at which people start: of the torso (paper), of the feet (human)."""
+    cross_range_m: Annotated[B, ByActivity(COORDINATE)] = default_draw(0.0)
+    """Cross-range at which people start, positive to the left."""
+    angle_deg: Annotated[
+        B,
+        ByActivity(ANGLE, null=True),
+        ByModel(human=_FACING, paper=uniform(-30.0, 30.0), file=_FACING),
+    ] = default_draw(None)
+    """Heading of people; 0 faces away from the radar, 180 faces it."""
+    walking: WalkingConfig[B] = WalkingConfig()
+    paper: PaperGaitConfig[B] = PaperGaitConfig()
+    rotating: RotatingConfig[B] = RotatingConfig()
+    striking: StrikingConfig[B] = StrikingConfig()
+    exercises: ExercisesConfig[B] = ExercisesConfig()
+    repeating: RepeatingConfig[B] = RepeatingConfig()
+    grabbing: GrabbingConfig[B] = GrabbingConfig()
+    sitting: SittingConfig[B] = SittingConfig()
+    transitions: TransitionsConfig[B] = TransitionsConfig()
+    falling: FallingConfig[B] = FallingConfig()
+    idle: IdleConfig[B] = IdleConfig()
+
+
+class TimingConfig(Section, Generic[B]):
+    """When the phases of an activity begin and how long they last.
+
+    What is null takes the value of the model.
+    """
+
+    seat_start_s: Annotated[
+        B, ByActivity(NOT_NEGATIVE, SECONDS), People("S5 S6"), Paper("S5 S6")
+    ] = default_draw(0.5)
+    """When sitting down or standing up begins."""
+    seat_duration_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S5 S6", 1, 60),
+        Paper("S5 S6"),
+        ByModel(
+            human=by_activity(normal(2.0, 0.4, 1.3, 3.0), standing_up=normal(1.8, 0.4, 1.2, 3.0)),
+            paper=2.0,
+        ),
+    ] = default_draw(None)
+    """Duration of sitting down or standing up."""
+    grab_start_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S4")] = default_draw(0.5)
+    """When picking up begins."""
+    grab_duration_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S4", 1, 60)] = (
+        default_draw(normal(2.5, 0.5, 1.6, 3.6))
+    )
+    """Duration of picking up, down and up together."""
+    rise_start_s: Annotated[
+        B, ByActivity(NOT_NEGATIVE, SECONDS), People("S9 S11"), Paper("S9 S11")
+    ] = default_draw(0.5)
+    """When standing up or getting up before a walk begins."""
+    rise_duration_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S9 S11", 1, 60),
+        Paper("S9 S11"),
+        ByModel(
+            human=by_activity(
+                normal(1.8, 0.25, 1.2, 3.0), falling_to_walking=normal(3.0, 0.5, 2.2, 4.5)
+            ),
+            paper=1.5,
+        ),
+    ] = default_draw(None)
+    """Duration of standing up or getting up before a walk."""
+    walk_begin_s: Annotated[
+        B | None, ByActivity(NOT_NEGATIVE, SECONDS, null=True), People("S8", 0, 600)
+    ] = default_draw(None)
+    """When the walk of S8 begins, after standing; null is a walk that is under way at 0 s."""
+    walk_start_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S9 S11", 0, 600),
+        Paper("S9 S11"),
+        ByModel(paper=2.0),
+    ] = default_draw(None)
+    """When the walk after rising begins; null of people is when they have risen, less overlap_s."""
+    walk_stop_s: Annotated[
+        B, ByActivity(NOT_NEGATIVE, SECONDS), People("S10 S12", 0.5, 600), Paper("S10 S12")
+    ] = default_draw(2.0)
+    """When the walk before sitting down or falling ends."""
+    sit_duration_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S10", 1, 60),
+        Paper("S10"),
+        ByModel(human=normal(2.0, 0.25, 1.3, 3.0), paper=1.5),
+    ] = default_draw(None)
+    """Duration of sitting down after a walk."""
+    fall_duration_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S12", 0.7, 10),
+        Paper("S12"),
+        ByModel(human=normal(1.1, 0.4, 0.9, 2.0), paper=0.8),
+    ] = default_draw(None)
+    """Duration of the fall after a walk."""
+    blend_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), Paper("S9 S10 S11 S12")] = (
+        default_draw(0.3)
+    )
+    """Duration of the raised-cosine ramps of the gait, in and out; 0 is a hard switch."""
+    overlap_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S9 S10 S11 S12", 0, 0.8)] = (
+        default_draw(0.0)
+    )
+    """Time by which the second movement starts before the first ends, unless walk_start_s says
+    when. A scene gets at most 0.3 of the duration of rising, sitting down or falling, and nothing
+    of a fall to the side: its number is what it got."""
+
+
+# Where keys of earlier versions are; the random streams of numbers keep those names.
+EARLIER_KEYS = {
+    "motion.walking.speed_mps": "motion.speed_mps",
+    "motion.walking.period_scale": "motion.period_scale",
+    "motion.walking.arm_swing": "motion.arm_swing",
+    "motion.walking.trunk_pitch_deg": "motion.trunk_pitch_deg",
+    "motion.walking.step_width": "motion.step_width",
+    "motion.walking.speed_variation": "motion.speed_variation",
+    "motion.walking.lane_m": "motion.lane_m",
+    "motion.walking.lane_start": "motion.lane_start",
+    "motion.walking.speed_up": "motion.speed_up",
+    "motion.paper.gait_hz": "motion.gait_hz",
+    "motion.paper.thigh_deg": "motion.thigh_deg",
+    "motion.paper.calf_deg": "motion.calf_deg",
+    "motion.paper.arm_deg": "motion.arm_deg",
+    "motion.rotating.turn_deg": "motion.turn_deg",
+    "motion.rotating.rotation_hz": "motion.rotation_hz",
+    "motion.striking.punch_hz": "motion.punch_hz",
+    "motion.striking.kick_hz": "motion.kick_hz",
+    "motion.striking.strike_scale": "motion.strike_scale",
+    "motion.exercises.period": "motion.exercise_period",
+    "motion.exercises.size": "motion.exercise_size",
+    "motion.repeating.cycle_phase": "motion.cycle_phase",
+    "motion.repeating.tempo_jitter": "motion.tempo_jitter",
+    "motion.repeating.size_jitter": "motion.size_jitter",
+    "motion.grabbing.bend_deg": "motion.bend_deg",
+    "motion.grabbing.dwell_s": "motion.dwell_s",
+    "motion.sitting.seat_height": "motion.seat_height",
+    "motion.sitting.lean_deg": "motion.lean_deg",
+    "motion.sitting.recline_deg": "motion.recline_deg",
+    "motion.sitting.hands_on_lap": "motion.hands_on_lap",
+    "motion.transitions.joint_lag": "motion.joint_lag",
+    "motion.transitions.step_m": "motion.step_m",
+    "motion.transitions.settle_size": "motion.settle_size",
+    "motion.falling.direction": "motion.fall",
+    "motion.falling.heels_deg": "motion.heels_deg",
+    "motion.falling.stumble_deg": "motion.stumble_deg",
+    "motion.idle.fidget_hz": "motion.fidget_hz",
+    "motion.idle.fidget_size": "motion.fidget_size",
+    "motion.idle.shuffle_hz": "motion.shuffle_hz",
+    "motion.idle.phase_s": "motion.idle_phase_s",
+}

@@ -21,7 +21,7 @@ from radhar_cli.commands.terminal import BarProgress
 
 FOLDER = Path(str(commands.__file__)).parent
 # Modules that report for commands of others.
-FOR = {"terminal": ["generate", "merge"]}
+FOR = {"terminal": ["generate", "merge"], "scene_folder": ["simulate"]}
 
 
 def registered(app, prefix=""):

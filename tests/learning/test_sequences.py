@@ -255,7 +255,8 @@ def test_joints_go_to_a_file_to_python_and_to_onnx_alike(boards: Path, model: st
     words = ("--set", "epochs=60") if model == "cloudnet" else ("--set", "epochs=1")
     run, data = trained(boards, model, "skeleton", *words), boards / "data"
     for name in ("found.npz", "found.csv"):
-        done = radhar("predict", run, data, "-o", boards / name, "--split", "val", "--json")
+        options = ("--split", "val", "--device", "cpu", "--json")
+        done = radhar("predict", run, data, "-o", boards / name, *options)
         assert done.returncode == 0, done.stderr
         assert json.loads(done.stdout)["samples"] == 4
     loaded = radhar_cli.load_run(run, device="cpu")

@@ -133,7 +133,7 @@ def test_runs_that_take_a_gpu_are_named_below_the_tables(
     lines = reproduce_paper.tables("quick", {FIRST: records[FIRST]})
     assert any(f"{FIRST}.json" in line for line in lines)
     assert not any(line.startswith("| free space | -10 |") for line in lines)
-    assert f"Not reached without a GPU: {SECOND}, {APART}." in lines
+    assert f"Not run: {SECOND}, {APART}." in lines
 
 
 def test_a_deleted_run_keeps_its_record_and_figures(quick: Reproduction, tmp_path: Path) -> None:

@@ -201,11 +201,13 @@ def _tapered(points: Points) -> Points:
 
 def _without_segments(motion: Motion) -> Motion | None:
     """Keep the joints of a motion that no segment stands for, which go on being points."""
-    whole = motion.motion if isinstance(motion, ScattererSubset) else motion
-    segments = segments_between(landmark_names(whole))
+    body_motion = motion.motion if isinstance(motion, ScattererSubset) else motion
+    segments = segments_between(landmark_names(body_motion))
     alone = tuple(
-        whole.names.index(name) for name in motion.names if not segments_of_joint(name, segments)
+        body_motion.names.index(name)
+        for name in motion.names
+        if not segments_of_joint(name, segments)
     )
-    if len(alone) == len(whole.names):
+    if len(alone) == len(body_motion.names):
         return motion
-    return ScattererSubset(whole, alone) if alone else None
+    return ScattererSubset(body_motion, alone) if alone else None

@@ -112,7 +112,7 @@ class SurfacePaths(OfMotion):
         """Paths of the points at times t [M] (s)."""
         places = tuple(way.antenna(self._centre()) for way in self.antennas.legs)
         p, field_ = cached_result(
-            self.motion, ("surface", places), t, lambda: self._scatter(t, *places)
+            self.motion, ("surface", places), t, lambda: self.scatter(t, *places)
         )
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
@@ -132,7 +132,7 @@ class SurfacePaths(OfMotion):
         x, y, z = np.mean(self.antennas.places, axis=0)
         return (x, y, z)
 
-    def _scatter(self, t: Float, tx: Point, rx: Point) -> tuple[Float, Float]:
+    def scatter(self, t: Float, tx: Point, rx: Point) -> tuple[Float, Float]:
         """Positions [3, I, M] (m) of the points, and their fields sqrt(sigma) [I, M] (m).
 
         They face the array, or the direction between those from which its legs come.

@@ -21,6 +21,7 @@ from radhar_cli.numerics.arrays import Bool, Complex
 from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
 from radhar_cli.processing.frames import Frames
+from radhar_cli.processing.map_kind import RTM, treatment_of
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal, nearest
@@ -115,9 +116,10 @@ def maps_of(
     canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, prf)
     signal = signal.with_samples(without_static(signal.x)) if clutter == "mean" else signal
     maps_by_name: dict[str, PowerMap] = {}
-    if "rtm" in names:
-        maps_by_name["rtm"] = process(signal, config, ["rtm"], canceller=canceller)["rtm"]
-    doppler = [name for name in names if name != "rtm"]
+    rtm = str(RTM)
+    if rtm in names:
+        maps_by_name[rtm] = process(signal, config, [rtm], canceller=canceller)[rtm]
+    doppler = [name for name in names if name != rtm]
     if doppler:
         signal, (frames, fine) = _windows(signal, canceller, config, doppler, recording, notes)
         inputs: dict[str, Any] = {"frames": frames, "fsst_frames": fine}
@@ -277,7 +279,8 @@ def _windows(
     lengths = signal.times.lengths - canceller.lost
     usual = int(np.median(lengths))
     length = min(configured.length, usual)
-    filter_pulses = config.processing.savgol.frame if any("denoised" in n for n in names) else 0
+    denoises = any(treatment_of(name).denoised for name in names)
+    filter_pulses = config.processing.savgol.frame if denoises else 0
     if length < MIN_FRAME_PULSES:
         raise CaptureError(
             f"{recording.path}: stretches of {usual + canceller.lost} pulses without a gap are too "
@@ -318,7 +321,7 @@ def _even(power_map: PowerMap) -> PowerMap:
 
 def _refuse_without_ranges(recording: Recording, config: AnyConfig, names: Sequence[str]) -> None:
     """Refuse maps that need ranges, as slow time has none."""
-    refused = [name for name in names if name == "rtm" or "compensated" in name]
+    refused = [name for name in names if name == str(RTM) or treatment_of(name).compensated]
     if refused or config.processing.range_sum == "gated":
         raise CaptureError(
             f"{recording.path}: is slow time without ranges; {refused[0] if refused else 'a gate'} "

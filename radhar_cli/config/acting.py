@@ -1,6 +1,7 @@
 """Conditions under which a key acts that several sections share."""
 
 from radhar_cli.config.annotations import OfRadar, OnlyMaps, Unless
+from radhar_cli.processing.map_kind import DOPPLER_TIME_KINDS, RTM, Transform
 
 BOARD = OfRadar("board")
 NO_BOARD = OfRadar("fmcw", "sfcw", "cw", "impulse")
@@ -8,4 +9,10 @@ NO_IMPULSE = OfRadar("fmcw", "sfcw", "cw", "board")
 EVEN = Unless("radar.frames_apart", "the pauses between a board's frames (radar.cfg)")
 
 
-SPECTRA = OnlyMaps("st")  # of stft and fsst
+RANGE_TIME = OnlyMaps((str(RTM),))
+SPECTRA = OnlyMaps(tuple(map(str, DOPPLER_TIME_KINDS)))
+STFTS, FSSTS = (
+    OnlyMaps(tuple(str(kind) for kind in DOPPLER_TIME_KINDS if kind.transform is transform))
+    for transform in (Transform.STFT, Transform.FSST)
+)
+DENOISED = OnlyMaps(tuple(str(kind) for kind in DOPPLER_TIME_KINDS if kind.treatment.denoised))

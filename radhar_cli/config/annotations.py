@@ -205,9 +205,9 @@ def value_text(value: object) -> str:
 
 @dataclass(frozen=True)
 class OnlyMaps:
-    """The key has an effect only on maps whose names contain this."""
+    """The key has an effect on the maps of these names only."""
 
-    part: str
+    names: tuple[str, ...]
 
 
 class ByModel:

@@ -5,8 +5,16 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from radhar_cli.config.acting import EVEN, NO_BOARD, SPECTRA
-from radhar_cli.config.annotations import ActsIf, OnlyMaps
+from radhar_cli.config.acting import (
+    DENOISED,
+    EVEN,
+    FSSTS,
+    NO_BOARD,
+    RANGE_TIME,
+    SPECTRA,
+    STFTS,
+)
+from radhar_cli.config.annotations import ActsIf
 from radhar_cli.config.number import value_error
 from radhar_cli.config.radar import MIN_WINDOW
 from radhar_cli.config.section import Flag, Section
@@ -80,7 +88,7 @@ class ProcessingConfig(Section):
         Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None, NO_BOARD
     ] = None
     """Length of the range FFT, even, at least the samples of a chirp; null finds one."""
-    range_gain_power: Annotated[float, Field(ge=0, le=8, strict=True), OnlyMaps("rtm")] = 0.0
+    range_gain_power: Annotated[float, Field(ge=0, le=8, strict=True), RANGE_TIME] = 0.0
     """Exponent p of the gain (R/largest R)^p of the rtm's range bins, after canceller and noise."""
     range_reference: Annotated[Literal["centre", "start"], NO_BOARD] = "centre"
     """Instant of the chirp at which the phase of range bins is taken."""
@@ -89,14 +97,12 @@ class ProcessingConfig(Section):
     as limbs need."""
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True), SPECTRA, EVEN] = 0.9
     """Overlap of consecutive STFT windows, as a fraction of the window."""
-    stft_fft_length: Annotated[int | None, Field(ge=8, strict=True), OnlyMaps("stft")] = None
+    stft_fft_length: Annotated[int | None, Field(ge=8, strict=True), STFTS] = None
     """Length of the STFT's FFT, at least the window; null finds one."""
-    savgol: Annotated[SavgolConfig, OnlyMaps("denoised")] = SavgolConfig()
-    fsst_hop_pulses: Annotated[int | None, Field(ge=1, le=2**24, strict=True), OnlyMaps("fsst")] = (
-        None
-    )
+    savgol: Annotated[SavgolConfig, DENOISED] = SavgolConfig()
+    fsst_hop_pulses: Annotated[int | None, Field(ge=1, le=2**24, strict=True), FSSTS] = None
     """Hop of the fsst maps in pulses; 1 is every sample, null the STFT's."""
-    fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True), OnlyMaps("fsst")] = 1e-3
+    fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True), FSSTS] = 1e-3
     """Share of the fsst map's largest coefficient below which coefficients are left out."""
 
     @field_validator("gate_m", mode="before")

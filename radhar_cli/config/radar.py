@@ -22,6 +22,7 @@ from radhar_cli.config.number import (
 )
 from radhar_cli.config.section import Filled, Flag, N, Section, VectorOf, default_draw
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import MapKind, Transform
 from radhar_cli.radar.board import (
     DEVICES,
@@ -394,16 +395,18 @@ class BoardRadar(_Emission[N], Generic[N]):
 
         A board that lacks elements which its .cfg names is refused elsewhere.
         """
-        if name in ("range_doppler", "points") and self.header.loops < MIN_LOOPS:
+        kind = FRAME_MAP_KINDS.get(name)  # none of the points
+        shows_doppler = name == "points" or (kind is not None and kind.shows_doppler)
+        if shows_doppler and self.header.loops < MIN_LOOPS:
             return (
                 f"the {self._loops} of a frame (radar.cfg, frameCfg) show no Doppler; "
                 f"{MIN_LOOPS} do"
             )
-        lines = {"range_azimuth": (0, "column"), "range_elevation": (1, "row")}
-        if name in lines and self.virtual_places:
-            axis, line = lines[name]
-            if len({round(place[axis], 6) for place in self.virtual_places}) == 1:
-                return f"all elements of the array lie in one {line}"
+        axis = None if kind is None else kind.array_axis
+        if axis is None:
+            return None
+        if len({round(place[axis], 6) for place in self.virtual_places}) == 1:
+            return f"all elements of the array lie in one {('column', 'row')[axis]}"
         return None
 
     def why_no_points(self, chain: Literal["best", "board"]) -> str | None:

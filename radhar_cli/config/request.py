@@ -105,7 +105,7 @@ class Request(Section):
     half-band. A scene in which one comes within 5 cm of an antenna is drawn again with `redraw`,
     and refused otherwise."""
     processing: ProcessingConfig = ProcessingConfig()
-    cloud: Annotated[CloudConfig, OnlyMaps("points")] = CloudConfig()
+    cloud: Annotated[CloudConfig, OnlyMaps(("points",))] = CloudConfig()
     image: ImageConfig = ImageConfig()
     maps: Maps = ("stft",)
     """Maps of the data set: `rtm`, `stft`, `fsst`, the latter two also with `_denoised`,

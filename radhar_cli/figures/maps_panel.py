@@ -15,6 +15,7 @@ from radhar_cli.config.image import ImageConfig
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.image import decibels
+from radhar_cli.processing.map_kind import treatment_of
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene import Scene
@@ -120,7 +121,7 @@ def _draw_truth(simulation: Simulation, axes: Axes, map_name: str, unit: float) 
     drawn_joints = [number for number, name in enumerate(names) if joint in (None, name)]
     others = [one.truth.doppler for one in simulation.others if joint is None]
     doppler = np.concatenate([truth.doppler[:, drawn_joints], *others], axis=1)
-    if "compensated" in map_name:
+    if treatment_of(map_name).compensated:
         doppler = doppler - truth.doppler[:, :1]
     every = max(1, truth.time.size // 1500)
     for curve in alias_doppler(doppler[::every], prf).T:

@@ -15,6 +15,7 @@ from radhar_cli.figures.maps_panel import TITLES, alias_doppler
 from radhar_cli.figures.scene_view import MovingBody, SceneView
 from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
+from radhar_cli.processing.map_kind import treatment_of
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
 
@@ -169,7 +170,7 @@ def plot_map(view: SceneView, map_levels: MapLevels) -> Plot:
         times = map_levels.times[: len(levels)][::frame_step]
         return plot | {"moves": [{"at": _nearest(times, view.time), "frames": {"z": frames}}]}
     if view.curves and any(_shows_speed(view, axis) for axis in axes):
-        plot["data"] += _curves(view, "compensated" in map_levels.name)
+        plot["data"] += _curves(view, treatment_of(map_levels.name).compensated)
     return plot | {"cursor": map_levels.columns.unit == "s"}
 
 

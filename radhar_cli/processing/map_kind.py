@@ -85,3 +85,8 @@ DOPPLER_TIME_KINDS = tuple(
 )
 # {name: kind} of every map of a signal, in the order of data sets.
 MAP_KINDS = {str(kind): kind for kind in (RTM, *DOPPLER_TIME_KINDS)}
+
+
+def treatment_of(name: str) -> Treatment:
+    """Treatment of the signal that a map of a name shows; none of a map of a user's own."""
+    return MAP_KINDS[name].treatment if name in MAP_KINDS else UNTREATED

@@ -87,7 +87,7 @@ def _without_condition(config: Config) -> Iterator[tuple[str, str]]:
 
 def _of_other_maps(config: Config) -> Iterator[tuple[str, str]]:
     for key, only in of_kind(Config, OnlyMaps):
-        if not any(only.part in name for name in config.maps):
+        if not set(only.names) & set(config.maps):
             yield key, entry("maps", config.maps)
 
 

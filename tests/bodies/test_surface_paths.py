@@ -38,7 +38,7 @@ def source(seed: int = 1) -> SurfacePaths:
 
 def test_points_lie_on_the_side_that_faces_the_radar() -> None:
     paths = source()
-    p, _ = paths._seen(T, paths._centre(), paths._centre())
+    p, _ = paths.scatter(T, paths._centre(), paths._centre())
     placed = paths.body.at(T)
     s = paths.drawn.segment
     along = placed.start + paths.drawn.along.mean() * (placed.end - placed.start)
@@ -55,7 +55,7 @@ def test_a_facing_segment_has_its_cross_section() -> None:
     for seed in range(60):
         paths = source(seed + 1)
         drawn = draw_surface(len(paths.body.segments), 14, np.random.default_rng(seed))
-        _, strength = replace(paths, drawn=drawn)._seen(T[:1], paths._centre(), paths._centre())
+        _, strength = replace(paths, drawn=drawn).scatter(T[:1], paths._centre(), paths._centre())
         trunk = [one.name for one in paths.body.segments].index("trunk")
         found.append((strength[drawn.segment == trunk] ** 2).sum())
     size = paths.body.thickness
@@ -73,7 +73,7 @@ def test_the_trunk_outshines_shanks() -> None:
 
 def test_delays_are_those_of_the_points_but_for_a_wavelength() -> None:
     paths = source()
-    p, _ = paths._seen(T, paths._centre(), paths._centre())
+    p, _ = paths.scatter(T, paths._centre(), paths._centre())
     ways = leg(p, paths.antennas.tx) + leg(p, paths.antennas.rx)
     off = np.abs(paths(T).delay * 299792458.0 - ways)
     assert off.max() <= 299792458.0 / paths.fc / 2

@@ -11,6 +11,7 @@ from radhar_cli.processing.map_kind import (
     MapKind,
     Transform,
     Treatment,
+    treatment_of,
 )
 
 
@@ -47,6 +48,11 @@ def test_a_treatment_has_a_name_of_its_own() -> None:
         "compensated",
         "compensated_denoised",
     ]
+
+
+def test_a_map_of_ones_own_shows_an_untreated_signal() -> None:
+    assert treatment_of("my_denoised_map") == UNTREATED
+    assert treatment_of("fsst_denoised") == Treatment(denoised=True)
 
 
 def test_all_but_the_range_time_map_show_doppler() -> None:

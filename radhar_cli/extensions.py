@@ -24,7 +24,7 @@ _ANY: ContextVar[bool] = ContextVar("any", default=False)
 
 
 def add_product(product: Any) -> None:
-    """Add a row (`pipeline.plan.Product`) to the table of products, or replace one.
+    """Add a row (`products.plan.Product`) to the table of products, or replace one.
 
     Raises:
         ValueError: its name is no identifier.

@@ -31,7 +31,7 @@ from radhar_cli.numerics.rounding import half_up
 from radhar_cli.processing import canceller
 from radhar_cli.processing.cfar import CellAveraging
 from radhar_cli.processing.frames import Frames
-from radhar_cli.radar.board import Board
+from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.layers import Layer, Layers
@@ -73,17 +73,15 @@ def board_of(radar: BoardRadar[float], seconds: float = 0.0) -> Board:
         half_power_deg=radar.half_power_deg,
         half_wavelength=radar.half_wavelength_m,
         gain=10 ** (radar.antenna_gain_dbi / 10),
+        backoff_db=header.profile.backoff_db,
     )
 
 
 def detection_of(radar: BoardRadar, processing: ProcessingConfig) -> Detection:
     """Read detection from the .cfg, as far as the board heeds it; clutter is the config's."""
     detection = replace(radar.header.detection, remove_mean=processing.clutter == "mean")
-    if "1443" in str(radar.device):
-        detection = replace(
-            detection, azimuth_deg=None, elevation_deg=None, range_m=None, doppler_mps=None
-        )
-    return detection
+    device = DEVICES.get(str(radar.device))
+    return detection if device is None or device.heeds_limits else detection.without_limits()
 
 
 def waveform_of(scene: Scene) -> Waveform:

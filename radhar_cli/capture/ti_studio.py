@@ -67,7 +67,7 @@ class _Profile(_Ti):
             self.slope,
             self.samples,
             self.rate_ksps,
-            place,
+            place=place,
         )
 
 

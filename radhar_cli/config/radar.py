@@ -44,9 +44,9 @@ HalfPower = Annotated[float, Field(ge=1, le=1000, strict=True)]
 class ArrayConfig(Section):
     """Antenna elements of a board, (left, up) in half wavelengths, looking out of the radar."""
 
-    tx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)] = DEVICES[BOOST].tx
+    tx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)] = DEVICES[BOOST].array.tx
     """Places of the transmitters, in the order of the board's TX 1, 2, 3."""
-    rx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)] = DEVICES[BOOST].rx
+    rx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)] = DEVICES[BOOST].array.rx
     """Places of the receivers, in the order of the board's RX 1 to 4."""
 
 
@@ -359,7 +359,7 @@ class BoardRadar(_Emission[N], Generic[N]):
     def elements(self) -> Array | None:
         """Antenna elements of the board: those of `array`, or its device's; None without either."""
         if self.array is None:
-            return DEVICES.get(str(self.device))
+            return None if self.device is None else DEVICES[self.device].array
         return Array(self.array.tx, self.array.rx, (1.0,) * len(self.array.rx), EVEN)
 
     @property

@@ -40,25 +40,46 @@ class Array:
     half_power_deg: tuple[float, float]
 
 
+@dataclass(frozen=True)
+class Device:
+    """A board as it is sold, with the firmware of its out-of-box demo.
+
+    Attributes:
+        array: Antenna elements.
+        heeds_limits: Whether the firmware leaves out points beyond the limits of aoaFovCfg and
+            cfarFovCfg, which the demo of xWR14xx does not know.
+    """
+
+    array: Array
+    heeds_limits: bool = True
+
+
 _ROW: Places = ((0, 0), (1, 0), (2, 0), (3, 0))
 _SAME = (1.0, 1.0, 1.0, 1.0)
 _BOOST = Array(((0, 0), (2, 1), (4, 0)), _ROW, _SAME, (28.0, 14.0))
-DEVICES: Mapping[str, Array] = MappingProxyType(
+_1443, _1843 = Device(_BOOST, heeds_limits=False), Device(_BOOST)
+_1642 = Device(Array(((0, 0), (4, 0)), _ROW, _SAME, (28.0, 14.0)))
+_ISK = Array(((0, -1), (2, 0), (4, -1)), _ROW, _SAME, (60.0, 15.0))
+_ODS = Array(
+    ((0, 0), (2, 0), (2, -2)),
+    ((0, 0), (0, -1), (1, -1), (1, 0)),
+    (1.0, -1.0, -1.0, 1.0),
+    (60.0, 60.0),
+)
+_AOP = Array(
+    ((0, 0), (2, -2), (0, -2)),
+    ((1, -1), (1, 0), (0, -1), (0, 0)),
+    (1.0, -1.0, 1.0, -1.0),
+    (60.0, 60.0),
+)
+DEVICES: Mapping[str, Device] = MappingProxyType(
     {
-        **dict.fromkeys(("IWR1443BOOST", "AWR1443BOOST", "IWR1843BOOST", "AWR1843BOOST"), _BOOST),
-        "IWR6843ISK": Array(((0, -1), (2, 0), (4, -1)), _ROW, _SAME, (60.0, 15.0)),
-        "IWR6843ISK-ODS": Array(
-            ((0, 0), (2, 0), (2, -2)),
-            ((0, 0), (0, -1), (1, -1), (1, 0)),
-            (1.0, -1.0, -1.0, 1.0),
-            (60.0, 60.0),
-        ),
-        "IWR6843AOP": Array(
-            ((0, 0), (2, -2), (0, -2)),
-            ((1, -1), (1, 0), (0, -1), (0, 0)),
-            (1.0, -1.0, 1.0, -1.0),
-            (60.0, 60.0),
-        ),
+        **dict.fromkeys(("IWR1443BOOST", "AWR1443BOOST"), _1443),
+        **dict.fromkeys(("IWR1642BOOST", "AWR1642BOOST"), _1642),
+        **dict.fromkeys(("IWR1843BOOST", "AWR1843BOOST"), _1843),
+        "IWR6843ISK": Device(_ISK),
+        "IWR6843ISK-ODS": Device(_ODS),
+        "IWR6843AOP": Device(_AOP),
     }
 )
 MAX_SIDELOBE = 0.3  # highest sidelobe, over the main lobe, of a row that tells targets apart
@@ -123,6 +144,7 @@ class Board:
         half_power_deg: Half-power half-widths in place of the array's; None for the array's.
         half_wavelength: Unit of the elements' places, m; None is c/(2 f_c).
         gain: Linear gain of each antenna.
+        backoff_db: By how much the power of each transmitter of the device is lower; () for none.
     """
 
     array: Array
@@ -143,6 +165,7 @@ class Board:
     half_power_deg: tuple[float, float] | None = None
     half_wavelength: float | None = None
     gain: float = 1.0
+    backoff_db: tuple[float, ...] = ()
 
     @property
     def centre(self) -> float:
@@ -197,7 +220,10 @@ class Board:
     def antennas(self, k: int, r: int) -> Antennas:
         """Antennas of a channel: the transmitter at place k of the loop, and receiver r."""
         tx, rx = self.array.tx[self.order[k]], self.array.rx[r]
-        return Antennas(self.element(tx), self.element(rx), self.gain, 0.0, self.aim)
+        gain = self.gain  # sqrt(G_t G_r), in which less transmitted power counts as less G_t
+        if self.backoff_db:
+            gain *= 10 ** (-self.backoff_db[self.order[k]] / 20)
+        return Antennas(self.element(tx), self.element(rx), gain, 0.0, self.aim)
 
     @property
     def pairs(self) -> list[tuple[int, int]]:

@@ -1,6 +1,6 @@
 """Detection settings of the .cfg of a TI board (mmWave SDK user guide, "CLI")."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, log2, log10
 from typing import NamedTuple
 
@@ -58,6 +58,10 @@ class Detection:
     elevation_deg: tuple[float, float] | None = None
     range_m: tuple[float, float] | None = None
     doppler_mps: tuple[float, float] | None = None
+
+    def without_limits(self) -> "Detection":
+        """Return the detection without limits of angles, range and speed."""
+        return replace(self, azimuth_deg=None, elevation_deg=None, range_m=None, doppler_mps=None)
 
 
 def ti_threshold_db(value: float, channels: int) -> float:

@@ -40,6 +40,7 @@ class ChirpProfile:
         slope_mhz_per_us: Slope of the ramp.
         samples: Number of samples.
         rate_ksps: Sampling rate.
+        backoff_db: By how much the power of each transmitter is lower; () for none.
         place: Line or key that messages name.
     """
 
@@ -50,6 +51,7 @@ class ChirpProfile:
     slope_mhz_per_us: float
     samples: int
     rate_ksps: float
+    backoff_db: tuple[float, ...] = ()
     place: str = field(default="", compare=False)
 
     @property
@@ -214,18 +216,6 @@ class BoardHeader(FrameHeader):
         """Whether there is time between the last chirp of a frame and the next frame."""
         chirps_s = self.loops * len(self.order) * self.slot_s
         return abs(self.period_s - chirps_s) >= 1e-9 * self.period_s
-
-    @property
-    def numbers(self) -> dict[str, float]:
-        """{key of `radar`: number} of all that the .cfg gives."""
-        chirp_s = self.samples / self.adc_rate_hz
-        return {
-            "carrier_hz": self.carrier_hz,
-            "bandwidth_hz": self.slope_hz * chirp_s,
-            "prf_hz": 1 / (self.slot_s * len(self.order)),
-            "adc_rate_hz": self.adc_rate_hz,
-            "chirp_s": chirp_s,
-        }
 
 
 @lru_cache(maxsize=16)
@@ -418,6 +408,7 @@ def _read_frames(lines: _Lines) -> FrameHeader:
 def _read_profile(line: CfgLine) -> tuple[int, ChirpProfile]:
     """Read a line profileCfg as a number and its profile."""
     numbers = line.numbers()
+    codes = int(numbers["txOutPower"])  # a byte each, that of the first transmitter lowest
     return int(numbers["profileId"]), ChirpProfile(
         start_ghz=numbers["startFreq"],
         idle_us=numbers["idleTime"],
@@ -426,6 +417,7 @@ def _read_profile(line: CfgLine) -> tuple[int, ChirpProfile]:
         slope_mhz_per_us=numbers["freqSlopeConst"],
         samples=int(numbers["numAdcSamples"]),
         rate_ksps=numbers["digOutSampleRate"],
+        backoff_db=tuple(float(code) for code in codes.to_bytes(4, "little")) if codes else (),
         place=f"{line.place}: {line.name}",
     )
 
@@ -487,9 +479,8 @@ def _name_if_said(line: CfgLine) -> str | None:
     command = line.command
     if command is None:
         return None
-    if command.name == "profileCfg":  # lower transmit power, and turned phases
-        numbers = line.numbers()
-        return command.name if numbers["txOutPower"] or numbers["txPhaseShifter"] else None
+    if command.name == "profileCfg":
+        return command.name if line.numbers()["txPhaseShifter"] else None
     if command.name == "adcCfg":  # samples are not rounded
         return command.name if line.numbers()["numADCBits"] != 2 else None
     if command.effect is not Effect.SAID:

@@ -84,7 +84,7 @@ def test_a_known_radar_is_simulated(tmp_path: Path, name: str) -> None:
     scene = simulate(config, "punching", maps=("points", "range_doppler"))
     board = scene.board
     assert board is not None
-    assert board.array == DEVICES[name.upper()]
+    assert board.array == DEVICES[name.upper()].array
     low, high = (60, 64) if "6843" in name else (76, 81)
     (profile,) = re.findall(r"profileCfg (.*)", RADARS[name].read_text())
     _, start, _, adc, ramp, _, _, slope, _, samples, rate, *_ = map(float, profile.split())

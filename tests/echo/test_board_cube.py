@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from helpers.boards import MARS, Straight, channels
+from helpers.boards import CFG, MARS, Straight, channels
 from hypothesis import given
 from hypothesis import strategies as st
 
+from radhar_cli.assembly.physics import board_of
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import SPARE_DB, exact_cube, fast_cube, mean_power, measured_db
 from radhar_cli.echo.paths import Paths
@@ -34,6 +36,41 @@ def test_samples_of_two_moving_scatterers() -> None:
     for index, value in KNOWN.items():
         assert cube[index] == pytest.approx(value, abs=1e-9)
     assert power == pytest.approx(0.0966, abs=1e-4)
+
+
+REPEATED = """
+channelCfg 15 7 0
+adcCfg 2 1
+profileCfg 0 77 7 3 39 0 0 100 1 256 7200 0 0 30
+chirpCfg 0 2 0 0 0 0 0 1
+frameCfg 0 2 64 0 50 1 0
+"""
+KNOWN_OF_REPEATED = {
+    (0, 0, 0, 0): 5.259613961295e-02 - 4.057877298482e-01j,
+    (0, 191, 3, 255): -1.586279610705e-01 - 1.204895151171e-01j,
+    (2, 100, 1, 128): -8.212600474530e-02 - 1.193057826180e-01j,
+}
+
+
+def test_a_mask_that_repeats_adds_loops() -> None:
+    """One transmitter in three chirps of a loop: 192 loops, 46 us apart, not 64."""
+    radar = BoardRadar[float](cfg=REPEATED, device="IWR1443BOOST", position_m=(0, 0, 0))
+    board = board_of(radar, 0.15)
+    assert (board.loops, board.channels, board.frames) == (192, 4, 3)
+    cube, _ = exact_cube(channels(board, P, V, A), board)
+    for index, value in KNOWN_OF_REPEATED.items():
+        assert cube[index] == pytest.approx(value, abs=1e-9)
+
+
+def test_a_transmitter_with_less_power_has_a_weaker_echo() -> None:
+    """6 and 20 dB less of the first and third transmitter of three (masks 1, 4, 2)."""
+    radar = BoardRadar[float](
+        cfg=CFG.replace("7 40 0 0 100", "7 40 0x140006 0 100"), device="IWR1443BOOST"
+    )
+    less = board_of(radar)
+    full = replace(less, backoff_db=())
+    gains = [less.antennas(k, 0).gain / full.antennas(k, 0).gain for k in range(3)]
+    assert gains == pytest.approx([10 ** (-6 / 20), 0.1, 1.0])
 
 
 @pytest.mark.parametrize("tolerance", [-20.0, -60.0, -80.0, -99.0, -140.0, -180.0])
@@ -131,7 +168,7 @@ def test_power_of_paths_whose_echo_is_not_made() -> None:
 
 
 def test_receivers_fed_the_other_way_round_change_their_sign() -> None:
-    board = replace(MARS, array=DEVICES["IWR6843ISK-ODS"])
+    board = replace(MARS, array=DEVICES["IWR6843ISK-ODS"].array)
     same = replace(board, array=replace(board.array, rx_sign=(1.0,) * 4))
     sources = channels(board, P, V, A)
     signed, plain = exact_cube(sources, board)[0], exact_cube(sources, same)[0]

@@ -15,7 +15,7 @@ from radhar_cli.receiver.noise import circular_gaussian
 # 10 frames a second of 32 loops of three transmitters, 80 samples of 3.2 GHz: what is inferred of
 # the recordings of MARS (An and Ogras, 2021).
 MARS = Board(
-    array=DEVICES["IWR1443BOOST"],
+    array=DEVICES["IWR1443BOOST"].array,
     start=77e9,
     fc=77.7e9,
     slope=100e12,

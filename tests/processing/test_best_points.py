@@ -25,7 +25,7 @@ def test_places_and_speeds_are_interpolated(device: str) -> None:
         r, az, el = rng.uniform(1, 3), *np.radians(rng.uniform((-45, -20), (45, 25)))
         p = r * np.array([np.cos(el) * np.cos(az), np.cos(el) * np.sin(az), np.sin(el)])
         v = rng.normal(size=3)
-        cube, board = cube_of(p, v, seed=seed, array=DEVICES[device])
+        cube, board = cube_of(p, v, seed=seed, array=DEVICES[device].array)
         best, middle = _strongest(cube, board), p + v * board.middles[0]
         speed = -v @ middle / np.linalg.norm(middle)
         errors.append([*(best[:3] - middle), best[3] - speed])

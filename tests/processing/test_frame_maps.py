@@ -62,14 +62,14 @@ def test_the_mean_removes_what_stands_still() -> None:
 @pytest.mark.parametrize("degrees", [-40.0, 0.0, 25.0])
 def test_azimuth_is_positive_to_the_left(device: str, degrees: float) -> None:
     at = 3 * np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees)), 0])
-    cube, board = cube_of(at, -0.7 * at / 3, array=DEVICES[device])
+    cube, board = cube_of(at, -0.7 * at / 3, array=DEVICES[device].array)
     assert _peak(range_angle(cube, board, False, 0))[1] == pytest.approx(degrees, abs=2)
 
 
 @pytest.mark.parametrize("degrees", [-30.0, 0.0, 20.0])
 def test_elevation_is_positive_up(degrees: float) -> None:
     at = 3 * np.array([np.cos(np.radians(degrees)), 0, np.sin(np.radians(degrees))])
-    cube, board = cube_of(at, -0.7 * at / 3, array=DEVICES["IWR6843ISK-ODS"])
+    cube, board = cube_of(at, -0.7 * at / 3, array=DEVICES["IWR6843ISK-ODS"].array)
     assert _peak(range_angle(cube, board, False, 1))[1] == pytest.approx(degrees, abs=2)
 
 
@@ -78,7 +78,7 @@ def test_elevation_is_positive_up(degrees: float) -> None:
     [("IWR1443BOOST", 1, 8), ("IWR6843ISK", 1, 8), ("IWR6843ISK-ODS", 2, 4)],
 )
 def test_longest_rows(device: str, rows: int, elements: int) -> None:
-    found = longest_rows(replace(MARS, array=DEVICES[device]).places, 0)
+    found = longest_rows(replace(MARS, array=DEVICES[device].array).places, 0)
     assert [len(row) for row in found] == [elements] * rows
 
 

@@ -88,7 +88,7 @@ def test_the_order_of_transmitters_does_not_matter() -> None:
 
 @pytest.mark.parametrize("device", ["IWR1443BOOST", "IWR6843ISK", "IWR6843ISK-ODS", "IWR6843AOP"])
 def test_every_device_sees_left_and_up(device: str) -> None:
-    best = points((2, 0.4, 0.3), (0, 0, 0), STANDING, array=DEVICES[device])[0]
+    best = points((2, 0.4, 0.3), (0, 0, 0), STANDING, array=DEVICES[device].array)[0]
     np.testing.assert_allclose(best[:3], (2, 0.4, 0.3), atol=0.09)
 
 
@@ -144,7 +144,7 @@ def test_no_echo_has_no_points() -> None:
 
 def test_signs_of_the_feeds_are_taken_out_once() -> None:
     """TI's .cfg of such boards holds them in the coefficients, that of its people tracking not."""
-    array = DEVICES["IWR6843AOP"]
+    array = DEVICES["IWR6843AOP"].array
     signs = 3 * tuple(map(complex, array.rx_sign))
     for coefficients in ((), 12 * (1 + 0j,), signs):
         detection = replace(STANDING, coefficients=coefficients)

@@ -120,10 +120,18 @@ def test_fewer_bits_than_16_are_named() -> None:
     assert (header.adc_bits, header.not_simulated) == (14, ("adcCfg",))
 
 
-def test_less_power_than_the_transmitters_have_is_named() -> None:
-    less = CFG.replace("7 40 0 0 100", "7 40 6 0 100")
-    assert parse_ti_cfg(less).not_simulated == ("profileCfg",)
-    assert parse_ti_cfg(CFG).not_simulated == ()
+def test_transmitters_may_send_less_power() -> None:
+    """A byte for each, the first lowest: 0x060606 are 6 dB each, as in TI's people tracking."""
+    less = parse_ti_cfg(CFG.replace("7 40 0 0 100", "7 40 394758 0 100"))
+    assert (less.profile.backoff_db, less.not_simulated) == ((6, 6, 6, 0), ())
+    alone = parse_ti_cfg(CFG.replace("7 40 0 0 100", "7 40 0x0300 0 100"))
+    assert alone.profile.backoff_db == (0, 3, 0, 0)
+    assert parse_ti_cfg(CFG).profile.backoff_db == ()
+
+
+def test_turned_phases_are_named() -> None:
+    turned = CFG.replace("7 40 0 0 100", "7 40 0 4 100")
+    assert parse_ti_cfg(turned).not_simulated == ("profileCfg",)
 
 
 WRONG = [

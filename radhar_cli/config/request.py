@@ -368,6 +368,9 @@ def _fill_for_board(c: Request, radar: BoardRadar, changed: dict[str, dict[str, 
         changed.setdefault("processing", {})["clutter"] = clutter
     if "range_sum" not in c.processing.model_fields_set:
         changed.setdefault("processing", {})["range_sum"] = "gated"
+    pose = {} if header.pose is None else vars(header.pose)
+    for key in pose.keys() - radar.model_fields_set:
+        changed.setdefault("radar", {})[key] = pose[key]
 
 
 @cache

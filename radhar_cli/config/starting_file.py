@@ -29,7 +29,8 @@ from radhar_cli.config.section import Section
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
-from radhar_cli.radar.ti_cfg import parse_ti_cfg
+from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
+from radhar_cli.radar.ti_commands import Family
 
 WIDTH = 100
 MAPS_OF_BOARDS = ("stft", "range_doppler", "range_azimuth", "points")
@@ -157,23 +158,24 @@ def of_board(cfg: str, folder: Path) -> str:
     """
     text = cfg_text(cfg, Path(), "--radar")
     board = parse_ti_cfg(text, cfg)
-    device = "IWR6843ISK" if board.start_hz < 70e9 else "IWR1443BOOST"
+    device, chain = _likely_device(board), "board" if board.has_cfar else "best"
     path = os.path.relpath(Path(cfg).resolve(), folder.resolve())
     if cfg.lower() in RADARS:
         device, path = cfg.upper(), cfg.lower()
-    maps = ", ".join(_maps_of_board(text, device, board.period_s))
+    maps = ", ".join(_maps_of_board(text, device, board.period_s, chain))
+    position = "" if board.pose else ", position_m: [0, 0, 1]"
     range_step = SPEED_OF_LIGHT * board.adc_rate_hz / (2 * board.slope_hz)
     speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.slot_s * len(board.order))
     what = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
     return f"""# {what}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
 # ranges to {range_step:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
-radar: {{device: {device}, cfg: {json.dumps(path)}, position_m: [0, 0, 1]}}
+radar: {{device: {device}, cfg: {json.dumps(path)}{position}}}
 samples_per_class: 20
 activities: [punching, kicking, grabbing, sitting_down, standing_up]
 duration_s: {max(3.0, 2 * board.period_s):g}
 motion: {{range_m: {{uniform: [{min(1.5, range_step / 3):.2g}, {min(3.0, range_step / 1.5):.2g}]}}}}
 body: {{scatterers: surfaces}}
-cloud: {{chain: board}}  # as the firmware makes points; best: fewer, finer ones
+cloud: {{chain: {chain}}}  # board: as the firmware makes points; best: fewer, finer ones
 maps: [{maps}]
 """
 
@@ -205,7 +207,19 @@ def of_preset(name: str) -> str:
     return f"{head}\n{yaml_text(read_on_bases(path, {})[0])}"
 
 
-def _maps_of_board(cfg: str, device: str, period_s: float) -> tuple[str, ...]:
+def _likely_device(board: BoardHeader) -> str:
+    """Name a device that software and frequency of a .cfg are for."""
+    if board.start_hz < 70e9:
+        return "IWR6843ISK"
+    by_family = {
+        Family.SDK_3: "IWR1843BOOST",  # which xWR14xx does not have
+        Family.PEOPLE_3D: "IWR1843BOOST",
+        Family.PEOPLE: "IWR1642BOOST",
+    }
+    return by_family.get(board.family, "IWR1443BOOST")
+
+
+def _maps_of_board(cfg: str, device: str, period_s: float, chain: str) -> tuple[str, ...]:
     """Choose maps of MAPS_OF_BOARDS that a board makes; all of them if the device does not fit.
 
     That it does not fit is said when the config is read.
@@ -213,7 +227,7 @@ def _maps_of_board(cfg: str, device: str, period_s: float) -> tuple[str, ...]:
     radar = {"device": device, "cfg": cfg}
     given = {"radar": radar, "maps": ["rtm"], "duration_s": max(3.0, 2 * period_s)}
     with suppress(ValidationError):
-        more = {"processing": {"clutter": "none"}, "cloud": {"chain": "board"}}
+        more = {"processing": {"clutter": "none"}, "cloud": {"chain": chain}}
         config = Config.model_validate(given | more)
         return tuple(one for one in MAPS_OF_BOARDS if one in possible_maps(config)) or ("rtm",)
     return MAPS_OF_BOARDS

@@ -191,18 +191,37 @@ class FrameHeader:
 
 
 @dataclass(frozen=True)
+class BoardPose:
+    """Place and direction of a board, in the coordinates of scenes.
+
+    Attributes:
+        position_m: Position, m.
+        yaw_deg: Angle of boresight from the x axis to the left, degree.
+        tilt_deg: Angle of boresight below the horizontal, degree.
+    """
+
+    position_m: tuple[float, float, float]
+    yaw_deg: float
+    tilt_deg: float
+
+
+@dataclass(frozen=True)
 class BoardHeader(FrameHeader):
     """What a .cfg says of a board that is simulated, whichever device it runs on.
 
     Attributes:
         family: Software that the file is for.
         detection: Detection of its points.
+        has_cfar: Whether a line sets the CFAR, without which firmware finds no points.
+        pose: Place and direction by sensorPosition; None without that line.
         unknown: Commands that radhar does not know.
         not_simulated: Commands that switch on what is not simulated.
     """
 
     family: Family
     detection: Detection
+    has_cfar: bool
+    pose: BoardPose | None
     unknown: tuple[str, ...]
     not_simulated: tuple[str, ...]
 
@@ -242,6 +261,8 @@ def parse_ti_cfg(text: str, where: str = "radar.cfg") -> BoardHeader:
         **vars(header),
         family=find_family(lines.lines),
         detection=read_detection(lines.lines, channels, bins),
+        has_cfar=any(line.name == "cfarCfg" for line in lines.with_effect(Effect.POINTS)),
+        pose=_read_pose(lines.with_effect(Effect.POSE)),
         unknown=tuple(dict.fromkeys(line.name for line in lines.lines if not line.command)),
         not_simulated=tuple(dict.fromkeys(filter(None, map(_name_if_said, lines.lines)))),
     )
@@ -444,6 +465,18 @@ def _read_frame(line: CfgLine) -> FrameTiming:
         frames=int(numbers["numFrames"]),
         period_ms=numbers["framePeriodicity"],
         place=f"{line.place}: {line.name}",
+    )
+
+
+def _read_pose(lines: Sequence[CfgLine]) -> BoardPose | None:
+    """Read the last of lines sensorPosition, whose angles are to the right and down."""
+    if not lines:
+        return None
+    numbers = [line.numbers() for line in lines][-1]
+    return BoardPose(
+        position_m=(0.0, 0.0, numbers["height"]),
+        yaw_deg=0.0 - numbers["azimuthTilt"],
+        tilt_deg=numbers["elevationTilt"],
     )
 
 

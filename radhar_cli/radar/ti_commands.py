@@ -24,6 +24,7 @@ class Effect(Enum):
 
     SIGNAL = "describes the chirps, frames and samples: simulated, and read of captures"
     POINTS = "sets the detection of points: simulated"
+    POSE = "sets the pose of the board, where the config does not"
     SAID = "is not simulated, which is said"
     SILENT = "changes nothing here"
     NOT_SIMULATED = "is refused as radar.cfg"
@@ -435,6 +436,18 @@ _POINTS = (
         subframe=Subframe.OPTIONAL,
     ),
 )
+_POSE = (
+    Command(
+        "sensorPosition",
+        Effect.POSE,
+        (
+            Argument("height", 0, 1000, meaning="m above the floor"),
+            Argument("azimuthTilt", -360, 360, meaning="degree to the right"),
+            Argument("elevationTilt", -360, 360, meaning="degree down"),
+        ),
+        Family.PEOPLE_3D,
+    ),
+)
 _SAID = (
     Command(
         "bpmCfg",
@@ -469,7 +482,7 @@ _SAID = (
         for name in (
             *("dynamicRACfarCfg", "staticRACfarCfg", "dynamicRangeAngleCfg", "dynamic2DAngleCfg"),
             *("dopplerCfarCfg", "staticRangeAngleCfg", "fineMotionCfg", "fovCfg"),
-            *("antGeometry0", "antGeometry1", "antPhaseRot", "sensorPosition"),
+            *("antGeometry0", "antGeometry1", "antPhaseRot"),
         )
     ),
     Command(
@@ -549,7 +562,7 @@ def _by_name() -> Mapping[str, tuple[Command, ...]]:
         for name in names
     )
     commands = dict[str, tuple[Command, ...]]()
-    for command in (*_SIGNAL, *_POINTS, *_SAID, *_CAPTURES, *silent, *_REFUSED):
+    for command in (*_SIGNAL, *_POINTS, *_POSE, *_SAID, *_CAPTURES, *silent, *_REFUSED):
         commands[command.name] = (*commands.get(command.name, ()), command)
     return MappingProxyType(commands)
 

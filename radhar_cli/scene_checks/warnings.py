@@ -49,8 +49,9 @@ def _loose_tolerance(config: Config) -> Iterator[str]:
 def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
     """Say which lines of `radar.cfg` have no effect, and which key has none because of it."""
     header = radar.header
-    for line in header.unknown:
-        yield f"radar.cfg: {line} is not known and has no effect"
+    if header.unknown:
+        verb = "is not known and has" if len(header.unknown) == 1 else "are not known and have"
+        yield f"radar.cfg: {', '.join(header.unknown)} {verb} no effect"
     frame_s = header.loops * len(header.order) * header.slot_s
     window_s = config.processing.window_s if _gives_window(config) else None
     if window_s is not None and window_s > frame_s:
@@ -58,8 +59,13 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
             f"processing.window_s has no effect beyond the {frame_s:.3g} s of a frame's chirps "
             f"(radar.cfg): it is {window_s:g} s"
         )
-    for line in header.not_simulated:
-        yield f"radar.cfg: {line} switches on what is not simulated: it has no effect"
+    if header.not_simulated:
+        names = ", ".join(header.not_simulated)
+        yield f"radar.cfg: {names}: what is set there is not simulated"
+    pose = {} if header.pose is None else vars(header.pose)
+    config_keys = [f"radar.{key}" for key, number in pose.items() if getattr(radar, key) != number]
+    if config_keys:
+        yield f"radar.cfg: sensorPosition yields to the config's {', '.join(config_keys)}"
 
 
 def _gives_window(config: Config) -> bool:

@@ -7,7 +7,7 @@ from helpers.boards import CFG, MARS
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import CA, CASO, Cfar
-from radhar_cli.radar.ti_cfg import parse_ti_cfg
+from radhar_cli.radar.ti_cfg import BoardPose, parse_ti_cfg
 from radhar_cli.radar.ti_commands import Family
 
 
@@ -113,6 +113,13 @@ def test_what_is_switched_on_and_not_simulated_is_named_once(off: str, on: str) 
     assert parse_ti_cfg(f"{CFG}{off}\n").not_simulated == ()
     header = parse_ti_cfg(f"{CFG}{on}\n{on}\n")
     assert (header.not_simulated, header.unknown) == ((on.split()[0],), ())
+
+
+def test_a_pose_is_height_and_angles_to_the_right_and_down() -> None:
+    assert parse_ti_cfg(CFG).pose is None
+    header = parse_ti_cfg(f"{CFG}sensorPosition 2.5 10 15\n")
+    assert header.pose == BoardPose((0.0, 0.0, 2.5), -10.0, 15.0)
+    assert (header.unknown, header.not_simulated) == ((), ())
 
 
 def test_fewer_bits_than_16_are_named() -> None:

@@ -117,6 +117,9 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     if clutter == "mean" and board.loops == 1:
         right = "should be none with frames of 1 loop (frameCfg), of which a mean leaves nothing"
         yield Problem("processing.clutter", clutter, right)
+    if c.cloud.chain == "board" and not board.has_cfar:
+        right = "should be best: radar.cfg has no cfarCfg of a chain that is simulated"
+        yield Problem("cloud.chain", c.cloud.chain, right)
     if c.image.kind == "signed":
         right = "should be decibel or cfar without radar.waveform: impulse"
         yield Problem("image.kind", "signed", right)

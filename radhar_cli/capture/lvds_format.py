@@ -30,11 +30,11 @@ def read_lvds_format(lines: Sequence[CfgLine]) -> LvdsFormat:
     is_swapped, is_interleaved = False, False
     for line in lines:
         if line.name == "lvdsStreamCfg":
-            header = line.numbers()["enableHeader"]
+            header = line.numbers["enableHeader"]
             if header:
                 raise line.refusal("enableHeader", header, "0: streams with headers are not read")
         if line.name == "adcbufCfg":
-            numbers = line.numbers()
+            numbers = line.numbers
             is_swapped = numbers["SampleSwap"] == 1
             is_interleaved = numbers["ChanInterleave"] == 0
     return LvdsFormat(4 if is_interleaved else 2, is_interleaved, is_swapped)

@@ -263,7 +263,7 @@ def parse_ti_cfg(text: str, where: str = "radar.cfg") -> BoardHeader:
         detection=read_detection(lines.lines, channels, bins),
         has_cfar=any(line.name == "cfarCfg" for line in lines.with_effect(Effect.POINTS)),
         pose=_read_pose(lines.with_effect(Effect.POSE)),
-        unknown=tuple(dict.fromkeys(line.name for line in lines.lines if not line.command)),
+        unknown=tuple(dict.fromkeys(line.name[:40] for line in lines.lines if not line.command)),
         not_simulated=tuple(dict.fromkeys(filter(None, map(_name_if_said, lines.lines)))),
     )
 
@@ -399,7 +399,7 @@ class _Lines:
 
 def _read_frames(lines: _Lines) -> FrameHeader:
     """Read all that the lines say of chirps, frames and samples."""
-    modes = [line.numbers() for line in lines.lines if line.name == "dfeDataOutputMode"]
+    modes = [line.numbers for line in lines.lines if line.name == "dfeDataOutputMode"]
     for line in lines.with_effect(Effect.NOT_READ):
         if modes and line.name in ("advFrameCfg", "subFrameCfg"):  # with mode 1 frameCfg counts
             continue
@@ -410,17 +410,17 @@ def _read_frames(lines: _Lines) -> FrameHeader:
     chirps = lines.all("chirpCfg", "chirpCfg 0 0 0 0 0 0 0 1")
     frame = lines.all("frameCfg", "frameCfg 0 0 64 0 50 1 0")[-1]
     for line in lines.with_effect(Effect.SIGNAL):
-        line.numbers()  # also of lines that do not hold
-    adc_numbers = adc.numbers()
+        _ = line.numbers  # lines that do not hold must be right, too
+    adc_numbers = adc.numbers
     header = frame_header(
         dict(map(_read_profile, profiles)),
         [_read_chirp(line) for line in chirps],
         _read_frame(frame),
-        int(receivers.numbers()["rxChannelEn"]),
+        int(receivers.numbers["rxChannelEn"]),
         Sampling(int(adc_numbers["adcOutputFmt"])),
         12 + 2 * int(adc_numbers["numADCBits"]),
     )
-    samples = frame.numbers().get("numAdcSamples", header.samples)
+    samples = frame.numbers.get("numAdcSamples", header.samples)
     if samples != header.samples:
         raise frame.refusal("numAdcSamples", samples, f"{header.samples}, as profileCfg has it")
     return header
@@ -428,7 +428,7 @@ def _read_frames(lines: _Lines) -> FrameHeader:
 
 def _read_profile(line: CfgLine) -> tuple[int, ChirpProfile]:
     """Read a line profileCfg as a number and its profile."""
-    numbers = line.numbers()
+    numbers = line.numbers
     codes = int(numbers["txOutPower"])  # a byte each, that of the first transmitter lowest
     return int(numbers["profileId"]), ChirpProfile(
         start_ghz=numbers["startFreq"],
@@ -445,7 +445,7 @@ def _read_profile(line: CfgLine) -> tuple[int, ChirpProfile]:
 
 def _read_chirp(line: CfgLine) -> ChirpRange:
     """Read a line chirpCfg."""
-    numbers = line.numbers()
+    numbers = line.numbers
     return ChirpRange(
         first=int(numbers["startIdx"]),
         last=int(numbers["endIdx"]),
@@ -457,7 +457,7 @@ def _read_chirp(line: CfgLine) -> ChirpRange:
 
 def _read_frame(line: CfgLine) -> FrameTiming:
     """Read a line frameCfg."""
-    numbers = line.numbers()
+    numbers = line.numbers
     return FrameTiming(
         first=int(numbers["chirpStartIdx"]),
         last=int(numbers["chirpEndIdx"]),
@@ -472,7 +472,7 @@ def _read_pose(lines: Sequence[CfgLine]) -> BoardPose | None:
     """Read the last of lines sensorPosition, whose angles are to the right and down."""
     if not lines:
         return None
-    numbers = [line.numbers() for line in lines][-1]
+    numbers = [line.numbers for line in lines][-1]
     return BoardPose(
         position_m=(0.0, 0.0, numbers["height"]),
         yaw_deg=0.0 - numbers["azimuthTilt"],
@@ -490,7 +490,7 @@ def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
     channels = lines.all("channelCfg", "")[-1]
     if not header.receivers:
         raise channels.refusal("rxChannelEn", channels.words[0], "1 to 15: a receiver that is on")
-    transmitters = int(channels.numbers().get("txChannelEn", COUNT))
+    transmitters = int(channels.numbers.get("txChannelEn", COUNT))
     for line in lines.all("chirpCfg", ""):
         mask = _read_chirp(line).mask
         if mask in header.masks and mask.bit_count() != 1:
@@ -502,7 +502,7 @@ def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
     if len(set(header.masks)) < len(header.masks):
         raise lines.all("chirpCfg", "")[-1].refusal(
             "txEnable",
-            " ".join(map(str, header.masks)),
+            " ".join(map(str, header.masks[:8])) + " ..." * (len(header.masks) > 8),
             "each transmitter once, and again in the same order",
         )
 
@@ -513,11 +513,11 @@ def _name_if_said(line: CfgLine) -> str | None:
     if command is None:
         return None
     if command.name == "profileCfg":
-        return command.name if line.numbers()["txPhaseShifter"] else None
+        return command.name if line.numbers["txPhaseShifter"] else None
     if command.name == "adcCfg":  # samples are not rounded
-        return command.name if line.numbers()["numADCBits"] != 2 else None
+        return command.name if line.numbers["numADCBits"] != 2 else None
     if command.effect is not Effect.SAID:
         return None
     is_readable = bool(command.arguments) and len(line.words) in command.counts
-    is_on = line.numbers().get("enabled", 1) if is_readable else 1
+    is_on = line.numbers.get("enabled", 1) if is_readable else 1
     return command.name if is_on else None

@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 from math import isfinite
 from types import MappingProxyType
 
@@ -142,7 +143,7 @@ class Command:
             names = [*names[:5], "..."]
         return " ".join(filter(None, (self.name, self.subframe.value, *names)))
 
-    @property
+    @cached_property
     def counts(self) -> range:
         """How many numbers a line may have."""
         required = sum(not argument.is_optional for argument in self.arguments)
@@ -190,7 +191,7 @@ class CfgLine:
     place: str
     family: Family = Family.ANY
 
-    @property
+    @cached_property
     def command(self) -> Command | None:
         """The command as the file's family has it; None for one that is not known.
 
@@ -201,8 +202,9 @@ class CfgLine:
         of_family = (command for command in fitting if command.family is self.family)
         return next(of_family, (*fitting, *commands, None)[0])
 
-    def numbers(self) -> dict[str, float]:
-        """Parse the line into {argument: number}.
+    @cached_property
+    def numbers(self) -> Mapping[str, float]:
+        """Numbers of the line, {argument: number}.
 
         Raises:
             CaptureError: There are too few or too many numbers, or one is wrong.

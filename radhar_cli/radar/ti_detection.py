@@ -29,7 +29,7 @@ def read_detection(
     for line in lines:
         if line.command is None or not (line.command.effect is Effect.POINTS or line.name in _MEAN):
             continue
-        numbers = line.numbers()
+        numbers = line.numbers
         if numbers[SUBFRAME.name] not in (ALL_SUBFRAMES, subframe):
             continue
         if line.name == "cfarCfg":

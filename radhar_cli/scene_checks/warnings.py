@@ -20,6 +20,8 @@ from radhar_cli.scene_checks.unused_keys import unused_keys
 from radhar_cli.scene_checks.validity import check_scene
 from radhar_cli.scene_checks.visibility import noise_alone
 
+MAX_COMMANDS = 20  # of a .cfg, in a warning
+
 
 def config_warnings(config: Config) -> list[str]:
     """Say which keys and lines have no effect or alias, and whether maps are noise alone."""
@@ -51,7 +53,9 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
     header = radar.header
     if header.unknown:
         verb = "is not known and has" if len(header.unknown) == 1 else "are not known and have"
-        yield f"radar.cfg: {', '.join(header.unknown)} {verb} no effect"
+        hidden = len(header.unknown) - MAX_COMMANDS
+        names = ", ".join(header.unknown[:MAX_COMMANDS]) + f" and {hidden} more" * (hidden > 0)
+        yield f"radar.cfg: {names} {verb} no effect"
     frame_s = header.loops * len(header.order) * header.slot_s
     window_s = config.processing.window_s if _gives_window(config) else None
     if window_s is not None and window_s > frame_s:

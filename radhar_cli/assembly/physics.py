@@ -207,7 +207,8 @@ def aim_of(beam: BeamConfig[float], tx: Vector, rx: Vector) -> Aim:
 
     Args:
         beam: widths, boresight and least gain.
-        tx, rx: places of the antennas, m.
+        tx: place of the transmitter, m.
+        rx: place of the receiver, m.
     """
     x, y, z = (np.array(tx) + np.array(rx)) / 2
     half = sqrt(log(2) * 20 / (6 * log(10))) / 2  # -3 dB there, and not a half

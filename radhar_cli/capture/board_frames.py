@@ -37,7 +37,8 @@ def frames_of_recording(
         recording: recording of the board.
         config: config with the board's `radar.cfg`.
         asked: products of a cube, such as range_doppler or cloud.
-        start, stop: part of the recording, s; frames that are whole within it are used.
+        start: begin of the part of the recording that is used, s; None is the start.
+        stop: end of that part, s; None is the end. Frames that are whole within it are used.
 
     Returns:
         {product: result}, and the board with the number of these frames.

@@ -64,7 +64,8 @@ def maps_of(
         recording: the recording.
         config: config whose `processing` and `image` are used.
         names: maps to make.
-        start, stop: part of the recording, s; None is the start, or the end.
+        start: begin of the part of the recording that is used, s; None is the start.
+        stop: end of that part, s; None is the end.
         receiver: number of the only receiver to use; None for the sum of the powers of all.
 
     Raises:
@@ -141,7 +142,8 @@ def pulses_between(
 
     Args:
         recording: the recording.
-        start, stop: times since the first pulse, s; None is the start, or the end.
+        start: time since the first pulse, s; None is the start.
+        stop: time since the first pulse, s; None is the end.
 
     Returns:
         Number of the first pulse, number after the last, and the segments of these pulses.
@@ -244,7 +246,8 @@ def bins_of_part(
         recording: recording of chirps, or of range profiles.
         w: waveform, which says how long the transform over a chirp is.
         chosen: numbers of the receivers.
-        first, last: first pulse, and the one after the last.
+        first: first pulse.
+        last: pulse after the last one.
 
     Raises:
         CaptureError: the bins take more than MAX_BYTES.

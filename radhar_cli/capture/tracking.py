@@ -140,7 +140,8 @@ def peaks(power: Float, ranges: Float, speeds: Float, looks: int = 1) -> Peaks:
 
     Args:
         power: power [range, velocity], the sum of `looks` receivers.
-        ranges, speeds: ranges of the rows, m, and velocities of the columns, m/s.
+        ranges: ranges of the rows, m.
+        speeds: velocities of the columns, m/s.
         looks: number of receivers, whose noise is independent.
     """
     step = speeds[1] - speeds[0] if speeds.size > 1 else 1.0

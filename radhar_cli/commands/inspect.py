@@ -16,7 +16,6 @@ def inspect(
     """Summarise a data set, a scene, a recording or a tree of images.
 
     Example:
-
       radhar inspect datasets/quickstart
     """
     from radhar_cli.capture.recording import is_recording, summarise_recording

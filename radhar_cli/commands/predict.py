@@ -34,7 +34,6 @@ def predict(
     """Print the most likely classes of images, or write the joints of sequences.
 
     Example:
-
       radhar predict runs/quickstart datasets/quickstart/png/stft/val/walking/00005.png
 
       radhar predict runs/joints datasets/boards -o joints.npz

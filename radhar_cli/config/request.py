@@ -219,8 +219,11 @@ class Request(Section):
 
     @property
     def every_class(self) -> tuple[Activity, ...]:
-        """Every class that anybody may show: the chosen ones, whose place here is their label, then
-        the others of the twelve and of `classes`, which only `people` do."""
+        """Every class that anybody may show.
+
+        First the chosen ones, whose place here is their label, then the others of the twelve and of
+        `classes`, which only `people` do.
+        """
         known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
         return (*({a.slug: a for a in self.chosen_activities} | known).values(),)
 

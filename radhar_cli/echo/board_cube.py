@@ -180,8 +180,10 @@ def _still(delay: Float, amplitude: Float) -> bool:
 
 
 def _frame_sum(tau: Float, a: Float, board: Board, tolerance_db: float) -> Complex:
-    """Samples [virtual loop, N] of paths of delays (s) and amplitudes [I, virtual loop] of a frame,
-    in the precision of the amplitudes."""
+    """Samples [virtual loop, N] of the paths of a frame, in the precision of their amplitudes.
+
+    Paths have delays (s) and amplitudes [I, virtual loop].
+    """
     dtype, half = np.result_type(a.dtype, np.complex64), max(board.samples - 1, 1) / 2
     rate, u = board.slope / board.adc_rate, np.arange(board.samples) - half
     middle = (tau.max() + tau.min()) / 2

@@ -84,8 +84,10 @@ class WallTransfer:
 
 
 def _polynomial(layers: Layers, f: Float, low: float, high: float) -> Complex | None:
-    """Coefficients [degree + 1, N] of Chebyshev polynomials in the cosine from low to high; None
-    of a wall that rings too sharply."""
+    """Coefficients [degree + 1, N] of Chebyshev polynomials in the cosine from low to high.
+
+    There are none, None, for a wall that rings too sharply.
+    """
     for degree in DEGREES:
         x = chebyshev.chebpts1(degree)
         cosine = low + (x + 1) * (high - low) / 2

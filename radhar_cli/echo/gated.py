@@ -198,8 +198,10 @@ def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[
 
 
 def _referred(real: Float, imag: Float, k: Index, w: Waveform) -> Complex:
-    """Bins k [K, ...] times exp(-j pi k/N_FFT): the middle of the samples lies half a sample before
-    n = N/2."""
+    """Bins k [K, ...] times exp(-j pi k/N_FFT).
+
+    The middle of the samples lies half a sample before n = N/2.
+    """
     x: Complex = np.empty(real.shape, complex_of(real))
     x.real, x.imag = real, imag
     x *= unit_phasor(k[:, None] / (2 * w.n_fft), x.dtype)

@@ -59,8 +59,7 @@ def shifts(times: Float, breakpoints: tuple[float, ...]) -> Index:
 
 @lru_cache(maxsize=TAPS)
 def shifted_weights(shift: int) -> Float:
-    """Weights [TAPS, TAPS] that give the values at the knots -2 .. 3 from those of a stencil that
-    is shifted."""
+    """Weights [TAPS, TAPS] that give the values at the knots -2 .. 3 from a shifted stencil's."""
     return lagrange_basis(NODES + shift, NODES).T
 
 

@@ -82,9 +82,12 @@ class Knots(NamedTuple):
 
 
 class Spacing(NamedTuple):
-    """How close knots must be: `per_second`, and so close that from one to the next an amplitude
-    changes by at most `amplitude_change` of itself, or of its usual size where it passes zero, and
-    G's fastest component by at most `phase_change` cycles."""
+    """How close knots must be.
+
+    There are `per_second`, or more, so that from one to the next an amplitude changes by at most
+    `amplitude_change` of itself, or of its usual size where it passes zero, and G's fastest
+    component by at most `phase_change` cycles.
+    """
 
     per_second: float
     amplitude_change: float
@@ -129,8 +132,10 @@ class PathsAtKnots(NamedTuple):
 def resolve(
     source: PathSource, waveform: Waveform, spacing: Spacing, least: int = MIN_STEP
 ) -> PathsAtKnots:
-    """Place knots that resolve the motion of a source: as far apart as the spacing allows, and
-    `least` pulses or at all of them."""
+    """Place knots that resolve the motion of a source.
+
+    They are as far apart as the spacing allows, and `least` pulses or at all of them.
+    """
     step = widest_step(waveform, spacing.per_second)
     while True:
         step = step if source.smooth and step >= least else 1

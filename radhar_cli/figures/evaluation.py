@@ -25,7 +25,8 @@ def curves_png(
     Args:
         runs: rows of metrics of each epoch, by name of the run.
         best: kept epoch, by name of the run.
-        score, loss: what the score and the loss are, for the axes.
+        score: what the score is, for its axis.
+        loss: what the loss is, for its axis.
 
     Returns:
         The PNG file.
@@ -95,7 +96,8 @@ def reliability_png(confidence: Float, accuracy: Float, count: Index, title: str
     """Draw the accuracy over the probability of the predicted class, and the counts.
 
     Args:
-        confidence, accuracy: mean of each bin [bin], NaN in an empty one.
+        confidence: mean probability of the predictions in each bin [bin], NaN in an empty one.
+        accuracy: share of them that is right [bin], NaN in an empty one.
         count: number of predictions in each bin [bin].
         title: line above.
 

@@ -130,9 +130,9 @@ def _depth(value: Any) -> int:
 
 
 def escaped(text: object) -> str:
-    """Escape whatever in a text could steer a terminal, line breaks aside.
+    r"""Escape whatever in a text could steer a terminal, line breaks aside.
 
-    ``\\x1b[2J`` becomes ``\\\\x1b[2J``; so do bidirectional marks and bytes that are not UTF-8.
+    ``\x1b[2J`` becomes ``\\x1b[2J``; so do bidirectional marks and bytes that are not UTF-8.
     """
     return "".join(
         c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode()

@@ -46,8 +46,10 @@ Vector: TypeAlias = tuple[Number, Number, Number]
 
 
 class Frame(NamedTuple):
-    """An ellipsoid as a frame of reference: left and up are at right angles to the axis and to each
-    other, as long as each other."""
+    """An ellipsoid as a frame of reference.
+
+    Left and up are at right angles to the axis and to each other, as long as each other.
+    """
 
     centre: Vector  # m
     span: Vector  # from start to end, m

@@ -68,7 +68,7 @@ def faces_factor(
 
 
 def _medium(cosine: Float, eps: complex) -> Complex:
-    """w = sqrt(eps - sin^2), the wave number along the normal inside, in units of k0."""
+    """Wave number w = sqrt(eps - sin^2) along the normal inside, in units of k0."""
     w: Complex = np.sqrt((eps - 1) + cosine * cosine + 0j)
     return w
 

@@ -86,7 +86,7 @@ def inside_tangent(t: Float, n: float) -> Float:
 
 
 def _q(t: Float, n: float) -> Float:
-    """q = sqrt(n^2 (1 + t^2) - t^2)."""
+    """Root q = sqrt(n^2 (1 + t^2) - t^2)."""
     return np.sqrt(1 + (n - 1) * (n + 1) * (1 + t * t))
 
 

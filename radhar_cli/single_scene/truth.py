@@ -134,7 +134,7 @@ def evaluate_truth(
 
 
 def _rates(motion: Motion, antennas: Antennas, wall: Wall | None, t: Float) -> tuple[Float, Float]:
-    """d tau/dt [M, I] at times t [M] (s) by a central difference, without and with the wall."""
+    """Rates d tau/dt [M, I] at times t [M] (s), a central difference, without and with the wall."""
     late, early = (motion.positions(t + step) for step in (RATE_STEP_S, -RATE_STEP_S))
 
     def rate(slab: Wall | None) -> Float:

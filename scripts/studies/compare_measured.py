@@ -51,8 +51,10 @@ Float = NDArray[np.float64]
 
 
 class Map(NamedTuple):
-    """Power [rows, columns] over approaching speeds [rows] (m/s, descending) and times [columns]
-    (s)."""
+    """Power [rows, columns] over speed and time.
+
+    Approaching speeds [rows] (m/s) descend; times [columns] are in s.
+    """
 
     power: Float
     speed: Float

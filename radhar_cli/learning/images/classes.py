@@ -45,6 +45,7 @@ def refuse_mistyped(names: Mapping[str, str | None], known: Sequence[str]) -> No
     """Refuse names of classes that neither the model nor radhar knows.
 
     Args:
+        images: images of a set, some of whose classes the model may not know.
         names: {foreign name: our name, or None}.
         known: classes of the model.
 
@@ -79,6 +80,7 @@ def left_out_message(images: ImageSet, names: Mapping[str, str | None]) -> str |
     """Warning of images that are left out as the model does not know their class, None if all stay.
 
     Args:
+        images: images of a set, some of whose classes the model may not know.
         names: {foreign name: our name, or None} of `--classes FILE`; its classes are not warned of.
     """
     excluded = {name: n for name, n in images.left_out.items() if name not in names}

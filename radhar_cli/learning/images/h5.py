@@ -62,6 +62,7 @@ def open_h5_images(path: Path, map_name: str | None, kind: Kind) -> ImageSet:
     """Open one map of a dataset.h5, or of the folder it lies in, as images.
 
     Args:
+        path: dataset.h5, or the folder it lies in.
         map_name: map to open; None takes the first one.
         kind: "rgb" as the PNGs are coloured, or "gray", the levels as one channel.
 
@@ -89,6 +90,7 @@ def open_h5_sequences(
     """Open the frames or clouds of a dataset.h5, or of the folder it lies in.
 
     Args:
+        path: dataset.h5, or the folder it lies in.
         product: product to open; None takes the first of that kind.
         kind: frames or clouds.
         frames: number of frames of a sequence; auto is that of the longest sample.

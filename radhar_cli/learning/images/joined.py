@@ -106,6 +106,7 @@ def sampling_weights(
     """Mean number of times that an epoch shows each row [len(rows)].
 
     Args:
+        images: joined sets.
         rows: rows of `images` that an epoch is made of.
         set_weights: weight of every joined set; None is 1 each.
         balanced: every class as often as the others, the epoch's length unchanged.

@@ -51,6 +51,7 @@ def open_images(
     """Open a data set: dataset.h5, a folder that `radhar generate` wrote, or a tree of images.
 
     Args:
+        path: dataset.h5, or a folder.
         map_name: map to open; None takes the first one.
         kind: "rgb" as the PNGs are coloured, or "gray", the levels as one channel.
         resize: (H, W) to bring every image to; they may then differ in size.

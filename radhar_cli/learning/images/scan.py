@@ -48,6 +48,7 @@ def content_hash(images: ImageSet, rows: Index, digests: Sequence[str] | None = 
     """SHA-256 of what a training run depends on: classes, labels, splits, pixels.
 
     Args:
+        images: images of a data set.
         rows: rows of `images` that count.
         digests: [len(rows)] digests of their pixels; None has `scan` compute them.
     """

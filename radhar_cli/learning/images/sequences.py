@@ -118,6 +118,7 @@ def sequence_product(data: Dataset, kind: Kind, name: str | None = None) -> str:
     """Name of the product of a data set that is read as sequences.
 
     Args:
+        data: open data set.
         kind: frames or clouds.
         name: name of the product; None takes the first of that kind.
 

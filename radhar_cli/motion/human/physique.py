@@ -86,8 +86,9 @@ class Physique:
 
     @cached_property
     def rest_height(self) -> float:
-        """Height of the hip at rest, m: soft minimum of `tallest` and of both legs at full
-        reach.
+        """Height of the hip at rest, m.
+
+        It is the soft minimum of `tallest` and of both legs at full reach.
         """
         k, stretched = self.softness, self.ankle + self.reach
         return stretched - log(2 + exp(k * (stretched - self.tallest))) / k

@@ -141,13 +141,15 @@ def few_samples(path: Path) -> None:
 
 
 def idle(path: Path) -> None:
-    """A Python that does nothing."""
+    """A program that does nothing; tests/test_contributing.py runs the real one."""
     path.write_text("#!/bin/sh\n")
     path.chmod(0o755)
 
 
 FILES: dict[str, dict[str, Callable[[Path], object]]] = {
-    "CONTRIBUTING.md": {".venv/bin/python": idle},
+    "CONTRIBUTING.md": {
+        f".venv/bin/{name}": idle for name in ("python", "ruff", "mypy", "pre-commit")
+    },
     "cluster.md": {"CONFIG": few_samples, "config.yaml": few_samples},
     "config.md": {"lab.yaml": few_samples},
     "measured.md": {
@@ -276,6 +278,7 @@ PROGRAMS = {
     "pip": answer_pip,
     "python": answer_python,
     "dask": lambda call: Answer(),
+    "git": lambda call: Answer(),
 }
 
 

@@ -28,6 +28,11 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import ConfigError, RadharError, SceneError
+from radhar_cli.motion.human import repertoire
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import Phase
+from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.planted import Planted, resting_channels
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.look import Look
@@ -493,6 +498,47 @@ def test_the_commands_import_modules_of_ones_own(
     broken = command_line.process("-m", "radhar_cli", *command)
     assert broken.returncode == 2
     assert "my_radar cannot be imported (SyntaxError: invalid syntax" in broken.stderr
+
+
+@dataclass(frozen=True)
+class Wave:
+    """Raises the right arm within half a second, holds it, and lets it down; a file of its own."""
+
+    seconds: float
+
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
+        rest, end = resting_channels(person), begin + self.seconds
+        steps = [
+            Step("right_shoulder", 2.8, begin, 0.5),
+            Step("right_shoulder", -2.8, end - 0.5, 0.5),
+        ]
+        phases = (Phase(begin, "raising"), Phase(end, "standing"))
+        return Planted(person, Course.of(rest, steps), begin, end, phases)
+
+
+def test_a_movement_of_people_is_a_file_and_its_line_in_both_tables(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A class of one's own names it beside others; a config then simulates it."""
+    usual = activity.MovementInfo("standing", "standing", 2.0)
+    monkeypatch.setitem(activity.MOVEMENTS, "waving", usual)
+    monkeypatch.setitem(repertoire.MOVEMENTS, "waving", lambda person, duration: Wave(duration))
+    config = Config.model_validate(
+        {
+            "classes": {"waves": {"sequence": ["waving", "sitting_down"]}},
+            "activities": ["waves"],
+            "duration_s": 5.0,
+            "radar": RADAR,
+            "image": {"size_px": 32},
+        }
+    )
+    scene = nominal_scene(config, config.chosen_activities[0])
+    motion = motion_of(scene.people[0])
+    t = np.arange(0, 5, 0.01)
+    hand = motion.positions(t)[2, motion.names.index("right_hand")]
+    assert hand.max() > hand[0] + 0.8
+    assert [name for _, name in motion.phases][1:3] == ["raising", "sitting down"]
+    assert record(scene, ["image:stft"])["image:stft"].levels.any()
 
 
 FAN = """

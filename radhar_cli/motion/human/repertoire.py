@@ -1,10 +1,10 @@
 """What a person can do: the twelve activities S1 to S12, and sequences of any of them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, pi, radians
 
-from radhar_cli.motion.human.exercises import EXERCISES
+from radhar_cli.motion.human.exercises import EXERCISES, Exercise
 from radhar_cli.motion.human.falling import FallBackward, FallForward, OnFours
 from radhar_cli.motion.human.falling_from_seat import FallFromSeat
 from radhar_cli.motion.human.falling_sideways import FallSideways
@@ -88,35 +88,47 @@ class Repertoire:
         )
 
     def _movement(self, name: str, duration: float) -> Movement:
-        movements: dict[str, Movement] = {
-            "stationary": Stand(duration),
-            "punching": replace(self.punch, duration=duration, from_rest=True),
-            "kicking": replace(self.kick, duration=duration, from_rest=True),
-            "grabbing": self.grab,
-            "sitting_down": self.sit_down,
-            "standing_up": self.stand_up,
-            "body_rotating": replace(self.turn, duration=duration, from_rest=True),
-            "walking": Walk(self.gait, duration),
-            "falling": self.fall,
-            "falling_on_hands": self.fall_on_hands,
-            "falling_off_seat": self.fall_off_seat,
-            "falling_on_rising": self.fall_on_rising,
-            "stumbling": self.stumble,
-            "tripping": Walk(replace(self.gait, trip=self.trip), duration),
-            "getting_up": self.get_up,
-            "trying_to_get_up": self.try_to_get_up,
-            "turning_around": self.turn_around,
-        }
-        if name in EXERCISES:
-            exercise = EXERCISES[name]
-            return replace(
-                exercise,
-                duration=duration,
-                period=self.exercise_period * exercise.period,
-                paces=self.exercise_paces,
-                sizes=self.exercise_sizes,
-            )
-        if name not in movements:
-            known = ", ".join((*movements, *EXERCISES))
+        if name not in MOVEMENTS:
+            known = ", ".join(MOVEMENTS)
             raise ValueError(f"{name!r} is not a movement of a sequence; these are: {known}")
-        return movements[name]
+        return MOVEMENTS[name](self, duration)
+
+    def exercise(self, name: str, duration: float) -> Exercise:
+        """Exercise of a name for `duration` s, as this person does it."""
+        usual = EXERCISES[name]
+        return replace(
+            usual,
+            duration=duration,
+            period=self.exercise_period * usual.period,
+            paces=self.exercise_paces,
+            sizes=self.exercise_sizes,
+        )
+
+
+# How a person makes each movement of a sequence, from a repertoire and a duration, s.
+# `activities.activity.MOVEMENTS` has the states that it begins and ends in.
+MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {
+    "stationary": lambda person, duration: Stand(duration),
+    "punching": lambda person, duration: replace(person.punch, duration=duration, from_rest=True),
+    "kicking": lambda person, duration: replace(person.kick, duration=duration, from_rest=True),
+    "grabbing": lambda person, duration: person.grab,
+    "sitting_down": lambda person, duration: person.sit_down,
+    "standing_up": lambda person, duration: person.stand_up,
+    "body_rotating": lambda person, duration: replace(
+        person.turn, duration=duration, from_rest=True
+    ),
+    "walking": lambda person, duration: Walk(person.gait, duration),
+    "falling": lambda person, duration: person.fall,
+    "falling_on_hands": lambda person, duration: person.fall_on_hands,
+    "falling_off_seat": lambda person, duration: person.fall_off_seat,
+    "falling_on_rising": lambda person, duration: person.fall_on_rising,
+    "stumbling": lambda person, duration: person.stumble,
+    "tripping": lambda person, duration: Walk(replace(person.gait, trip=person.trip), duration),
+    "getting_up": lambda person, duration: person.get_up,
+    "trying_to_get_up": lambda person, duration: person.try_to_get_up,
+    "turning_around": lambda person, duration: person.turn_around,
+    **{
+        name: lambda person, duration, name=name: person.exercise(name, duration)  # type: ignore[misc]
+        for name in EXERCISES
+    },
+}

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 from scipy.spatial import cKDTree
+from shared import table
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import validated, with_overrides
@@ -413,12 +414,16 @@ def main() -> None:
     here, there = (statistics(clouds, pairs, offset) for clouds in (simulated, pairs.clouds))
     apart = distances(pairs.clouds, simulated, pairs)
     together = within_movements(pairs.clouds, simulated, pairs)
-    lines = ["| | measured | simulated |", "| --- | --- | --- |"]
-    lines += [f"| {name} | {there[name]:.3g} | {here[name]:.3g} |" for name in here]
-    lines += ["", "| Chamfer distance of measured frames to | m |", "| --- | --- |"]
-    lines += [f"| {name} | {value:.3f} |" for name, value in apart.items()]
-    lines += ["", "| correlation within a movement, measured with simulated | |", "| --- | --- |"]
-    lines += [f"| {name} | {value:.2f} |" for name, value in together.items()]
+    means = [(name, f"{there[name]:.3g}", f"{here[name]:.3g}") for name in here]
+    chamfer = [(name, f"{value:.3f}") for name, value in apart.items()]
+    correlations = [(name, f"{value:.2f}") for name, value in together.items()]
+    lines = [
+        *table(("", "measured", "simulated"), means),
+        "",
+        *table(("Chamfer distance of measured frames to", "m"), chamfer),
+        "",
+        *table(("correlation within a movement, measured with simulated", ""), correlations),
+    ]
     (given.out / "clouds.md").write_text("\n".join(lines) + "\n")
     report = {"simulated": here, "measured": there, "chamfer": apart, "correlation": together}
     (given.out / "clouds.json").write_text(json.dumps(report, indent=1) + "\n")

@@ -12,22 +12,16 @@ import argparse
 import hashlib
 import json
 import shutil
-import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import sim_to_real
-from sim_to_real import ROOT
-
-from radhar_cli.learning.metrics import wilson
+from shared import ROOT, as_options, commit, report_of_radhar, run_radhar, wilson_of_share
 
 LARGEST = 2e6  # bytes of weights
 TEST_SEED = 1001
-GIT = ("git", "describe", "--always", "--dirty", "--exclude=*")
-COMMIT = subprocess.run(GIT, capture_output=True, text=True, cwd=ROOT).stdout.strip() or "unknown"
 
 
 @dataclass(frozen=True)
@@ -79,31 +73,18 @@ NETWORKS = {
 }
 
 
-def radhar(*arguments: object) -> Any:
-    """What a command of radhar reports; messages go to the error stream."""
-    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments), "--json"]
-    done = subprocess.run(command, stdout=subprocess.PIPE, cwd=ROOT)
-    if done.returncode:
-        sys.exit(done.returncode)
-    return json.loads(done.stdout)
-
-
 def data_of(name: str, folder: Path, per_class: int, seed: int) -> Path:
     """A data set for a network, in `folder`."""
     if name == "glasgow":
         return sim_to_real.simulated(folder, per_class, 2, (f"seed={seed}",))
     sets = (f"samples_per_class={per_class}", f"seed={seed}")
-    radhar("generate", NETWORKS[name].config, "-o", folder, "--jobs", 2, *_sets(sets))
+    run_radhar("generate", NETWORKS[name].config, "-o", folder, "--jobs", 2, *as_options(sets))
     return folder
-
-
-def _sets(some: Sequence[str]) -> list[str]:
-    return [word for one in some for word in ("--set", one)]
 
 
 def accuracy(run: Path, data: Path, out: Path) -> tuple[float, int]:
     """Share of the samples of a data set whose class is found, and their number."""
-    metrics = radhar("eval", run, data, "--split", "all", "-o", out)["accuracy"]
+    metrics = report_of_radhar("eval", run, data, "--split", "all", "-o", out)["accuracy"]
     (of_data,) = metrics.values()
     (found,) = of_data.values()
     predictions = (out / "predictions.csv").read_text().splitlines()
@@ -117,7 +98,7 @@ def card(
     network, about = NETWORKS[name], json.loads((run / "metrics.json").read_text())
     table = []
     for data, share, count in rows:
-        low, high = wilson(round(share * count), count)
+        low, high = wilson_of_share(share, count)
         table.append(f"| {data} | {share:.1%} | {low:.1%} to {high:.1%} | {count} |")
     return f"""# {name}: a trained network of radhar
 
@@ -131,7 +112,7 @@ Reads {network.reads}; gives the probabilities of {", ".join(about["classes"])}.
 | trained on | {about["data"]["train"]} simulated samples of {network.config.relative_to(ROOT)}; \
 best of {about["epochs"]} epochs on {about["data"]["val"]} others |
 | made by | `python scripts/studies/make_networks.py -o OUT --only {name}{options}`, \
-commit {COMMIT} |
+commit {commit()} |
 | SHA-256 | {hashlib.sha256(weights.read_bytes()).hexdigest()} |
 | licence | MIT, as radhar |
 
@@ -153,9 +134,9 @@ def make(
     count = per_class or network.per_class
     data = data_of(name, work / "data", count, 1)
     unseen = data_of(name, work / "unseen", max(min(8, count), count // 3), TEST_SEED)
-    more = _sets(() if epochs is None else (f"epochs={epochs}",))
+    more = as_options(() if epochs is None else (f"epochs={epochs}",))
     options = f" --per-class {per_class}" * bool(per_class) + f" --epochs {epochs}" * bool(epochs)
-    radhar("train", data, "-o", work / "run", *network.options, *more)
+    run_radhar("train", data, "-o", work / "run", *network.options, *more)
     rows = [("simulated, another seed", *accuracy(work / "run", unseen, work / "eval"))]
     if name == "glasgow" and masks is not None:
         measured = sim_to_real.Measured.written(*sim_to_real.read_masks(masks), work / "measured")

@@ -15,13 +15,13 @@ independent ones.
 """
 
 import argparse
-import subprocess
 import sys
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from shared import as_options, run_radhar
 from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import StandardScaler
@@ -117,12 +117,8 @@ def changed(cloud: Cloud, rng: np.random.Generator) -> Cloud:
 
 def simulated(out: Path, per_class: int, jobs: int) -> tuple[list[Cloud], list[int]]:
     """Clouds and classes of a data set that is built in `out`."""
-    command = ["generate", str(CONFIG), "-o", str(out), "--jobs", str(jobs)]
-    for number in (f"samples_per_class={per_class}", f"duration_s={FRAMES / RATE + 0.05}"):
-        command += ["--set", number]
-    done = subprocess.run([sys.executable, "-m", "radhar_cli", *command], stdout=sys.stderr)
-    if done.returncode:
-        sys.exit(done.returncode)
+    settings = (f"samples_per_class={per_class}", f"duration_s={FRAMES / RATE + 0.05}")
+    run_radhar("generate", CONFIG, "-o", out.resolve(), "--jobs", jobs, *as_options(settings))
     clouds = []
     with open_dataset(out) as data:
         labels = [CLASSES.index(data.classes[label]) for label in data.label[:]]

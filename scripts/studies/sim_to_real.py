@@ -22,7 +22,6 @@ import hashlib
 import json
 import re
 import shutil
-import subprocess
 import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -34,6 +33,7 @@ import torch
 from few_shots import few_shots
 from PIL import Image
 from scipy import ndimage
+from shared import ROOT, as_options, run_radhar, wilson_of_share
 
 from radhar_cli.capture.images import list_images, read_image
 from radhar_cli.dataset.reading import open_dataset
@@ -41,11 +41,9 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.figures.two_samples import Picture, pictures_png
 from radhar_cli.learning.evaluation import open_for_model, predict_classes
 from radhar_cli.learning.images.image_set import ImageSet
-from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.numerics.arrays import Bool, Float, Index, Levels
 
-ROOT = Path(__file__).resolve().parents[2]
 SIMULATED = ROOT / "configs/measured/glasgow_5p8GHz.yaml"
 TRAINING = ROOT / "configs/train/measured.yaml"
 CLASSES = {  # names in measured data: ours
@@ -153,13 +151,6 @@ def write_image(levels: Levels, path: Path) -> None:
     Image.fromarray(levels).save(path)
 
 
-def radhar(*arguments: object) -> None:
-    """Run a command of radhar's; what it says goes to the error stream."""
-    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments)]
-    if status := subprocess.run(command, stdout=sys.stderr, cwd=ROOT).returncode:
-        sys.exit(status)
-
-
 def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) -> Path:
     """Trees of simulated images for the networks, in `out`; most falls from standing."""
     settings = json.dumps([per_class, more, hashlib.sha256(SIMULATED.read_bytes()).hexdigest()])
@@ -181,7 +172,7 @@ def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) ->
         if not count:
             continue
         sets += [f"samples_per_class={count}", *more]
-        radhar("generate", SIMULATED, "-o", out / name, "--jobs", jobs, *_sets(sets))
+        run_radhar("generate", SIMULATED, "-o", out / name, "--jobs", jobs, *as_options(sets))
         with open_dataset(out / name) as data:
             masks, split = data.maps["stft"], data.split[:]
             for row, label in enumerate(data.label):
@@ -194,13 +185,9 @@ def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) ->
     return out / "images"
 
 
-def _sets(sets: Iterable[str]) -> list[str]:
-    return [part for one in sets for part in ("--set", one)]
-
-
 def trained(data: Path, run: Path, seed: int, more: Sequence[str] = ()) -> Path:
     """A network that has learned from a tree of images."""
-    radhar("train", data, "-o", run, "--config", TRAINING, *_sets((f"seed={seed}", *more)))
+    run_radhar("train", data, "-o", run, "--config", TRAINING, *as_options((f"seed={seed}", *more)))
     return run
 
 
@@ -263,7 +250,7 @@ class Predicted:
 def accuracy_line(what: str, one: Predicted) -> str:
     """Accuracy of a run, with Wilson's interval of 95 %."""
     count = one.truth.size
-    low, high = wilson(round(one.accuracy * count), count)
+    low, high = wilson_of_share(one.accuracy, count)
     return f"{what}: {one.accuracy:.3f} ({low:.3f} to {high:.3f}), n = {count}"
 
 
@@ -354,7 +341,7 @@ def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
 def adapted(run: Path, measured: Measured, data: Path, out: Path) -> Path:
     """The run, adapted to measured maps without their labels; it is shown its own on."""
     learned = ("--epochs", ADAPTING, "--mix", data)
-    radhar("adapt", run, measured.folder, "-o", out, *learned, "--overwrite")
+    run_radhar("adapt", run, measured.folder, "-o", out, *learned, "--overwrite")
     return out
 
 

@@ -12,7 +12,7 @@ from helpers import command_line
 
 @pytest.fixture
 def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    folder = command_line.ROOT / "scripts"
+    folder = command_line.ROOT / "scripts/studies"
     monkeypatch.syspath_prepend(folder)
     spec = importlib.util.spec_from_file_location("price", folder / "price_of_realism.py")
     assert spec is not None

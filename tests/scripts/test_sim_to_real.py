@@ -131,7 +131,7 @@ def test_the_whole_experiment(
 
     monkeypatch.setattr(script, "SIMULATED", config)
     monkeypatch.setattr(script, "TRAINING", training)
-    monkeypatch.setattr(script, "radhar", radhar)
+    monkeypatch.setattr(script, "run_radhar", radhar)
     monkeypatch.setattr(script, "read_masks", read_masks)
     monkeypatch.setattr(script, "SHOTS", (0, 1))
     monkeypatch.setattr(script, "REPEATS", 1)

@@ -38,10 +38,11 @@ class Brightness(Task):
     loss_name: ClassVar[str] = "squared error"
     finds: ClassVar[str] = "brightness"
     outputs_name: ClassVar[str] = "brightness"
+    names_key: ClassVar[str] = "quantities"
     main_number: ClassVar[str] = "rms_error"
 
-    def outputs(self, known: object) -> Outputs:
-        return Outputs(1)
+    def names(self, known: object) -> tuple[str, ...]:
+        return ("brightness",)
 
     def targets(self, images: ImageSet) -> Targets:
         levels = (images.pixels.read(row) for row in range(len(images)))

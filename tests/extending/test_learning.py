@@ -44,6 +44,7 @@ def test_a_network_and_a_task_go_through_every_command(tmp_path: Path) -> None:
     assert metrics["parameters"] == 17
     done = radhar("eval", run, data, "-o", tmp_path / "report", "--json")
     assert done.returncode == 0, done.stderr
+    assert "run: pooling, 1 quantities" in done.stderr
     error = json.loads(done.stdout)["rms_error"]["run"]["tree"]
     assert error < 0.2, "a half, which it starts from, is farther off"
     loaded = radhar_cli.load_run(run, device="cpu")

@@ -24,6 +24,7 @@ class Skeleton(Task):
     loss_name: ClassVar[str] = "mean absolute error, m"
     finds: ClassVar[str] = "joints"
     outputs_name: ClassVar[str] = "joints"
+    names_key: ClassVar[str] = "joints"
     main_number: ClassVar[str] = "mpjpe_cm"
 
     def targets(self, images: ImageSet) -> Targets:
@@ -33,11 +34,6 @@ class Skeleton(Task):
     def names(self, known: Names) -> tuple[str, ...]:
         """Names of the joints."""
         return known.joints
-
-    @property
-    def names_key(self) -> str:
-        """Key of the names of the joints in the metadata of an ONNX file."""
-        return "joints"
 
     def outputs(self, known: Names) -> Outputs:
         """Three coordinates a joint, in every frame."""

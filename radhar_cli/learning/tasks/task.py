@@ -54,6 +54,7 @@ class Task(ABC):
     loss_name: ClassVar[str]
     finds: ClassVar[str]  # what its networks find, in words, such as "joints"
     outputs_name: ClassVar[str] = "logits"  # of what an ONNX file gives
+    names_key: ClassVar[str] = "classes"  # of the names of its outputs in its metadata
     main_number: ClassVar[str]  # key of the number that a report is summed up by
 
     # The data: what of a set is learned.
@@ -102,11 +103,6 @@ class Task(ABC):
     def names(self, known: Names) -> tuple[str, ...]:
         """Names of what the outputs of the network stand for."""
         return known.classes
-
-    @property
-    def names_key(self) -> str:
-        """Key of these names in the metadata of an ONNX file."""
-        return "classes"
 
     def outputs(self, known: Names) -> Outputs:
         """Number and shape of the network's outputs: one a name."""

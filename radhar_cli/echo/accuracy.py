@@ -30,10 +30,8 @@ PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.1, 0.05
 TABLE_DB = -48.0
 SINGLE_DB = -115.0  # error of the recurrence in float32
 CUBIC_DB = -140.0  # of a cubic phase over 20 pulses, which may err by -120 dB in a few places
-# Settings aim below the tolerance, and are taken if the stated error is below it by SPARE: as much
-# as the true error may be worse.
-MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 3.0, 30.0, -220.0
-REFUSAL_ROOM_DB = 10.0  # of the limit that a refusal names above the error reached: others err more
+# Settings aim below the tolerance, and are taken if the stated error is below it by SPARE.
+MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 30.0, -220.0
 COARSEST_DB = -80.0  # tolerance above which farther knots save no time (docs/physics/engines.md)
 PROBES = 96
 ROUGH = 0.4  # share of the probes that lie where interpolation is likely to err most

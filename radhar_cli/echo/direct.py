@@ -17,7 +17,6 @@ from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import (
     MIN_AIM_DB,
     REFINE_DB,
-    REFUSAL_ROOM_DB,
     SINGLE_DB,
     SPARE_DB,
     AccuracyError,
@@ -98,7 +97,7 @@ class DirectEcho:
                 y *= unit
                 return y, Accuracy(motion.step, chosen.table_oversampling, chosen.single, error)
             if aim == MIN_AIM_DB:
-                raise AccuracyError(best + REFUSAL_ROOM_DB)
+                raise AccuracyError(best + SPARE_DB)
             aim = max(aim - max(REFINE_DB, error - self.tolerance_db), MIN_AIM_DB)
             chosen = self._settings(aim)._replace(single=False)
             motion = self._resolved(chosen.spacing)

@@ -220,8 +220,7 @@ def _rough_squares(knots: Knots, w: Waveform) -> Float:
     Those across a breakpoint do not count; where the stencil is shifted, the error is as much
     larger as `upsample` says.
     """
-    every = max(1, len(knots.paths.delay) // COMPARED)
-    delay, amplitude = (part[::every] for part in knots.paths[:2])
+    delay, amplitude = knots.paths[:2]
     size = np.sqrt(np.einsum("im,im->i", amplitude, amplitude) / amplitude.shape[1])
     of_delay, of_amplitude = _signs(len(delay))
     mixed = (of_delay * (2 * np.pi * w.f0 * size)) @ delay + of_amplitude @ amplitude

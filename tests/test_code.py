@@ -1,6 +1,7 @@
 """The code itself: lint, types, layers of imports, light start of the program."""
 
 import ast
+import graphlib
 import importlib.util
 import subprocess
 import sys
@@ -80,6 +81,34 @@ def test_imports_follow_the_layers() -> None:
         and PACKAGES.index(module.split(".")[1]) > PACKAGES.index(package(path))
     ]
     assert not back
+
+
+def imported_modules(path: Path) -> set[str]:
+    """Modules of the package that a file imports at run time, anywhere in it."""
+    modules = set[str]()
+    waiting: list[ast.AST] = [ast.parse(path.read_text())]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            waiting += node.orelse
+            continue
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("radhar_cli"):
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                is_module = (ROOT / f"{inner.replace('.', '/')}.py").exists()
+                modules.add(inner if is_module else str(node.module))
+        waiting += ast.iter_child_nodes(node)
+    return modules
+
+
+def test_no_module_imports_itself_through_others() -> None:
+    """Not even where a function imports, which only hides a circle."""
+    graph = {
+        path.relative_to(ROOT).with_suffix("").as_posix().replace("/", "."): imported_modules(path)
+        for path in files()
+        if path.name != "__init__.py"
+    }
+    assert list(graphlib.TopologicalSorter(graph).static_order())  # raises CycleError
 
 
 def test_a_class_name_means_one_thing() -> None:

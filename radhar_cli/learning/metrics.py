@@ -13,6 +13,9 @@ from radhar_cli.numerics.arrays import Float, Index
 CALIBRATION_BINS = 15
 
 
+NEAR_M = 0.15  # joints that are nearer to the true ones count as right
+
+
 def wilson(correct: float, count: float) -> tuple[float, float]:
     """Wilson's interval (low, high) of 95 % of the share correct/count; (0, 1) where count is 0."""
     if count == 0:

@@ -7,10 +7,9 @@ from torch import Tensor
 
 from radhar_cli.learning.batches import Targets
 from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.metrics import NEAR_M
 from radhar_cli.learning.models.outputs import Outputs, OutputShape
 from radhar_cli.learning.tasks.task import Evaluation, Names, Task
-
-NEAR_M = 0.15  # joints found within it count as found
 
 
 class Skeleton(Task):

@@ -6,9 +6,9 @@ import numpy as np
 
 from radhar_cli.figures.evaluation import bars_png
 from radhar_cli.figures.skeletons import skeletons_png
+from radhar_cli.learning.metrics import NEAR_M
 from radhar_cli.learning.report_files import ResultPage
 from radhar_cli.learning.tasks.predictions import Predictions
-from radhar_cli.learning.tasks.skeleton import NEAR_M
 from radhar_cli.learning.tasks.task import Evaluation
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Bool, Float

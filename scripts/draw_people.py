@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS

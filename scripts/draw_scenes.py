@@ -17,7 +17,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.physics import antennas_of, motion_of, ways_of
+from radhar_cli.assembly.motion import motion_of
+from radhar_cli.assembly.radar import antennas_of
+from radhar_cli.assembly.room import ways_of
 from radhar_cli.config import Config
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.products.run import record

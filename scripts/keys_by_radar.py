@@ -19,7 +19,7 @@ import numpy as np
 from pydantic import BaseModel, ValidationError
 
 from radhar_cli.activities.activity import MOVEMENTS
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.annotations import (
     ABOVE_ZERO,
     GIVEN,

@@ -7,7 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.assembly.physics import body_of, frames_of, ways_of
+from radhar_cli.assembly.motion import body_of
+from radhar_cli.assembly.processing import frames_of
+from radhar_cli.assembly.room import ways_of
 from radhar_cli.bodies.motion_paths import MotionPaths, Shade, ShadowedPaths, SumOfPaths
 from radhar_cli.bodies.segment_paths import Points, SegmentPaths, draw_points, point_counts
 from radhar_cli.bodies.surface_paths import SurfacePaths, draw_surface

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.assembly.physics import board_of
+from radhar_cli.assembly.radar import board_of
 from radhar_cli.capture.chain import pulses_between
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config

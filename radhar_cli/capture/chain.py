@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.assembly.physics import board_of, canceller_of, frames_of, fsst_frames_of
+from radhar_cli.assembly.processing import canceller_of, frames_of, fsst_frames_of
+from radhar_cli.assembly.radar import board_of
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static

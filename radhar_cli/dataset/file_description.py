@@ -6,7 +6,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from radhar_cli.assembly.physics import kinds_of
+from radhar_cli.assembly.room import kinds_of
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.config.maps import FRAME_MAPS

@@ -50,7 +50,7 @@ def large_datasets(config: AnyConfig) -> Parts:
     if config.output.power is not None:
         parts |= {f"power/{name}": ("<f2", size) for name in config.maps}
     if config.output.slow_time:
-        from radhar_cli.assembly.physics import max_samples  # slow to import
+        from radhar_cli.assembly.processing import max_samples
 
         parts["slow_time"] = ("<c8", (max_samples(config),))
     return parts

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.activities.vocabulary import FROM_FILES, advice_on
-from radhar_cli.assembly.physics import board_of, motion_of
+from radhar_cli.assembly.motion import motion_of
+from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.config.radar import BoardRadar

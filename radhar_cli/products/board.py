@@ -9,13 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.assembly.bodies import Link, make_path_sources, sum_of_paths
-from radhar_cli.assembly.physics import (
-    board_of,
-    detection_of,
-    frames_of,
-    fsst_frames_of,
-    noise_stream,
-)
+from radhar_cli.assembly.processing import frames_of, fsst_frames_of
+from radhar_cli.assembly.radar import board_of, detection_of
+from radhar_cli.assembly.receiver import noise_stream
 from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar

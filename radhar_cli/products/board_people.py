@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.assembly.physics import ways_of
+from radhar_cli.assembly.room import ways_of
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.processing.points import Cloud

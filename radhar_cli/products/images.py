@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TypeAlias
 
-from radhar_cli.assembly.physics import cfar_of
+from radhar_cli.assembly.processing import cfar_of
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.doppler_power import DopplerPower

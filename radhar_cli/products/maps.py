@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
-from radhar_cli.assembly.physics import frames_of, fsst_frames_of
+from radhar_cli.assembly.processing import frames_of, fsst_frames_of
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.extensions import own_products
 from radhar_cli.processing.doppler_power import (

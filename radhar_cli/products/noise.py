@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from functools import partial
 
-from radhar_cli.assembly.physics import noise_stream
+from radhar_cli.assembly.receiver import noise_stream
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import nominal
 from radhar_cli.errors import SceneError

@@ -5,7 +5,9 @@ from functools import partial
 from math import inf
 
 from radhar_cli.assembly.bodies import Link, make_path_sources, sum_of_paths
-from radhar_cli.assembly.physics import antennas_of, moving, reflectors_of, wall_of, waveform_of
+from radhar_cli.assembly.motion import moving
+from radhar_cli.assembly.radar import antennas_of, waveform_of
+from radhar_cli.assembly.room import reflectors_of, wall_of
 from radhar_cli.bodies.motion_paths import TorsoPath
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.knots import delay_track

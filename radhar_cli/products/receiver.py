@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 
-from radhar_cli.assembly.physics import canceller_of, channel_of, impairments_of
+from radhar_cli.assembly.processing import canceller_of
+from radhar_cli.assembly.receiver import channel_of, impairments_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.processing.canceller import Canceller

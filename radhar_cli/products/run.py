@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from time import process_time
 from typing import Any
 
-from radhar_cli.assembly import physics
+from radhar_cli.assembly.processing import canceller_of, frames_of, fsst_frames_of
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processing.signal import Signal
@@ -104,9 +104,9 @@ def process(
     table = products_of_signals(config) | {product.name: product for product in more}
     duration = signal.pulses / signal.prf
     inputs = {
-        "frames": physics.frames_of(config, duration, signal.prf, signal.f0),
-        "fsst_frames": physics.fsst_frames_of(config, duration, signal.prf, signal.f0),
-        "canceller": physics.canceller_of(config, signal.prf),
+        "frames": frames_of(config, duration, signal.prf, signal.f0),
+        "fsst_frames": fsst_frames_of(config, duration, signal.prf, signal.f0),
+        "canceller": canceller_of(config, signal.prf),
         "image_scale": scale_of(config),
         **inputs,
     }

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.activities.activity import Activity
-from radhar_cli.assembly.physics import moving
+from radhar_cli.assembly.motion import moving
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar, ImpulseRadar
 from radhar_cli.errors import SceneError

@@ -1,6 +1,6 @@
 """Positions that are frozen during a sweep: how far they leave echoes from where they belong."""
 
-from radhar_cli.assembly.physics import waveform_of
+from radhar_cli.assembly.radar import waveform_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar, SfcwRadar
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform

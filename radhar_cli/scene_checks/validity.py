@@ -5,15 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.assembly.physics import (
-    antennas_of,
-    body_of,
-    box_of,
-    moving,
-    reflectors_of,
-    wall_of,
-    waveform_of,
-)
+from radhar_cli.assembly.motion import body_of, moving
+from radhar_cli.assembly.radar import antennas_of, waveform_of
+from radhar_cli.assembly.room import box_of, reflectors_of, wall_of
 from radhar_cli.bodies.motion_paths import point_delay, through_wall_delay
 from radhar_cli.bodies.segment_paths import Body
 from radhar_cli.config.radar import BoardRadar, FmcwRadar, SfcwRadar

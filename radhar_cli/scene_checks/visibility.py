@@ -15,13 +15,9 @@ from math import inf, log10, sqrt
 
 import numpy as np
 
-from radhar_cli.assembly.physics import (
-    antennas_of,
-    board_of,
-    frames_of,
-    wall_of,
-    waveform_of,
-)
+from radhar_cli.assembly.processing import frames_of
+from radhar_cli.assembly.radar import antennas_of, board_of, waveform_of
+from radhar_cli.assembly.room import wall_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.config.radar import BoardRadar

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.assembly.physics import antennas_of, waveform_of, ways_of
+from radhar_cli.assembly.radar import antennas_of, waveform_of
+from radhar_cli.assembly.room import ways_of
 from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar

@@ -7,7 +7,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from radhar_cli.assembly.physics import kinds_of
+from radhar_cli.assembly.room import kinds_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.processing.frame_maps import FrameMaps

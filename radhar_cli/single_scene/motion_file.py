@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.activities.activity import Activity
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import as_config
 from radhar_cli.errors import ConfigError

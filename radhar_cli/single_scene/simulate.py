@@ -6,7 +6,8 @@ from typing import Any, Literal, NamedTuple
 
 from radhar_cli.activities.activity import Activity
 from radhar_cli.assembly.bodies import Link, make_path_sources
-from radhar_cli.assembly.physics import motion_of, reflectors_of
+from radhar_cli.assembly.motion import motion_of
+from radhar_cli.assembly.room import reflectors_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.config.reading import as_config

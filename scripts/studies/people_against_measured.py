@@ -20,7 +20,7 @@ from scipy.ndimage import binary_opening, uniform_filter
 from scipy.signal import butter, sosfilt
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import load_config
 from radhar_cli.numerics.arrays import Bool, Complex
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT

@@ -9,7 +9,7 @@ import pytest
 from helpers.movements import in_groups
 
 from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, activity_named
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.checks.people import HUMAN_LIMITS
 from radhar_cli.config.motion import EARLIER_KEYS, FALLS

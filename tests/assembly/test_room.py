@@ -5,7 +5,7 @@ import pytest
 from helpers.small import SMALL, small_config
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.physics import reflectors_of
+from radhar_cli.assembly.room import reflectors_of
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config

@@ -9,7 +9,7 @@ import pytest
 from helpers.boards import CFG
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.physics import antennas_of
+from radhar_cli.assembly.radar import antennas_of
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.scene_fields import fields

@@ -15,7 +15,7 @@ from helpers.small import fingerprint, full_disk_after, small_config
 
 from radhar_cli import open_dataset, simulate
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.identity import resolved
 from radhar_cli.dataset.build import build

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.assembly.bodies import Link, make_body_paths
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.bodies.segment_paths import (
     REFLECTANCE,
     Body,

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from radhar_cli.assembly.bodies import Link, make_body_paths
-from radhar_cli.assembly.physics import antennas_of, motion_of, waveform_of
+from radhar_cli.assembly.motion import motion_of
+from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.bodies.motion_paths import leg
 from radhar_cli.bodies.surface_paths import DEPTH, FACING_DBSM, SurfacePaths, draw_surface
 from radhar_cli.config.data_set import Config

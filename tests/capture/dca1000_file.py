@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.bodies.motion_paths import MotionPaths
 from radhar_cli.config import Config
 from radhar_cli.echo.beat import beat_matrix

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from helpers.listener import Listener
 
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import RadharError, SceneError

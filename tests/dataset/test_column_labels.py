@@ -10,7 +10,7 @@ from helpers.listener import Listener
 from helpers.small import fingerprint, small_config
 
 from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.column_labels import label_columns, label_names

@@ -7,7 +7,7 @@ import pytest
 from helpers import reference as ref
 
 from radhar_cli.activities.activity import ACTIVITIES, Activity
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.accuracy import AccuracyError, measured_db
 from radhar_cli.echo.direct import DirectEcho

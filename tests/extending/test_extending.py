@@ -18,7 +18,9 @@ from pydantic import ValidationError
 from radhar_cli import extensions
 from radhar_cli.activities import activity
 from radhar_cli.activities.activity import activity_named, add_activity
-from radhar_cli.assembly.physics import antennas_of, impairments_of, motion_of, waveform_of
+from radhar_cli.assembly.motion import motion_of
+from radhar_cli.assembly.radar import antennas_of, waveform_of
+from radhar_cli.assembly.receiver import impairments_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.receiver import ToneConfig

@@ -21,7 +21,7 @@ from helpers.extreme_scenes import (
 )
 
 from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.reading import validated
 from radhar_cli.echo.exact import beat_blocks

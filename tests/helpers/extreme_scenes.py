@@ -6,7 +6,7 @@ import numpy as np
 from helpers import reference as ref
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.products.run import Results
 from radhar_cli.products.run import record as record_scene

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.writing import bvh_text

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from radhar_cli.activities.activity import ACTIVITIES, activity_named
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.motion.protocol import Motion, ScattererSubset
 from radhar_cli.motion.segments import (

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from helpers.boards import CFG, MARS
 
-from radhar_cli.assembly.physics import board_of
+from radhar_cli.assembly.radar import board_of
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.beat import beat_matrix

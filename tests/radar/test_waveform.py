@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.assembly.physics import waveform_of
+from radhar_cli.assembly.radar import waveform_of
 from radhar_cli.bodies.motion_paths import MotionPaths
 from radhar_cli.config import Config
 from radhar_cli.config.identity import resolved
@@ -138,8 +138,8 @@ def test_samples_of_stepped_frequencies() -> None:
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"waveform": "sfcw", "steps": 8}, r"radar\.dwell_s.*should be given"),
-        ({"steps": 8}, r"radar\.steps.*should be null"),
+        ({"waveform": "sfcw", "steps": 8}, r"radar\.dwell_s.*is required with radar\.waveform: sfcw"),
+        ({"steps": 8}, r"radar\.steps.*a key of radar\.waveform: sfcw"),
         (
             {"waveform": "sfcw", "steps": 8, "dwell_s": 1e-4, "chirp_s": 1e-5},
             r"radar\.chirp_s.*should be left out",
@@ -203,7 +203,7 @@ def test_the_doppler_of_real_samples_is_symmetric(kind: str) -> None:
         ({"radar": CW["radar"] | {"chirp_s": 1e-5}}, r"radar.chirp_s.*should be left out"),
         ({"processing": {"range_fft_length": 64}}, r"range_fft_length.*should be left out"),
         ({"processing": {"range_reference": "start"}}, r"range_reference.*should be left out"),
-        ({"radar": {"output": "real"}}, r"radar.output.*should be iq with .* fmcw"),
+        ({"radar": {"output": "real"}}, r"radar.output.*a key of radar.waveform: cw"),
     ],
 )
 def test_what_cw_does_not_have(more: dict[str, object], message: str) -> None:

@@ -9,7 +9,7 @@ from helpers import reference as ref
 from scipy.stats import expon, ks_2samp, kstest
 
 from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.processing.look import (

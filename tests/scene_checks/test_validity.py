@@ -11,7 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activities.activity import ACTIVITIES, activity_named
-from radhar_cli.assembly.physics import motion_of, wall_of, waveform_of
+from radhar_cli.assembly.motion import motion_of
+from radhar_cli.assembly.radar import waveform_of
+from radhar_cli.assembly.room import wall_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
 from radhar_cli.echo.paths import Paths

@@ -55,7 +55,7 @@ def pairs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_table_figures_and_a_last_line(pairs: Path, tmp_path: Path) -> None:
-    script = ROOT / "scripts/studies" / "clouds_against_measured.py"
+    script = ROOT / "scripts" / "studies" / "clouds_against_measured.py"
     command = [sys.executable, str(script), str(pairs), "--cfg", str(pairs.parent / "board.cfg")]
     made = subprocess.run([*command, "-o", str(tmp_path / "out")], capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
@@ -80,7 +80,7 @@ POSE = re.compile(
 
 
 def _pose(pairs: Path, out: Path, *more: str) -> tuple[float, ...]:
-    script = ROOT / "scripts/studies" / "pose_from_clouds.py"
+    script = ROOT / "scripts" / "studies" / "pose_from_clouds.py"
     command = [sys.executable, str(script), "--train", str(pairs), "--test", str(pairs)]
     made = subprocess.run([*command, "-o", str(out), *more], capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
@@ -102,7 +102,7 @@ def test_simulated_clouds_need_the_joints_alone(pairs: Path, tmp_path: Path) -> 
     with np.load(pairs) as file:
         held = {name: file[name] for name in file.files if name != "points"}
     np.savez(tmp_path / "joints.npz", **held)
-    script = ROOT / "scripts/studies" / "pose_from_clouds.py"
+    script = ROOT / "scripts" / "studies" / "pose_from_clouds.py"
     command = [sys.executable, str(script), "--train", str(tmp_path / "joints.npz")]
     command += ["--test", str(pairs), "--simulated", "--draws", "2", "--epochs", "4"]
     made = subprocess.run([*command, "-o", str(tmp_path)], capture_output=True, text=True)

@@ -5,7 +5,8 @@ from dataclasses import fields
 
 import numpy as np
 
-from radhar_cli.assembly.physics import antennas_of, motion_of, waveform_of
+from radhar_cli.assembly.motion import motion_of
+from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.scene import draw_scene
 from radhar_cli.single_scene.truth import Truth, evaluate_truth

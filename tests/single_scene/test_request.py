@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from helpers.small import small_config
 
-from radhar_cli.assembly.physics import motion_of
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.errors import ConfigError
 from radhar_cli.single_scene.request import SceneRequest

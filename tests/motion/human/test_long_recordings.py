@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers.movements import in_groups
 from radhar_cli.assembly.people import human_motion
 from radhar_cli.config.data_set import Config
 from radhar_cli.motion.human import minimum_jerk as steps_module
@@ -28,7 +29,7 @@ def person(slug: str, seconds: float) -> HumanMotion:
     config = Config.model_validate(
         {
             "duration_s": seconds,
-            "motion": {"model": "human", **motion},
+            "motion": {"model": "human", **in_groups(motion)},
             "classes": EXERCISE,
             "activities": [slug],
         }

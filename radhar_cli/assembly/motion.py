@@ -1,0 +1,65 @@
+"""Motion and body of a person in a scene."""
+
+from dataclasses import fields
+from math import radians
+
+from radhar_cli.bodies.segment_paths import Body
+from radhar_cli.motion.paper.activities import PaperGait, Timing
+from radhar_cli.motion.paper.body import PaperBody
+from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion
+from radhar_cli.motion.segments import landmark_names, segments_between, thickness
+from radhar_cli.scene import Person
+
+
+def motion_of(person: Person) -> Motion:
+    """Make a person's motion: by the activity's own function, its files, or the model of `motion`.
+
+    Raises:
+        MotionFileError: a motion file cannot be used.
+    """
+    if person.activity.motion is not None:
+        return person.activity.motion(person)
+    if person.config.files_of(person.activity) is not None:
+        from radhar_cli.assembly.motion_files import file_motion
+
+        return file_motion(person)
+    if person.motion.model == "human":
+        from radhar_cli.assembly.people import human_motion  # slow to import
+
+        return human_motion(person)
+    return _paper_body(person)
+
+
+def moving(person: Person) -> Motion:
+    """`motion_of`, built once a person; its positions are remembered."""
+    if "motion" not in person.held:
+        person.held["motion"] = cache_motion(motion_of(person))
+    found: Motion = person.held["motion"]
+    return found
+
+
+def body_of(person: Person, motion: Motion) -> Body:
+    """Make the body of a person, with the segments that the joints of their motion have."""
+    whole = motion.motion if isinstance(motion, ScattererSubset) else motion
+    stature, weight = person.subject.height_m, person.subject.weight_kg
+    return Body(whole, segments_between(landmark_names(whole)), stature, thickness(stature, weight))
+
+
+def _paper_body(person: Person) -> PaperBody:
+    subject, motion, timing = person.subject, person.motion, person.timing
+    return PaperBody(
+        activity=person.activity.slug,
+        height=subject.height_m,
+        weight=subject.weight_kg,
+        start=(motion.range_m, motion.cross_range_m),
+        angle=radians(motion.angle_deg),
+        gait=PaperGait(
+            frequency=motion.paper.gait_hz,
+            thigh=radians(motion.paper.thigh_deg),
+            calf=radians(motion.paper.calf_deg),
+            arm=radians(motion.paper.arm_deg),
+            turn=radians(motion.rotating.turn_deg),
+            speed=motion.walking.speed_mps,
+        ),
+        timing=Timing(**{one.name: getattr(timing, f"{one.name}_s") for one in fields(Timing)}),
+    )

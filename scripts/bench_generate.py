@@ -164,7 +164,8 @@ def rows(rounds: int) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as place:
         sink, image = Sink(config, Path(place)), Floor(config, "stft")
         ready = [
-            record(scene(config, number), ["signal", "waveform"]).products for number in range(12)
+            {"scene": drawn, **record(drawn, ["signal", "waveform"]).products}
+            for drawn in (scene(config, number) for number in range(12))
         ]
 
         def floor(turn: int) -> None:

@@ -31,7 +31,7 @@ def predict(
     resize: Resize = False,
     device: Device = "auto",
 ) -> None:
-    """Print the most likely classes of images, or write the joints of sequences.
+    """Print the most likely classes of images; or joints of sequences.
 
     Example:
       radhar predict runs/quickstart datasets/quickstart/png/stft/val/walking/00005.png

@@ -1,5 +1,6 @@
 """Read a YAML config, apply ``--set`` overrides, and say clearly what is wrong with it."""
 
+import difflib
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -362,6 +363,8 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
     if elsewhere := _why_of_another(places[0], str(names[-1])):
         return elsewhere
     known = [name for one in places for name in one.model_fields]
+    if deeper := _key_of_group(str(names[-1]), places[0]):
+        return f"is an unknown key; did you mean {deeper!r}?"
     in_our_unit = key_in_our_unit(str(names[-1]), value, known)
     if in_our_unit is not None:
         return f"is an unknown key; {in_our_unit}"
@@ -377,6 +380,21 @@ def _section_of(field: FieldInfo, value: Any) -> type[BaseModel] | None:
         tag = kind_of_radar(value)
         return next((kind for kind in RADARS if f"<{kind.kind}>" == tag), None)
     return next(iter(kinds), None)
+
+
+def _key_of_group(name: str, section: type[BaseModel]) -> str | None:
+    """Find a key like a name in the groups of a section, as "walking.speed_mps"; None without."""
+    groups = {group: sections(field) for group, field in section.model_fields.items()}
+    leaves = {
+        leaf: f"{group}.{leaf}"
+        for group, kinds in groups.items()
+        for kind in kinds
+        for leaf in kind.model_fields
+    }
+    if difflib.get_close_matches(name, section.model_fields, n=1, cutoff=0.6):
+        return None
+    near = difflib.get_close_matches(name, leaves, n=1, cutoff=0.75)
+    return leaves[near[0]] if near else None
 
 
 def _why_of_another(kind: type[BaseModel], key: str) -> str | None:

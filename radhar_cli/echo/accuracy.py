@@ -6,7 +6,7 @@ pulses.
 """
 
 from collections.abc import Callable
-from math import ceil, inf, isnan, log10
+from math import ceil, inf, isnan, log10, nan
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -138,6 +138,8 @@ class Probes(NamedTuple):
         estimates = squares / self.density
         spread = estimates.std() * np.sqrt(estimates.size)
         relative = float(estimates.sum() + DEVIATIONS * spread) / self.total
+        if isnan(self.total):  # no number of a signal can be right; its power is refused later
+            return nan
         if isnan(relative):
             return inf
         return 10 * log10(relative) if relative > 0 else -inf

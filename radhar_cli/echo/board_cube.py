@@ -92,7 +92,7 @@ def fast_cube(
     for count, precise in ((NODES, not single), (MORE_NODES, True), (board.loops, True)):
         cube, power, roughness = _summed(channels, board, tolerance_db, count, precise)
         error = measured_db(cube, channels, board, roughness)
-        if error <= tolerance_db - SPARE_DB:
+        if not error > tolerance_db - SPARE_DB:  # NaN of a signal that is no number
             return cube, power, error
         best = min(best, error)
     raise AccuracyError(best + SPARE_DB)

@@ -93,7 +93,7 @@ class DirectEcho:
             y = self._sum(chosen, motion, unit)
             error = self._error(y, motion, unit)
             best = min(best, error)
-            if error <= self.tolerance_db - SPARE_DB:
+            if not error > self.tolerance_db - SPARE_DB:  # NaN of a signal that is no number
                 y *= unit
                 return y, Accuracy(motion.step, chosen.table_oversampling, chosen.single, error)
             if aim == MIN_AIM_DB:

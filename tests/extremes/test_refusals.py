@@ -6,10 +6,12 @@ import re
 from typing import Any
 
 import pytest
+from helpers.boards import CFG
 
 from radhar_cli.config import Config
 from radhar_cli.config.annotations import ByModel, annotations, of_kind
 from radhar_cli.config.number import Bounds
+from radhar_cli.config.radar import FmcwRadar
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError
 
@@ -67,6 +69,8 @@ def document(key: str, value: Any) -> dict[str, Any]:
         *names, last = names
         value = vector
     made: dict[str, Any] = {"motion": {"model": "paper"}}
+    if names[:1] == ["radar"] and (*names, last)[1] not in FmcwRadar.model_fields:
+        made["radar"] = {"cfg": CFG, "device": "IWR1443BOOST"}
     place = made
     for name in names:
         place = place.setdefault(name, {})

@@ -12,7 +12,9 @@ from radhar_cli.assembly.radar import waveform_of
 from radhar_cli.bodies.motion_paths import MotionPaths
 from radhar_cli.config import Config
 from radhar_cli.config.identity import resolved
+from radhar_cli.config.reading import validated
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.errors import ConfigError
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene import nominal_scene
 from radhar_cli.single_scene.simulate import simulate
@@ -102,9 +104,16 @@ def test_counts_are_rounded_half_up_as_written(duration: float, prf: float, puls
 STEPS = {"carrier_hz": 1e9, "bandwidth_hz": 2e9, "prf_hz": 100}
 
 
+BASE_OF_STEPS = {
+    "motion": {"range_m": 6},
+    "duration_s": 1,
+    "activities": ["walking"],
+    "maps": ["stft", "rtm"],
+}
+
+
 def stepped(**more: object) -> Config:
-    document = {"radar": STEPS | more, "motion": {"range_m": 6}, "duration_s": 1}
-    return Config.model_validate(document | {"activities": ["walking"], "maps": ["stft", "rtm"]})
+    return Config.model_validate(BASE_OF_STEPS | {"radar": STEPS | more})
 
 
 def test_stepped_frequencies_are_the_chirp_of_the_same_samples() -> None:
@@ -138,7 +147,10 @@ def test_samples_of_stepped_frequencies() -> None:
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"waveform": "sfcw", "steps": 8}, r"radar\.dwell_s.*is required with radar\.waveform: sfcw"),
+        (
+            {"waveform": "sfcw", "steps": 8},
+            r"radar\.dwell_s.*is required with radar\.waveform: sfcw",
+        ),
         ({"steps": 8}, r"radar\.steps.*a key of radar\.waveform: sfcw"),
         (
             {"waveform": "sfcw", "steps": 8, "dwell_s": 1e-4, "chirp_s": 1e-5},
@@ -148,8 +160,8 @@ def test_samples_of_stepped_frequencies() -> None:
     ],
 )
 def test_steps_that_do_not_fit(more: dict[str, object], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        stepped(**more)
+    with pytest.raises(ConfigError, match=message):
+        validated(Config, {**BASE_OF_STEPS, "radar": STEPS | more}, "here", {})
 
 
 def test_a_slow_sweep_and_a_short_fft_are_told_by_their_own_keys() -> None:
@@ -207,5 +219,5 @@ def test_the_doppler_of_real_samples_is_symmetric(kind: str) -> None:
     ],
 )
 def test_what_cw_does_not_have(more: dict[str, object], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        Config.model_validate(CW | {"maps": ["stft"]} | more)
+    with pytest.raises(ConfigError, match=message):
+        validated(Config, CW | {"maps": ["stft"]} | more, "here", {})

@@ -10,7 +10,7 @@ from radhar_cli.products.run import record
 def test_the_naive_sample_shows_the_same() -> None:
     config = load_config(bench.PAPER, ["duration_s=0.2", "snr_db=140", "maps=[stft]"])
     scene = bench.scene(config, 7)
-    ready = record(scene, ["signal", "waveform"]).products
+    ready = {"scene": scene, **record(scene, ["signal", "waveform"]).products}
     x = bench.naive_signal(scene)
     assert x.shape == ready["signal"].x[0, 0].shape
     signal = ready["signal"].with_samples(x[None, None])

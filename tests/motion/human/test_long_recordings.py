@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-
 from helpers.movements import in_groups
+
 from radhar_cli.assembly.people import human_motion
 from radhar_cli.config.data_set import Config
 from radhar_cli.motion.human import minimum_jerk as steps_module

@@ -9,7 +9,8 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
+from dataclasses import dataclass
+from functools import cached_property, partial
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.capture.settings import USUAL_AXES, AxisName, CaptureSettings
-from radhar_cli.capture.source import Parts, Source
+from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Parts, Source
 from radhar_cli.dataset.untrusted_hdf5 import NumberColumn, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, did_you_mean
 from radhar_cli.files.untrusted import regular_size
@@ -62,41 +63,6 @@ class StoredArray:
         return native.view(self.number).reshape(*block.shape, self.parts)
 
 
-def open_arrays(path: Path, settings: CaptureSettings, scratch: Path) -> Source:
-    """Open a capture that is an array.
-
-    Args:
-        path: the file, whose first bytes tell the format.
-        settings: header of the capture.
-        scratch: folder for unpacked arrays.
-
-    Raises:
-        CaptureError: the format is unknown, or the arrays do not fit the header.
-    """
-    try:
-        regular_size(path)
-        with path.open("rb") as file:
-            head = file.read(128)
-    except OSError as error:
-        raise CaptureError(f"{path}: {error.strerror}") from None
-    of_matlab = head.startswith(b"MATLAB")
-    if head.startswith(b"\x93NUMPY"):
-        arrays = [_npy(path, str(path))]
-    elif head.startswith(b"PK"):
-        arrays = _npz(path, settings, scratch)
-    elif head.startswith((b"\x89HDF", b"MATLAB 7.3")):
-        arrays = _hdf5(path, settings)
-    elif of_matlab:
-        arrays = _mat5(path, settings)
-    else:
-        raise CaptureError(
-            f"{path}: unknown format; should be .npy, .npz, .mat, HDF5, or .bin of a "
-            "DCA1000 with --radar"
-        )
-    times = None if settings.times is None or len(arrays) == 1 else _times(arrays[1])
-    return as_source(path, arrays[0], settings, times, of_matlab)
-
-
 def _npy(path: Path, where: str) -> StoredArray | NumberColumn:
     """Map the array of a .npy file."""
     return StoredArray(where, partial(np.load, path, mmap_mode="r", allow_pickle=False))
@@ -137,9 +103,17 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
 
 def _hdf5(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberColumn]:
     file = UntrustedFile(path)
-    asked = [name for name in (settings.dataset, settings.times) if name is not None]
-    shapes = {name: tuple(file.shape(name.strip("/"))) for name in [*file.numeric_names(), *asked]}
+    named_arrays = [name for name in (settings.dataset, settings.times) if name is not None]
+    names = [*file.numeric_names(), *named_arrays]
+    shapes = {name: tuple(file.shape(name.strip("/"))) for name in names}
     return [file.samples(name.strip("/")) for name in _chosen(path, shapes, settings)]
+
+
+def _mat(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberColumn]:
+    """Open the arrays of a .mat file: HDF5 from version 7.3 on."""
+    with path.open("rb") as file:
+        is_hdf5 = file.read(10) == b"MATLAB 7.3"
+    return _hdf5(path, settings) if is_hdf5 else _mat5(path, settings)
 
 
 def _mat5(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberColumn]:
@@ -160,7 +134,7 @@ def _check_mat5(path: Path) -> None:
     An element: its type and size, 4 bytes each, then its bytes; type 15 is compressed.
     """
     size = regular_size(path)
-    most = left = min(MAX_MAT5, MAX_PACKING * size)
+    limit = left = min(MAX_MAT5, MAX_PACKING * size)
     with path.open("rb") as file:
         order = "<" if file.read(128)[126:] == b"IM" else ">"
         while head := file.read(8):
@@ -178,7 +152,7 @@ def _check_mat5(path: Path) -> None:
             left -= count
             if left < 0:
                 raise CaptureError(
-                    f"{path}: holds more than {most} bytes when unpacked; save it with -v7.3"
+                    f"{path}: holds more than {limit} bytes when unpacked; save it with -v7.3"
                 )
 
 
@@ -212,6 +186,79 @@ def _times(array: StoredArray | NumberColumn) -> Float:
     return array.read(tuple(slice(0, n) for n in array.shape)).astype(float).ravel()
 
 
+@dataclass(frozen=True)
+class ArrayPulses:
+    """Pulses of an array whose axes have names; those of transmitters that take turns are sorted.
+
+    Raises:
+        CaptureError: the axes do not hold whole pulses.
+    """
+
+    array: StoredArray | NumberColumn
+    axes: tuple[AxisName, ...]  # of the array, outermost first
+    transmitters: int
+
+    def __post_init__(self) -> None:
+        iq = self.sizes.get("iq")
+        if iq is not None and (iq != 2 or self.array.parts == 2):
+            raise CaptureError(
+                f"{self.array.where}: the axis iq has {iq}; should have 2, real numbers"
+            )
+        if self.count == 0 or ("frame" in self.axes and self.per_frame % self.turns):
+            raise CaptureError(
+                f"{self.array.where}: the axis pulse has {self.per_frame} chirps; should have a "
+                f"multiple of transmitters = {self.transmitters}"
+            )
+
+    @cached_property
+    def sizes(self) -> dict[AxisName, int]:
+        """Size of each axis."""
+        return dict(zip(self.axes, self.array.shape, strict=True))
+
+    @property
+    def parts(self) -> int:
+        """2 of complex samples, 1 of real ones."""
+        return self.sizes.get("iq", self.array.parts)
+
+    @property
+    def turns(self) -> int:
+        """Number of transmitters that take turns along the axis pulse."""
+        return 1 if "transmitter" in self.axes else self.transmitters
+
+    @property
+    def per_frame(self) -> int:
+        """Number of chirps along the axis pulse."""
+        return self.sizes["pulse"]
+
+    @property
+    def chirps(self) -> int:
+        """Number of chirps of all transmitters that take turns."""
+        return self.per_frame * self.sizes.get("frame", 1)
+
+    @property
+    def count(self) -> int:
+        """Number of pulses of each transmitter."""
+        return self.chirps // self.turns
+
+    def read(self, first: int, stop: int) -> Parts:
+        """Read pulses [virtual receiver, sample, stop - first, part] from first to stop - 1."""
+        pieces = _by_frame(first * self.turns, stop * self.turns, self.per_frame)
+        blocks = [self._chirps(*frames_and_pulses) for frames_and_pulses in pieces]
+        block = blocks[0] if len(blocks) == 1 else np.concatenate(blocks, axis=3)
+        block = block.reshape(*block.shape[:3], -1, self.turns, self.parts)
+        return np.moveaxis(block, 4, 0).reshape(-1, block.shape[2], stop - first, self.parts)
+
+    def _chirps(self, frames: slice, pulses: slice) -> Parts:
+        """Read chirps [transmitter, receiver, sample, chirp, part]: of frames, some pulses each."""
+        chosen = {"frame": frames, "pulse": pulses}
+        key = tuple(chosen.get(name, slice(0, self.sizes[name])) for name in self.axes)
+        block = self.array.read(key)
+        block = block[..., 0] if "iq" in self.axes else block
+        present = [self.axes.index(name) for name in _ORDER if name in self.axes]
+        block = block.transpose(*present, *range(len(self.axes), block.ndim))
+        return block.reshape(*(self.sizes.get(name, 1) for name in _ORDER[:3]), -1, self.parts)
+
+
 def as_source(
     path: Path,
     array: StoredArray | NumberColumn,
@@ -233,54 +280,60 @@ def as_source(
     """
     axes = _axes(array, settings, of_matlab)
     sizes = dict(zip(axes, array.shape, strict=True))
-    parts = sizes.get("iq", array.parts)
-    if "iq" in sizes and (parts != 2 or array.parts == 2):
-        raise CaptureError(f"{array.where}: the axis iq has {parts}; should have 2, real numbers")
     transmitters = sizes.get("transmitter", settings.transmitters)
-    interleaved_transmitters = 1 if "transmitter" in sizes else transmitters
-    per_frame = sizes["pulse"]
-    pulses, incomplete = divmod(per_frame * sizes.get("frame", 1), interleaved_transmitters)
-    if pulses == 0 or ("frame" in sizes and per_frame % interleaved_transmitters):
-        raise CaptureError(
-            f"{array.where}: the axis pulse has {per_frame} chirps; should have a multiple of "
-            f"transmitters = {transmitters}"
-        )
-    present = [axes.index(name) for name in _ORDER if name in axes]
-    full = [sizes.get(name, 1) for name in _ORDER[:3]]
-
-    def chirps_of(frames: slice, pulses: slice) -> Parts:
-        """Read chirps [transmitter, receiver, sample, chirp, part]: of frames, some pulses each."""
-        chosen = {"frame": frames, "pulse": pulses}
-        block = array.read(tuple(chosen.get(name, slice(0, sizes[name])) for name in axes))
-        block = block[..., 0] if "iq" in sizes else block
-        return block.transpose(*present, *range(len(axes), block.ndim)).reshape(*full, -1, parts)
-
-    def read(first: int, stop: int) -> Parts:
-        pieces = _by_frame(
-            first * interleaved_transmitters, stop * interleaved_transmitters, per_frame
-        )
-        chunks = [chirps_of(*where) for where in pieces]
-        block = chunks[0] if len(chunks) == 1 else np.concatenate(chunks, axis=3)
-        block = np.moveaxis(block.reshape(*full, -1, interleaved_transmitters, parts), 4, 0)
-        return block.reshape(-1, full[2], stop - first, parts)
-
+    pulses = ArrayPulses(array, axes, transmitters)
+    has_frames = "frame" in axes
+    incomplete = pulses.chirps % pulses.turns
     note = f"the last {incomplete} chirps (an incomplete transmitter cycle) are left out"
-    chunk = array.chunk[axes.index("frame" if "frame" in axes else "pulse")]
+    chunk = array.chunk[axes.index("frame" if has_frames else "pulse")]
     return Source(
         (path,),
         transmitters * sizes.get("receiver", 1),
         sizes.get("sample"),
-        pulses,
+        pulses.count,
         array.number,
-        parts,
-        read,
+        pulses.parts,
+        pulses.read,
         times=times,
-        step=max(chunk * (per_frame if "frame" in axes else 1) // interleaved_transmitters, 1),
-        settings={"frame_pulses": per_frame // interleaved_transmitters}
-        if "frame" in sizes
-        else {},
+        step=max(chunk * (pulses.per_frame if has_frames else 1) // pulses.turns, 1),
+        settings={"frame_pulses": pulses.per_frame // pulses.turns} if has_frames else {},
         notes=(note,) if incomplete else (),
     )
+
+
+def _open_with(
+    arrays_of: Callable[[CaptureFiles], list[StoredArray | NumberColumn]], of_matlab: bool
+) -> Callable[[CaptureFiles], Source]:
+    """Make the function that opens a format, of one that opens its arrays: samples and times."""
+
+    def open_arrays(capture: CaptureFiles) -> Source:
+        arrays, settings = arrays_of(capture), capture.settings
+        times = None if settings.times is None or len(arrays) == 1 else _times(arrays[1])
+        return as_source(capture.paths[0], arrays[0], settings, times, of_matlab)
+
+    return open_arrays
+
+
+NPY = CaptureFormat(
+    ".npy",
+    lambda path, head: head.startswith(b"\x93NUMPY"),
+    _open_with(lambda files: [_npy(files.paths[0], str(files.paths[0]))], of_matlab=False),
+)
+NPZ = CaptureFormat(
+    ".npz",
+    lambda path, head: head.startswith(b"PK"),
+    _open_with(lambda files: _npz(files.paths[0], files.settings, files.scratch), of_matlab=False),
+)
+MAT = CaptureFormat(
+    ".mat",
+    lambda path, head: head.startswith(b"MATLAB"),
+    _open_with(lambda files: _mat(files.paths[0], files.settings), of_matlab=True),
+)
+HDF5 = CaptureFormat(
+    "HDF5",
+    lambda path, head: head.startswith(b"\x89HDF"),
+    _open_with(lambda files: _hdf5(files.paths[0], files.settings), of_matlab=False),
+)
 
 
 def _by_frame(low: int, high: int, per_frame: int) -> Iterator[tuple[slice, slice]]:

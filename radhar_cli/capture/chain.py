@@ -4,7 +4,7 @@ No difference and no window crosses a gap. The columns of a map are then put on 
 times. Powers of several receivers are added up.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from radhar_cli.assembly.processing import canceller_of, frames_of, fsst_frames_of
 from radhar_cli.assembly.radar import board_of
+from radhar_cli.capture.content import Beat, RangeProfiles, Ranging, SlowTime
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
@@ -24,7 +25,6 @@ from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.map_kind import RTM, treatment_of
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal, nearest
 from radhar_cli.processing.track import StandingTrack
 from radhar_cli.products.run import process
@@ -51,6 +51,70 @@ class Maps:
     board: Board | None = None
 
 
+@dataclass(frozen=True)
+class RecordingPart:
+    """Pulses of a part of a recording, of some of its receivers."""
+
+    recording: Recording
+    receivers: Sequence[int]  # numbers of the receivers
+    first: int  # number of the first pulse
+    stop: int  # number after the last pulse
+    segments: PulseTimes  # times of these pulses, numbered from 0
+
+    @property
+    def pulses(self) -> int:
+        """Number M of pulses."""
+        return self.stop - self.first
+
+    @property
+    def lost(self) -> Bool:
+        """Whether a pulse lacks samples [M]."""
+        return (self.recording.flags[self.first : self.stop] & LOST).astype(bool)
+
+    def pieces(self, length: int) -> Iterator[tuple[slice, Complex]]:
+        """Yield (pulses of the part, samples [receiver, N, pulse] of the recording) of each piece.
+
+        Args:
+            length: number of pulses of a piece, the last may be shorter.
+        """
+        for start in range(self.first, self.stop, length):
+            stop = min(start + length, self.stop)
+            yield slice(start - self.first, stop - self.first), self.recording.beat(start, stop)
+
+
+def part_of(
+    recording: Recording, start: float | None, stop: float | None, receiver: int | None = None
+) -> RecordingPart:
+    """Find the pulses of a recording from start to stop.
+
+    Args:
+        recording: the recording.
+        start: time since the first pulse, s; None is the start.
+        stop: time since the first pulse, s; None is the end.
+        receiver: number of the only receiver; None for all.
+
+    Raises:
+        CaptureError: there are fewer than MIN_FRAME_PULSES, or no such receiver.
+    """
+    receivers = recording.info.receivers
+    if receiver is not None and not 0 <= receiver < receivers:
+        raise CaptureError(f"{recording.path}: receiver {receiver}: should be below {receivers}")
+    segments = recording.segments
+    times = segments.times(np.arange(segments.pulses))
+    origin = float(times[0])
+    half = 0.5 / segments.prf  # a time that a decimal rounds is that of its pulse
+    first = 0 if start is None else int(np.searchsorted(times, origin + start - half))
+    last = times.size if stop is None else int(np.searchsorted(times, origin + stop - half))
+    if last - first < MIN_FRAME_PULSES:
+        until = "the end" if stop is None else f"{stop:g} s"
+        raise CaptureError(
+            f"{recording.path}: from {start or 0:g} s to {until} there are "
+            f"{max(last - first, 0)} pulses; it lasts {segments.duration:.4g} s"
+        )
+    numbers = range(receivers) if receiver is None else [receiver]
+    return RecordingPart(recording, numbers, first, last, _within(segments, first, last))
+
+
 def maps_of(
     recording: Recording,
     config: AnyConfig,
@@ -72,55 +136,24 @@ def maps_of(
     Raises:
         CaptureError: the part is too short or too large, or its samples do not suffice for a map.
     """
-    receivers = recording.info.receivers
-    if receiver is not None and not 0 <= receiver < receivers:
-        raise CaptureError(f"{recording.path}: receiver {receiver}: should be below {receivers}")
-    chosen = range(receivers) if receiver is None else [receiver]
-    first, last, segments = pulses_between(recording, start, stop)
-    lost = (recording.flags[first:last] & LOST).astype(bool)
-    notes: list[str] = []
-    if lost.all():
-        raise CaptureError(f"{recording.path}: each of its {lost.size} pulses there lacks samples")
-    if lost.any():
-        count = np.count_nonzero(lost)
-        notes.append(f"{count} pulses lack samples: filled in from their neighbours")
-    clutter = config.processing.clutter
-    if clutter == "highpass" and len(segments) > 1:
-        raise CaptureError(
-            f"{recording.path}: has {len(segments)} stretches with gaps between; "
-            "processing.clutter should be mean or difference, a high-pass would ring in each"
-        )
-    prf = segments.prf
+    part = part_of(recording, start, stop, receiver)
+    notes = _notes_of_lost_pulses(part)
+    _refuse_ringing(part, config)
     track: TorsoTrack | None = None
-    if recording.info.samples is None:
+    if isinstance(recording.info.content, SlowTime):
         _refuse_without_ranges(recording, config, names)
-        _refuse_too_much(recording, 1, len(chosen), first, last)
-        x = fill_lost_pulses(slow_time_of_part(recording, chosen, first, last), lost)
-        signal = Signal(x, segments, recording.info.carrier_hz)
+        signal = Signal(slow_time_of_part(part), part.segments, recording.info.carrier_hz)
     else:
-        processing = config.processing
-        centred = processing.range_reference == "centre" or processing.range_sum == "gated"
-        waveform = recording.info.waveform(processing.range_fft_length, centred)
-        waveform = replace(waveform, duration=segments.pulses / prf)
-        radar = fixed_radar(config)
-        if isinstance(radar, BoardRadar):  # whose samples have no half band
-            waveform = replace(board_of(radar).waveform, centred=centred)
-        x = fill_lost_pulses(bins_of_part(recording, waveform, chosen, first, last), lost)
-        profiles = recording.info.holds == "profiles"
-        moving_bins = analytic(x) if profiles and recording.samples.parts == 1 else x
-        track = track_torso(without_static(moving_bins), segments, waveform)
+        signal, track = _range_signal(part, recording.info.content, config)
         notes += [] if track else ["nothing moves: no torso was found"]
-        if not profiles:
-            x *= unit_phasor(np.arange(waveform.n_bins)[:, None] * (waveform.n0 / waveform.n_fft))
-        step = waveform.range_step
-        signal = Signal(x, segments, waveform.f0, waveform.range_axis(), range_step=step)
     # What is global to a recording is done here; difference and windows cross no gap.
-    canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, prf)
+    clutter = config.processing.clutter
+    canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, signal.prf)
     signal = signal.with_samples(without_static(signal.x)) if clutter == "mean" else signal
-    maps_by_name: dict[str, PowerMap] = {}
+    maps: dict[str, PowerMap] = {}
     rtm = str(RTM)
     if rtm in names:
-        maps_by_name[rtm] = process(signal, config, [rtm], canceller=canceller)[rtm]
+        maps[rtm] = process(signal, config, [rtm], canceller=canceller)[rtm]
     doppler = [name for name in names if name != rtm]
     if doppler:
         signal, (frames, fine) = _windows(signal, canceller, config, doppler, recording, notes)
@@ -129,42 +162,54 @@ def maps_of(
             signal = signal.cancelled(canceller)
         else:
             inputs["torso_track"] = track or StandingTrack(float(signal.ranges.mean()))
-        maps = process(signal, config, doppler, canceller=canceller, **inputs)
-        maps_by_name |= {name: _even(maps[name]) for name in doppler}
-    return Maps(
-        {name: maps_by_name[name] for name in names}, track, signal.f0, list(dict.fromkeys(notes))
-    )
+        results = process(signal, config, doppler, canceller=canceller, **inputs)
+        maps |= {name: _even(results[name]) for name in doppler}
+    return Maps({name: maps[name] for name in names}, track, signal.f0, list(dict.fromkeys(notes)))
 
 
-def pulses_between(
-    recording: Recording, start: float | None, stop: float | None
-) -> tuple[int, int, PulseTimes]:
-    """Find the pulses of a recording from start to stop.
-
-    Args:
-        recording: the recording.
-        start: time since the first pulse, s; None is the start.
-        stop: time since the first pulse, s; None is the end.
-
-    Returns:
-        Number of the first pulse, number after the last, and the segments of these pulses.
+def _notes_of_lost_pulses(part: RecordingPart) -> list[str]:
+    """Note on the pulses that are filled in, if any.
 
     Raises:
-        CaptureError: there are fewer than MIN_FRAME_PULSES.
+        CaptureError: all pulses are lost.
     """
-    segments = recording.segments
-    times = segments.times(np.arange(segments.pulses))
-    origin = float(times[0])
-    half = 0.5 / segments.prf  # a time that a decimal rounds is that of its pulse
-    first = 0 if start is None else int(np.searchsorted(times, origin + start - half))
-    last = times.size if stop is None else int(np.searchsorted(times, origin + stop - half))
-    if last - first < MIN_FRAME_PULSES:
-        until = "the end" if stop is None else f"{stop:g} s"
+    lost = part.lost
+    if lost.all():
+        path = part.recording.path
+        raise CaptureError(f"{path}: each of its {lost.size} pulses there lacks samples")
+    if not lost.any():
+        return []
+    return [f"{np.count_nonzero(lost)} pulses lack samples: filled in from their neighbours"]
+
+
+def _refuse_ringing(part: RecordingPart, config: AnyConfig) -> None:
+    """Refuse a high-pass of a part with gaps."""
+    if config.processing.clutter == "highpass" and len(part.segments) > 1:
         raise CaptureError(
-            f"{recording.path}: from {start or 0:g} s to {until} there are "
-            f"{max(last - first, 0)} pulses; it lasts {segments.duration:.4g} s"
+            f"{part.recording.path}: has {len(part.segments)} stretches with gaps between; "
+            "processing.clutter should be mean or difference, a high-pass would ring in each"
         )
-    return first, last, _within(recording.segments, first, last)
+
+
+def _range_signal(
+    part: RecordingPart, content: Ranging, config: AnyConfig
+) -> tuple[Signal, TorsoTrack | None]:
+    """Make the range bins of a part, and track the torso in them; None if nothing moves."""
+    processing = config.processing
+    centred = processing.range_reference == "centre" or processing.range_sum == "gated"
+    duration = part.segments.pulses / part.segments.prf
+    waveform = content.waveform(duration, processing.range_fft_length, centred)
+    radar = fixed_radar(config)
+    if isinstance(radar, BoardRadar):  # whose samples have no half band
+        waveform = replace(board_of(radar).waveform, centred=centred)
+    x = bins_of_part(part, content, waveform)
+    is_real = isinstance(content, RangeProfiles) and part.recording.samples.parts == 1
+    moving_bins = without_static(analytic(x) if is_real else x)
+    track = track_torso(moving_bins, part.segments, waveform)
+    if isinstance(content, Beat):
+        x *= unit_phasor(np.arange(waveform.n_bins)[:, None] * (waveform.n0 / waveform.n_fft))
+    ranges, step = waveform.range_axis(), waveform.range_step
+    return Signal(x, part.segments, waveform.f0, ranges, range_step=step), track
 
 
 def _within(segments: PulseTimes, first: int, last: int) -> PulseTimes:
@@ -194,14 +239,13 @@ def fill_lost_pulses(x: Complex, lost: Bool) -> Complex:
     return rows.reshape(x.shape)
 
 
-def _refuse_too_much(
-    recording: Recording, bins: int, receivers: int, first: int, last: int
-) -> None:
-    """Refuse more than MAX_BYTES of range bins [receivers, bins, pulses].
+def _refuse_too_much(part: RecordingPart, bins: int) -> None:
+    """Refuse more than MAX_BYTES of range bins [receiver, bin, pulse] of a part.
 
-    `receivers` are those that are held at once; --receiver helps only where there are several.
+    --receiver helps only where there are several receivers.
     """
-    size, seconds = 16 * receivers * bins * (last - first), (last - first) / recording.info.prf_hz
+    receivers, seconds = len(part.receivers), part.pulses / part.recording.info.prf_hz
+    size = 16 * receivers * bins * part.pulses
     if size <= MAX_BYTES:
         return
     remedy = f"--start and --stop should choose at most {MAX_BYTES / size * seconds:.3g} s"
@@ -209,20 +253,21 @@ def _refuse_too_much(
         remedy += ", or --receiver 0 one receiver"
     holder = f"{receivers} receivers" if receivers > 1 else "a receiver"
     raise CaptureError(
-        f"{recording.path}: {seconds:.4g} s of {holder} take {size / 2**30:.1f} GiB; {remedy}"
+        f"{part.recording.path}: {seconds:.4g} s of {holder} take {size / 2**30:.1f} GiB; {remedy}"
     )
 
 
-def slow_time_of_part(
-    recording: Recording, chosen: Sequence[int], first: int, last: int
-) -> Complex:
-    """Read the slow time [receiver, 1, M] of pulses first .. last - 1 of some receivers."""
-    x = np.empty((len(chosen), 1, last - first), dtype=complex)
-    step = max(PIECE_SAMPLES // recording.info.receivers, 1)
-    for start in range(first, last, step):
-        beat = recording.beat(start, min(start + step, last))
-        x[:, :, start - first : start - first + beat.shape[2]] = beat[list(chosen), :1]
-    return x
+def slow_time_of_part(part: RecordingPart) -> Complex:
+    """Read the slow time [receiver, 1, M] of a part; lost pulses are filled in.
+
+    Raises:
+        CaptureError: it takes more than MAX_BYTES.
+    """
+    _refuse_too_much(part, 1)
+    x = np.empty((len(part.receivers), 1, part.pulses), dtype=complex)
+    for pulses, samples in part.pieces(max(PIECE_SAMPLES // part.recording.info.receivers, 1)):
+        x[:, :, pulses] = samples[list(part.receivers), :1]
+    return fill_lost_pulses(x, part.lost)
 
 
 def analytic(profiles: Complex) -> Complex:
@@ -236,34 +281,27 @@ def analytic(profiles: Complex) -> Complex:
     return signal
 
 
-def bins_of_part(
-    recording: Recording, w: Waveform, chosen: Sequence[int], first: int, last: int
-) -> Complex:
-    """Compute range bins [receiver, K, M] of a recording, referred to the chirp's start.
+def bins_of_part(part: RecordingPart, content: Ranging, w: Waveform) -> Complex:
+    """Compute range bins [receiver, K, M] of a part, referred to the chirp's start.
 
-    Range profiles are their own bins.
+    Lost pulses are filled in.
 
     Args:
-        recording: recording of chirps, or of range profiles.
+        part: part of a recording, of which not all pulses are lost.
+        content: content of the recording.
         w: waveform, which says how long the transform over a chirp is.
-        chosen: numbers of the receivers.
-        first: first pulse.
-        last: pulse after the last one.
 
     Raises:
         CaptureError: the bins take more than MAX_BYTES.
     """
-    _refuse_too_much(recording, w.n_bins, len(chosen), first, last)
+    _refuse_too_much(part, w.n_bins)
     w = replace(w, centred=False)
-    x = np.empty((len(chosen), w.n_bins, last - first), dtype=complex)
-    profiles, across = recording.info.holds == "profiles", max(w.n_fft, w.n_bins)
-    step = max(PIECE_SAMPLES // (across * recording.info.receivers), 1)
-    for at in range(first, last, step):
-        beat = recording.beat(at, min(at + step, last))
-        for row, number in enumerate(chosen):
-            bins = beat[number] if profiles else range_compression(beat[number], w)
-            x[row, :, at - first : at - first + beat.shape[2]] = bins
-    return x
+    x = np.empty((len(part.receivers), w.n_bins, part.pulses), dtype=complex)
+    samples_of_pulse = max(w.n_fft, w.n_bins) * part.recording.info.receivers
+    for pulses, samples in part.pieces(max(PIECE_SAMPLES // samples_of_pulse, 1)):
+        for row, number in enumerate(part.receivers):
+            x[row, :, pulses] = content.range_bins(samples[number], w)
+    return fill_lost_pulses(x, part.lost)
 
 
 def _windows(
@@ -303,8 +341,8 @@ def _windows(
     least_pulses = max(length, filter_pulses)
     short_stretches = np.count_nonzero(lengths < least_pulses)
     if short_stretches:
-        what = "a window" if length == least_pulses else "the filter of the denoised maps"
-        notes.append(f"{short_stretches} stretches are shorter than {what} and are left out")
+        shortest = "a window" if length == least_pulses else "the filter of the denoised maps"
+        notes.append(f"{short_stretches} stretches are shorter than {shortest} and are left out")
         signal = signal.stretches(least_pulses + canceller.lost)
     fine = fsst_frames_of(config, duration, signal.prf, signal.f0)
     return signal, tuple(Frames(length, min(one.hop, length)) for one in (configured, fine))

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.capture.settings import CaptureSettings
-from radhar_cli.capture.source import Parts, Source
+from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Parts, Source
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import refuse_outside, regular_size
 
@@ -93,18 +93,14 @@ def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
     return (paths[0], *(numbers[n] for n in range(1, max(numbers) + 1)))
 
 
-def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) -> Source:
+def open_dca1000(capture: CaptureFiles) -> Source:
     """Open a capture of the card.
-
-    Args:
-        paths: its files, or the first of those that are numbered.
-        settings: header of the capture.
-        header: file of the header, for messages.
 
     Raises:
         CaptureError: the header lacks samples or receivers, or the samples do not fit it.
     """
-    files = whole_capture(paths)
+    settings, header = capture.settings, capture.header
+    files = whole_capture(capture.paths)
     for key in ("samples", "receivers"):
         if getattr(settings, key) is None:
             raise CaptureError(
@@ -138,7 +134,16 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
         1 + settings.complex,
         read,
         notes=tuple(notes),
+        usual_beat="positive",
     )
+
+
+FORMAT = CaptureFormat(
+    ".bin of a DCA1000 (with --radar)",
+    lambda path, head: path.suffix.lower() == ".bin",
+    open_dca1000,
+    is_split=True,
+)
 
 
 def decode(words: NDArray[np.uint16], s: CaptureSettings) -> Parts:

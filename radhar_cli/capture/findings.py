@@ -39,36 +39,36 @@ PLAIN = Coding(False)
 HALVES, SHARE_OF_HALF = (2**9, 2**11, 2**13), 0.25  # of ADCs of 10 to 14 bits
 
 
-def coding_of(pieces: list[Parts], asked: str | None = None, bits: int = 16) -> Coding:
-    """Find the coding in which the samples are smallest, or check the one that is asked for.
+def coding_of(pieces: list[Parts], coding: str | None = None, bits: int = 16) -> Coding:
+    """Find the coding in which the samples are smallest, or check the one that is named.
 
     Words in another coding jump between the ends of the scale. Other unsigned numbers lie around
     half their scale.
 
     Args:
         pieces: numbers as stored, each [receiver, sample, pulse, part].
-        asked: `signed` or `offset`; None finds the coding.
+        coding: `signed` or `offset`; None finds the coding.
         bits: resolution of the converter.
 
     Raises:
-        ValueError: the numbers cannot have the coding that is asked for.
+        ValueError: the numbers cannot have the coding that is named.
     """
     dtype = pieces[0].dtype
     values = np.concatenate([piece.ravel() for piece in pieces]).astype(float)
     low, high, unsigned = float(values.min()), float(values.max()), dtype.kind == "u"
     fits = low >= -(2**15) and high < (2**15 if low < 0 else 2**16)
     words = fits and (dtype.kind in "iu" or bool((values == np.floor(values)).all()))
-    if asked and not words and dtype.kind != {"signed": "i", "offset": "u"}[asked]:
+    if coding and not words and dtype.kind != {"signed": "i", "offset": "u"}[coding]:
         raise ValueError(f"numbers from {low:g} to {high:g}; should be whole numbers of 16 bits")
     native = dtype in (np.int16, np.uint16)
     nonzero = values[values != 0]  # lost packets are zeros whatever the coding
-    if unsigned and asked != "signed" and nonzero.size and not (words and high >= 2**15):
+    if unsigned and coding != "signed" and nonzero.size and not (words and high >= 2**15):
         middle = float(np.median(nonzero))
         halves = (2 ** (b - 1) for b in (8, 10, 12, 14, 16, 24, 32) if b <= 8 * dtype.itemsize)
         return Coding(False, min(halves, key=lambda half: abs(np.log2(middle / half))))
-    if asked == "offset":
+    if coding == "offset":
         return Coding(bits == 16, 1 << (bits - 1))
-    if not asked and words and nonzero.size:
+    if not coding and words and nonzero.size:
         signed, offset = (
             float(np.abs(decoded(nonzero, Coding(True, n))).mean()) for n in (0, 2**15)
         )

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.fft
 
-from radhar_cli.capture.chain import bins_of_part, fill_lost_pulses, pulses_between
-from radhar_cli.capture.findings import LOST
+from radhar_cli.capture.chain import bins_of_part, part_of
+from radhar_cli.capture.content import Beat
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import WINDOW_S, hann_in_range, track_torso, without_static
 from radhar_cli.config.data_set import Config
@@ -27,16 +27,12 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.processing.frames import Frames
+from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
-RADAR = {  # key: attribute of a waveform
-    "carrier_hz": "fc",
-    "bandwidth_hz": "bandwidth",
-    "chirp_s": "chirp",
-    "adc_rate_hz": "adc_rate",
-    "prf_hz": "prf",
-}
+RADAR = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz", "prf_hz")  # keys that are fitted
+TOLERANCE = 1e-3  # relative difference of the numbers of one radar, as clocks differ
 MIN_SNRS = 3  # SNRs needed to fit a spread
 MIN_S = 0.5  # shortest duration of the longest recording
 PART_S = 4.0  # length of a part, which gives one SNR
@@ -67,7 +63,7 @@ class Fit:
     """Estimates from all recordings."""
 
     parts: list[Estimates]  # the estimates of each part
-    waveform: Waveform  # common to all recordings
+    timing: FmcwTiming  # common to all recordings
     seconds: float  # median duration of the recordings
 
     @property
@@ -101,12 +97,12 @@ class Fit:
     @cached_property
     def document(self) -> dict[str, Any]:
         """Config of the estimates, as plain values by key."""
-        w, snr, defaults = self.waveform, self.snr_db, FmcwRadar()
+        snr, defaults = self.snr_db, FmcwRadar()
         middle = round(float(snr.mean()), 2)
         spread = round(float(snr.std()), 2) if snr.size >= MIN_SNRS else 0
         document: dict[str, Any] = {
             "duration_s": round(self.seconds, 3),
-            "radar": {key: float(f"{getattr(w, name):.9g}") for key, name in RADAR.items()},
+            "radar": {key: float(f"{getattr(self.timing, key):.9g}") for key in RADAR},
             "snr_db": {"normal": [middle, spread]} if spread > 0 else middle,
         }
         ranges = np.concatenate([part.ranges for part in self.parts])
@@ -123,38 +119,39 @@ def fit(paths: Sequence[Path]) -> Fit:
     Raises:
         CaptureError: radars differ, recordings are too short, or nobody moves in them.
     """
-    waveform, seconds = _waveform(paths)
+    timing, seconds = _timing(paths)
     parts = [part for path in paths for part in parts_of(path)]
     if not any(np.isfinite(part.snr_db) for part in parts):
         raise CaptureError(f"{paths[0]}: nobody moves faster than {SLOW_MPS} m/s in any recording")
-    fitted = Fit(parts, waveform, seconds)
+    fitted = Fit(parts, timing, seconds)
     validated(Config, fitted.document, str(paths[0]), {})
     return fitted
 
 
-def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float]:
-    """Common waveform of all recordings, and their median duration, s."""
-    waveform, seconds = None, []
+def _timing(paths: Sequence[Path]) -> tuple[FmcwTiming, float]:
+    """Common timing of all recordings, and their median duration, s."""
+    timing: FmcwTiming | None = None
+    seconds = []
     for path in paths:
         with Recording(path) as recording:
-            if recording.info.holds == "profiles":
-                raise CaptureError(f"{path}: holds range profiles; should be samples of chirps")
-            own_waveform = recording.info.waveform()
-            pairs = (
-                (getattr(own_waveform, n), getattr(waveform or own_waveform, n))
-                for n in RADAR.values()
-            )
-            if any(abs(value / common_value - 1) > 1e-3 for value, common_value in pairs):
-                raise CaptureError(f"{path}: differs in radar from {paths[0]}")
-            waveform = waveform or own_waveform
+            content = recording.info.content
+            if not isinstance(content, Beat):
+                raise CaptureError(f"{path}: holds {content.noun}; should be {Beat.noun}")
+            timing = timing or content.timing
+            if (name := content.timing.first_difference(timing, TOLERANCE)) is not None:
+                values = getattr(content.timing, name), getattr(timing, name)
+                raise CaptureError(
+                    f"{path}: differs in radar from {paths[0]}: {name} = {values[0]:.10g}, not "
+                    f"{values[1]:.10g}"
+                )
             seconds.append(recording.segments.duration)
     if max(seconds) < MIN_S:
         raise CaptureError(
             f"{paths[0]}: the longest recording lasts {max(seconds):.3g} s; should last at least "
             f"{MIN_S:g} s"
         )
-    assert waveform is not None
-    return waveform, float(np.median(seconds))
+    assert timing is not None
+    return timing, float(np.median(seconds))
 
 
 def parts_of(path: Path) -> Iterator[Estimates]:
@@ -163,17 +160,17 @@ def parts_of(path: Path) -> Iterator[Estimates]:
     Parts without noise, or without a complete pulse, are left out.
     """
     with Recording(path) as recording:
-        w, length = recording.info.waveform(), recording.segments.duration
+        content, length = recording.info.ranging, recording.segments.duration
+        w = recording.info.waveform()
         count = min(max(int(length / PART_S), 1), MAX_PARTS)
         for start in np.linspace(0, max(length - PART_S, 0), count).tolist():
-            first, last, segments = pulses_between(recording, start, min(start + PART_S, length))
-            lost = (recording.flags[first:last] & LOST).astype(bool)
-            if lost.all():
+            part = part_of(recording, start, min(start + PART_S, length), receiver=0)
+            if part.lost.all():
                 continue
-            bins = fill_lost_pulses(bins_of_part(recording, w, [0], first, last), lost)[0]
-            part = _part(without_static(bins), segments, w)
-            if part.noise > 0:
-                yield part
+            bins = bins_of_part(part, content, w)[0]
+            estimates = _part(without_static(bins), part.segments, w)
+            if estimates.noise > 0:
+                yield estimates
 
 
 def _part(moving: Complex, segments: PulseTimes, w: Waveform) -> Estimates:
@@ -238,7 +235,7 @@ def draw(fit: Fit, path: Path) -> None:
     """Write a figure of the noise floor over range, and of the SNRs of the parts."""
     figure = page(10.0, 3.5)
     floor, snrs = figure.subplots(1, 2)
-    floor.plot(fit.waveform.range_axis(), fit.floor_db, label="measured")
+    floor.plot(fit.timing.waveform(fit.seconds).range_axis(), fit.floor_db, label="measured")
     floor.axhline(0, color="k", linestyle="--", linewidth=0.8, label="fitted: the same everywhere")
     floor.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
     floor.legend()

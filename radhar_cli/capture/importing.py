@@ -8,22 +8,24 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.capture import findings
-from radhar_cli.capture.array_files import open_arrays
-from radhar_cli.capture.dca1000 import open_dca1000
+from radhar_cli.capture.content import Beat, Content, RangeProfiles, SlowTime
+from radhar_cli.capture.formats import open_capture
 from radhar_cli.capture.recording import (
     MAX_PULSE,
     Label,
     RecordingInfo,
+    SampleStream,
     SourceNote,
     write_recording,
 )
 from radhar_cli.capture.settings import CaptureSettings
-from radhar_cli.capture.source import Parts, Source
+from radhar_cli.capture.source import CaptureFiles, Parts, Source
 from radhar_cli.capture.ti_header import read_ti_settings
 from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
@@ -83,13 +85,7 @@ def _open_capture(
     paths: Sequence[Path], settings: CaptureSettings, header: str, scratch: Path
 ) -> tuple[Source, CaptureSettings]:
     """Open a capture of any format; return it, and the settings with what it says itself."""
-    suffix = paths[0].suffix.lower()
-    if suffix == ".bin":
-        source = open_dca1000(paths, settings, header)
-    elif len(paths) > 1:
-        raise CaptureError(f"{paths[1]}: only .bin captures are split into several files")
-    else:
-        source = open_arrays(paths[0], settings, scratch)
+    source = open_capture(CaptureFiles(paths, settings, header, scratch))
     if 16 * source.receivers * (source.samples or 1) > MAX_PULSE:
         raise CaptureError(
             f"{source.name}: a pulse of {source.receivers} receivers and {source.samples} samples "
@@ -131,7 +127,8 @@ def _write_capture(
             yield first, values
 
     number, parts = probed[0].dtype, source.parts
-    return write_recording(out, info, number, parts, pieces(), segments, damage, exclusive)
+    stream = SampleStream(number, parts, pieces())
+    return write_recording(out, info, stream, segments, damage, exclusive)
 
 
 def _coding(
@@ -173,7 +170,7 @@ def _conjugated(probed: list[Parts], source: Source, s: CaptureSettings, notes: 
     if s.beat is not None:
         notes.append(f"beat {s.beat}, as asked ({shares_text})")
     elif sign is None:
-        sign = "positive" if source.files[0].suffix.lower() == ".bin" else "negative"
+        sign = source.usual_beat
         notes.append(
             f"{shares_text}: the sign of the beat is unclear; {sign} assumed (set beat=...)"
         )
@@ -190,9 +187,8 @@ def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str])
         return _segments_of_times(source, source.times, s, notes)
     if s.prf_hz is None:
         raise CaptureError(f"{header}: prf_hz is missing; --set prf_hz=..., or times=NAME")
-    whole = PulseTimes(np.zeros(1), np.zeros(1, np.int64), source.pulses, s.prf_hz)
     if s.frame_pulses is None and s.frame_s is None:
-        return whole
+        return PulseTimes.even(source.pulses, s.prf_hz)
     if s.frame_pulses is None or s.frame_s is None:
         raise CaptureError(f"{header}: frame_pulses and frame_s must be given together")
     if s.frame_pulses / s.prf_hz > s.frame_s * (1 + 1e-6):
@@ -204,7 +200,7 @@ def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str])
     if gap * s.prf_hz <= GAP:
         prf = s.frame_pulses / s.frame_s
         notes.append(f"frames without gaps: slow time is uniform, {prf:.6g} pulses/s")
-        return PulseTimes(whole.start, whole.first, source.pulses, prf)
+        return PulseTimes.even(source.pulses, prf)
     first = np.arange(0, source.pulses, s.frame_pulses)
     notes.append(
         f"slow time is not uniform: {first.size} frames of {s.frame_pulses} pulses "
@@ -251,12 +247,7 @@ def _info(
     source: Source, s: CaptureSettings, segments: PulseTimes, header: str, notes: list[str]
 ) -> RecordingInfo:
     """Describe the recording that is made of a capture."""
-    needed = ["carrier_hz"] + (["bandwidth_hz", "adc_rate_hz"] if source.samples else [])
-    for key in needed:
-        if getattr(s, key) is None:
-            raise CaptureError(
-                f"{header}: {key} is missing; give it by --radar FILE or --set {key}=..."
-            )
+    content = _content(source, s, segments.prf, header)
     if s.transmitters > 1:
         notes.append(
             f"{s.transmitters} transmitters take turns: {segments.prf:.6g} pulses/s each, "
@@ -266,18 +257,36 @@ def _info(
     chirp = 1 / (segments.prf * s.transmitters)
     name = source.files[0].suffix.lower().lstrip(".")
     return RecordingInfo(
-        carrier_hz=s.carrier_hz or 0,
-        prf_hz=segments.prf,
-        bandwidth_hz=s.bandwidth_hz if source.samples else None,
-        adc_rate_hz=s.adc_rate_hz if source.samples else None,
-        samples=source.samples,
+        content=content,
         receivers=source.receivers,
         pulses=source.pulses,
         segments=len(segments),
         receiver_delay_s=[n // per_turn * chirp for n in range(source.receivers)],
         labels=[] if s.label is None else [Label(label=s.label, person=s.person)],
-        source=SourceNote(format=name, files=[path.name for path in source.files], found=notes),
+        source=SourceNote(format=name, files=[path.name for path in source.files], findings=notes),
     )
+
+
+def _content(source: Source, s: CaptureSettings, prf_hz: float, header: str) -> Content:
+    """Content of a capture: chirps, or slow time.
+
+    Raises:
+        CaptureError: a number that is needed is unknown.
+    """
+
+    def need(key: str) -> float:
+        number: float | None = getattr(s, key)
+        if number is None:
+            raise CaptureError(
+                f"{header}: {key} is missing; give it by --radar FILE or --set {key}=..."
+            )
+        return number
+
+    carrier_hz = need("carrier_hz")
+    if source.samples is None:
+        return SlowTime(carrier_hz, prf_hz)
+    bandwidth_hz = need("bandwidth_hz")
+    return Beat(FmcwTiming(carrier_hz, bandwidth_hz, need("adc_rate_hz"), source.samples, prf_hz))
 
 
 def write_simulated(
@@ -304,23 +313,27 @@ def write_simulated(
     """
     receivers, samples, pulses = beat.shape
     segments = segments or PulseTimes.even(pulses, waveform.prf)
-    across: dict[str, Any] = {}
+    content: Content = SlowTime(waveform.f0, waveform.prf)
     if isinstance(waveform, Impulse):
-        across = {"bandwidth_hz": waveform.bandwidth, "samples": samples}
-        across |= {"first_range_m": waveform.profile[0], "range_step_m": waveform.range_step}
+        content = RangeProfiles(
+            waveform.f0,
+            waveform.bandwidth,
+            samples,
+            waveform.prf,
+            waveform.profile[0],
+            waveform.range_step,
+        )
     elif samples > 1:
-        band = waveform.slope * samples / waveform.adc_rate
-        across = {"bandwidth_hz": band, "adc_rate_hz": waveform.adc_rate, "samples": samples}
+        content = Beat(FmcwTiming.of_waveform(waveform))
     info = RecordingInfo(
-        carrier_hz=waveform.fc if "adc_rate_hz" in across else waveform.f0,
-        prf_hz=waveform.prf,
-        **across,
+        content=content,
         receivers=receivers,
         pulses=pulses,
-        receiver_delay_s=[*delays],
+        receiver_delay_s=delays,
         labels=[label],
         source=SourceNote(format="simulated"),
     )
     parts = 2 if np.iscomplexobj(beat) else 1
     values = np.ascontiguousarray(beat).view(beat.real.dtype).reshape(*beat.shape, parts)
-    return write_recording(out, info, values.dtype, parts, [(0, values)], segments)
+    stream = SampleStream(values.dtype, parts, [(0, values)])
+    return write_recording(out, info, stream, segments)

@@ -53,7 +53,7 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
                 for name, unit in TRACK_UNITS.items():
                     file[f"track/{name}"] = getattr(maps.track, name)
                     file[f"track/{name}"].attrs["unit"] = unit
-            file.attrs["recording"] = json.dumps(info.model_dump())
+            file.attrs["recording"] = json.dumps(info.document())
             file.attrs["config"] = json.dumps(resolved(config))
             file.attrs["notes"] = json.dumps(maps.notes)
             file.attrs["radhar_version"] = __version__

@@ -5,15 +5,24 @@ Range profiles are samples over range, real ones of an impulse radar; slow time 
 """
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from radhar_cli import __version__
+from radhar_cli.capture.content import (
+    Beat,
+    Content,
+    RangeProfiles,
+    Ranging,
+    SlowTime,
+    numbers_of,
+)
 from radhar_cli.capture.findings import CLIPPED, LOST, Damage, checked
 from radhar_cli.capture.source import Parts
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
@@ -22,7 +31,7 @@ from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.files.untrusted import Closing
 from radhar_cli.numerics.arrays import Complex
-from radhar_cli.radar.impulse import impulse
+from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 
@@ -39,7 +48,9 @@ Whole = Annotated[int, Field(ge=1, le=2**40)]
 class _Part(BaseModel):
     """Frozen part of the description of a recording."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
+    )
 
 
 class Label(_Part):
@@ -56,15 +67,14 @@ class SourceNote(_Part):
 
     format: Text
     files: Annotated[list[Text], Field(max_length=1000)] = []
-    found: Annotated[list[Text], Field(max_length=1000)] = []
+    findings: Annotated[list[Text], Field(max_length=1000, alias="found")] = []
 
 
-class RecordingInfo(_Part):
-    """Description of a recording, stored as the attribute `recording` of its file."""
+class _Description(_Part):
+    """Description of a recording as its file has it, in the attribute `recording`."""
 
-    # at the first sample of a chirp; of profiles and slow time, the frequency of their Doppler
     carrier_hz: Hertz
-    prf_hz: Hertz  # pulses per second of one receiver within a segment
+    prf_hz: Hertz
     # of a chirp or a profile; None of slow time, adc_rate_hz of profiles too
     bandwidth_hz: Hertz | None = None
     adc_rate_hz: Hertz | None = None
@@ -72,21 +82,69 @@ class RecordingInfo(_Part):
     # where the samples of range profiles lie; None of chirps and slow time
     first_range_m: Annotated[float, Field(ge=0, le=1e7)] | None = None
     range_step_m: Annotated[float, Field(gt=0, le=1e7)] | None = None
-    # shape of the samples
     receivers: Annotated[int, Field(ge=1, le=2**16)]
     pulses: Whole
-    segments: Whole = 1  # stretches of pulses without a gap
-    # delay of each receiver's pulses, if transmitters take turns
+    segments: Whole = 1
     receiver_delay_s: Annotated[list[float], Field(max_length=2**16)]
     labels: Annotated[list[Label], Field(max_length=10_000)] = []
     source: SourceNote
 
+    def content(self) -> Content | None:
+        """Content that the numbers describe; None if they describe none."""
+        match (
+            self.samples,
+            self.bandwidth_hz,
+            self.adc_rate_hz,
+            self.first_range_m,
+            self.range_step_m,
+        ):
+            case (None, None, None, None, None):
+                return SlowTime(self.carrier_hz, self.prf_hz)
+            case (int(n), float(band), float(rate), None, None):
+                return Beat(FmcwTiming(self.carrier_hz, band, rate, n, self.prf_hz))
+            case (int(n), float(band), None, float(first), float(step)):
+                return RangeProfiles(self.carrier_hz, band, n, self.prf_hz, first, step)
+        return None
+
+
+@dataclass(frozen=True)
+class RecordingInfo:
+    """Description of a recording."""
+
+    content: Content  # what the samples are, with the numbers of the radar
+    receivers: int  # virtual ones: transmitters times receivers
+    pulses: int  # of each receiver
+    receiver_delay_s: Sequence[float]  # delay of each receiver's pulses, if transmitters take turns
+    source: SourceNote
+    segments: int = 1  # stretches of pulses without a gap
+    labels: Sequence[Label] = ()
+
     @property
-    def holds(self) -> Literal["beat", "profiles", "slow_time"]:
-        """Kind of the samples, which is the name of their dataset."""
-        if self.samples is None:
-            return "slow_time"
-        return "beat" if self.range_step_m is None else "profiles"
+    def carrier_hz(self) -> float:
+        """Frequency of the Doppler of slow time and profiles, of a chirp's first sample, Hz."""
+        return self.content.carrier_hz
+
+    @property
+    def prf_hz(self) -> float:
+        """Pulses per second of one receiver within a segment."""
+        return self.content.prf_hz
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the samples [receiver, sample, pulse], of slow time [receiver, pulse]."""
+        sizes = {"receiver": self.receivers, "pulse": self.pulses}
+        return tuple(sizes.get(axis, self.content.samples) for axis in self.content.axes)
+
+    @property
+    def ranging(self) -> Ranging:
+        """Content, of which ranges are needed.
+
+        Raises:
+            CaptureError: the recording is slow time, which has no ranges.
+        """
+        if isinstance(self.content, SlowTime):
+            raise CaptureError("the recording is slow time, which has no ranges")
+        return self.content
 
     def waveform(self, fft_length: int | None = None, centred: bool = True) -> Waveform:
         """Waveform of the recording; `duration` leaves out the gaps.
@@ -98,37 +156,43 @@ class RecordingInfo(_Part):
         Raises:
             CaptureError: the recording is slow time, which has no ranges.
         """
-        if self.samples is None or self.bandwidth_hz is None:
-            raise CaptureError("the recording is slow time, which has no ranges")
-        if self.first_range_m is not None and self.range_step_m is not None:
-            last = self.first_range_m + self.samples * self.range_step_m
-            return impulse(
-                self.carrier_hz - self.bandwidth_hz / 2,
-                self.bandwidth_hz,
-                self.prf_hz,
-                self.pulses / self.prf_hz,
-                (self.first_range_m, last),
-                self.samples,
-            )
-        assert self.adc_rate_hz is not None  # as _info has seen to
-        return Waveform(
-            fc=self.carrier_hz,
-            bandwidth=self.bandwidth_hz,
-            chirp=self.samples / self.adc_rate_hz,
-            adc_rate=self.adc_rate_hz,
-            prf=self.prf_hz,
-            duration=self.pulses / self.prf_hz,
-            fft_length=fft_length,
-            centred=centred,
-        )
+        return self.ranging.waveform(self.pulses / self.prf_hz, fft_length, centred)
+
+    def document(self) -> dict[str, Any]:
+        """Plain values, as they are stored in a file."""
+        return _Description(
+            **numbers_of(self.content),
+            receivers=self.receivers,
+            pulses=self.pulses,
+            segments=self.segments,
+            receiver_delay_s=[*self.receiver_delay_s],
+            labels=[*self.labels],
+            source=self.source,
+        ).model_dump(by_alias=True)
+
+
+@dataclass(frozen=True)
+class SampleStream:
+    """Samples of a recording, piece by piece, as they are written."""
+
+    number: np.dtype[Any]  # type of the numbers, one of NUMBERS
+    parts: int  # 2 for complex numbers, 1 for real ones
+    # (first pulse, numbers [receiver, sample, pulse, part]) of each piece
+    pieces: Iterable[tuple[int, Parts]]
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of a sample."""
+        if self.parts == 1:
+            return self.number
+        pair = [("r", "<i2"), ("i", "<i2")]
+        return np.dtype({"f4": "c8", "f8": "c16"}.get(self.number.str[1:], pair))
 
 
 def write_recording(
     path: Path,
     info: RecordingInfo,
-    number: np.dtype[Any],
-    parts: int,
-    pieces: Iterable[tuple[int, Parts]],
+    stream: SampleStream,
     segments: PulseTimes,
     damage: Damage | None = None,
     exclusive: bool = False,
@@ -138,9 +202,7 @@ def write_recording(
     Args:
         path: file to write.
         info: description of the recording, without findings of the damage.
-        number: type of the numbers, one of NUMBERS.
-        parts: 2 for complex numbers, 1 for real ones.
-        pieces: (first pulse, numbers [receiver, sample, pulse, part]) of each piece.
+        stream: samples.
         segments: times of the pulses.
         damage: damage, counted while the pieces are made; None for none.
         exclusive: leave a file alone that another process made meanwhile.
@@ -153,46 +215,35 @@ def write_recording(
         FolderError: another process made the file meanwhile.
         UnfinishedError: it cannot be written.
     """
-    dtype = number
-    if parts == 2:
-        pair = [("r", "<i2"), ("i", "<i2")]
-        dtype = np.dtype({"f4": "c8", "f8": "c16"}.get(number.str[1:], pair))
-    samples, axes_of_samples = info.samples or 1, slice(None, None, 1 if info.samples else 2)
-    shape = (info.receivers, samples, info.pulses)
-    length = max(CHUNK_BYTES // (samples * dtype.itemsize), 1)
-    chunks = (1, samples, min(length, info.pulses))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with (
             replacing(path, exclusive=exclusive) as unfinished,
             new_hdf5(unfinished, path) as (file, check),
         ):
-            data = file.create_dataset(
-                info.holds, shape[axes_of_samples], dtype, chunks=chunks[axes_of_samples]
-            )
-            across = "range" if info.holds == "profiles" else "fast time"
-            data.attrs["axes"] = ["receiver", across, "pulse"][axes_of_samples]
-            for first, values in pieces:
-                block = np.ascontiguousarray(values, dtype=number).view(dtype)[..., 0]
-                stop = first + block.shape[2]
-                data[..., first:stop] = block if info.samples else block[:, 0]
+            dtype, content = stream.dtype, info.content
+            chunks = _chunks(info, dtype)
+            data = file.create_dataset(content.dataset, info.shape, dtype, chunks=chunks)
+            data.attrs["axes"] = content.axes
+            for pulses, block in _blocks(info, stream):
+                data[..., pulses] = block
                 check()
             flags = np.concatenate(damage.flags) if damage else np.zeros(info.pulses, np.uint8)
             if damage is not None and (flags & LOST).all():
                 raise CaptureError(
                     f"{path.name}: each of the {info.pulses} pulses lacks samples (zeros, or NaN)"
                 )
-            findings = damage.findings() if damage else []
+            findings = [*info.source.findings, *(damage.findings() if damage else [])]
+            source = info.source.model_copy(update={"findings": findings})
+            info = replace(info, source=source, segments=len(segments))
             file["flags"] = flags
             file["flags"].attrs["meaning"] = [f"{LOST}: samples lost", f"{CLIPPED}: clipped"]
             file["segment_start"] = segments.start.astype("f8")
             file["segment_start"].attrs["unit"] = "s"
             file["segment_first"] = segments.first.astype("i8")
-            source = info.source.model_copy(update={"found": [*info.source.found, *findings]})
-            info = info.model_copy(update={"source": source, "segments": len(segments)})
             file.attrs["kind"] = KIND
             file.attrs["schema_version"] = SCHEMA_VERSION
-            file.attrs["recording"] = json.dumps(info.model_dump())
+            file.attrs["recording"] = json.dumps(info.document())
             file.attrs["radhar_version"] = __version__
     except FileExistsError:
         raise FolderError(
@@ -203,6 +254,22 @@ def write_recording(
             f"{error.filename or path}: {error.strerror or error}; nothing was written"
         ) from None
     return info
+
+
+def _chunks(info: RecordingInfo, dtype: np.dtype[Any]) -> tuple[int, ...]:
+    """Shape of the chunks of a recording's samples: whole pulses of one receiver."""
+    samples = info.content.samples
+    pulses = max(CHUNK_BYTES // (samples * dtype.itemsize), 1)
+    sizes = {"receiver": 1, "pulse": min(pulses, info.pulses)}
+    return tuple(sizes.get(axis, samples) for axis in info.content.axes)
+
+
+def _blocks(info: RecordingInfo, stream: SampleStream) -> Iterator[tuple[slice, NDArray[Any]]]:
+    """Yield (pulses, samples [receiver, sample, pulse], of slow time [receiver, pulse])."""
+    for first, values in stream.pieces:
+        block = np.ascontiguousarray(values, dtype=stream.number).view(stream.dtype)[..., 0]
+        pulses = slice(first, first + block.shape[2])
+        yield pulses, block[:, 0] if isinstance(info.content, SlowTime) else block
 
 
 def is_recording(path: Path) -> bool:
@@ -239,11 +306,12 @@ class Recording(Closing):
             if version != SCHEMA_VERSION:
                 raise FolderError(f"{path}: schema_version = {version}: should be {SCHEMA_VERSION}")
             self.info = info = _info(self._file.json("recording"), path)
-            self.samples = self._file.samples(info.holds)
-            shape = (info.receivers, info.samples or 1, info.pulses)[:: 1 if info.samples else 2]
+            self.samples = self._file.samples(info.content.dataset)
             where, number = self.samples.where, self.samples.number
-            if self.samples.shape != shape:
-                raise FolderError(f"{where}: has the shape {self.samples.shape}; should be {shape}")
+            if self.samples.shape != info.shape:
+                raise FolderError(
+                    f"{where}: has the shape {self.samples.shape}; should be {info.shape}"
+                )
             if number.str[1:] not in NUMBERS:
                 raise FolderError(f"{where}: is of the type {number}; should be one of {NUMBERS}")
             self.flags: NDArray[np.uint8] = self._file.column("flags", "u1", (info.pulses,))[:]
@@ -269,11 +337,10 @@ class Recording(Closing):
         Raises:
             CaptureError: a number is too large, or NaN in a pulse that is not flagged as lost.
         """
-        receivers, samples = slice(0, self.info.receivers), self.info.samples
-        if samples is None:
-            values = self.samples.read((receivers, slice(first, stop)))[:, None]
-        else:
-            values = self.samples.read((receivers, slice(0, samples), slice(first, stop)))
+        sizes, pulses = self.info.shape[:-1], slice(first, stop)
+        values = self.samples.read((*(slice(0, size) for size in sizes), pulses))
+        if isinstance(self.info.content, SlowTime):
+            values = values[:, None]
         values, gone = checked(values, first, str(self.path))
         gone &= (self.flags[first:stop] & LOST) == 0
         if gone.any():
@@ -300,31 +367,32 @@ class Recording(Closing):
 def _info(document: Any, path: Path) -> RecordingInfo:
     """Check the description of a recording, read from its file."""
     try:
-        info = RecordingInfo.model_validate(document)
+        stored = _Description.model_validate(document)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         key = ".".join(map(str, first["loc"]))
         raise FolderError(f"{path}: attribute recording: {key}: {first['msg']}") from None
-    of_chirps, of_profiles = (info.adc_rate_hz,), (info.first_range_m, info.range_step_m)
-    of_both = (info.samples, info.bandwidth_hz)
-    required, absent = {
-        "slow_time": ((), (*of_both, *of_chirps, *of_profiles)),
-        "beat": ((*of_both, *of_chirps), of_profiles),
-        "profiles": ((*of_both, *of_profiles), of_chirps),
-    }[info.holds]
-    fits = None not in required and all(value is None for value in absent)
-    if len(info.receiver_delay_s) != info.receivers or not fits:
+    content = stored.content()
+    if len(stored.receiver_delay_s) != stored.receivers or content is None:
         raise FolderError(
             f"{path}: attribute recording: should have samples and bandwidth_hz together, with "
             "adc_rate_hz of chirps, or with first_range_m and range_step_m of range profiles; and "
             "a delay of every receiver"
         )
-    if 16 * info.receivers * (info.samples or 1) > MAX_PULSE:
+    if 16 * stored.receivers * content.samples > MAX_PULSE:
         raise FolderError(
-            f"{path}: attribute recording: a pulse of {info.receivers} receivers and "
-            f"{info.samples} samples should take at most {MAX_PULSE} bytes"
+            f"{path}: attribute recording: a pulse of {stored.receivers} receivers and "
+            f"{content.samples} samples should take at most {MAX_PULSE} bytes"
         )
-    return info
+    return RecordingInfo(
+        content,
+        stored.receivers,
+        stored.pulses,
+        stored.receiver_delay_s,
+        stored.source,
+        stored.segments,
+        stored.labels,
+    )
 
 
 def summarise_recording(path: Path) -> dict[str, Any]:
@@ -339,13 +407,13 @@ def summarise_recording(path: Path) -> dict[str, Any]:
             "kind": "recording",
             "path": str(path),
             "bytes": path.stat().st_size,
-            **info.model_dump(exclude={"receiver_delay_s"}),
+            **{key: value for key, value in info.document().items() if key != "receiver_delay_s"},
             "duration_s": recording.segments.duration,
             "complex": recording.samples.parts == 2,
             "lost_pulses": int(np.count_nonzero(flags & LOST)),
             "clipped_pulses": int(np.count_nonzero(flags & CLIPPED)),
         }
-        if info.samples is not None:
+        if not isinstance(info.content, SlowTime):
             waveform = info.waveform()
             summary["half_band_range_m"] = waveform.half_band_range
             summary["range_step_m"] = waveform.range_step

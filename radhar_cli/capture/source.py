@@ -1,17 +1,19 @@
-"""An open capture of any format, read in blocks of pulses."""
+"""An open capture of any format, read in blocks of pulses, and what a format is."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.numerics.arrays import Float
 
 Parts = NDArray[Any]
 PIECE_BYTES = 2**24
+HEAD_BYTES = 128  # by which a format is recognised
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,8 @@ class Source:
     # fields of `CaptureSettings` that the capture itself contains
     settings: dict[str, Any] = field(default_factory=dict)
     notes: tuple[str, ...] = ()  # findings on opening it, in words
+    # sign of the beat frequencies where the samples do not show it
+    usual_beat: Literal["negative", "positive"] = "negative"
 
     @property
     def name(self) -> str:
@@ -50,3 +54,24 @@ class Source:
             length = max(length // self.step, 1) * self.step
         for first in range(0, self.pulses, length):
             yield first, min(first + length, self.pulses)
+
+
+@dataclass(frozen=True)
+class CaptureFiles:
+    """The files of a capture that is to be opened, and what is known of them."""
+
+    paths: Sequence[Path]  # its files, or the first of those that are numbered
+    settings: CaptureSettings  # header of the capture
+    header: str  # file of the header, for messages
+    scratch: Path  # folder for unpacked arrays
+
+
+@dataclass(frozen=True)
+class CaptureFormat:
+    """A format of captures; `radhar_cli.capture.formats` lists all."""
+
+    name: str  # for messages, such as ".npy"
+    recognises: Callable[[Path, bytes], bool]  # by the file's name and its first HEAD_BYTES
+    # raises CaptureError where the capture is damaged, or does not fit its header
+    open: Callable[[CaptureFiles], Source]
+    is_split: bool = False  # whether one capture may be several files

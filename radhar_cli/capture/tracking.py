@@ -101,6 +101,8 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
         waveform: waveform; its range axis is that of the bins.
     """
     length = min(max(round(WINDOW_S * segments.prf), 8), int(segments.lengths.max()))
+    if length < 2:  # a single pulse has no Doppler
+        return None
     hop = max(round((1 - OVERLAP) * length), 1)
     window = np.hanning(length + 2)[1:-1]
     doppler = np.fft.fftshift(np.fft.fftfreq(length, 1 / segments.prf))[::-1]
@@ -108,15 +110,15 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
     ranges = waveform.range_axis()
     peaks_of_frames, time, profiles = list[Peaks](), list[float](), list[Float]()
     for part in segments.slices:
-        for at in range(part.start, part.stop - length + 1, hop):
-            frame = bins[:, :, at : at + length]
+        for start in range(part.start, part.stop - length + 1, hop):
+            frame = bins[:, :, start : start + length]
             frame = hann_in_range(frame) if waveform.orthogonal else frame
             power = np.square(np.abs(scipy.fft.fft(frame * window, axis=2))).sum(axis=0)
             # Approaching is positive Doppler, receding positive velocity: the axis is reversed.
             power = np.fft.fftshift(power, axes=1)[:, ::-1]
             peaks_of_frames.append(peaks(power, ranges, speeds, len(bins)))
             profiles.append(np.maximum(power - 2 * np.median(power), 0).sum(axis=1))
-            time.append(float(segments.times(np.array(at))) + (length - 1) / 2 / segments.prf)
+            time.append(float(segments.times(np.array(start))) + (length - 1) / 2 / segments.prf)
     times = np.array(time)
     spacing = float(ranges[1] - ranges[0]) if ranges.size > 1 else RANGE_SD_M
     range_sd = float(np.hypot(spacing / 2, RANGE_SD_M))

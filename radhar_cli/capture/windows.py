@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.activities.activity import TWELVE
-from radhar_cli.capture.board_frames import SAME
 from radhar_cli.capture.chain import maps_of
+from radhar_cli.capture.content import Content, describe_difference, radar_section
 from radhar_cli.capture.images import are_images, is_image, list_images, read_image
-from radhar_cli.capture.recording import Recording, RecordingInfo
+from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.identity import resolved
-from radhar_cli.config.radar import RADARS, kind_of_radar
 from radhar_cli.config.reading import validated
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
@@ -63,26 +62,26 @@ def read_manifest(path: Path) -> list[dict[str, Any]]:
 
 def _check_row(row: dict[Any, Any], where: str) -> dict[str, Any]:
     """Check a row of a manifest; return it as plain values of a part of the config."""
-    given = {key: value for key, value in row.items() if value not in (None, "")}
-    for key in given:
+    cells = {key: value for key, value in row.items() if value not in (None, "")}
+    for key in cells:
         if key not in COLUMNS:
             hint = did_you_mean(str(key), COLUMNS, f"columns are {', '.join(COLUMNS)}")
             raise ConfigError(f"{where}: {key!r} is not a column; {hint}")
     for key in ("file", "label"):
-        if key not in given:
+        if key not in cells:
             raise ConfigError(f"{where}: {key} is missing")
     for key in ("start", "stop"):
         try:
-            given[key] = float(given[key]) if key in given else None
+            cells[key] = float(cells[key]) if key in cells else None
         except (TypeError, ValueError):
-            raise ConfigError(f"{where}: {key} = {given[key]!r}: should be seconds") from None
-    person = given.get("person")
+            raise ConfigError(f"{where}: {key} = {cells[key]!r}: should be seconds") from None
+    person = cells.get("person")
     return {
-        "file": str(given["file"]),
-        "label": _slug(str(given["label"])),
+        "file": str(cells["file"]),
+        "label": _slug(str(cells["label"])),
         "person": None if person is None else str(person),
-        "start_s": given["start"],
-        "stop_s": given["stop"],
+        "start_s": cells["start"],
+        "stop_s": cells["stop"],
     }
 
 
@@ -107,7 +106,8 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
     if are_images(manifest):
         return _with_images(config, manifest)
     parts, checksums = read_manifest(manifest), dict[str, str]()
-    lengths, radar = dict[str, float](), dict[str, Any]()
+    lengths = dict[str, float]()
+    radar: Content | None = None
     document = _shared_document(config)
     section = document["recordings"]
     checked = [{**part, "start_s": part["start_s"] or 0.0, "stop_s": 0.0} for part in parts]
@@ -120,15 +120,12 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
             refuse_outside(path, manifest.parent)
             with Recording(path) as recording:
                 lengths[name] = round(recording.segments.duration, 9)
-                own_radar = radar_of(recording.info)
-            radar = radar or own_radar
-            for key in radar | own_radar:
-                value, expected = own_radar.get(key), radar.get(key)
-                if not _agree(value, expected):
-                    raise ConfigError(
-                        f"{manifest}: {name}: {key} = {_value_text(value)}: should be "
-                        f"{_value_text(expected)}, as in {parts[0]['file']}: one radar"
-                    )
+                content = recording.info.content
+            radar = radar or content
+            if (difference := describe_difference(content, radar)) is not None:
+                raise ConfigError(
+                    f"{manifest}: {name}: {difference}, as in {parts[0]['file']}: one radar"
+                )
             with path.open("rb") as file:
                 checksums[name] = hashlib.file_digest(file, "sha256").hexdigest()
         start, stop = part["start_s"] or 0.0, part["stop_s"]
@@ -140,7 +137,8 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
             )
         part["start_s"], part["stop_s"] = start, stop
     document["recordings"] = {**section, "parts": parts, "sha256": checksums}
-    document["radar"] = as_recorded(document["radar"], radar)
+    assert radar is not None  # as a manifest lists something
+    document["radar"] = radar_section(document["radar"], radar)
     return _with_split(config, document, manifest)
 
 
@@ -153,16 +151,16 @@ def _shared_document(config: Config) -> dict[str, Any]:
 
 def _with_images(config: Config, path: Path) -> MeasuredConfig:
     """Make the config of a data set of existing images; each lasts recordings.window_s."""
-    given = config.recordings or RecordingsConfig()
-    if len(config.maps) != 1 or given.rows is None or not given.rows[0] < given.rows[1]:
+    section = config.recordings or RecordingsConfig()
+    if len(config.maps) != 1 or section.rows is None or not section.rows[0] < section.rows[1]:
         raise ConfigError(
             f"{path}: of images, maps should name the one map that they show, and "
             "recordings.rows=[low, high] the edges of its rows (Hz, or m)"
         )
     if config.output.power is not None:
         raise ConfigError("output.power: should be null; images have no power behind them")
-    images, document = list_images(path, given.packed), _shared_document(config)
-    window = {"start_s": 0.0, "stop_s": given.window_s}
+    images, document = list_images(path, section.packed), _shared_document(config)
+    window = {"start_s": 0.0, "stop_s": section.window_s}
     parts = [{**part, "label": _slug(part["label"]), **window} for part in images.parts]
     document["recordings"] |= {"parts": parts, "sha256": images.sha256}
     document["image"] |= {"size_px": list(images.size)}
@@ -176,61 +174,6 @@ def _with_split(config: Config, document: dict[str, Any], manifest: Path) -> Mea
     if len(json.dumps(document)) > MAX_CONFIG:
         raise ConfigError(f"{manifest}: has {len(parts)} rows, too many for one data set")
     return validated(MeasuredConfig, document, str(manifest), *config._places)
-
-
-def _agree(value: Any, other: Any) -> bool:
-    """Whether two values of a key of `radar:` agree, but for rounding."""
-    if isinstance(value, float) and isinstance(other, float):
-        return abs(value - other) <= SAME * abs(other)
-    if isinstance(value, list) and isinstance(other, list):
-        return len(value) == len(other) and all(map(_agree, value, other))
-    return bool(value == other)
-
-
-def _value_text(value: Any) -> str:
-    """Text of a value of a key of `radar:`, for messages."""
-    return f"{value:.10g}" if isinstance(value, float) else str(value)
-
-
-def radar_of(info: RecordingInfo) -> dict[str, Any]:
-    """Keys of `radar:` that a recording determines, with their values."""
-    # Slow time has the frequency of the carrier.
-    known: dict[str, Any] = {"carrier_hz": info.carrier_hz, "prf_hz": info.prf_hz}
-    known["bandwidth_hz"] = 1e3
-    if info.holds == "beat":
-        assert info.samples is not None
-        assert info.adc_rate_hz is not None
-        known |= {
-            "bandwidth_hz": info.bandwidth_hz,
-            "adc_rate_hz": info.adc_rate_hz,
-            "chirp_s": info.samples / info.adc_rate_hz,
-        }
-    elif info.holds == "profiles":
-        assert info.bandwidth_hz is not None
-        w = info.waveform()
-        known |= {
-            "waveform": "impulse",
-            "carrier_hz": w.fc,
-            "bandwidth_hz": w.bandwidth,
-            "profile_m": [info.first_range_m, w.half_band_range],
-            "profile_samples": info.samples,
-        }
-    return known
-
-
-def as_recorded(radar: dict[str, Any], recorded: dict[str, Any]) -> dict[str, Any]:
-    """Replace keys of a config's section `radar` by those of its recordings (`radar_of`).
-
-    What the resulting kind of radar has no key for is left out: the band of a cw radar, the
-    chirps of a board.
-    """
-    waveform = recorded.get("waveform", radar["waveform"])
-    if waveform == "impulse" and "waveform" not in recorded:
-        waveform = "fmcw"
-    merged = radar | recorded | {"waveform": waveform}
-    tag = kind_of_radar(merged)
-    kind = next(kind for kind in RADARS if f"<{kind.kind}>" == tag)
-    return {key: value for key, value in merged.items() if key in kind.model_fields}
 
 
 def _split(config: Config, parts: Sequence[dict[str, Any]], manifest: Path) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""`radhar compare`: how far two data sets of maps are refuse_output_inside_data, class by class."""
+"""`radhar compare`: how far two data sets of maps are apart, class by class."""
 
 from pathlib import Path
 from typing import Annotated, Any

@@ -45,6 +45,7 @@ def import_(
     """
     import json
 
+    from radhar_cli.capture.content import SlowTime
     from radhar_cli.capture.importing import import_capture, read_settings
     from radhar_cli.errors import FolderError
 
@@ -57,15 +58,16 @@ def import_(
         raise FolderError(f"{out}: is the capture itself; -o should name another file")
     refuse_to_replace(out, overwrite, "walk.h5")
     info = import_capture(captures, out, settings, str(radar) if radar else "--set", overwrite)
-    for line in info.source.found:
+    for line in info.source.findings:
         tell(f"  {line}")
-    shape = f"{counted(info.receivers, 'receiver')}, {info.samples or 'no'} samples a chirp, "
+    samples = None if isinstance(info.content, SlowTime) else info.content.samples
+    shape = f"{counted(info.receivers, 'receiver')}, {samples or 'no'} samples a chirp, "
     tell(f"{info.pulses} pulses at {info.prf_hz:.6g} Hz: {shape}{info.carrier_hz / 1e9:.6g} GHz")
     report(
         files=[out],
-        found=info.source.found,
+        found=info.source.findings,
         receivers=info.receivers,
-        samples_per_chirp=info.samples,
+        samples_per_chirp=samples,
         pulses=info.pulses,
         prf_hz=info.prf_hz,
         carrier_hz=info.carrier_hz,

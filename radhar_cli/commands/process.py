@@ -49,9 +49,9 @@ def process(
     """
     from radhar_cli.capture import maps_file
     from radhar_cli.capture.board_frames import OF_FRAMES, frames_of_recording
-    from radhar_cli.capture.chain import maps_of, pulses_between
+    from radhar_cli.capture.chain import maps_of, part_of
+    from radhar_cli.capture.content import radar_section
     from radhar_cli.capture.recording import Recording
-    from radhar_cli.capture.windows import as_recorded, radar_of
     from radhar_cli.config import resolved
     from radhar_cli.config.data_set import ConfigOfRecordings, ProcessedConfig
     from radhar_cli.config.reading import load_config, validated
@@ -72,9 +72,9 @@ def process(
     signals = tuple(name for name in names if name not in OF_FRAMES)
     with Recording(recording) as opened:
         info, gaps = opened.info, len(opened.segments) - 1
-        first, last, _ = pulses_between(opened, start, stop)
-        document = resolved(fixed) | {"duration_s": (last - first) / info.prf_hz}
-        radar = as_recorded(document["radar"], radar_of(info))
+        part = part_of(opened, start, stop, receiver)
+        document = resolved(fixed) | {"duration_s": part.pulses / info.prf_hz}
+        radar = radar_section(document["radar"], info.content)
         document |= {"maps": signals or ("rtm",), "radar": radar}
         validated(ProcessedConfig, document, str(config), *loaded._places)
         results = maps_of(opened, fixed, signals, start, stop, receiver)

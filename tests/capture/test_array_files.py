@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from radhar_cli.capture.array_files import StoredArray, as_source
+from radhar_cli.capture.content import SlowTime
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.settings import CaptureSettings
@@ -142,7 +143,7 @@ def test_slow_time_is_imported(tmp_path: Path, suffix: str) -> None:
         save(path, x.reshape(shape), (1, 1) if suffix == ".mat73" else None)
         import_capture([path], out, read_settings(None, RADAR[:1] + RADAR[3:]))
         with Recording(out) as recording:
-            assert recording.info.samples is None
+            assert isinstance(recording.info.content, SlowTime)
             assert np.array_equal(recording.beat(0, 1000)[0, 0], x)
 
 
@@ -153,7 +154,7 @@ def test_gaps_follow_from_the_times(tmp_path: Path) -> None:
     np.savez(tmp_path / "x.npz", beat=x, t=times)
     out = tmp_path / "out.h5"
     given_settings = read_settings(None, [*RADAR[:3], "times=t", "dataset=beat"])
-    told = import_capture([tmp_path / "x.npz"], out, given_settings).source.found
+    told = import_capture([tmp_path / "x.npz"], out, given_settings).source.findings
     assert any("not uniform: 2 stretches" in line for line in told)
     with Recording(out) as recording:
         assert recording.info.prf_hz == pytest.approx(500)
@@ -293,6 +294,7 @@ class TestHostile:
 GROWTH = """
 import resource, sys
 from pathlib import Path
+from radhar_cli.capture.content import SlowTime
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording
 import numpy, scipy.io, h5py

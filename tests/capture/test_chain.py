@@ -112,7 +112,7 @@ def test_radars_without_chirps_are_recorded_too(
     done = radhar(*command, *sets, "--seed", 3)
     assert done.returncode == 0, done.stderr
     with Recording(tmp_path / "out/recording.h5") as recording:
-        assert recording.info.holds == holds
+        assert recording.info.content.dataset == holds
         assert recording.samples.parts == (2 if CW in overrides else 1)
         static = recording.beat(0, 8).mean(axis=2)
     names = [name for name in possible_maps(config) if "compensated" not in name]
@@ -230,7 +230,7 @@ def test_lost_pulses_leave_no_bright_line(tmp_path: Path) -> None:
     keys = [f"carrier_hz={w.fc}", f"bandwidth_hz={w.bandwidth}", f"adc_rate_hz={w.adc_rate}"]
     keys += [f"prf_hz={w.prf}", "axes=[receiver, sample, pulse, iq]"]
     told = import_capture([tmp_path / "x.npy"], tmp_path / "x.h5", read_settings(None, keys))
-    assert any("10 of 2000 pulses" in line for line in told.source.found)
+    assert any("10 of 2000 pulses" in line for line in told.source.findings)
     found = processed(tmp_path / "x.h5", config, "stft").maps["stft"]
     assert apart(found, scene.maps["stft"]) < 0.5
     with h5py.File(tmp_path / "x.h5", "r+") as file:

@@ -57,7 +57,7 @@ def test_every_type_of_words_is_decoded(
 
 def test_what_was_decided_is_said(tmp_path: Path) -> None:
     path = save(tmp_path / "x.npy", wrapped(counts()))
-    told = import_capture([path], tmp_path / "o.h5", read_settings(None, RADAR)).source.found
+    told = import_capture([path], tmp_path / "o.h5", read_settings(None, RADAR)).source.findings
     assert "65536 is subtracted from samples above 32767" in told[0]
     assert told[1].startswith("beat negative")
 
@@ -81,7 +81,7 @@ def test_pulses_that_are_not_a_number_are_lost(tmp_path: Path, suffix: str) -> N
     x[0, 3, 7], x[2, :, 20:23] = np.nan, np.nan * 1j
     told = import_capture(
         [save(tmp_path / f"x{suffix}", x)], tmp_path / "o.h5", read_settings(None, RADAR)
-    ).source.found
+    ).source.findings
     assert any(line.startswith("4 of 400 pulses (1 %) lack samples") for line in told)
     with Recording(tmp_path / "o.h5") as recording:
         assert np.flatnonzero(recording.flags & LOST).tolist() == [7, 20, 21, 22]
@@ -179,7 +179,7 @@ def test_words_of_12_bits_as_other_numbers_lie_around_zero(tmp_path: Path) -> No
     beat = np.clip(np.round(200 * longer().real), -2048, 2047)
     path = save(tmp_path / "x.npy", beat + 2048.0)
     info = import_capture([path], tmp_path / "o.h5", read_settings(None, RADAR))
-    assert any("offset binary: 2048 is subtracted" in line for line in info.source.found)
+    assert any("offset binary: 2048 is subtracted" in line for line in info.source.findings)
 
 
 @pytest.mark.parametrize("size", [1, 2, 3, 63])

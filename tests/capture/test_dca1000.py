@@ -83,7 +83,7 @@ def test_sign_of_the_beat_is_detected_and_can_be_overridden(
     write_studio(tmp_path / "radar.mmwave.json", RADAR)
     with imported(tmp_path) as recording:
         found = recording.beat(0, 10) / 8000
-        told = " ".join(recording.info.source.found)
+        told = " ".join(recording.info.source.findings)
     phase = -1j if swapped else 1
     assert np.abs(found * phase - beat[..., :10]).max() < 2 / 8000
     assert ("beat negative" if swapped else "beat positive") in told
@@ -99,7 +99,7 @@ def test_offset_binary_is_detected_and_can_be_overridden(tmp_path: Path, beat: n
     stream.tofile(tmp_path / "adc_data_Raw_0.bin")
     write_studio(tmp_path / "radar.mmwave.json", RADAR)
     with imported(tmp_path) as recording:
-        assert "offset binary" in recording.info.source.found[0]
+        assert "offset binary" in recording.info.source.findings[0]
         found = recording.beat(0, 20) / 8000
     assert np.abs(found - beat[..., :20]).max() < 1 / 8000
     with imported(tmp_path, "coding=signed", "beat=positive") as recording:
@@ -115,7 +115,7 @@ def test_capture_split_at_any_byte(tmp_path: Path, beat: np.ndarray) -> None:
     with imported(tmp_path) as recording:
         assert recording.info.pulses == FRAMES * RADAR.loops - 1
         found = recording.beat(0, recording.info.pulses) / 8000
-        told = recording.info.source.found
+        told = recording.info.source.findings
     assert np.abs(found - beat[..., :-1]).max() < 1 / 8000
     assert told[0] == "3 files: adc_data_Raw_0.bin to adc_data_Raw_2.bin"
     assert "incomplete pulse" in told[1]
@@ -132,11 +132,11 @@ def test_frames_with_gaps_are_segments(tmp_path: Path, beat: np.ndarray) -> None
         pulses = np.arange(recording.info.pulses)
         assert recording.segments.times(pulses) == pytest.approx(RADAR.times(FRAMES))
         assert recording.info.receiver_delay_s == pytest.approx([0, 0, 250e-6, 250e-6])
-        assert any("not uniform" in line for line in recording.info.source.found)
+        assert any("not uniform" in line for line in recording.info.source.findings)
     write_studio(tmp_path / "radar.mmwave.json", RADAR, framePeriodicity_msec=32.0)
     with imported(tmp_path) as recording:
         assert len(recording.segments) == 1
-        assert any("uniform" in line for line in recording.info.source.found)
+        assert any("uniform" in line for line in recording.info.source.findings)
 
 
 def test_losses_and_saturation_are_flagged(tmp_path: Path, beat: np.ndarray) -> None:
@@ -149,7 +149,7 @@ def test_losses_and_saturation_are_flagged(tmp_path: Path, beat: np.ndarray) -> 
     with imported(tmp_path) as recording:
         assert np.flatnonzero(recording.flags & 1).tolist() == [100, 101, 102]
         assert np.flatnonzero(recording.flags & 2).tolist() == [7]
-        told = " ".join(recording.info.source.found)
+        told = " ".join(recording.info.source.findings)
     assert "3 of 384 pulses" in told
     assert "8 samples in 1 of 384 pulses are at full scale" in told
 

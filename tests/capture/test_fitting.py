@@ -11,11 +11,19 @@ from helpers.documented import KEYS
 from helpers.slow import slow
 
 from radhar_cli.activities.activity import ACTIVITIES
+from radhar_cli.capture.content import Beat
 from radhar_cli.capture.fitting import fit
 from radhar_cli.capture.importing import write_simulated
-from radhar_cli.capture.recording import Label, RecordingInfo, SourceNote, write_recording
+from radhar_cli.capture.recording import (
+    Label,
+    RecordingInfo,
+    SampleStream,
+    SourceNote,
+    write_recording,
+)
 from radhar_cli.config import load_config
 from radhar_cli.errors import CaptureError
+from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.single_scene.simulate import Simulation, simulate
 
@@ -94,11 +102,7 @@ def test_frames_with_gaps_between(tmp_path: Path) -> None:
     values = np.ascontiguousarray(scene.beat[:, kept.ravel()]).view(float)
     values = values.reshape(1, len(scene.beat), kept.size, 2)
     info = RecordingInfo(
-        carrier_hz=10e9,
-        prf_hz=600,
-        bandwidth_hz=2e9,
-        adc_rate_hz=5e6,
-        samples=len(scene.beat),
+        content=Beat(FmcwTiming(10e9, 2e9, 5e6, len(scene.beat), 600)),
         receivers=1,
         pulses=kept.size,
         receiver_delay_s=[0.0],
@@ -106,7 +110,7 @@ def test_frames_with_gaps_between(tmp_path: Path) -> None:
     )
     segments = PulseTimes(kept[:, 0] / 600, np.arange(len(kept)) * 64, kept.size, 600.0)
     path = tmp_path / "frames.h5"
-    write_recording(path, info, values.dtype, 2, [(0, values)], segments)
+    write_recording(path, info, SampleStream(values.dtype, 2, [(0, values)]), segments)
     assert fit([path]).document["snr_db"] == pytest.approx(20, abs=1.5)
 
 

@@ -1,0 +1,170 @@
+"""What the samples of a recording are: beat signals of chirps, range profiles, or slow time."""
+
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar, TypeAlias
+
+from radhar_cli.config.radar import RADARS, kind_of_radar
+from radhar_cli.numerics.arrays import Complex
+from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.radar.fmcw_timing import FmcwTiming
+from radhar_cli.radar.impulse import Impulse, impulse
+from radhar_cli.radar.waveform import Waveform
+
+TOLERANCE = 1e-6  # relative difference of frequencies and times that are the same
+
+
+@dataclass(frozen=True)
+class Beat:
+    """Beat signals: N samples of every chirp."""
+
+    dataset: ClassVar[str] = "beat"
+    noun: ClassVar[str] = "samples of chirps"
+    axes: ClassVar[tuple[str, ...]] = ("receiver", "fast time", "pulse")
+
+    timing: FmcwTiming
+
+    @property
+    def carrier_hz(self) -> float:
+        """Frequency at the first sample of a chirp, Hz."""
+        return self.timing.carrier_hz
+
+    @property
+    def prf_hz(self) -> float:
+        """Pulses per second of one receiver, within a segment."""
+        return self.timing.prf_hz
+
+    @property
+    def samples(self) -> int:
+        """Number N of samples of a pulse."""
+        return self.timing.samples
+
+    def waveform(
+        self, duration: float, fft_length: int | None = None, centred: bool = True
+    ) -> Waveform:
+        """Waveform of the chirps; arguments are those of `FmcwTiming.waveform`."""
+        return self.timing.waveform(duration, fft_length, centred)
+
+    def range_bins(self, pulses: Complex, w: Waveform) -> Complex:
+        """Range bins [K, M] of pulses [N, M], referred to the chirp's start unless w is centred."""
+        return range_compression(pulses, w)
+
+
+@dataclass(frozen=True)
+class RangeProfiles:
+    """Range profiles: N samples of every pulse over range, real or complex."""
+
+    dataset: ClassVar[str] = "profiles"
+    noun: ClassVar[str] = "range profiles"
+    axes: ClassVar[tuple[str, ...]] = ("receiver", "range", "pulse")
+
+    carrier_hz: float  # frequency of their Doppler, the middle of the band
+    bandwidth_hz: float  # of the pulse
+    samples: int  # N, of a profile
+    prf_hz: float  # pulses per second of one receiver, within a segment
+    first_range_m: float  # range of the first sample
+    range_step_m: float  # from one sample to the next
+
+    def waveform(
+        self, duration: float, fft_length: int | None = None, centred: bool = True
+    ) -> Impulse:
+        """Waveform of the pulses, of a duration, s; the other arguments are those of chirps."""
+        del fft_length, centred
+        last_m = self.first_range_m + self.samples * self.range_step_m
+        lowest_hz = self.carrier_hz - self.bandwidth_hz / 2
+        profile_m = (self.first_range_m, last_m)
+        return impulse(lowest_hz, self.bandwidth_hz, self.prf_hz, duration, profile_m, self.samples)
+
+    def range_bins(self, pulses: Complex, w: Waveform) -> Complex:
+        """Range bins [K, M] of pulses [N, M]: profiles are their own bins."""
+        del w
+        return pulses
+
+
+@dataclass(frozen=True)
+class SlowTime:
+    """Slow time: one sample of every pulse, which has no range."""
+
+    dataset: ClassVar[str] = "slow_time"
+    noun: ClassVar[str] = "slow time"
+    axes: ClassVar[tuple[str, ...]] = ("receiver", "pulse")
+    samples: ClassVar[int] = 1
+
+    carrier_hz: float  # frequency of the Doppler
+    prf_hz: float  # pulses per second of one receiver, within a segment
+
+
+Ranging: TypeAlias = Beat | RangeProfiles
+Content: TypeAlias = Ranging | SlowTime
+
+
+def numbers_of(content: Content) -> dict[str, Any]:
+    """Numbers of the radar behind a content, by the names that they have in a recording's file."""
+    if isinstance(content, Beat):
+        return asdict(content.timing)
+    return asdict(content)
+
+
+def describe_difference(content: Content, expected: Content) -> str | None:
+    """Say in what a content differs from another of the same radar, or return None.
+
+    The text is such as "prf_hz = 200: should be 256".
+    """
+    if type(content) is not type(expected):
+        return f"holds {content.noun}: should hold {expected.noun}"
+    numbers, expected_numbers = numbers_of(content), numbers_of(expected)
+    # The number of samples comes first, as the bandwidth follows from it.
+    for name in sorted(numbers, key=lambda name: name != "samples"):
+        value, number = numbers[name], expected_numbers[name]
+        if abs(value - number) > TOLERANCE * abs(number):
+            return f"{name} = {value:.10g}: should be {number:.10g}"
+    return None
+
+
+def radar_section(radar: dict[str, Any], content: Content) -> dict[str, Any]:
+    """Replace keys of a config's section `radar` by those of the radar that was recorded.
+
+    What the resulting kind of radar has no key for is left out, such as the chirps of a board.
+
+    Args:
+        radar: section `radar` of a config, plain values.
+        content: content of a recording of the radar.
+
+    Returns:
+        The section, plain values.
+    """
+    section = radar | _radar_keys(content, radar.get("waveform", "fmcw"))
+    if isinstance(content, SlowTime):  # no board has a single sample a pulse
+        section = {key: value for key, value in section.items() if key != "cfg"}
+    tag = kind_of_radar(section)
+    kind = next(kind for kind in RADARS if f"<{kind.kind}>" == tag)
+    return {key: value for key, value in section.items() if key in kind.model_fields}
+
+
+def _radar_keys(content: Content, waveform: str) -> dict[str, Any]:
+    """Keys of `radar:` that a recording determines, with their values.
+
+    Args:
+        content: content of the recording.
+        waveform: `waveform:` of the config, which samples of chirps leave as it is, fmcw or sfcw.
+    """
+    numbers = {"carrier_hz": content.carrier_hz, "prf_hz": content.prf_hz}
+    match content:
+        case SlowTime():
+            return numbers | {"waveform": "cw"}
+        case RangeProfiles():
+            w = content.waveform(1.0)
+            return {
+                "waveform": "impulse",
+                "carrier_hz": w.fc,
+                "prf_hz": w.prf,
+                "bandwidth_hz": w.bandwidth,
+                "profile_m": [content.first_range_m, w.half_band_range],
+                "profile_samples": content.samples,
+            }
+        case Beat(timing):
+            return numbers | {
+                "waveform": "sfcw" if waveform == "sfcw" else "fmcw",
+                "bandwidth_hz": timing.bandwidth_hz,
+                "adc_rate_hz": timing.adc_rate_hz,
+                "chirp_s": timing.chirp_s,
+            }

@@ -366,10 +366,10 @@ def _with_possible_overlap(config: Config, activity: Activity) -> Config:
     sideways = (
         activity.slug == "walking_to_falling" and config.motion.falling.direction == "sideways"
     )
-    most = 0.0 if sideways else MAX_OVERLAP * getattr(timing, key)
-    capped = {"timing.overlap_s": min(timing.overlap_s, most)}
+    largest = 0.0 if sideways else MAX_OVERLAP * getattr(timing, key)
+    capped = {"timing.overlap_s": min(timing.overlap_s, largest)}
     if key == "rise_duration_s" and timing.walk_start_s is not None:
-        earliest = timing.rise_start_s + timing.rise_duration_s - most
+        earliest = timing.rise_start_s + timing.rise_duration_s - largest
         capped["timing.walk_start_s"] = max(timing.walk_start_s, earliest)
     return changed(config, capped)
 

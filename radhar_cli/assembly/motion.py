@@ -34,15 +34,20 @@ def moving(person: Person) -> Motion:
     """`motion_of`, built once a person; its positions are remembered."""
     if "motion" not in person.held:
         person.held["motion"] = cache_motion(motion_of(person))
-    found: Motion = person.held["motion"]
-    return found
+    motion: Motion = person.held["motion"]
+    return motion
 
 
 def body_of(person: Person, motion: Motion) -> Body:
     """Make the body of a person, with the segments that the joints of their motion have."""
-    whole = motion.motion if isinstance(motion, ScattererSubset) else motion
+    body_motion = motion.motion if isinstance(motion, ScattererSubset) else motion
     stature, weight = person.subject.height_m, person.subject.weight_kg
-    return Body(whole, segments_between(landmark_names(whole)), stature, thickness(stature, weight))
+    return Body(
+        body_motion,
+        segments_between(landmark_names(body_motion)),
+        stature,
+        thickness(stature, weight),
+    )
 
 
 def _paper_body(person: Person) -> PaperBody:

@@ -13,7 +13,13 @@ import numpy as np
 
 from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.config.classes import SequenceConfig
-from radhar_cli.config.motion import FallName, Falls, MotionConfig
+from radhar_cli.config.motion import (
+    FallName,
+    Falls,
+    GrabbingConfig,
+    MotionConfig,
+    StrikingConfig,
+)
 from radhar_cli.motion.human.falling import (
     FallBackward,
     FallForward,
@@ -213,6 +219,39 @@ def _getting_up_after(fall: Movement, getting_up: GetUp | TryToGetUp) -> Movemen
     return replace(getting_up, before=fall_part.after)
 
 
+def _punch(striking: StrikingConfig[float], paces: Float, sizes: Float) -> Punch:
+    """Punches of a person, whose times and sizes vary from one to the next."""
+    scale = striking.strike_scale
+    return Punch(
+        frequency=scale * striking.punch_hz,
+        paces=_nonzero_tuple(scale * paces),
+        sizes=_nonzero_tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
+    )
+
+
+def _kick(striking: StrikingConfig[float], paces: Float, sizes: Float) -> Kick:
+    """Kicks of a person, whose times and sizes vary from one to the next."""
+    scale = striking.strike_scale
+    return Kick(
+        frequency=scale * striking.kick_hz,
+        paces=_nonzero_tuple(scale * paces),
+        sizes=_nonzero_tuple(sizes),
+    )
+
+
+def _grab(grabbing: GrabbingConfig[float], duration: float, lags: tuple[Lags, Lags]) -> Grab:
+    """Picking something up, which takes so many seconds without the time at the floor."""
+    return Grab(
+        down=duration * 1.2 / 2.5,
+        dwell=grabbing.dwell_s,
+        up=duration * 1.3 / 2.5,
+        thigh=radians(-62) * grabbing.bend_deg / 72,
+        trunk=radians(grabbing.bend_deg),
+        lowering=lags[0],
+        rising=lags[1],
+    )
+
+
 def _repertoire(person: Person, duration: float | None, place: int = 0) -> Repertoire:
     """How this person moves.
 
@@ -228,35 +267,16 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
         lap=motion.sitting.hands_on_lap,
     )
     rise = Rise(lean=radians(motion.sitting.lean_deg))
-    scale = motion.striking.strike_scale
     paces, sizes = _repetitions(person, ceil(3 * person.seconds) + 8, place)
-    bend = motion.grabbing.bend_deg
     lags = _lags(person, place)
     sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
-    moving = 2.5 if duration is None else duration
     return Repertoire(
         gait=_gait(person, place),
         walk=person.timing.walk_stop_s,
         standing_first=person.timing.walk_begin_s is not None,
-        punch=Punch(
-            frequency=scale * motion.striking.punch_hz,
-            paces=_nonzero_tuple(scale * paces),
-            sizes=_nonzero_tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
-        ),
-        kick=Kick(
-            frequency=scale * motion.striking.kick_hz,
-            paces=_nonzero_tuple(scale * paces),
-            sizes=_nonzero_tuple(sizes),
-        ),
-        grab=Grab(
-            down=moving * 1.2 / 2.5,
-            dwell=motion.grabbing.dwell_s,
-            up=moving * 1.3 / 2.5,
-            thigh=radians(-62) * bend / 72,
-            trunk=radians(bend),
-            lowering=lags[0],
-            rising=lags[1],
-        ),
+        punch=_punch(motion.striking, paces, sizes),
+        kick=_kick(motion.striking, paces, sizes),
+        grab=_grab(motion.grabbing, 2.5 if duration is None else duration, lags),
         sit_down=_with_duration(duration, sitting),
         stand_up=_with_duration(duration, StandUp(seat=seat, rise=rise, lags=lags[1])),
         turn=Turn(

@@ -67,8 +67,8 @@ def ways_of(scene: Scene) -> list[tuple[Leg, Leg]]:
     radar, room = scene.radar, scene.room
     if room.back_wall_m is not None:
         reflection = 10 ** (room.back_wall_reflection_db / 20)
-        way = Leg((Face("back", FACES["back"], room.back_wall_m, constant_reflection=reflection),))
-        return [(way, way)]
+        leg = Leg((Face("back", FACES["back"], room.back_wall_m, constant_reflection=reflection),))
+        return [(leg, leg)]
     if room.faces is None:
         return []
     box, faces = box_of(scene), []

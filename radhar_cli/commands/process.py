@@ -1,7 +1,7 @@
 """`radhar process`: the maps of a recording, processed as a config describes."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,6 +13,10 @@ from radhar_cli.commands.options import (
     refuse_to_replace_results,
 )
 from radhar_cli.commands.tell import counted, report, tell
+
+if TYPE_CHECKING:
+    from radhar_cli.capture.recording import RecordingInfo
+    from radhar_cli.capture.tracking import TorsoTrack
 
 
 def process(
@@ -86,14 +90,22 @@ def process(
         tell(f"warning: {note}", err=True)
     written = maps_file.write_maps(results, loaded, info, out)
     if figures:
-        labels = ", ".join(label.label for label in info.labels) or "no label"
-        title = f"{recording.name}   |   {labels}   |   {info.carrier_hz / 1e9:g} GHz"
-        title += f", PRF {info.prf_hz:.6g} Hz"
-        written += maps_file.draw(results, loaded, title, out)
+        written += maps_file.draw(results, loaded, _title(recording, info), out)
     if results.track is not None:
-        track = results.track
-        tell(
-            f"torso from {track.range.min():.2f} to {track.range.max():.2f} m, up to "
-            f"{abs(track.velocity).max():.2f} m/s, confidence {track.confidence.mean():.2f}"
-        )
+        tell(_describe_track(results.track))
     report(files=written, gaps=gaps, warnings=results.notes, maps=names)
+
+
+def _title(recording: Path, info: "RecordingInfo") -> str:
+    """Title of the figures of a recording: its file, labels, carrier and PRF."""
+    labels = ", ".join(label.label for label in info.labels) or "no label"
+    carrier = f"{info.carrier_hz / 1e9:g} GHz, PRF {info.prf_hz:.6g} Hz"
+    return f"{recording.name}   |   {labels}   |   {carrier}"
+
+
+def _describe_track(track: "TorsoTrack") -> str:
+    """Say where the torso was found, how fast it was, and how sure that is."""
+    return (
+        f"torso from {track.range.min():.2f} to {track.range.max():.2f} m, up to "
+        f"{abs(track.velocity).max():.2f} m/s, confidence {track.confidence.mean():.2f}"
+    )

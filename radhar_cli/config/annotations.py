@@ -232,14 +232,14 @@ def annotations(kind: type[BaseModel], prefix: str = "") -> Mapping[str, tuple[A
         kind: the section, or root of a config.
         prefix: dotted key of the section, with its last dot; "" for a root.
     """
-    found = dict[str, tuple[Any, ...]]()
+    by_key = dict[str, tuple[Any, ...]]()
     for name, field in kind.model_fields.items():
-        found[prefix + name] = tuple(_flat(field))
+        by_key[prefix + name] = tuple(_flat(field))
         for inner in sections(field):
             if not getattr(inner, "REPEATS", False):
                 about = annotations(inner, f"{prefix}{name}.")
-                found |= {key: about[key] for key in about if key not in found}
-    return MappingProxyType(found)
+                by_key |= {key: about[key] for key in about if key not in by_key}
+    return MappingProxyType(by_key)
 
 
 @cache
@@ -259,11 +259,11 @@ def conditions(kind: type[BaseModel], key: str) -> tuple[Condition, ...]:
 
     `radar.tx_m.0` is one of the numbers of `radar.tx_m`.
     """
-    known, names, found = annotations(kind), key.split("."), list[Condition]()
+    known, names, unmet = annotations(kind), key.split("."), list[Condition]()
     for count in range(1, len(names) + 1):
         about = known.get(".".join(names[:count]), ())
-        found += [one for one in about if isinstance(one, Condition)]
-    return tuple(found)
+        unmet += [one for one in about if isinstance(one, Condition)]
+    return tuple(unmet)
 
 
 def at(config: BaseModel, key: str) -> Any:
@@ -297,13 +297,17 @@ def range_of(kind: type[BaseModel], key: str) -> str:
         key: dotted key, without places in lists.
     """
     low, high, unit = -MAX_NUMBER, MAX_NUMBER, ""
-    for one in annotations(kind).get(key, ()):
-        if isinstance(one, Bounds):
-            low, high, unit = max(low, one.low), min(high, one.high), one.unit or unit
+    for annotation in annotations(kind).get(key, ()):
+        if isinstance(annotation, Bounds):
+            low, high, unit = (
+                max(low, annotation.low),
+                min(high, annotation.high),
+                annotation.unit or unit,
+            )
         for name in ("ge", "gt"):
-            low = max(low, getattr(one, name, None) or low)
+            low = max(low, getattr(annotation, name, None) or low)
         for name in ("le", "lt"):
-            high = min(high, getattr(one, name, high))
+            high = min(high, getattr(annotation, name, high))
     if low <= -MAX_NUMBER or high >= MAX_NUMBER:
         return ""
     return f"from {low:g} to {high:g} {unit}".rstrip()
@@ -333,10 +337,14 @@ def _is_section(kind: Any) -> TypeGuard[type[BaseModel]]:
 
 def _flat(about: Any) -> Iterator[Any]:
     """Annotations of a field, those inside of unions with null included."""
-    for one in about.metadata if isinstance(about, FieldInfo) else about.__metadata__:
-        inner = one.metadata if isinstance(one, FieldInfo) else getattr(one, "bounds", (one,))
+    for annotation in about.metadata if isinstance(about, FieldInfo) else about.__metadata__:
+        inner = (
+            annotation.metadata
+            if isinstance(annotation, FieldInfo)
+            else getattr(annotation, "bounds", (annotation,))
+        )
         yield from inner
     inner = about.annotation if isinstance(about, FieldInfo) else about.__origin__
-    for one in (inner, *get_args(inner)):
-        if hasattr(one, "__metadata__"):
-            yield from _flat(one)
+    for annotation in (inner, *get_args(inner)):
+        if hasattr(annotation, "__metadata__"):
+            yield from _flat(annotation)

@@ -169,10 +169,13 @@ ClassConfig: TypeAlias = Annotated[
 
 def _own_classes(value: dict[str, ClassConfig]) -> dict[str, ClassConfig]:
     twelve = {activity.slug for activity in ACTIVITIES}
-    for slug, one in value.items():
-        if not (is_new_slug(slug) or (isinstance(one, FilesConfig) and slug in twelve)):
+    for slug, section in value.items():
+        if not (is_new_slug(slug) or (isinstance(section, FilesConfig) and slug in twelve)):
             raise value_error(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
-    if sum(len(one.files) for one in value.values() if isinstance(one, FilesConfig)) > MAX_FILES:
+    if (
+        sum(len(section.files) for section in value.values() if isinstance(section, FilesConfig))
+        > MAX_FILES
+    ):
         raise value_error(f"should have at most {MAX_FILES} files in all")
     return value
 
@@ -185,12 +188,12 @@ def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
     activities: dict[str, Activity] = {}
     twelve = {activity.slug: activity for activity in ACTIVITIES}
     number = len(ACTIVITIES)
-    for slug, one in classes.items():
+    for slug, section in classes.items():
         if slug in twelve:
             activities[slug] = replace(twelve[slug], movements=())
             continue
         number += 1
-        movements = one.sequence if isinstance(one, SequenceConfig) else ()
+        movements = section.sequence if isinstance(section, SequenceConfig) else ()
         movements += tuple(other for name in movements if (other := MOVEMENTS[name].like))
         activities[slug] = Activity(number, slug, movements)
     return activities

@@ -61,36 +61,36 @@ def read_document(path: Path) -> tuple[Document, Places]:
     return document, places
 
 
-def cfg_text(given: Any, folder: Path, where: str) -> Any:
+def cfg_text(value: Any, folder: Path, where: str) -> Any:
     """Read the text of a .cfg.
 
     Args:
-        given: name of a radar in RADARS, path of a .cfg, or its text, which is returned as it is.
+        value: name of a radar in RADARS, path of a .cfg, or its text, which is returned as it is.
         folder: folder from which a path is seen.
         where: file and line, or option, that a message names.
 
     Raises:
         ConfigError: there is no such file, or it cannot be read as text.
     """
-    if not isinstance(given, str) or "\n" in given.strip():
-        return given
+    if not isinstance(value, str) or "\n" in value.strip():
+        return value
     try:
-        return read_text(RADARS.get(given.lower(), folder / given), MAX_TEXT)
+        return read_text(RADARS.get(value.lower(), folder / value), MAX_TEXT)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise ConfigError(
-            f"{where}: radar.cfg = {json.dumps(given)}: should be the path of a TI .cfg "
+            f"{where}: radar.cfg = {json.dumps(value)}: should be the path of a TI .cfg "
             f"({reason}), or one of {', '.join(RADARS)}"
         ) from None
 
 
-def read_on_bases(path: Path | None, given: Mapping[str, Any]) -> tuple[Document, Places]:
+def read_on_bases(path: Path | None, overrides: Mapping[str, Any]) -> tuple[Document, Places]:
     """Read a file and lay it over its base, and that one over its own, until one has no base.
 
     Args:
         path: YAML file; None for an empty one.
-        given: document that may have a `base` instead of the file's own, as seen from the current
-            folder.
+        overrides: document that may have a `base` instead of the file's own, as seen from the
+            current folder.
 
     Returns:
         The document, without `base`, and {dotted key: file:line}.
@@ -102,8 +102,8 @@ def read_on_bases(path: Path | None, given: Mapping[str, Any]) -> tuple[Document
     files = [path] if path else []
     folder, referred_from = path.parent if path else Path(), places.get(BASE, "")
     base = document.pop(BASE, None)
-    if BASE in given:
-        base, folder, referred_from = given[BASE], Path(), f"--set {BASE}"
+    if BASE in overrides:
+        base, folder, referred_from = overrides[BASE], Path(), f"--set {BASE}"
     while base is not None:
         referred_from = f"{referred_from}: {BASE} = {json.dumps(base)[:120]}"
         if not isinstance(base, str) or not base.endswith(SUFFIXES):
@@ -140,21 +140,25 @@ def _plain(path: Path) -> Path:
         return path  # reported where it is read
 
 
-def _over(lower: Any, own: Any, key: str, replaced: set[str]) -> Any:
+def _over(lower: Any, upper: Any, key: str, replaced: set[str]) -> Any:
     """Lay a value over that of a base: mappings key by key, anything else as a whole.
 
     Args:
         lower: value in the base.
-        own: value in the file over it.
+        upper: value in the file over it.
         key: dotted key of both.
         replaced: keys whose lower value is gone are added to it.
     """
-    both = isinstance(lower, dict) and isinstance(own, dict)
-    if not both or own.keys() & _ONE_VALUE or ("per_activity" in own) != ("per_activity" in lower):
+    both = isinstance(lower, dict) and isinstance(upper, dict)
+    if (
+        not both
+        or upper.keys() & _ONE_VALUE
+        or ("per_activity" in upper) != ("per_activity" in lower)
+    ):
         replaced.add(key)
-        return own
+        return upper
     merged = dict(lower)
-    for name, value in own.items():
+    for name, value in upper.items():
         inner = f"{key}.{name}" if key else name
         merged[name] = _over(lower[name], value, inner, replaced) if name in lower else value
     return merged

@@ -51,7 +51,7 @@ class ImageConfig(Section):
     size_px: Annotated[
         tuple[Pixels, Pixels],
         BeforeValidator(
-            lambda one: (one, one) if isinstance(one, int) else one,
+            lambda size: (size, size) if isinstance(size, int) else size,
             json_schema_input_type=Pixels | tuple[Pixels, Pixels],
         ),
     ] = (256, 256)

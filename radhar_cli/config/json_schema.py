@@ -19,8 +19,8 @@ def json_schema(kind: type[Section]) -> dict[str, Any]:
         if name in known:
             _describe(part, known[name])
     _describe(schema, kind)
-    what = "Another file, whose values hold where this one says nothing."
-    schema["properties"][BASE] = {"type": "string", "description": what}
+    description = "Another file, whose values hold where this one says nothing."
+    schema["properties"][BASE] = {"type": "string", "description": description}
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
@@ -32,6 +32,6 @@ def _describe(part: dict[str, Any], section: type[Section]) -> None:
 
 
 def _sections(kind: type[Section]) -> Iterator[type[Section]]:
-    for one in kind.__subclasses__():
-        yield one
-        yield from _sections(one)
+    for form in kind.__subclasses__():
+        yield form
+        yield from _sections(form)

@@ -42,8 +42,8 @@ def _maps_in_order(value: tuple[str, ...]) -> tuple[str, ...]:
     if len(set(value)) != len(value):
         raise value_error("should name each map once")
     known = (*MAP_NAMES, *FRAME_MAPS)
-    own = [name for name in value if name not in known]
-    return (*sorted(set(value) - set(own), key=known.index), *own)
+    extensions = [name for name in value if name not in known]
+    return (*sorted(set(value) - set(extensions), key=known.index), *extensions)
 
 
 Maps = Annotated[tuple[MapName, ...], AfterValidator(_maps_in_order)]

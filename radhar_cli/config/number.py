@@ -26,26 +26,26 @@ MAX_NUMBER = 1e30
 NORMAL_CUT = 6.0
 
 
-def value_error(what: str) -> PydanticCustomError:
+def value_error(right: str) -> PydanticCustomError:
     """Make the error of a value that a validator refuses.
 
     Args:
-        what: says what would be right, "should be ..."; braces in it are kept.
+        right: says what would be right, "should be ..."; braces in it are kept.
     """
-    return PydanticCustomError("wrong", "{what}", {"what": what})
+    return PydanticCustomError("wrong", "{what}", {"what": right})
 
 
-def require(hold: Callable[[Any], bool], what: str) -> AfterValidator:
+def require(hold: Callable[[Any], bool], right: str) -> AfterValidator:
     """Annotation of a value that is refused unless a condition holds; null is accepted.
 
     Args:
         hold: the condition.
-        what: the message, which says what would be right.
+        right: the message, which says what would be right.
     """
 
     def check(value: Any) -> Any:
         if value is not None and not hold(value):
-            raise value_error(what)
+            raise value_error(right)
         return value
 
     return AfterValidator(check)
@@ -290,10 +290,14 @@ class Bounds:
     def __call__(self, number: Number | None) -> Number | None:
         if number is None:
             return None
-        least, most = support(number)
-        if least < self.low or most > self.high or (self.open_low and least <= self.low):
+        smallest, largest = support(number)
+        if smallest < self.low or largest > self.high or (self.open_low and smallest <= self.low):
             wording = self.wording or f"from {self.low:g} to {self.high:g} {self.unit}".rstrip()
-            reach = "" if least == most else f" (this one reaches from {least:g} to {most:g})"
+            reach = (
+                ""
+                if smallest == largest
+                else f" (this one reaches from {smallest:g} to {largest:g})"
+            )
             raise value_error(f"should be {wording}{reach}")
         return number
 

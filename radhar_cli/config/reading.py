@@ -128,8 +128,10 @@ def as_config(config: Config | str | Path) -> Config:
     if isinstance(config, (str, Path)):
         return load_config(config)
     if not isinstance(config, Config):
-        what = _short(repr(config))
-        raise ConfigError(f"config = {what}: should be the path of a YAML file, or a Config")
+        shown_config = _short(repr(config))
+        raise ConfigError(
+            f"config = {shown_config}: should be the path of a YAML file, or a Config"
+        )
     return config
 
 
@@ -151,14 +153,14 @@ def _load(
     kind: type[S], path: Path | None, overrides: Iterable[str | Override]
 ) -> tuple[S, Places, Options]:
     """Read a config, the places of its keys, and the options that gave some of them."""
-    given = [Override.parse(one) if isinstance(one, str) else one for one in overrides]
+    parsed = [Override.parse(one) if isinstance(one, str) else one for one in overrides]
     of_base: dict[str, Any] = {}
-    for override in given:
+    for override in parsed:
         if override.key == BASE:
             _apply(of_base, override)
     document, places = read_on_bases(path, of_base)
     options: Options = {}
-    for override in given:
+    for override in parsed:
         if override.key == BASE:
             continue
         _apply(document, override)
@@ -435,8 +437,8 @@ def _what(problem: Problem) -> str:
     return f" = {shown_value}: {_short(problem.right, MAX_ADVICE)}"
 
 
-def _short(text: str, most: int = MAX_VALUE) -> str:
-    return text if len(text) <= most else text[: most - 3] + "..."
+def _short(text: str, length: int = MAX_VALUE) -> str:
+    return text if len(text) <= length else text[: length - 3] + "..."
 
 
 def _plain(value: object) -> object:

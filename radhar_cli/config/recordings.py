@@ -78,10 +78,10 @@ class RecordingsConfig(Section):
     @cached_property
     def counts(self) -> dict[str, int]:
         """{label: windows}, of those that have any."""
-        found: dict[str, int] = {}
+        counts: dict[str, int] = {}
         for part in self.parts:
-            found[part.label] = found.get(part.label, 0) + self.count(part)
-        return {label: count for label, count in found.items() if count}
+            counts[part.label] = counts.get(part.label, 0) + self.count(part)
+        return {label: count for label, count in counts.items() if count}
 
     @property
     def persons(self) -> tuple[str, ...]:

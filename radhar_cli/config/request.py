@@ -125,9 +125,9 @@ class Request(Section):
     def _slugs(cls, value: object, info: ValidationInfo) -> object:
         if not isinstance(value, (list, tuple)) or "classes" not in info.data:
             return value  # a mistake in `classes` is reported once
-        own = class_activities(info.data["classes"])
+        classes = class_activities(info.data["classes"])
         try:
-            chosen = [activity_named(str(name), own) for name in value]
+            chosen = [activity_named(str(name), classes) for name in value]
         except ValueError as error:
             raise value_error(str(error)) from None
         if not chosen or len({a.slug for a in chosen}) != len(chosen):
@@ -191,10 +191,15 @@ class Request(Section):
 
     def of_person(self, number: int) -> Self:
         """Config of one of `people`, 1 the first: with their numbers at the top level."""
-        one = self.people[number - 1]
-        theirs = {"subject": one.subject, "motion": one.motion, "timing": one.timing, "people": ()}
-        classes = self.classes if one.classes is None else one.classes
-        return self.model_copy(update={**theirs, "classes": classes})
+        person = self.people[number - 1]
+        sections = {
+            "subject": person.subject,
+            "motion": person.motion,
+            "timing": person.timing,
+            "people": (),
+        }
+        classes = self.classes if person.classes is None else person.classes
+        return self.model_copy(update={**sections, "classes": classes})
 
     def activities_of(self, number: int) -> tuple[Activity, ...]:
         """What one of `people` may do.
@@ -202,15 +207,15 @@ class Request(Section):
         Raises:
             ValueError: there is no such activity.
         """
-        own = {one.slug: one for one in self.every_class}
-        return tuple(activity_named(name, own) for name in self.people[number - 1].names)
+        by_slug = {one.slug: one for one in self.every_class}
+        return tuple(activity_named(name, by_slug) for name in self.people[number - 1].names)
 
     def _filled_person(self, number: int) -> PersonConfig:
-        filled, one = self.of_person(number).filled(), self.people[number - 1]
+        filled, person = self.of_person(number).filled(), self.people[number - 1]
         motion = filled.motion
-        if "cross_range_m" not in one.motion.model_fields_set:
+        if "cross_range_m" not in person.motion.model_fields_set:
             motion = motion.model_copy(update={"cross_range_m": uniform(-1.5, 1.5)})
-        return one.model_copy(update={"motion": motion, "timing": filled.timing})
+        return person.model_copy(update={"motion": motion, "timing": filled.timing})
 
     def samples_of(self, activity: Activity) -> int:
         """How many samples of an activity there are."""
@@ -234,12 +239,12 @@ class Request(Section):
         `activities: all` is S1 to S12, then those of `classes`; with `motion.model: file` only the
         latter. Those of `add_activity` have the numbers after these, which name random streams.
         """
-        own = class_activities(self.classes)
+        classes = class_activities(self.classes)
         if self.activities == "all":
             twelve = {} if self.motion.model == "file" else {a.slug: a for a in ACTIVITIES}
-            return (*sorted((twelve | own).values(), key=lambda a: a.number),)
-        chosen = [activity_named(slug, own) for slug in self.activities]
-        numbers = count(1 + max(a.number for a in (*ACTIVITIES, *own.values())))
+            return (*sorted((twelve | classes).values(), key=lambda a: a.number),)
+        chosen = [activity_named(slug, classes) for slug in self.activities]
+        numbers = count(1 + max(a.number for a in (*ACTIVITIES, *classes.values())))
         return tuple(a if a.motion is None else replace(a, number=next(numbers)) for a in chosen)
 
     def depends_on(self, activity: Activity, key: str) -> bool:
@@ -275,8 +280,8 @@ class Request(Section):
 
     def files_of(self, activity: Activity) -> FilesConfig | None:
         """The files of an activity, None where a model makes its motion."""
-        one = self.classes.get(activity.slug)
-        return one if isinstance(one, FilesConfig) else None
+        section = self.classes.get(activity.slug)
+        return section if isinstance(section, FilesConfig) else None
 
 
 class MeasuredRequest(Section):
@@ -314,7 +319,7 @@ class MeasuredRequest(Section):
         known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
         new = sorted(self.recordings.counts.keys() - known.keys())
         known |= {slug: Activity(len(known) + n, slug) for n, slug in enumerate(new, 1)}
-        return tuple(sorted(known.values(), key=lambda one: not self.samples_of(one)))
+        return tuple(sorted(known.values(), key=lambda activity: not self.samples_of(activity)))
 
     @property
     def chosen_activities(self) -> tuple[Activity, ...]:
@@ -379,10 +384,10 @@ def _fill_for_board(c: Request, radar: BoardRadar, changed: dict[str, dict[str, 
 @cache
 def _uses() -> dict[str, dict[str, frozenset[str]]]:
     """{dotted key: {model: who uses it}} of the keys that not everybody uses."""
-    found = dict[str, dict[str, frozenset[str]]]()
-    for key, one in of_kind(Request, People):
-        names = one.names.replace("exercises", " ".join(EXERCISES)).split()
-        found.setdefault(key, {})["human"] = frozenset(names)
+    uses = dict[str, dict[str, frozenset[str]]]()
+    for key, people in of_kind(Request, People):
+        names = people.names.replace("exercises", " ".join(EXERCISES)).split()
+        uses.setdefault(key, {})["human"] = frozenset(names)
     for key, other in of_kind(Request, Paper):
-        found.setdefault(key, {})["paper"] = frozenset(other.names.split())
-    return found
+        uses.setdefault(key, {})["paper"] = frozenset(other.names.split())
+    return uses

@@ -152,7 +152,9 @@ class FacesConfig(Section, Generic[N]):
     @property
     def given(self) -> dict[str, Material | DielectricConfig[N]]:
         """{name: material} of the faces that reflect."""
-        return {name: one for name in type(self).model_fields if (one := getattr(self, name))}
+        return {
+            name: material for name in type(self).model_fields if (material := getattr(self, name))
+        }
 
 
 class RoomConfig(Section, Generic[N]):

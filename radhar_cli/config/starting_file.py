@@ -166,8 +166,8 @@ def of_board(cfg: str, folder: Path) -> str:
     position = "" if board.pose else ", position_m: [0, 0, 1]"
     range_step = SPEED_OF_LIGHT * board.adc_rate_hz / (2 * board.slope_hz)
     speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.slot_s * len(board.order))
-    what = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
-    return f"""# {what}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
+    antennas = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
+    return f"""# {antennas}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
 # ranges to {range_step:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
 radar: {{device: {device}, cfg: {json.dumps(path)}{position}}}
 samples_per_class: 20
@@ -225,9 +225,9 @@ def _maps_of_board(cfg: str, device: str, period_s: float, chain: str) -> tuple[
     That it does not fit is said when the config is read.
     """
     radar = {"device": device, "cfg": cfg}
-    given = {"radar": radar, "maps": ["rtm"], "duration_s": max(3.0, 2 * period_s)}
+    document = {"radar": radar, "maps": ["rtm"], "duration_s": max(3.0, 2 * period_s)}
     with suppress(ValidationError):
         more = {"processing": {"clutter": "none"}, "cloud": {"chain": chain}}
-        config = Config.model_validate(given | more)
+        config = Config.model_validate(document | more)
         return tuple(one for one in MAPS_OF_BOARDS if one in possible_maps(config)) or ("rtm",)
     return MAPS_OF_BOARDS

@@ -84,10 +84,10 @@ def key_in_our_unit(name: str, value: object, known: Iterable[str]) -> str | Non
         factor = factor_of(last, unit)
         if factor is None:
             continue
-        ours = UNITS[unit][0]
+        our_unit = UNITS[unit][0]
         if isinstance(value, (int, float)) and not isinstance(value, bool):
-            return f"should be {key}: {_number_text(value * factor)}, a number in {ours}"
-        return f"should be {key}, {_number_text(factor)} times the value, in {ours}"
+            return f"should be {key}: {_number_text(value * factor)}, a number in {our_unit}"
+        return f"should be {key}, {_number_text(factor)} times the value, in {our_unit}"
     return None
 
 

@@ -83,8 +83,8 @@ class _Loader(yaml.BaseLoader):
         return node
 
 
-def _refuse(at: Any, problem: str) -> NoReturn:
-    raise yaml.MarkedYAMLError(problem=problem, problem_mark=at.start_mark)
+def _refuse(node: Any, problem: str) -> NoReturn:
+    raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
 
 
 def _value(node: yaml.Node, key: str, lines: Lines) -> Any:
@@ -112,17 +112,18 @@ def _scalar(node: Any) -> Any:
 
 
 def _mapping(node: yaml.MappingNode, key: str, lines: Lines) -> dict[str, Any]:
-    own: dict[str, Any] = {}
+    mapping: dict[str, Any] = {}
     for name_node, value_node in node.value:
         name = _value(name_node, "", {})
         if not isinstance(name, str) or len(name) > MAX_KEY_LENGTH:
-            what = repr(name)[: MAX_KEY_LENGTH // 2]
+            shortened = repr(name)[: MAX_KEY_LENGTH // 2]
             _refuse(
-                name_node, f"the key {what} should be text of at most {MAX_KEY_LENGTH} characters"
+                name_node,
+                f"the key {shortened} should be text of at most {MAX_KEY_LENGTH} characters",
             )
-        if name in own:
+        if name in mapping:
             _refuse(name_node, f"the key {name!r} appears twice")
         inner = f"{key}.{name}" if key else name
         lines[inner] = name_node.start_mark.line + 1
-        own[name] = _value(value_node, inner, lines)
-    return own
+        mapping[name] = _value(value_node, inner, lines)
+    return mapping

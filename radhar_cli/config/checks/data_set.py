@@ -61,9 +61,9 @@ def problems(c: Request) -> Iterator[Problem]:
     split = c.split
     fewest = min(c.chosen_activities, key=c.samples_of)
     if split.subjects is not None and split.subjects > c.samples_of(fewest):
-        whose = "" if isinstance(c.samples_per_class, int) else f" of {fewest.slug}"
-        most = f"samples_per_class = {c.samples_of(fewest)}{whose}"
-        right = f"should be at most {most}: every person performs every activity"
+        of_class = "" if isinstance(c.samples_per_class, int) else f" of {fewest.slug}"
+        limit = f"samples_per_class = {c.samples_of(fewest)}{of_class}"
+        right = f"should be at most {limit}: every person performs every activity"
         yield Problem("split.subjects", split.subjects, right)
 
 

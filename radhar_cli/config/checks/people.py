@@ -16,15 +16,15 @@ def people_problems(c: Request) -> Iterator[Problem]:
         right = "should be empty with motion.model: paper, where one person is the sample"
         yield Problem("people", len(c.people), right)
         return
-    for number, one in enumerate(c.people, 1):
+    for number, person in enumerate(c.people, 1):
         key = f"people.{number - 1}"
-        if one.motion.model != "human":
-            yield Problem(f"{key}.motion.model", one.motion.model, "should be human")
+        if person.motion.model != "human":
+            yield Problem(f"{key}.motion.model", person.motion.model, "should be human")
             continue
         try:
             activities = c.activities_of(number)
         except ValueError as error:
-            yield Problem(f"{key}.activity", ", ".join(one.names), str(error))
+            yield Problem(f"{key}.activity", ", ".join(person.names), str(error))
             continue
         files = [a.slug for a in activities if c.files_of(a) is not None]
         if files:
@@ -38,10 +38,10 @@ def people_problems(c: Request) -> Iterator[Problem]:
 def class_problems(c: Request) -> Iterator[Problem]:
     """Classes that the model of motion cannot make."""
     model = c.motion.model
-    for slug, one in c.classes.items():
-        if model != "human" and isinstance(one, SequenceConfig):
+    for slug, section in c.classes.items():
+        if model != "human" and isinstance(section, SequenceConfig):
             right = f"should have files with motion.model: {model}; sequences are of people (human)"
-            yield Problem(f"classes.{slug}", list(one.sequence), right)
+            yield Problem(f"classes.{slug}", list(section.sequence), right)
     if model != "file":
         return
     for activity in c.chosen_activities:
@@ -52,8 +52,8 @@ def class_problems(c: Request) -> Iterator[Problem]:
 
 def unknown_activities(c: Request) -> Iterator[Problem]:
     """Names under `per_activity` that are neither an activity nor a user-defined class."""
-    own = class_activities(c.classes)
-    names = {DEFAULT, *(a.slug for a in (*ACTIVITIES, *own.values(), *own_activities()))}
+    classes = class_activities(c.classes)
+    names = {DEFAULT, *(a.slug for a in (*ACTIVITIES, *classes.values(), *own_activities()))}
     keys = ["samples_per_class"]
     of_people = [f"people.{n}." for n in range(len(c.people))]
     of_movement = [key for key in annotations(Request) if key.startswith(("motion.", "timing."))]
@@ -64,7 +64,7 @@ def unknown_activities(c: Request) -> Iterator[Problem]:
             if slug in names:
                 continue
             try:
-                advice = f"should be called {activity_named(slug, own).slug}"
+                advice = f"should be called {activity_named(slug, classes).slug}"
             except ValueError as error:
                 advice = str(error)
             yield Problem(f"{key}.per_activity.{slug}", number, advice)
@@ -88,8 +88,8 @@ def human_problems(c: Request) -> Iterator[Problem]:
         if number is None or not users:
             continue
         ends = [support(for_activity(number, one)) for one in users]
-        least, most = min(end[0] for end in ends), max(end[1] for end in ends)
-        if least < low or most > high:
+        smallest, largest = min(end[0] for end in ends), max(end[1] for end in ends)
+        if smallest < low or largest > high:
             right = f"should be from {low:g} to {high:g} with motion.model: human"
-            right = f"{right} (this one reaches from {least:g} to {most:g})"
+            right = f"{right} (this one reaches from {smallest:g} to {largest:g})"
             yield Problem(key, number, right)

@@ -14,6 +14,7 @@ from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
+from radhar_cli.radar.ti_cfg import BoardHeader
 
 MAX_CUBE = 2**27  # samples of all channels
 MAX_PADDING = 64
@@ -86,7 +87,7 @@ def profile_problems(c: AnyRequest) -> Iterator[Problem]:
 
 def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     """Find what a board cannot have, or what is not simulated for boards."""
-    board, clutter = radar.header, c.processing.clutter
+    board = radar.header
     if radar.elements is None:
         right = (
             f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
@@ -102,13 +103,21 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
         )
         yield Problem("radar.cfg", "chirpCfg, channelCfg", right)
         return
+    yield from _frame_problems(c, board)
+    yield from _output_problems_of_board(c)
+    yield from _missing_on_board(c)
+
+
+def _frame_problems(c: Request, board: BoardHeader) -> Iterator[Problem]:
+    """Find what does not fit the frames of a board: durations, clutter, detection."""
+    clutter = c.processing.clutter
     if support(c.duration_s)[0] < board.period_s:
         right = f"should hold a frame of {board.period_s:g} s"
         yield Problem("duration_s", c.duration_s, right)
     chirps = support(c.duration_s)[1] / board.period_s * board.loops * len(board.order)
-    most = chirps * len(board.receivers) * board.samples
-    if most > MAX_CUBE:
-        seconds = support(c.duration_s)[1] * MAX_CUBE / most
+    samples = chirps * len(board.receivers) * board.samples
+    if samples > MAX_CUBE:
+        seconds = support(c.duration_s)[1] * MAX_CUBE / samples
         right = f"should be at most {seconds:.3g} s: a cube of {MAX_CUBE} samples is held at once"
         yield Problem("duration_s", c.duration_s, right)
     if clutter not in ("mean", "none"):
@@ -120,6 +129,10 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     if c.cloud.chain == "board" and not board.has_cfar:
         right = "should be best: radar.cfg has no cfarCfg of a chain that is simulated"
         yield Problem("cloud.chain", c.cloud.chain, right)
+
+
+def _output_problems_of_board(c: Request) -> Iterator[Problem]:
+    """Find images and products that a board does not have."""
     if c.image.kind == "signed":
         right = "should be decibel or cfar without radar.waveform: impulse"
         yield Problem("image.kind", "signed", right)
@@ -133,6 +146,13 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     products = [name for name in c.output.products if name in FRAME_MAPS]
     if reasons := [why for name in products if (why := why_no_map(c, name)) is not None]:
         yield Problem("output.products", products, f"should not have these: {reasons[0]}")
+    if c.output.slow_time:
+        right = "should be false with radar.cfg; output.products: [cube] stores raw samples"
+        yield Problem("output.slow_time", True, right)
+
+
+def _missing_on_board(c: Request) -> Iterator[Problem]:
+    """Find what is simulated for one channel alone."""
     corner = c.receiver.noise_corner_hz
     for name, value in (
         ("tones", [one.model_dump(mode="json") for one in c.receiver.tones]),
@@ -144,9 +164,6 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     if c.engine.motion_in_chirp:
         right = "should be false with radar.cfg: positions are frozen when a chirp begins"
         yield Problem("engine.motion_in_chirp", True, right)
-    if c.output.slow_time:
-        right = "should be false with radar.cfg; output.products: [cube] stores raw samples"
-        yield Problem("output.slow_time", True, right)
 
 
 def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
@@ -158,7 +175,7 @@ def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
             if at(c, key) not in (None, "centre"):
                 yield Problem(key, at(c, key), right)
         return
-    fewest, most = waveform_at(c).n_adc, waveform_at(c, *ENDS).n_adc
+    smallest_count, largest_count = waveform_at(c).n_adc, waveform_at(c, *ENDS).n_adc
     shortest_interval = 1 / support(radar.prf_hz)[1]
     samples = "ADC samples per chirp (adc_rate_hz * chirp_s is"
     if not support(radar.chirp_s)[1] < shortest_interval:
@@ -168,16 +185,16 @@ def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
             yield Problem("radar.steps", radar.steps, right)
         else:
             yield Problem("radar.chirp_s", radar.chirp_s, right)
-    if fewest < 2:
-        right = f"should give at least 2 {samples} {fewest})"
+    if smallest_count < 2:
+        right = f"should give at least 2 {samples} {smallest_count})"
         yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
-    if most > 2**20:
-        right = f"should give at most {2**20} {samples} {most})"
+    if largest_count > 2**20:
+        right = f"should give at most {2**20} {samples} {largest_count})"
         yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
     key = "processing.range_fft_length"
-    if fft_length is not None and fft_length < most:
-        right = f"should be null or an even number of at least the {most} ADC samples"
+    if fft_length is not None and fft_length < largest_count:
+        right = f"should be null or an even number of at least the {largest_count} ADC samples"
         yield Problem(key, fft_length, right)
-    if fft_length is not None and fft_length > MAX_PADDING * fewest:
-        right = f"should be null or at most {MAX_PADDING} times the {fewest} ADC samples"
+    if fft_length is not None and fft_length > MAX_PADDING * smallest_count:
+        right = f"should be null or at most {MAX_PADDING} times the {smallest_count} ADC samples"
         yield Problem(key, fft_length, right)

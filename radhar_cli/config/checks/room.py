@@ -22,8 +22,8 @@ def wall_problems(c: Request) -> Iterator[Problem]:
         antenna = getattr(c.radar, name)
         along = zip(map(support, antenna), map(support, c.wall.center_m), sizes, strict=True)
         if all(p[0] <= m[1] + size / 2 and p[1] >= m[0] - size / 2 for p, m, size in along):
-            given = f"wall.center_m = {list(c.wall.center_m)}, wall.size_m = {list(c.wall.size_m)}"
-            right = f"should be outside the wall, whose faces count as inside ({given})"
+            wall = f"wall.center_m = {list(c.wall.center_m)}, wall.size_m = {list(c.wall.size_m)}"
+            right = f"should be outside the wall, whose faces count as inside ({wall})"
             yield Problem(f"radar.{name}", list(antenna), right)
 
 
@@ -33,8 +33,8 @@ def _layer_problems(c: Request, wall: WallConfig) -> Iterator[Problem]:
         right = "should be null with wall.layers" if wall.layers else "should be a number"
         yield Problem("wall.size_m.0", wall.size_m[0], right)
     for number, layer in enumerate(wall.layers or ()):
-        given = (layer.material is not None) + (layer.eps_r is not None)
-        if given != 1 or (layer.material and layer.loss_tangent):
+        forms = (layer.material is not None) + (layer.eps_r is not None)
+        if forms != 1 or (layer.material and layer.loss_tangent):
             right = "should have a material, or eps_r and loss_tangent"
             yield Problem(f"wall.layers.{number}", layer.model_dump(mode="json"), right)
     default = WallConfig()
@@ -78,12 +78,12 @@ def _coordinates(c: Request, name: str) -> Iterator[tuple[str, Any, list[tuple[f
     Yields:
         (dotted key, value, [(least, most) of each activity]) of each person.
     """
-    everybody = [("", c.motion, c.chosen_activities)]
+    people = [("", c.motion, c.chosen_activities)]
     with suppress(ValueError):  # of an unknown activity, which is told by itself
-        everybody += [
+        people += [
             (f"people.{n}.", one.motion, c.activities_of(n + 1)) for n, one in enumerate(c.people)
         ]
-    for prefix, motion, activities in everybody:
+    for prefix, motion, activities in people:
         value = getattr(motion, name)
         numbers = [for_activity(value, one) for one in activities]
         yield f"{prefix}motion.{name}", value, [support(one) for one in numbers if one is not None]

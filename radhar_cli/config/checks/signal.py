@@ -100,11 +100,11 @@ def _clutter_problems(c: AnyRequest) -> Iterator[Problem]:
     processing, prf = c.processing, support(c.radar.prf_hz)
     cutoff_hz = processing.highpass.cutoff_hz
     if processing.clutter == "highpass" and cutoff_hz is not None:
-        least, most = 2 * cutoff_hz / prf[1], 2 * cutoff_hz / prf[0]
-        if most >= 1 or least < MIN_CUTOFF:
+        smallest, largest = 2 * cutoff_hz / prf[1], 2 * cutoff_hz / prf[0]
+        if largest >= 1 or smallest < MIN_CUTOFF:
             right = (
                 f"should be from {MIN_CUTOFF:g} times PRF/2 to below PRF/2 in every scene "
-                f"(it is {least:g} to {most:g} times PRF/2)"
+                f"(it is {smallest:g} to {largest:g} times PRF/2)"
             )
             yield Problem("processing.highpass.cutoff_hz", cutoff_hz, right)
     if "rtm" in c.maps and processing.clutter in ("mean", "highpass"):
@@ -131,20 +131,20 @@ def _gate_problems(c: AnyRequest) -> Iterator[Problem]:
         yield from _bin_problems(c, "processing.range_sum", "gated", "the gate")
 
 
-def _bin_problems(c: AnyRequest, key: str, value: object, what: str) -> Iterator[Problem]:
+def _bin_problems(c: AnyRequest, key: str, value: object, purpose: str) -> Iterator[Problem]:
     """A request for which more range bins of all pulses than memory allows have to be held.
 
     Args:
         c: the config, whose largest recording counts.
         key: dotted key that asks for them.
         value: its value.
-        what: what they are held for, in words.
+        purpose: what they are held for, in words.
     """
     w = waveform_at(c, *ENDS)
     bins, pulses = w.n_bins, w.n_pulses
     if bins * pulses > MAX_BIN_SAMPLES:
         right = (
-            f"should not go with {pulses} pulses of {bins} range bins: for {what} they are held "
+            f"should not go with {pulses} pulses of {bins} range bins: for {purpose} they are held "
             f"at once, {MAX_BIN_SAMPLES} samples at most"
         )
         yield Problem(key, value, right)

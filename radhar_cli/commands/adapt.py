@@ -48,6 +48,7 @@ def adapt(
     --epochs, all layers but the last are also trained on them.
 
     Example:
+
       radhar adapt runs/simulated measured -o runs/adapted --epochs 20 --mix datasets/simulated
 
     This is for a network that was trained on simulated maps and will be used with a real radar.

@@ -35,6 +35,7 @@ def compare(
     Prints statistics, their distances, and the result of a two-sample test.
 
     Example:
+
       radhar compare datasets/like_measured datasets/measured -o out/compared
 
     The test trains a classifier: 50 % means that it cannot tell simulated from measured maps.

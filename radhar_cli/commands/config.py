@@ -62,6 +62,7 @@ def init(
     human/room`.
 
     Example:
+
       radhar config init mine.yaml --minimal
 
       radhar config init room.yaml --preset human/room
@@ -102,6 +103,7 @@ def show(
     """Print a config with its defaults and bases filled in.
 
     Example:
+
       radhar config show configs/quickstart.yaml --set snr_db=10
     """
     from radhar_cli.config.identity import as_yaml, resolved
@@ -121,6 +123,7 @@ def schema(
     """Print the JSON schema of configs, for editors that complete keys.
 
     Example:
+
       radhar config schema radhar.schema.json
     """
     import json

@@ -19,6 +19,7 @@ def convert(
     """Convert a data set, or its point clouds, for other tools.
 
     Example:
+
       radhar convert datasets/quickstart -o shared/quickstart --to parquet
 
       radhar convert datasets/quickstart -o shared/tars --to webdataset

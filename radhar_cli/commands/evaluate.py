@@ -53,6 +53,7 @@ def evaluate(
     """Evaluate trained networks on data sets.
 
     Example:
+
       radhar eval runs/quickstart datasets/quickstart --tsne
 
     Each run is evaluated on each data set, for example to compare networks, or to test one that was

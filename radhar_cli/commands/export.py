@@ -18,6 +18,7 @@ def export(
     """Export a network as ONNX, checked with ONNX Runtime.
 
     Example:
+
       radhar export runs/quickstart -o quickstart.onnx
     """
     from radhar_cli.commands.learning_options import needs, needs_torch

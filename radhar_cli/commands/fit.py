@@ -23,6 +23,7 @@ def fit(
     Prints the noise floor, and draws it with the SNRs in a .png file beside the config.
 
     Example:
+
       radhar fit walk.h5 fall.h5 -o measured.yaml
     """
     import json

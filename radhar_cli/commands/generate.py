@@ -72,6 +72,7 @@ def generate(
     """Build a labelled data set from a config file.
 
     Example:
+
       radhar generate configs/paper/through_wall.yaml -o datasets/ttw_10dB --set snr_db=10 --jobs 2
 
     The same command resumes an interrupted build; it does nothing if the folder is complete.

@@ -38,6 +38,7 @@ def import_(
     """Convert a capture of a real radar into a recording file.
 
     Example:
+
       radhar import adc_data_Raw_0.bin --radar setup.mmwave.json --label walking -o walk.h5
 
     Prints what is found in the samples: offset binary, sign of the beat, gaps, losses, saturation.

@@ -16,6 +16,7 @@ def inspect(
     """Summarise a data set, a scene, a recording or a tree of images.
 
     Example:
+
       radhar inspect datasets/quickstart
     """
     from radhar_cli.capture.recording import is_recording, summarise_recording

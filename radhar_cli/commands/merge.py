@@ -30,6 +30,7 @@ def merge(
     Missing rows are listed with the --shard options that make them; the exit status is then 1.
 
     Example:
+
       radhar merge datasets/large
     """
     from radhar_cli.commands.terminal import BarProgress, print_outcome

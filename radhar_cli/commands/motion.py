@@ -26,6 +26,7 @@ def motion(
     The y axis points up, lengths are in cm, and joints have Mixamo's names.
 
     Example:
+
       radhar motion configs/human/free_space_77GHz.yaml --activity walking -o walk.bvh
     """
     from radhar_cli.config import load_config

@@ -34,6 +34,7 @@ def predict(
     """Print the most likely classes of images; or joints of sequences.
 
     Example:
+
       radhar predict runs/quickstart datasets/quickstart/png/stft/val/walking/00005.png
 
       radhar predict runs/joints datasets/boards -o joints.npz

@@ -28,6 +28,7 @@ def preview(
     """Draw a contact sheet of a data set: some samples of every class.
 
     Example:
+
       radhar preview datasets/quickstart --map stft --per-class 4
     """
     from radhar_cli.dataset.contact_sheet import draw_contact_sheet

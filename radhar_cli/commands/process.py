@@ -49,6 +49,7 @@ def process(
     Writes maps.h5 and maps.png.
 
     Example:
+
       radhar process walk.h5 --config configs/paper/free_space.yaml --maps rtm,stft -o out/walk
     """
     from radhar_cli.capture import maps_file

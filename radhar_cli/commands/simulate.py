@@ -89,6 +89,7 @@ def simulate(
     config; `--maps all` makes every map that its radar can make.
 
     Example:
+
       radhar simulate configs/quickstart.yaml --activity walking --seed 7 -o out/walk
     """
     if html:

@@ -21,6 +21,7 @@ def tradeoff(
     """Measure what accuracy costs: error and time of engine settings.
 
     Example:
+
       radhar tradeoff configs/paper/free_space.yaml -o out/tradeoff --quick
 
     Keep the machine idle during the run: load distorts the times, but not the errors.

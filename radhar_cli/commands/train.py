@@ -58,6 +58,7 @@ def train(
     """Train a network on a data set.
 
     Example:
+
       radhar train datasets/quickstart -o runs/quickstart
 
       radhar train datasets/boards -o runs/joints --model cloudnet --target skeleton

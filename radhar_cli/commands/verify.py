@@ -28,6 +28,7 @@ def verify(
     something differs.
 
     Example:
+
       radhar verify datasets/quickstart --samples 24
     """
     from radhar_cli.commands.terminal import BarProgress

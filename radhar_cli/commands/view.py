@@ -35,6 +35,7 @@ def view(
     It is one HTML file for any browser. Skeletons are simulated again from the stored config.
 
     Example:
+
       radhar view datasets/quickstart --sample walking/3
     """
     needs("view", ("plotly",))

@@ -2,8 +2,8 @@
 
 import pytest
 from helpers.boards import CFG
-from radhar_cli.assembly.physics import detection_of
 
+from radhar_cli.assembly.radar import detection_of
 from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.config.radar import BoardRadar
 

@@ -10,8 +10,8 @@ import pytest
 from helpers.boards import CFG, MARS, Straight, channels
 from hypothesis import given
 from hypothesis import strategies as st
-from radhar_cli.assembly.physics import board_of
 
+from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import SPARE_DB, exact_cube, fast_cube, mean_power, measured_db

@@ -179,9 +179,9 @@ def choose_probes(powers: Float, pulses: int, roughness: Roughness = EVEN) -> Pr
 def segment_powers(x: Complex, step: int) -> Float:
     """Sum of |x|^2 over every `step` pulses [segments] of a signal x [M]; the last may be fewer."""
     pairs = np.ascontiguousarray(x).view(float)
-    whole = x.size // step * 2 * step
-    powers: Float = np.einsum("sk,sk->s", *2 * (pairs[:whole].reshape(-1, 2 * step),))
-    last = pairs[whole:]
+    paired = x.size // step * 2 * step
+    powers: Float = np.einsum("sk,sk->s", *2 * (pairs[:paired].reshape(-1, 2 * step),))
+    last = pairs[paired:]
     return np.append(powers, last @ last) if last.size else powers
 
 

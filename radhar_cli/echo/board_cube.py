@@ -28,7 +28,7 @@ PROBES = 96
 SPARE_DB = 10.0  # by which the measured error must be below the tolerance
 NODES, MORE_NODES = 6, 16
 MARGIN_DB = 20.0
-MOST_TERMS = 24
+MAX_TERMS = 24
 # Polynomials of turns of up to x radians number x + c (x + 15)^(1/3), as the coefficients J_p(x)
 # fall off beyond p = x; c in double and in single precision.
 CUBE_ROOTS = 12.5, 5.0
@@ -52,8 +52,8 @@ def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, f
     power = 0.0
     for v, (source, (k, _)) in enumerate(zip(channels, board.pairs, strict=True)):
         for first in range(0, board.frames, BLOCK_FRAMES):
-            some = slice(first, first + BLOCK_FRAMES)
-            paths = source(board.chirp_times(some)[..., k].ravel())
+            block = slice(first, first + BLOCK_FRAMES)
+            paths = source(board.chirp_times(block)[..., k].ravel())
             power += float((paths.amplitude**2).sum())
             s = beat_matrix(paths.delay, paths.amplitude, board.waveform).T * board.signs[v]
             frames = s.reshape(-1, board.loops, board.samples)
@@ -62,7 +62,7 @@ def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, f
                 parts = (part.reshape(shape)[:, frame] for part in paths[:2])
                 if _still(*parts):
                     samples[1:] = samples[0]
-            cube[some, :, v] = frames
+            cube[block, :, v] = frames
     return cube, power / (board.frames * board.loops * board.channels)
 
 
@@ -137,19 +137,23 @@ def _frame_paths(
     is the sum over the paths of the squared coefficients of the highest of their Chebyshev
     polynomials, of 2 pi fc tau A and of A: the next one is what interpolation leaves out.
     """
-    at = nodes(count - 1, board.loops)
-    order = np.arange(at.size) + 0.5
-    highest = np.cos((at.size - 1) * np.pi * order / at.size) if at.size < board.loops else 0 * at
-    basis = lagrange_basis(at, np.arange(float(board.loops)))
+    instants = nodes(count - 1, board.loops)
+    order = np.arange(instants.size) + 0.5
+    highest = (
+        np.cos((instants.size - 1) * np.pi * order / instants.size)
+        if instants.size < board.loops
+        else 0 * instants
+    )
+    basis = lagrange_basis(instants, np.arange(float(board.loops)))
     for first in range(0, board.frames, BLOCK_FRAMES):
         begin = board.chirp_times(slice(first, first + BLOCK_FRAMES))[:, 0]
-        seen = [
-            source((begin[:, k, None] + board.loop * at).ravel())
+        sampled = [
+            source((begin[:, k, None] + board.loop * instants).ravel())
             for source, (k, _) in zip(channels, board.pairs, strict=True)
         ]
-        shape = (-1, len(begin), at.size)
-        delay = np.stack([paths.delay.reshape(shape) for paths in seen], axis=2)
-        amplitude = np.stack([paths.amplitude.reshape(shape) for paths in seen], axis=2)
+        shape = (-1, len(begin), instants.size)
+        delay = np.stack([paths.delay.reshape(shape) for paths in sampled], axis=2)
+        amplitude = np.stack([paths.amplitude.reshape(shape) for paths in sampled], axis=2)
         for frame in range(len(begin)):
             tau, a = delay[:, frame], amplitude[:, frame]
             bend = 2 * pi * board.waveform.fc * (tau @ highest) * a[..., 0], a @ highest
@@ -190,19 +194,19 @@ def _frame_sum(tau: Float, a: Float, board: Board, tolerance_db: float) -> Compl
     turn = (2 * pi * rate * half) * (tau - middle)
     mean = turn.mean(axis=1, keepdims=True)
     turn -= mean
-    whole = np.rint(mean / (2 * pi * half))  # cycles a sample, which no sample shows
-    mean -= 2 * pi * half * whole
+    cycles = np.rint(mean / (2 * pi * half))  # cycles a sample, which no sample shows
+    mean -= 2 * pi * half * cycles
     change = max(float(np.abs(turn).max()), LEAST_TURN)
     terms = _terms(turn[:, ::16], tolerance_db)
     x = (turn / change).astype(a.dtype)
-    change = min(change, MOST_TERMS)  # beyond which the error shows
-    most = float(np.abs(mean).max()) + MARGIN * change
+    change = min(change, MAX_TERMS)  # beyond which the error shows
+    reach = float(np.abs(mean).max()) + MARGIN * change
     left = np.empty((terms, *tau.shape), dtype)
-    left[0] = unit_phasor(board.centre * tau - half * whole, dtype)
+    left[0] = unit_phasor(board.centre * tau - half * cycles, dtype)
     left[0] *= a
     for q in range(1, terms):
         np.multiply(left[q - 1], x, out=left[q])
-    polynomials, right = _expanded(mean[:, 0], change, most, terms, u / half, dtype)
+    polynomials, right = _expanded(mean[:, 0], change, reach, terms, u / half, dtype)
     right = right * unit_phasor(rate * middle * u)
     polynomials = polynomials.astype(a.dtype).reshape(len(right), -1)
     sums = polynomials @ left.reshape(-1, tau.shape[1]).view(a.dtype)
@@ -211,29 +215,29 @@ def _frame_sum(tau: Float, a: Float, board: Board, tolerance_db: float) -> Compl
 
 
 def _expanded(
-    turn: Float, change: float, most: float, terms: int, v: Float, dtype: Any
+    turn: Float, change: float, reach: float, terms: int, v: Float, dtype: Any
 ) -> tuple[Float, Complex]:
-    """Factors (change/most)^q T_p^(q)(turn/most)/q! [P, q, I], and c_p [P, N] of exp(-j turn v)."""
-    count = ceil(most + CUBE_ROOTS[dtype == np.complex64] * (most + 15) ** (1 / 3))
-    x, scale = turn / most, change / most
-    given = np.zeros((count, terms, x.size))
-    given[0, 0], given[1, 0], given[1, 1:2] = 1, x, scale
+    """Factors (change/reach)^q T_p^(q)(turn/reach)/q! [P, q, I]; c_p [P, N] of exp(-j turn v)."""
+    count = ceil(reach + CUBE_ROOTS[dtype == np.complex64] * (reach + 15) ** (1 / 3))
+    x, scale = turn / reach, change / reach
+    factors = np.zeros((count, terms, x.size))
+    factors[0, 0], factors[1, 0], factors[1, 1:2] = 1, x, scale
     for p in range(2, count):  # T_p = 2 x T_(p-1) - T_(p-2), and its derivatives
-        np.multiply(2 * x, given[p - 1], out=given[p])
-        given[p] -= given[p - 2]
-        given[p, 1:] += 2 * scale * given[p - 1, :-1]
-    cycles = most / (2 * pi) * v
-    return given, coefficients(lambda x: unit_phasor(x[:, None] * cycles, dtype), count)
+        np.multiply(2 * x, factors[p - 1], out=factors[p])
+        factors[p] -= factors[p - 2]
+        factors[p, 1:] += 2 * scale * factors[p - 1, :-1]
+    cycles = reach / (2 * pi) * v
+    return factors, coefficients(lambda x: unit_phasor(x[:, None] * cycles, dtype), count)
 
 
 def _terms(y: Float, tolerance_db: float) -> int:
     """Fewest terms of exp(-j y) whose remainder y^Q/Q! has an rms below the tolerance."""
     rest = np.ones_like(y)
-    for q in range(1, MOST_TERMS):
+    for q in range(1, MAX_TERMS):
         rest *= y / q
         if float(np.mean(rest**2)) < 10 ** ((tolerance_db - MARGIN_DB) / 10):
             return q
-    return MOST_TERMS
+    return MAX_TERMS
 
 
 def measured_db(
@@ -263,14 +267,16 @@ def measured_db(
     virtual, sender = probe * 5 % board.channels, np.array([k for k, _ in board.pairs])
     times, squares = board.chirp_times(), np.zeros(PROBES)
     for k in np.unique(sender):  # channels of one transmitter are asked for the same times
-        asked = sender[virtual] == k
-        for v in np.unique(virtual[asked]):
-            paths = channels[v](times[frame[asked], loop[asked], k])
-            mine = virtual[asked] == v
-            at = np.flatnonzero(asked)[mine]
-            delay, a = (part[:, mine] for part in paths[:2])
+        of_sender = sender[virtual] == k
+        for v in np.unique(virtual[of_sender]):
+            paths = channels[v](times[frame[of_sender], loop[of_sender], k])
+            of_channel = virtual[of_sender] == v
+            probes = np.flatnonzero(of_sender)[of_channel]
+            delay, a = (part[:, of_channel] for part in paths[:2])
             exact = beat_matrix(delay, a, board.waveform).T * board.signs[v]
-            squares[at] = np.sum(np.abs(cube[frame[at], loop[at], v] - exact) ** 2, axis=1)
+            squares[probes] = np.sum(
+                np.abs(cube[frame[probes], loop[probes], v] - exact) ** 2, axis=1
+            )
     if total == 0:
         return inf if squares.any() else -inf
     density = share[frame] * PROBES / (board.loops * board.channels)

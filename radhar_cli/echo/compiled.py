@@ -15,7 +15,7 @@ from numpy.polynomial import Polynomial
 from radhar_cli.echo.half_band_sum import HalfBandTable
 from radhar_cli.echo.interpolation import (
     BEFORE,
-    EXACT,
+    NO_STENCIL,
     NODES,
     REACH,
     TAPS,
@@ -38,13 +38,13 @@ def pays(terms: int) -> bool:
 
 
 def interpolated_sum(
-    paths: Paths, some: Index, unit: float, table: HalfBandTable, shift: Index, step: int
+    paths: Paths, numbers: Index, unit: float, table: HalfBandTable, shift: Index, step: int
 ) -> Complex:
     """Sum of A_i G_i exp(-j 2 pi f0 tau_i) over paths, at the pulses between knots.
 
     Args:
         paths: Paths at the knots.
-        some: Numbers of the paths that are summed.
+        numbers: Numbers of the paths that are summed.
         unit: Amplitude in which the result is given.
         table: Table of G.
         shift: Shift of each segment's stencil [segments].
@@ -53,30 +53,32 @@ def interpolated_sum(
     Returns:
         The sum [segments * step].
     """
-    shape, real_type = (paths.delay.shape[1], some.size), table.polynomials[0].real.dtype
+    shape, real_type = (paths.delay.shape[1], numbers.size), table.polynomials[0].real.dtype
     cycles, real, imag = np.empty(shape), *np.empty((2, *shape), real_type)
     scale = _scale(table, unit)
-    machine_code(_at_knots)(*paths[:2], some, scale, table.polynomials, cycles, real, imag)
+    machine_code(_at_knots)(*paths[:2], numbers, scale, table.polynomials, cycles, real, imag)
     total = np.zeros(shift.size * step, dtype=complex)
     to_phase, x = _cubics(step)
-    given = (part.astype(real_type) for part in (to_phase, x))
+    of_envelope = (part.astype(real_type) for part in (to_phase, x))
     series = _series(real_type)
-    machine_code(_add)(cycles, real, imag, shift, to_phase, *given, *series, total)
+    machine_code(_add)(cycles, real, imag, shift, to_phase, *of_envelope, *series, total)
     return total
 
 
-def sum_at(paths: Paths, some: Index, unit: float, table: HalfBandTable) -> Complex:
+def sum_at(paths: Paths, numbers: Index, unit: float, table: HalfBandTable) -> Complex:
     """Sum of A_i G_i exp(-j 2 pi f0 tau_i) over paths at the times of the paths [M].
 
     Args:
         paths: Paths at M times.
-        some: Numbers of the paths that are summed.
+        numbers: Numbers of the paths that are summed.
         unit: Amplitude in which the result is given.
         table: Table of G.
     """
     total = np.zeros(paths.delay.shape[1], dtype=complex)
     series = _series(table.polynomials[0].real.dtype)
-    machine_code(_add_at)(*paths[:2], some, _scale(table, unit), table.polynomials, *series, total)
+    machine_code(_add_at)(
+        *paths[:2], numbers, _scale(table, unit), table.polynomials, *series, total
+    )
     return total
 
 
@@ -112,19 +114,19 @@ def _cubics(step: int) -> tuple[Float, Float]:
         [runs, 2 REACH + 1, TERMS, TAPS]; and x at the pulses of a run [length], -1 to 1.
     """
     length, differences = runs(step, TERMS - 1)
-    at, x = nodes(TERMS - 1, length), np.linspace(-1, 1, length)
-    powers = np.vander(2 * at / (length - 1) - 1, TERMS, increasing=True)
-    found = np.zeros((len(differences), 2 * REACH + 1, TERMS, TAPS))
-    for run, shift in np.ndindex(found.shape[:2]):
-        values = lagrange_basis(NODES, (run * length + at) / step).T
-        found[run, shift] = np.linalg.pinv(powers) @ values @ shifted_weights(shift - REACH)
-    return found, x
+    places, x = nodes(TERMS - 1, length), np.linspace(-1, 1, length)
+    powers = np.vander(2 * places / (length - 1) - 1, TERMS, increasing=True)
+    to_powers = np.zeros((len(differences), 2 * REACH + 1, TERMS, TAPS))
+    for run, shift in np.ndindex(to_powers.shape[:2]):
+        values = lagrange_basis(NODES, (run * length + places) / step).T
+        to_powers[run, shift] = np.linalg.pinv(powers) @ values @ shifted_weights(shift - REACH)
+    return to_powers, x
 
 
 def _at_knots(
     delay: Float,
     amplitude: Float,
-    some: Index,
+    numbers: Index,
     scale: tuple[float, float, float, float, bool],
     table: tuple[Complex, ...],
     cycles: Float,
@@ -134,16 +136,16 @@ def _at_knots(
     """Fill in phases (cycles) and real and imaginary parts of A G at knots [knots, I]."""
     f0, square, turn, per_unit, alternating = scale
     value, slope, curve, cube = table
-    for i in range(some.size):
+    for i in range(numbers.size):
         for k in range(delay.shape[1]):
-            tau = delay[some[i], k]
+            tau = delay[numbers[i], k]
             cycles[k, i] = f0 * tau - square * tau * tau
-            whole = np.floor(turn * tau)
-            place = (turn * tau - whole) * value.size
+            period = np.floor(turn * tau)
+            place = (turn * tau - period) * value.size
             cell = min(max(int(place), 0), value.size - 1)
             s = real.dtype.type(place - cell)
-            a = real.dtype.type(amplitude[some[i], k] * per_unit)
-            if alternating and whole % 2 != 0:
+            a = real.dtype.type(amplitude[numbers[i], k] * per_unit)
+            if alternating and period % 2 != 0:
                 a = -a
             g = value[cell] + s * (slope[cell] + s * (curve[cell] + s * cube[cell]))
             real[k, i] = a * g.real
@@ -153,7 +155,7 @@ def _at_knots(
 def _add_at(
     delay: Float,
     amplitude: Float,
-    some: Index,
+    numbers: Index,
     scale: tuple[float, float, float, float, bool],
     table: tuple[Complex, ...],
     sine: tuple[np.floating, ...],
@@ -165,17 +167,17 @@ def _add_at(
     value, slope, curve, cube = table
     s0, s1, s2, s3, s4, s5, s6 = sine
     c0, c1, c2, c3, c4, c5, c6 = cosine
-    one = s0 / s0
-    for i in range(some.size):
+    unity = s0 / s0
+    for i in range(numbers.size):
         for k in range(delay.shape[1]):
-            tau = delay[some[i], k]
+            tau = delay[numbers[i], k]
             cycles = f0 * tau - square * tau * tau
-            whole = np.floor(turn * tau)
-            place = (turn * tau - whole) * value.size
+            period = np.floor(turn * tau)
+            place = (turn * tau - period) * value.size
             cell = min(max(int(place), 0), value.size - 1)
-            t = one * (place - cell)
-            a = amplitude[some[i], k] * per_unit
-            if alternating and whole % 2 != 0:
+            t = unity * (place - cell)
+            a = amplitude[numbers[i], k] * per_unit
+            if alternating and period % 2 != 0:
                 a = -a
             g = value[cell] + t * (slope[cell] + t * (curve[cell] + t * cube[cell]))
             r = cycles - np.rint(cycles)
@@ -197,13 +199,13 @@ def _add(
     cosine: tuple[np.floating, ...],
     total: Complex,
 ) -> None:
-    """Fill in the sum at the pulses of all segments but those that are EXACT."""
+    """Fill in the sum at the pulses of all segments but those with NO_STENCIL."""
     paths, step, length = cycles.shape[1], total.size // shift.size, x.size
     phase, re, im = np.zeros((3, TERMS, -(-paths // LANES) * LANES), x.dtype)
     s0, s1, s2, s3, s4, s5, s6 = sine
     c0, c1, c2, c3, c4, c5, c6 = cosine
     for segment in range(shift.size):
-        if shift[segment] == EXACT:
+        if shift[segment] == NO_STENCIL:
             continue
         k = segment + BEFORE - REACH + shift[segment]
         for run in range(to_phase.shape[0]):

@@ -28,7 +28,7 @@ from radhar_cli.echo.accuracy import (
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.half_band_sum import half_band_table
 from radhar_cli.echo.interpolation import AFTER, BEFORE, NODES, TAPS, lagrange_basis, stencils
-from radhar_cli.echo.knots import MIN_STEP, Knots, PathsAtKnots, Spacing, only, resolve
+from radhar_cli.echo.knots import MIN_STEP, Knots, PathsAtKnots, Spacing, resolve, select_paths
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.echo.phase_recurrence import nodes, phasors_between_knots
 from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
@@ -122,23 +122,25 @@ class DirectEcho:
 
     def _exact(self, motion: PathsAtKnots) -> Callable[[Float], Paths]:
         """The paths that are summed, at times of pulses."""
-        return only(self._kept(motion), motion.at_pulses(self.source, self.waveform))
+        return select_paths(motion.at_pulses(self.source, self.waveform), self._summed(motion))
 
-    def _kept(self, motion: PathsAtKnots) -> Bool:
+    def _summed(self, motion: PathsAtKnots) -> Bool:
         """Whether paths [I] are summed: all that move, or all where the canceller leaves others."""
-        kept: Bool = motion.moving | (not self.canceller.removes_static)
-        return kept
+        summed: Bool = motion.moving | (not self.canceller.removes_static)
+        return summed
 
     def _single_will_do(self, motion: PathsAtKnots) -> bool:
         """Whether rounding leaves enough of what the canceller leaves of paths that hardly turn."""
         if motion.step == 1:
             return False  # paths at every pulse cost so much that it would save nothing
-        if motion.kept is None or not isinstance(self.canceller, Fir):
+        if motion.chunk is None or not isinstance(self.canceller, Fir):
             return True
-        paths, kept = motion.kept.paths, self._kept(motion)
-        some = np.arange(0, paths.delay.shape[1] - 1, max(1, paths.delay.shape[1] // SAMPLED))
-        turn = self.waveform.f0 / motion.step * (paths.delay[:, some + 1] - paths.delay[:, some])
-        amplitude = paths.amplitude[:, some] * kept[:, None]
+        paths, summed = motion.chunk.paths, self._summed(motion)
+        sampled = np.arange(0, paths.delay.shape[1] - 1, max(1, paths.delay.shape[1] // SAMPLED))
+        turn = (
+            self.waveform.f0 / motion.step * (paths.delay[:, sampled + 1] - paths.delay[:, sampled])
+        )
+        amplitude = paths.amplitude[:, sampled] * summed[:, None]
         taps = enumerate(self.canceller.taps)
         left = sum(c * unit_phasor(k * turn, np.complex64) for k, c in taps)
         rounding_db = SINGLE_ROUNDING_DB - (self.tolerance_db - SPARE_DB)
@@ -148,50 +150,50 @@ class DirectEcho:
     def _sum(self, chosen: Settings, motion: PathsAtKnots, unit: float) -> Complex:
         """Signal y [M], in units of `unit`, by some settings."""
         y = np.zeros(self.waveform.n_pulses, dtype=complex)
-        kept = self._kept(motion)
-        if kept.any():
+        summed = self._summed(motion)
+        if summed.any():
             for knots in motion.knots(self.source, self.waveform):
                 first, last = knots.pulses
-                self._sum_knots(chosen, knots, kept, unit, y[first:last])
+                self._sum_knots(chosen, knots, summed, unit, y[first:last])
         return y
 
     def _sum_knots(
-        self, chosen: Settings, knots: Knots, kept: Bool, unit: float, y: Complex
+        self, chosen: Settings, knots: Knots, summed: Bool, unit: float, y: Complex
     ) -> None:
         """Add the sum of the paths at the pulses of these knots to y, some paths at a time."""
-        moving, w = np.flatnonzero(kept), self.waveform
+        moving, w = np.flatnonzero(summed), self.waveform
         fast = chosen.cubic and compiled.pays(moving.size * w.n_pulses)
         count = max(1, (BLOCK if knots.step == 1 else CHUNK) // knots.paths.delay.shape[1])
         for start in range(0, moving.size, count):
-            some = moving[start : start + count]
+            numbers = moving[start : start + count]
             if knots.step == 1:
-                y += _phasor_sum(*self._terms(knots.paths, some, unit, chosen))
+                y += _phasor_sum(*self._terms(knots.paths, numbers, unit, chosen))
                 continue
             if fast:
                 table = half_band_table(w, chosen.table_oversampling, chosen.single)
                 dense = compiled.interpolated_sum(
-                    knots.paths, some, unit, table, knots.shift, knots.step
+                    knots.paths, numbers, unit, table, knots.shift, knots.step
                 )
-                exact = compiled.sum_at(knots.exact, some, unit, table)
+                exact = compiled.sum_at(knots.exact, numbers, unit, table)
             else:
-                terms = self._terms(knots.paths, some, unit, chosen)
+                terms = self._terms(knots.paths, numbers, unit, chosen)
                 dense = _interpolated_sum(*terms, knots.shift, knots.step, chosen.cubic)
-                exact = _phasor_sum(*self._terms(knots.exact, some, unit, chosen))
+                exact = _phasor_sum(*self._terms(knots.exact, numbers, unit, chosen))
             dense[knots.exact_pulses - knots.pulses[0]] = exact
             y += dense[: y.size]
 
     def _terms(
-        self, paths: Paths, some: Index, unit: float, chosen: Settings
+        self, paths: Paths, numbers: Index, unit: float, chosen: Settings
     ) -> tuple[Float, Complex]:
         """Phases f0 tau (cycles) and A G over the unit, [M, I] of some paths."""
-        w, shape = self.waveform, (paths.delay.shape[1], some.size)
+        w, shape = self.waveform, (paths.delay.shape[1], numbers.size)
         table = half_band_table(w, chosen.table_oversampling, chosen.single)
         cycles = np.empty(shape)
         envelope = np.empty(shape, np.complex64 if chosen.single else np.complex128)
-        rows = max(1, BLOCK // some.size)
+        rows = max(1, BLOCK // numbers.size)
         for start in range(0, shape[0], rows):
             block = slice(start, start + rows)
-            delay, amplitude = (np.ascontiguousarray(part[some, block].T) for part in paths[:2])
+            delay, amplitude = (np.ascontiguousarray(part[numbers, block].T) for part in paths[:2])
             cycles[block] = start_phase(delay, w, w.f0)
             g = table(w.slope / w.adc_rate * delay)
             np.multiply(g, (amplitude / unit).astype(g.real.dtype), out=envelope[block])
@@ -231,9 +233,9 @@ def _weights(step: int, degree: int) -> tuple[Float, Float]:
         Weights from the knots -2 .. 3 of a segment to nodes [nodes, TAPS], and from these to its
         pulses [step, nodes, 1].
     """
-    at = nodes(degree, step)
-    to_pulses = lagrange_basis(at, np.arange(float(step))).T[:, :, None]
-    return lagrange_basis(NODES, at / step).T, to_pulses
+    places = nodes(degree, step)
+    to_pulses = lagrange_basis(places, np.arange(float(step))).T[:, :, None]
+    return lagrange_basis(NODES, places / step).T, to_pulses
 
 
 def _phasor_sum(cycles: Float, envelope: Complex) -> Complex:

@@ -89,8 +89,8 @@ def exact_echo(
             if isinstance(look.pulses, range):
                 x[:, first : first + cancelled.shape[1]] = look.fast(cancelled)
                 continue
-            here = slice(*np.searchsorted(look.pulses, [first, first + cancelled.shape[1]]))
-            x[:, here] = look.fast(cancelled[:, look.pulses[here] - first])
+            columns = slice(*np.searchsorted(look.pulses, [first, first + cancelled.shape[1]]))
+            x[:, columns] = look.fast(cancelled[:, look.pulses[columns] - first])
         first += cancelled.shape[1]
     return signals
 
@@ -110,9 +110,9 @@ def beat_at(
     if sum(canceller) == 0:  # a path that stands still cancels itself exactly
         moves = (paths.delay != paths.delay[:, :1]) | (paths.amplitude != paths.amplitude[:, :1])
         paths = paths.only(moves.any(axis=1))
-    at = [np.searchsorted(needed, pulses + lag) for lag in range(len(canceller))]
-    delay = np.concatenate([paths.delay[:, some] for some in at])
+    columns = [np.searchsorted(needed, pulses + lag) for lag in range(len(canceller))]
+    delay = np.concatenate([paths.delay[:, some] for some in columns])
     amplitude = np.concatenate(
-        [c * paths.amplitude[:, some] for c, some in zip(canceller, at, strict=True)]
+        [c * paths.amplitude[:, some] for c, some in zip(canceller, columns, strict=True)]
     )
     return beat_matrix(delay, amplitude, waveform)

@@ -24,13 +24,13 @@ from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
-    EXACT,
+    NO_STENCIL,
     REACH,
     TAPS,
     lagrange_weights,
     stencils,
 )
-from radhar_cli.echo.knots import Knots, PathsAtKnots, columns
+from radhar_cli.echo.knots import Knots, PathsAtKnots
 from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.phase_recurrence import phasors_between_knots
 from radhar_cli.numerics.arrays import Complex, Float, Index
@@ -42,22 +42,22 @@ from radhar_cli.radar.waveform import Waveform
 
 VALUES = 2**20  # envelopes at knots per block
 AT_PEAK = 1e-9  # sine of the denominator below which D is N
-MOST = 128  # polynomials of which combinations are looked for, at a cost of the cube of them
+MAX_POLYNOMIALS = 128  # of which combinations are looked for, at a cost of the cube of them
 MORE_NODES = 24, 48  # than D has half waves, in single and in double precision
 SMALLEST = 3e-7, 1e-15  # coefficient over N that is kept, and singular value, likewise
 
 
 def kernel(u: Float, k: Index, samples: int, n_fft: int) -> Float:
     """D(k/N_FFT - u) = sin(pi N x)/sin(pi x) [..., K] at beat frequencies u [...], per sample."""
-    at, turn = np.pi / n_fft * k, np.pi * u[..., None]
-    sines: Float = np.sin(samples * at) * np.cos(samples * turn)
-    sines -= np.cos(samples * at) * np.sin(samples * turn)
-    below = np.sin(at) * np.cos(turn)
-    below -= np.cos(at) * np.sin(turn)
+    bin_angle, beat_angle = np.pi / n_fft * k, np.pi * u[..., None]
+    sines: Float = np.sin(samples * bin_angle) * np.cos(samples * beat_angle)
+    sines -= np.cos(samples * bin_angle) * np.sin(samples * beat_angle)
+    below = np.sin(bin_angle) * np.cos(beat_angle)
+    below -= np.cos(bin_angle) * np.sin(beat_angle)
     peak = np.abs(below) < AT_PEAK
     if peak.any():  # x is a whole number
-        whole = np.rint(np.broadcast_to(k / n_fft - u[..., None], peak.shape)[peak])
-        sines[peak] = samples * (1 - 2 * (whole * (samples - 1) % 2))
+        period = np.rint(np.broadcast_to(k / n_fft - u[..., None], peak.shape)[peak])
+        sines[peak] = samples * (1 - 2 * (period * (samples - 1) % 2))
         below[peak] = 1
     sines /= below
     return sines
@@ -95,17 +95,17 @@ class GatedEcho(DirectEcho):
         return self.bins.start * every, self.bins.stop * every
 
     def _sum(self, chosen: Settings, motion: PathsAtKnots, unit: float) -> Complex:
-        kept, w = np.flatnonzero(self._kept(motion)), self.waveform
+        numbers, w = np.flatnonzero(self._summed(motion)), self.waveform
         y = np.zeros((self.bins.stop - self.bins.start, w.n_pulses), dtype=complex)
-        if not kept.size:
+        if not numbers.size:
             return y
         low, high = self._needed()
         for knots in motion.knots(self.source, w):
             (first, last), step = knots.pulses, knots.step
-            knots = knots._replace(paths=knots.paths.only(kept), exact=knots.exact.only(kept))
+            knots = knots._replace(paths=knots.paths.only(numbers), exact=knots.exact.only(numbers))
             extent = w.slope / w.adc_rate * np.ptp(knots.paths.delay) * w.n_adc  # in bins
             wide = max(int((high - low)[first:last].max(initial=1)), int(np.pi / 2 * extent))
-            count = max(1, VALUES // (kept.size * wide))
+            count = max(1, VALUES // (numbers.size * wide))
             for start in range(0, -(-(last - first) // step), count):
                 pulses = slice(first + start * step, min(first + (start + count) * step, last))
                 k = np.arange(low[pulses].min(), high[pulses].max())
@@ -114,20 +114,24 @@ class GatedEcho(DirectEcho):
                     y[k - self.bins.start, pulses] = part[:, : pulses.stop - pulses.start]
         return y
 
-    def _block(self, chosen: Settings, knots: Knots, some: slice, k: Index, unit: float) -> Complex:
+    def _block(
+        self, chosen: Settings, knots: Knots, segments: slice, k: Index, unit: float
+    ) -> Complex:
         """Bins k of the paths at some of the segments of knots [K, segments * step]."""
         if knots.step == 1:
-            return self.at_pulses(chosen, columns(knots.paths, some), k, unit)
-        step, shift = knots.step, knots.shift[some]
-        reach = slice(some.start, some.start + shift.size + BEFORE + AFTER)
-        terms = self._envelopes(chosen, columns(knots.paths, reach), k, unit)
+            return self.at_pulses(chosen, knots.paths.at_times(segments), k, unit)
+        step, shift = knots.step, knots.shift[segments]
+        reach = slice(segments.start, segments.start + shift.size + BEFORE + AFTER)
+        terms = self._envelopes(chosen, knots.paths.at_times(reach), k, unit)
         real, imag = _interpolated_sum(*terms, shift, step)
         x = _referred(real, imag, k, self.waveform)
-        first = knots.pulses[0] + some.start * step
-        here = np.searchsorted(knots.exact_pulses, [first, first + shift.size * step])
-        if here[1] > here[0]:
-            exact = columns(knots.exact, slice(*here))
-            x[:, knots.exact_pulses[slice(*here)] - first] = self.at_pulses(chosen, exact, k, unit)
+        first = knots.pulses[0] + segments.start * step
+        inside = np.searchsorted(knots.exact_pulses, [first, first + shift.size * step])
+        if inside[1] > inside[0]:
+            exact = knots.exact.at_times(slice(*inside))
+            x[:, knots.exact_pulses[slice(*inside)] - first] = self.at_pulses(
+                chosen, exact, k, unit
+            )
         return x
 
     def at_pulses(self, chosen: Settings, paths: Paths, k: Index, unit: float) -> Complex:
@@ -161,11 +165,11 @@ class GatedEcho(DirectEcho):
     def _error(self, y: Complex, motion: PathsAtKnots, unit: float) -> float:
         """Relative L2 error (dB) of all bins that count, together, after the canceller."""
         w = self.waveform
-        shown = self.canceller if isinstance(self.canceller, Fir) else NO_CANCELLER
+        fir = self.canceller if isinstance(self.canceller, Fir) else NO_CANCELLER
         low, high = self._needed()
         lags = np.lib.stride_tricks.sliding_window_view
-        low = lags(low, shown.lost + 1).max(axis=1)
-        high = lags(high, shown.lost + 1).min(axis=1)
+        low = lags(low, fir.lost + 1).max(axis=1)
+        high = lags(high, fir.lost + 1).min(axis=1)
         k = np.arange(self.bins.start, self.bins.stop)[:, None]
         inside = (low <= k) & (k < high)
         pairs = np.where(inside, self.canceller(y), 0).view(float)
@@ -178,11 +182,11 @@ class GatedEcho(DirectEcho):
         centred = replace(w, centred=True)
         right = (
             range_compression(
-                beat_at(self._exact(motion), w, probes.pulses, shown.taps), centred, self.bins
+                beat_at(self._exact(motion), w, probes.pulses, fir.taps), centred, self.bins
             )
             / unit
         )
-        for lag, c in enumerate(shown.taps):
+        for lag, c in enumerate(fir.taps):
             right -= c * y[:, probes.pulses + lag]
         right *= inside[:, probes.pulses]
         return probes.bound_db((right.real**2 + right.imag**2).sum(axis=0))
@@ -193,8 +197,8 @@ def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[
     double = real == np.float64
     count = ceil((np.pi * w.n_adc * half + MORE_NODES[double]) / 8) * 8
     c = coefficients(lambda x: kernel(middle + half * x, k, w.n_adc, w.n_fft), count)
-    kept = np.flatnonzero(np.abs(c).max(axis=1) > SMALLEST[double] * w.n_adc)
-    return c[: max(2, int(kept.max(initial=0)) + 1)].astype(real)
+    significant = np.flatnonzero(np.abs(c).max(axis=1) > SMALLEST[double] * w.n_adc)
+    return c[: max(2, int(significant.max(initial=0)) + 1)].astype(real)
 
 
 def _referred(real: Float, imag: Float, k: Index, w: Waveform) -> Complex:
@@ -226,14 +230,14 @@ def _interpolated_sum(
     turning = phasors_between_knots(stencils(cycles, shift), step, degree, dtype)
     both = np.concatenate([turning.real, turning.imag]).transpose(1, 2, 0)  # [segments, I, 2 step]
     knots = envelope.transpose(1, 0, 2)
-    if len(coefficients) <= MOST:
+    if len(coefficients) <= MAX_POLYNOMIALS:
         few, coefficients = _fewer(coefficients)
         knots = few @ knots  # [knots, R, I]
     around = np.lib.stride_tricks.sliding_window_view(knots, TAPS, axis=0)
     around = around.transpose(0, 3, 1, 2).reshape(-1, TAPS * len(coefficients), knots.shape[2])
     z = np.empty((len(coefficients), 2, shift.size, step), both.dtype)
-    shift = np.where(shift == EXACT, 0, shift)  # which are overwritten
-    changes = np.flatnonzero(np.diff(shift, prepend=-EXACT, append=-EXACT)).tolist()
+    shift = np.where(shift == NO_STENCIL, 0, shift)  # which are overwritten
+    changes = np.flatnonzero(np.diff(shift, prepend=-NO_STENCIL, append=-NO_STENCIL)).tolist()
     for start, stop in pairwise(changes):
         moved = int(shift[start])
         first = BEFORE - REACH + start + moved
@@ -249,5 +253,5 @@ def _fewer(coefficients: Float) -> tuple[Float, Float]:
     """Q [R, P] and Q c [R, K] of coefficients c [P, K] that are nearly Q^T Q c, R a third less."""
     double = coefficients.dtype == np.float64
     u, s, v = np.linalg.svd(coefficients, full_matrices=False)
-    kept = s > SMALLEST[double] * s[0]
-    return np.ascontiguousarray(u[:, kept].T), s[kept, None] * v[kept]
+    significant = s > SMALLEST[double] * s[0]
+    return np.ascontiguousarray(u[:, significant].T), s[significant, None] * v[significant]

@@ -48,11 +48,11 @@ def steady_profile(
         waveform: The radar.
         reflected: Coefficient of reflection at frequencies [N] (Hz), [N]; None is 1 at all of them.
     """
-    one = Paths(np.array([[delay]]), np.array([[amplitude]]))
+    path = Paths(np.array([[delay]]), np.array([[amplitude]]))
     if reflected is None:
-        return _pulses(one, waveform)
+        return _pulses(path, waveform)
     stepped = waveform.stepped(waveform.profile[1] * LONGEST)
-    return _summed(beat_of(one, stepped) * reflected(stepped.frequencies())[:, None], waveform)
+    return _summed(beat_of(path, stepped) * reflected(stepped.frequencies())[:, None], waveform)
 
 
 def _chunks(source: PathSource, waveform: Impulse) -> Iterator[tuple[slice, Paths]]:
@@ -71,8 +71,8 @@ def _pulses(paths: Paths, waveform: Impulse) -> Float:
     for tau, a in zip(paths.delay - 2 * first / SPEED_OF_LIGHT, paths.amplitude, strict=True):
         middle: Index = np.clip(np.rint(tau / step), -half - 1, waveform.samples + half).astype(int)
         rows = middle + around
-        there = (rows >= 0) & (rows < waveform.samples)
-        r[np.where(there, rows, waveform.samples), pulse] += a * waveform.pulse(rows * step - tau)
+        within = (rows >= 0) & (rows < waveform.samples)
+        r[np.where(within, rows, waveform.samples), pulse] += a * waveform.pulse(rows * step - tau)
     return r[: waveform.samples]
 
 

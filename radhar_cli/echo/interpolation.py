@@ -19,16 +19,16 @@ REACH = TAPS // 2 - 1
 BEFORE = 2 * REACH
 AFTER = 2 * REACH + 1
 SHIFTED_BY = (1.0, 1.4, 4.2)  # by how much the error grows where a stencil is shifted by 0, 1, 2
-EXACT = TAPS  # not a shift: the segment cannot be interpolated
+NO_STENCIL = TAPS  # not a shift: the segment cannot be interpolated
 NODES = np.arange(TAPS, dtype=float) - REACH
 
 
-def lagrange_basis(nodes: Float, at: Float) -> Float:
-    """Weights [nodes, at] of values at the nodes for the polynomial through them at some places."""
-    basis = np.ones((nodes.size, at.size))
+def lagrange_basis(nodes: Float, places: Float) -> Float:
+    """Weights [nodes, places] of values at the nodes for the polynomial through them."""
+    basis = np.ones((nodes.size, places.size))
     for i, node in enumerate(nodes):
         for other in np.delete(nodes, i):
-            basis[i] *= (at - other) / (node - other)
+            basis[i] *= (places - other) / (node - other)
     return basis
 
 
@@ -39,7 +39,7 @@ def lagrange_weights(step: int, shift: int = 0) -> Float:
 
 
 def shifts(times: Float, breakpoints: tuple[float, ...]) -> Index:
-    """Shift of the stencil of each segment [segments], or EXACT where it holds a breakpoint.
+    """Shift of the stencil of each segment [segments], or NO_STENCIL where it holds a breakpoint.
 
     Args:
         times: Times of the knots [BEFORE + segments + AFTER], s.
@@ -54,7 +54,7 @@ def shifts(times: Float, breakpoints: tuple[float, ...]) -> Index:
     last = np.searchsorted(piece, piece, side="right")[segment] - 1
     shift = np.maximum(first - (segment - REACH), 0) + np.minimum(last - (segment + REACH + 1), 0)
     crosses_breakpoint = (piece[segment] != piece[segment + 1]) | (last - first < TAPS)
-    return np.where(crosses_breakpoint, EXACT, shift)
+    return np.where(crosses_breakpoint, NO_STENCIL, shift)
 
 
 @lru_cache(maxsize=TAPS)
@@ -67,19 +67,21 @@ def stencils(knots: Values, shift: Index) -> Values:
     """Values [TAPS, segments, ...] at the knots -2 .. 3 of every segment.
 
     Where the stencil is shifted, they are those of the polynomial through the shifted stencil.
-    Segments marked EXACT are left without a meaning. Knots are [BEFORE + segments + AFTER, ...].
+    Segments with NO_STENCIL are left without a meaning.
+
+    Knots are [BEFORE + segments + AFTER, ...].
     """
     first = BEFORE - REACH
     values = np.empty_like(knots, shape=(TAPS, shift.size, *knots.shape[1:]))
     for tap in range(TAPS):
         values[tap] = knots[first + tap : first + tap + shift.size]
-    moved = np.flatnonzero((shift != 0) & (shift != EXACT))
+    moved = np.flatnonzero((shift != 0) & (shift != NO_STENCIL))
     for offset in set(shift[moved].tolist()):
         segments = moved[shift[moved] == offset]
-        at = first + offset + segments + np.arange(TAPS)[:, None]
+        taps = first + offset + segments + np.arange(TAPS)[:, None]
         weights = shifted_weights(offset).astype(knots.real.dtype, copy=False)
-        values[:, segments] = (weights @ knots[at].reshape(TAPS, -1)).reshape(
-            at.shape + knots.shape[1:]
+        values[:, segments] = (weights @ knots[taps].reshape(TAPS, -1)).reshape(
+            taps.shape + knots.shape[1:]
         )
     return values
 

@@ -10,7 +10,7 @@ import numpy as np
 from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
-    EXACT,
+    NO_STENCIL,
     REACH,
     SHIFTED_BY,
     TAPS,
@@ -47,7 +47,7 @@ class Knots(NamedTuple):
     @property
     def at_pulses(self) -> Paths:
         """The paths at those knots that are pulses: the first of every segment."""
-        return self.paths if self.step == 1 else columns(self.paths, slice(BEFORE, -AFTER))
+        return self.paths if self.step == 1 else self.paths.at_times(slice(BEFORE, -AFTER))
 
     def moving(self, since: Paths) -> Bool:
         """Whether paths [I] differ at any pulse from the first column of `since`."""
@@ -55,8 +55,8 @@ class Knots(NamedTuple):
 
     def power(self) -> float:
         """Sum of A_i^2 over paths and pulses."""
-        at, exact = self.paths.amplitude, self.exact.amplitude
-        powers, exact_powers = (np.einsum("im,im->m", a, a) for a in (at, exact))
+        amplitude, exact = self.paths.amplitude, self.exact.amplitude
+        powers, exact_powers = (np.einsum("im,im->m", a, a) for a in (amplitude, exact))
         if self.step == 1:
             return float(powers.sum())
         last = self.pulses[1] - self.pulses[0] - (self.shift.size - 1) * self.step
@@ -64,7 +64,7 @@ class Knots(NamedTuple):
         around = stencils(powers, self.shift)
         sums = weights.sum(axis=1) @ around
         sums[-1] = weights[:, :last].sum(axis=1) @ around[:, -1]
-        return float(sums[self.shift != EXACT].sum() + exact_powers.sum())
+        return float(sums[self.shift != NO_STENCIL].sum() + exact_powers.sum())
 
     def interpolated(self, at_knots: Float, exact: Float) -> Float:
         """Interpolate a quantity to all the pulses [M].
@@ -102,8 +102,8 @@ class Roughness(NamedTuple):
 
 
 EVEN = Roughness(1, np.empty(0))
-# By how much squared errors grow where a stencil is shifted; what is EXACT has none.
-_SQUARES_BY = np.zeros(EXACT + 1)
+# By how much squared errors grow where a stencil is shifted; segments with NO_STENCIL have none.
+_SQUARES_BY = np.zeros(NO_STENCIL + 1)
 _SQUARES_BY[: REACH + 1] = np.square(SHIFTED_BY)
 
 
@@ -114,19 +114,19 @@ class PathsAtKnots(NamedTuple):
     moving: Bool  # which paths change at all [I]
     power: float  # mean over the pulses of sum_i A_i^2
     largest: float  # amplitude
-    kept: Knots | None  # the knots, where one chunk of them is all
+    chunk: Knots | None  # the knots, where one chunk of them is all
     roughness: Roughness  # where interpolation is likely to err
 
     def knots(self, source: PathSource, waveform: Waveform) -> Iterator[Knots]:
         """The knots of the whole recording."""
-        return iter([self.kept]) if self.kept else all_knots(source, waveform, self.step)
+        return iter([self.chunk]) if self.chunk else all_knots(source, waveform, self.step)
 
     def at_pulses(self, source: PathSource, waveform: Waveform) -> Callable[[Float], Paths]:
         """The source at times of pulses; where all of them are kept, they are looked up."""
-        if self.step > 1 or self.kept is None:
+        if self.step > 1 or self.chunk is None:
             return source
-        paths = self.kept.paths
-        return lambda t: columns(paths, np.rint(t * waveform.prf).astype(np.intp))
+        paths = self.chunk.paths
+        return lambda t: paths.at_times(np.rint(t * waveform.prf).astype(np.intp))
 
 
 def resolve(
@@ -139,13 +139,13 @@ def resolve(
     step = widest_step(waveform, spacing.per_second)
     while True:
         step = step if source.smooth and step >= least else 1
-        first, kept, moving, power, largest = None, None, np.zeros(1, bool), 0.0, 0.0
+        first, chunk, moving, power, largest = None, None, np.zeros(1, bool), 0.0, 0.0
         squares: list[Float] = [EVEN.squares]
         for knots in all_knots(source, waveform, step):
             if step > 1 and (excess := _excess(knots.paths, waveform, spacing)) > 1:
                 step = min(step - 1, int(step / excess))
                 break
-            first, kept = first or knots.at_pulses, None if first else knots
+            first, chunk = first or knots.at_pulses, None if first else knots
             moving = moving | knots.moving(first)
             power += knots.power()
             largest = max(largest, float(knots.paths.amplitude.max(initial=0.0)))
@@ -154,7 +154,7 @@ def resolve(
         else:
             mean = power / waveform.n_pulses
             roughness = Roughness(step, np.concatenate(squares))
-            return PathsAtKnots(step, moving, mean, largest, kept, roughness)
+            return PathsAtKnots(step, moving, mean, largest, chunk, roughness)
 
 
 def widest_step(waveform: Waveform, per_second: float) -> int:
@@ -227,7 +227,7 @@ def _rough_squares(knots: Knots, w: Waveform) -> Float:
     differences = np.diff(mixed, TAPS, axis=1)
     squares: Float = np.einsum("pm,pm->m", differences, differences)
     special = np.flatnonzero(knots.shift)  # segments beside a breakpoint, or that hold one
-    broken = special[knots.shift[special] == EXACT]
+    broken = special[knots.shift[special] == NO_STENCIL]
     for before in range(TAPS):
         squares[(broken + BEFORE - before).clip(0, squares.size - 1)] = 0.0
     # Higher differences matter where a limb passes something within few knots: each counts for
@@ -238,7 +238,7 @@ def _rough_squares(knots: Knots, w: Waveform) -> Float:
         squares[first : first + count], squares[first + 1 : first + 1 + count]
     )
     shift = knots.shift[special]
-    around = special + np.where(shift == EXACT, 0, shift) + first
+    around = special + np.where(shift == NO_STENCIL, 0, shift) + first
     pair = squares[around.clip(0)], squares[(around + 1).clip(max=squares.size - 1)]
     largest[special] = np.maximum(*pair) * _SQUARES_BY[np.abs(shift)]
     return largest
@@ -264,16 +264,16 @@ def knots_of(source: PathSource, waveform: Waveform, step: int, pulses: tuple[in
     nowhere = np.empty(0, dtype=np.intp)
     if step == 1:
         paths = source(waveform.times(np.arange(first, last, dtype=float)))
-        return Knots(1, pulses, paths, nowhere, nowhere, columns(paths, slice(0, 0)))
+        return Knots(1, pulses, paths, nowhere, nowhere, paths.at_times(slice(0, 0)))
     segments = -(-(last - first) // step)
-    at = first + (np.arange(BEFORE + segments + AFTER) - BEFORE) * step
-    t = waveform.times(at.astype(float))
+    pulse = first + (np.arange(BEFORE + segments + AFTER) - BEFORE) * step
+    t = waveform.times(pulse.astype(float))
     shift = shifts(t, source.breakpoints)
-    exact = (first + np.flatnonzero(shift == EXACT)[:, None] * step + np.arange(step)).ravel()
+    exact = (first + np.flatnonzero(shift == NO_STENCIL)[:, None] * step + np.arange(step)).ravel()
     exact = exact[exact < last]
     both = source(np.concatenate([t, waveform.times(exact.astype(float))]))
-    knots, there = columns(both, slice(t.size)), columns(both, slice(t.size, None))
-    return Knots(step, pulses, knots, shift, exact, there)
+    knots, exact_paths = both.at_times(slice(t.size)), both.at_times(slice(t.size, None))
+    return Knots(step, pulses, knots, shift, exact, exact_paths)
 
 
 def all_knots(source: PathSource, waveform: Waveform, step: int) -> Iterator[Knots]:
@@ -283,14 +283,9 @@ def all_knots(source: PathSource, waveform: Waveform, step: int) -> Iterator[Kno
         yield knots_of(source, waveform, step, (first, min(first + length, count)))
 
 
-def columns(paths: Paths, some: slice | Index) -> Paths:
-    """The paths at some of their times."""
-    return paths.only(slice(None), some)
-
-
-def only(kept: Bool, source: Callable[[Float], Paths]) -> Callable[[Float], Paths]:
-    """Source of some of the paths [I] of another."""
-    return lambda t: source(t).only(kept)
+def select_paths(source: Callable[[Float], Paths], chosen: Bool) -> Callable[[Float], Paths]:
+    """Make a source of the chosen paths [I] of another."""
+    return lambda t: source(t).only(chosen)
 
 
 def _differ(paths: Paths, since: Paths) -> Bool:

@@ -23,10 +23,10 @@ class Through(NamedTuple):
     @classmethod
     def joined(cls, several: "Sequence[Through | None]") -> "Through | None":
         """Legs of several groups of paths together, which pass the same wall or none."""
-        given = [group for group in several if group is not None]
-        if not given:
+        legs = [group for group in several if group is not None]
+        if not legs:
             return None
-        return cls(given[0].layers, np.concatenate([group.cosine for group in given], axis=1))
+        return cls(legs[0].layers, np.concatenate([group.cosine for group in legs], axis=1))
 
 
 class Paths(NamedTuple):
@@ -43,6 +43,10 @@ class Paths(NamedTuple):
         if through is not None:
             through = through._replace(cosine=through.cosine[:, paths][..., times])
         return Paths(self.delay[paths][:, times], self.amplitude[paths][:, times], through)
+
+    def at_times(self, times: Index | slice) -> "Paths":
+        """Choose all of the paths, at some of the times."""
+        return self.only(slice(None), times)
 
 
 class PathSource(Protocol):

@@ -27,8 +27,8 @@ def nodes(degree: int, length: int) -> Float:
     if count == length:
         return np.arange(float(length))
     middle = (length - 1) / 2
-    at: Float = middle - middle * np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    return at
+    places: Float = middle - middle * np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    return places
 
 
 class Runs(NamedTuple):
@@ -48,11 +48,11 @@ def runs(step: int, degree: int) -> Runs:
     """
     count = -(-step // MAX_RUN)
     length = -(-step // count)
-    at = nodes(degree, length)
-    order = np.arange(at.size)
-    to_pulses = lagrange_basis(at, order.astype(float)).T
+    places = nodes(degree, length)
+    order = np.arange(places.size)
+    to_pulses = lagrange_basis(places, order.astype(float)).T
     first = length * np.arange(count)[:, None]
-    to_points = lagrange_basis(NODES, ((first + at) / step).ravel()).T
+    to_points = lagrange_basis(NODES, ((first + places) / step).ravel()).T
     to_points = to_points.reshape(count, order.size, TAPS)
     values = to_pulses @ to_points
     return Runs(

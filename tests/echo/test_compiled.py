@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from radhar_cli.echo import compiled, direct
 from radhar_cli.echo.direct import DirectEcho, Settings
 from radhar_cli.echo.half_band_sum import half_band_table
-from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, shifts
+from radhar_cli.echo.interpolation import AFTER, BEFORE, NO_STENCIL, shifts
 from radhar_cli.echo.knots import Spacing
 from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.accelerators import installed
@@ -69,7 +69,7 @@ class TestSum:
         table = half_band_table(waveform, OVERSAMPLING, single)
         every = np.arange(len(paths.delay))
         found = compiled.interpolated_sum(paths, every, 0.5, table, shift, step)
-        exact = np.repeat(shift == EXACT, step)
+        exact = np.repeat(shift == NO_STENCIL, step)
         assert not found[exact].any()
         size = 2 * paths.amplitude.max() * np.abs(table.polynomials[0]).max() * len(paths.delay)
         gap = np.abs(found - by_numpy(*scene, single))[~exact]

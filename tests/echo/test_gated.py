@@ -213,5 +213,5 @@ def test_a_body_outside_the_gate_leaves_its_side_lobes():
 def test_many_polynomials_are_left_as_they_are(monkeypatch, tolerance_db):
     """Looking for combinations of them takes the cube of their number."""
     combined = echo(tolerance_db).rows()[0]
-    monkeypatch.setattr(gated, "MOST", 0)
+    monkeypatch.setattr(gated, "MAX_POLYNOMIALS", 0)
     assert ref.error_db(echo(tolerance_db).rows()[0], combined) < tolerance_db - 10

@@ -6,7 +6,7 @@ import pytest
 from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
-    EXACT,
+    NO_STENCIL,
     TAPS,
     shifts,
     stencils,
@@ -82,11 +82,11 @@ class TestBreakpoints:
         shift = shifts(self.times(), (at,))
         pulses = np.arange(self.segments * self.step)
         error = np.abs(upsample(track(self.times()), self.step, shift) - track(pulses / self.step))
-        spoilt = np.repeat(shift == EXACT, self.step)
+        spoilt = np.repeat(shift == NO_STENCIL, self.step)
         assert error[~spoilt].max() < 1e-11
         # One at a knot belongs to what follows, and so spoils the segment that ends there.
         holder = int(np.ceil(at)) - 1
-        assert np.flatnonzero(shift == EXACT).tolist() == (
+        assert np.flatnonzero(shift == NO_STENCIL).tolist() == (
             [holder] if 0 <= holder < self.segments else []
         )
 
@@ -94,13 +94,29 @@ class TestBreakpoints:
     def test_a_short_piece_is_not_interpolated(self, between):
         """Eight knots, for a stencil and one to spare on either side."""
         both = (5.1, 5.1 + between)
-        spoilt = np.flatnonzero(shifts(self.times(), both) == EXACT)
+        spoilt = np.flatnonzero(shifts(self.times(), both) == NO_STENCIL)
         assert spoilt.tolist() == list(range(5, int(both[1]) + 1))
 
     def test_a_longer_piece_is_interpolated(self):
         shift = shifts(self.times(), (5.1, 5.1 + TAPS + 1))
-        assert np.flatnonzero(shift == EXACT).tolist() == [5, 12]
-        assert shift.tolist() == [0, 0, 0, -1, -2, EXACT, 2, 1, 0, 0, -1, -2, EXACT, 2, 1] + 5 * [0]
+        assert np.flatnonzero(shift == NO_STENCIL).tolist() == [5, 12]
+        assert shift.tolist() == [
+            0,
+            0,
+            0,
+            -1,
+            -2,
+            NO_STENCIL,
+            2,
+            1,
+            0,
+            0,
+            -1,
+            -2,
+            NO_STENCIL,
+            2,
+            1,
+        ] + 5 * [0]
 
     def test_without_breakpoints_no_stencil_moves(self):
         assert not shifts(self.times(), ()).any()

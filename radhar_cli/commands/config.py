@@ -56,7 +56,7 @@ def init(
         ),
     ] = None,
 ) -> None:
-    """Write a config to start from: short, complete, of a board, a preset.
+    """Write a config to start from: short, complete, or a preset.
 
     Where the documentation names configs/human/room.yaml, an installed radhar has `--preset
     human/room`.

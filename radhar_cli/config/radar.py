@@ -135,8 +135,8 @@ class _Band(_Pulses[N], Generic[N]):
         within(1e3, 1e12, "Hz"),
         ByModel(human=1e9, paper=4e9, file=4e9),
     ] = default_draw(None)
-    """Bandwidth B that a pulse covers; the range step is c/2B. With the default chirp 1 and 4 GHz
-    have a half-band of 30 and 7.5 m."""
+    """Bandwidth B that a pulse covers; the range step is c/2B. With the default chirp, ranges up to
+    30 m are seen with 1 GHz, up to 7.5 m with 4 GHz."""
 
 
 class _AntennaPair(AnyRadar[N], Generic[N]):

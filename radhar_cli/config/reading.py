@@ -60,6 +60,8 @@ ABSENT = {
 _OF_LAYERS = "is a key of layers: wall.layers: [{material: concrete}], or wall.eps_r"
 MISPLACED = {"wall.material": _OF_LAYERS, "wall.thickness_m": _OF_LAYERS}
 
+UNIT_SUFFIXES = ("m", "s", "hz", "mps", "deg", "db", "dbi", "dbm", "kg", "px")
+_MISSING = object()  # the value of a key that is not there
 MOVED_KEYS = {earlier: key for key, earlier in EARLIER_KEYS.items()}
 
 
@@ -232,7 +234,7 @@ def _within(key: str, parent: str) -> bool:
 _WORDING = {
     "model_type": "should be a mapping of keys",
     "dict_type": "should be a mapping of keys",
-    "tuple_type": "should be a list: [a, b], or of sections [{}, {}]",
+    "tuple_type": "should be a list: [a, b]",
     "missing": "is required",
 }
 
@@ -286,9 +288,18 @@ def _found(kind: type[BaseModel], items: Iterable[Any], document: Any) -> Iterat
             yield Problem(key, item["input"], absent)
         else:
             message = _WORDING.get(item["type"], item["msg"])
-            if item["type"] == "missing" and names[:1] == ["radar"]:
-                radar = next((r for r in RADARS if f"<{r.kind}>" in item["loc"]), FmcwRadar)
+            radar = next((r for r in RADARS if f"<{r.kind}>" in item["loc"]), FmcwRadar)
+            if item["type"] == "missing":
+                place = f" with {radar.named}" if names[:1] == ["radar"] else ""
+                yield Problem(key, _MISSING, f"{message}{place}")
+                continue
+            if item["type"] == "tuple_type" and _holds_sections(kind, names, document):
+                message = "should be a list of sections: [{}, {}]"
+            if names == ["radar", "waveform"]:
                 message = f"{message} with {radar.named}"
+            if key == "radar" and item["type"] == "wrong" and isinstance(item["input"], dict):
+                yield Problem("radar.waveform", item["input"].get("waveform"), message)
+                continue
             message = message.removeprefix("Tuple ").replace(" after validation", "")
             if not message.startswith(("should", "'")):
                 message = message[0].lower() + message[1:]
@@ -367,6 +378,10 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
     known = [name for one in places for name in one.model_fields]
     if deeper := _key_of_group(str(names[-1]), places[0]):
         return f"is an unknown key; did you mean {deeper!r}?"
+    with_unit = [key for key in known if key.rpartition("_")[0] == names[-1] and key[-1:] != "_"]
+    with_unit = [key for key in with_unit if key.rpartition("_")[2] in UNIT_SUFFIXES]
+    if with_unit:
+        return f"is an unknown key; did you mean {with_unit[0]!r}?"
     in_our_unit = key_in_our_unit(str(names[-1]), value, known)
     if in_our_unit is not None:
         return f"is an unknown key; {in_our_unit}"
@@ -406,10 +421,22 @@ def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
     owners = [other.named for other in RADARS if key in other.model_fields]
     if not owners:
         return None
+    reason = ""
     if hasattr(kind, key):
         gives = "gives it" if isinstance(getattr(kind, key), property) else "has none"
-        return f"should be left out: {kind.named} {gives}"
-    return f"is unknown with {kind.named}; it is a key of {' and '.join(owners)}"
+        reason = f", which {gives}"
+    return f"is unknown with {kind.named}{reason}; it is a key of {' and '.join(owners)}"
+
+
+def _holds_sections(kind: type[BaseModel], names: list[int | str], document: Any) -> bool:
+    """Whether a key is of a list of sections, such as `people`."""
+    place: type[BaseModel] | None = kind
+    for name in names[:-1]:
+        document = document.get(name) if isinstance(document, dict) else None
+        field = place.model_fields.get(str(name)) if place else None
+        place = _section_of(field, document) if field else None
+    field = place.model_fields.get(str(names[-1])) if place else None
+    return field is not None and bool(sections(field))
 
 
 def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> str:
@@ -433,6 +460,8 @@ def _what(problem: Problem) -> str:
     if not problem.key:  # of the whole
         return _short(problem.right, MAX_ADVICE)
     value = problem.value
+    if value is _MISSING:
+        return f": {_short(problem.right, MAX_ADVICE)}"
     shown_value = _short(json.dumps(value, default=_plain))
     return f" = {shown_value}: {_short(problem.right, MAX_ADVICE)}"
 

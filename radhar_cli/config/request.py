@@ -74,7 +74,7 @@ class Request(Section):
         Limits(0, 600),
         ByModel(human=6.0, paper=4.0, file=4.0),
     ] = None
-    """Duration of a recording."""
+    """Duration of a recording, s."""
     radar: Radar = FmcwRadar()
     subject: SubjectConfig = SubjectConfig()
     motion: MotionConfig = MotionConfig()

@@ -14,7 +14,7 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic import ValidationError
 
-from radhar_cli.config.annotations import section
+from radhar_cli.config.annotations import ByModel, annotations, section
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.documents import (
     BASE,
@@ -73,7 +73,7 @@ def as_commented_yaml(kind: type[Section]) -> str:
 
 def _lines(kind: type[Section], left_out: Collection[str] = ()) -> Iterator[str]:
     defaults = kind.model_construct().model_dump(mode="json")  # nothing filled in for null
-    descriptions = kind.descriptions()
+    descriptions, about = kind.descriptions(), annotations(kind)
     for name, field in kind.model_fields.items():
         if field.exclude or name in left_out:
             continue
@@ -84,6 +84,7 @@ def _lines(kind: type[Section], left_out: Collection[str] = ()) -> Iterator[str]
         members = [field.annotation, *get_args(field.annotation)]
         inner = section(field)
         value, comment = defaults[name], _comment(members, descriptions.get(name, ""))
+        comment = f"{comment} {_by_model(about[name])}".strip()
         if inner is None or not (value is None or isinstance(value, dict)):
             yield from _key(name, value, comment)
             continue
@@ -98,6 +99,19 @@ def _lines(kind: type[Section], left_out: Collection[str] = ()) -> Iterator[str]
         yield from (f"{mark}  {line}" for line in _lines(inner) if line)
         yield from _alternatives(name, inner)
         yield ""
+
+
+def _by_model(about: tuple[Any, ...]) -> str:
+    """Say what null is under each model of motion; "" where no plain default depends on it."""
+    values = next((one.values for one in about if isinstance(one, ByModel)), {})
+    plain = {model: as_text(value) for model, value in values.items() if _is_plain(value)}
+    if not plain or len(plain) < len(values):
+        return ""
+    return f"null is {', '.join(f'{value} ({model})' for model, value in plain.items())}."
+
+
+def _is_plain(value: object) -> bool:
+    return isinstance(value, str | int | float)
 
 
 def _alternatives(name: str, kind: type[Section]) -> Iterator[str]:

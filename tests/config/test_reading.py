@@ -209,7 +209,7 @@ BROKEN = [
     Broken("snr_db: [30, 20]", "1: snr_db = [30, 20]", "{choice: [a, b, ...]}"),
     Broken("radar: 77e9", "1: radar = 77000000000.0", "should be"),
     Broken("radar:\n  tx_m: [0, 1, a]", '2: radar.tx_m.2 = "a"', "should be a number"),
-    Broken("radar:\n  tx_m: [0, 1]", "2: radar.tx_m.2 = [0, 1]", "required"),
+    Broken("radar:\n  tx_m: [0, 1]", "2: radar.tx_m.2", "is required"),
     Broken(
         "processing: {clutter: mti}",
         '1: processing.clutter = "mti"',
@@ -294,9 +294,11 @@ BROKEN = [
     Broken(
         "radar:\n  device: IWR6843ISK", '2: radar.device = "IWR6843ISK"', "is a key of radar.cfg"
     ),
-    Broken("radar: {waveform: cw, chirp_s: 1e-5}", "1: radar.chirp_s = 1e-05", "cw has none"),
+    Broken(
+        "radar: {waveform: cw, chirp_s: 1e-5}", "1: radar.chirp_s = 1e-05", "cw, which has none"
+    ),
     Broken("radar: {steps: 4}", "1: radar.steps = 4", "a key of radar.waveform: sfcw"),
-    Broken("radar: {waveform: lfm}", '1: radar = {"waveform": "lfm"}', "fmcw, sfcw, cw or impulse"),
+    Broken("radar: {waveform: lfm}", '1: radar.waveform = "lfm"', "fmcw, sfcw, cw or impulse"),
     Broken("radar: {cfg: a.cfg}", '1: radar.cfg = "a.cfg"', "should be the path of a TI .cfg"),
     Broken("maps: [sfft]", '1: maps.0 = "sfft"', "should be 'rtm', 'stft'"),
     Broken("maps: []", "1: maps = []", "at least 1"),

@@ -236,7 +236,7 @@ def test_a_wall_and_a_room_are_seen_by_boards_too(path: Path) -> None:
 WRONG = {
     "radar.device=null": "null: should name the board that radar.cfg",
     "radar.device=IWR1642": "radar.device",
-    "radar.carrier_hz=24e9": "should be left out: radar.cfg gives it",
+    "radar.carrier_hz=24e9": "is unknown with radar.cfg, which gives it",
     "duration_s=0.05": "duration_s = 0.05: should hold a frame of 0.1 s",
     "processing.clutter=difference": "processing.clutter",
     "receiver.tones=[{doppler_hz: 10}]": "receiver",

@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, Field, field_validator
 from radhar_cli.config.acting import SPECTRA
 from radhar_cli.config.annotations import ActsIf
 from radhar_cli.config.number import DECIBEL, POSITIVE, Real, require, uniform, value_error, within
-from radhar_cli.config.section import N, Section, default_draw
+from radhar_cli.config.section import N, Section, default_draw, defaults_of
 from radhar_cli.errors import did_you_mean
 
 DEFAULT_COLOUR_MAP = "viridis"
@@ -63,7 +63,7 @@ class ImageConfig(Section):
     """Share of the samples that are black or white."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
     """Range of the grey levels below the largest power (`kind: decibel`)."""
-    cfar: Annotated[CfarConfig, ActsIf("image.kind", "cfar")] = CfarConfig()
+    cfar: Annotated[CfarConfig, ActsIf("image.kind", "cfar")] = defaults_of(CfarConfig)
     colour_map: str = DEFAULT_COLOUR_MAP
     """Colour map of PNGs and figures, any Matplotlib name; dataset.h5 holds grey levels."""
     doppler_limits_mps: Annotated[

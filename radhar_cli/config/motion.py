@@ -27,7 +27,7 @@ from radhar_cli.config.number import (
     uniform,
     vary,
 )
-from radhar_cli.config.section import B, ByActivity, Section, by_activity, default_draw
+from radhar_cli.config.section import B, ByActivity, Section, by_activity, default_draw, defaults_of
 
 FallName = Literal["forward", "backward", "sideways"]
 
@@ -321,17 +321,17 @@ class MotionConfig(Section, Generic[B]):
         ByModel(human=_FACING, paper=uniform(-30.0, 30.0), file=_FACING),
     ] = default_draw(None)
     """Heading of people; 0 faces away from the radar, 180 faces it."""
-    walking: WalkingConfig[B] = WalkingConfig()
-    paper: PaperGaitConfig[B] = PaperGaitConfig()
-    rotating: RotatingConfig[B] = RotatingConfig()
-    striking: StrikingConfig[B] = StrikingConfig()
-    exercises: ExercisesConfig[B] = ExercisesConfig()
-    repeating: RepeatingConfig[B] = RepeatingConfig()
-    grabbing: GrabbingConfig[B] = GrabbingConfig()
-    sitting: SittingConfig[B] = SittingConfig()
-    transitions: TransitionsConfig[B] = TransitionsConfig()
-    falling: FallingConfig[B] = FallingConfig()
-    idle: IdleConfig[B] = IdleConfig()
+    walking: WalkingConfig[B] = defaults_of(WalkingConfig)
+    paper: PaperGaitConfig[B] = defaults_of(PaperGaitConfig)
+    rotating: RotatingConfig[B] = defaults_of(RotatingConfig)
+    striking: StrikingConfig[B] = defaults_of(StrikingConfig)
+    exercises: ExercisesConfig[B] = defaults_of(ExercisesConfig)
+    repeating: RepeatingConfig[B] = defaults_of(RepeatingConfig)
+    grabbing: GrabbingConfig[B] = defaults_of(GrabbingConfig)
+    sitting: SittingConfig[B] = defaults_of(SittingConfig)
+    transitions: TransitionsConfig[B] = defaults_of(TransitionsConfig)
+    falling: FallingConfig[B] = defaults_of(FallingConfig)
+    idle: IdleConfig[B] = defaults_of(IdleConfig)
 
 
 class TimingConfig(Section, Generic[B]):

@@ -25,7 +25,7 @@ from radhar_cli.config.number import (
     value_error,
     within,
 )
-from radhar_cli.config.section import Filled, Flag, N, Section, default_draw
+from radhar_cli.config.section import Filled, Flag, N, Section, default_draw, defaults_of
 
 
 class SubjectConfig(Section, Generic[N]):
@@ -109,10 +109,10 @@ class PersonConfig(Section):
     """Activity of the person: a slug or label, or {choice: [...]}."""
     share: Share = 1.0
     """Share of the scenes in which the person is there."""
-    subject: SubjectConfig = SubjectConfig()
-    motion: MotionConfig = MotionConfig()
+    subject: SubjectConfig = defaults_of(SubjectConfig)
+    motion: MotionConfig = defaults_of(MotionConfig)
     """Motion of the person; its `cross_range_m` is -1.5 to 1.5 unless given."""
-    timing: TimingConfig = TimingConfig()
+    timing: TimingConfig = defaults_of(TimingConfig)
     classes: dict[str, ClassConfig] | None = None
     """Drawn numbers of a class of one's own, filled in for a scene."""
 

@@ -17,7 +17,7 @@ from radhar_cli.config.acting import (
 from radhar_cli.config.annotations import ActsIf
 from radhar_cli.config.number import value_error
 from radhar_cli.config.radar import MIN_WINDOW
-from radhar_cli.config.section import Flag, Section
+from radhar_cli.config.section import Flag, Section, defaults_of
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import half_up
 
@@ -76,7 +76,9 @@ class ProcessingConfig(Section):
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
     """Clutter canceller: difference is s[m + 1] - s[m], the paper's MTI; mean takes out that of the
     recording; highpass is the filter below."""
-    highpass: Annotated[HighpassConfig, ActsIf("processing.clutter", "highpass")] = HighpassConfig()
+    highpass: Annotated[HighpassConfig, ActsIf("processing.clutter", "highpass")] = defaults_of(
+        HighpassConfig
+    )
     range_sum: Annotated[Literal["coherent", "gated"], SPECTRA] = "coherent"
     """What Doppler maps show: the coherent sum of the kept bins, or STFTs of those in the gate,
     summed incoherently."""
@@ -99,7 +101,7 @@ class ProcessingConfig(Section):
     """Overlap of consecutive STFT windows, as a fraction of the window."""
     stft_fft_length: Annotated[int | None, Field(ge=8, strict=True), STFTS] = None
     """Length of the STFT's FFT, at least the window; null finds one."""
-    savgol: Annotated[SavgolConfig, DENOISED] = SavgolConfig()
+    savgol: Annotated[SavgolConfig, DENOISED] = defaults_of(SavgolConfig)
     fsst_hop_pulses: Annotated[int | None, Field(ge=1, le=2**24, strict=True), FSSTS] = None
     """Hop of the fsst maps in pulses; 1 is every sample, null the STFT's."""
     fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True), FSSTS] = 1e-3

@@ -33,7 +33,9 @@ from radhar_cli.radar.board import (
     longest_rows,
     sidelobe,
 )
-from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
+
+if TYPE_CHECKING:
+    from radhar_cli.radar.ti_cfg import BoardHeader
 
 BOOST = "IWR1443BOOST"
 MIN_WINDOW = 8  # pulses of the window of a Doppler-time map
@@ -312,12 +314,14 @@ class BoardRadar(_Emission[N], Generic[N]):
     """Unit of an array's places; null is c/(2 f_c), where f_c is the middle of the sampled band."""
 
     @property
-    def header(self) -> BoardHeader:
+    def header(self) -> "BoardHeader":
         """Header of the board that `cfg` describes.
 
         Raises:
             CaptureError: `cfg` cannot be read.
         """
+        from radhar_cli.radar.ti_cfg import parse_ti_cfg  # slow to import, and of boards alone
+
         return parse_ti_cfg(self.cfg)
 
     @property

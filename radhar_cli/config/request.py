@@ -44,7 +44,7 @@ from radhar_cli.config.radar import BoardRadar, FmcwRadar, Radar
 from radhar_cli.config.receiver import BOARD_NOISE_FIGURE_DB, ReceiverConfig
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import RoomConfig, WallConfig
-from radhar_cli.config.section import By, PerActivity, S, Section, for_activity
+from radhar_cli.config.section import By, PerActivity, S, Section, defaults_of, for_activity
 from radhar_cli.errors import CaptureError
 
 Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
@@ -75,21 +75,21 @@ class Request(Section):
         ByModel(human=6.0, paper=4.0, file=4.0),
     ] = None
     """Duration of a recording, s."""
-    radar: Radar = FmcwRadar()
-    subject: SubjectConfig = SubjectConfig()
-    motion: MotionConfig = MotionConfig()
-    timing: TimingConfig = TimingConfig()
-    body: BodyConfig = BodyConfig()
+    radar: Radar = defaults_of(FmcwRadar)
+    subject: SubjectConfig = defaults_of(SubjectConfig)
+    motion: MotionConfig = defaults_of(MotionConfig)
+    timing: TimingConfig = defaults_of(TimingConfig)
+    body: BodyConfig = defaults_of(BodyConfig)
     people: Annotated[tuple[PersonConfig, ...], Field(max_length=7)] = ()
     """Other people in the scene, up to seven of {activity, share, subject, motion, timing}; see
     docs/guide/scenes.md."""
     wall: WallConfig | None = None
     """Wall between radar and people; null is free space."""
-    room: RoomConfig = RoomConfig()
+    room: RoomConfig = defaults_of(RoomConfig)
     snr_db: Decibel | None = 30.0
     """SNR of a raw sample; null: thermal noise by receiver.noise_figure_db, which a board has by
     default, or none where that is null, too."""
-    receiver: ReceiverConfig = ReceiverConfig()
+    receiver: ReceiverConfig = defaults_of(ReceiverConfig)
     snr_reference: Annotated[
         Literal["free_space", "received"],
         ActsIf("snr_db", GIVEN),
@@ -104,16 +104,16 @@ class Request(Section):
     """What happens to a scene in which a body meets the wall or a scatterer leaves the range
     half-band. A scene in which one comes within 5 cm of an antenna is drawn again with `redraw`,
     and refused otherwise."""
-    processing: ProcessingConfig = ProcessingConfig()
-    cloud: Annotated[CloudConfig, OnlyMaps(("points",))] = CloudConfig()
-    image: ImageConfig = ImageConfig()
+    processing: ProcessingConfig = defaults_of(ProcessingConfig)
+    cloud: Annotated[CloudConfig, OnlyMaps(("points",))] = defaults_of(CloudConfig)
+    image: ImageConfig = defaults_of(ImageConfig)
     maps: Maps = ("stft",)
     """Maps of the data set: `rtm`, `stft`, `fsst`, the latter two also with `_denoised`,
     `_compensated`, `_compensated_denoised`; of boards also `range_doppler`, `range_azimuth`,
     `range_elevation`, `points`."""
-    split: SplitConfig = SplitConfig()
-    engine: EngineConfig = EngineConfig()
-    output: OutputConfig = OutputConfig()
+    split: SplitConfig = defaults_of(SplitConfig)
+    engine: EngineConfig = defaults_of(EngineConfig)
+    output: OutputConfig = defaults_of(OutputConfig)
     _places: tuple[dict[str, str], dict[str, str]] = ({}, {})  # {key: file:line}, {key: option}
 
     recordings: RecordingsConfig | None = None
@@ -292,7 +292,7 @@ class MeasuredRequest(Section):
     snr_db: ClassVar[None] = None
     has_noise: ClassVar[bool] = False
     stored: ClassVar[tuple[str, ...]] = ()
-    engine: ClassVar[EngineConfig] = EngineConfig()
+    engine: ClassVar[EngineConfig] = defaults_of(EngineConfig)
 
     seed: Seed
     classes: Classes

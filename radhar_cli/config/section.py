@@ -56,7 +56,11 @@ class Section(BaseModel):
     """Base of all config models."""
 
     model_config = ConfigDict(
-        extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
+        extra="forbid",
+        frozen=True,
+        validate_default=True,
+        allow_inf_nan=False,
+        defer_build=True,  # a validator is built for the section that is validated, and no other
     )
     ALTERNATIVES: ClassVar[tuple[type["Section"], ...]] = ()  # sections that may stand in its place
 
@@ -76,6 +80,18 @@ class Section(BaseModel):
         return texts
 
 
+S = TypeVar("S", bound=Section)
+
+
+def defaults_of(kind: type[S]) -> S:
+    """Return a section with its defaults, for the default of a field.
+
+    It is not validated: pydantic would build a validator for each section when it is imported,
+    which doubles the time to start. A test compares it with one that is.
+    """
+    return kind.model_construct()
+
+
 def _texts_below_fields(kind: type[Section]) -> dict[str, str]:
     """{field: text below it in the source} of the fields that a class itself defines."""
     body = ast.parse(dedent(inspect.getsource(kind))).body[0]
@@ -88,9 +104,6 @@ def _texts_below_fields(kind: type[Section]) -> dict[str, str]:
         and isinstance(text.value, ast.Constant)
         and isinstance(text.value.value, str)
     }
-
-
-S = TypeVar("S", bound=Section)
 
 
 def _by_slug(value: dict[str, Any]) -> dict[str, Any]:

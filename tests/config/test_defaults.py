@@ -1,5 +1,6 @@
 """What a config leaves out: defaults that fit together, by model of motion and by wavelength."""
 
+from collections.abc import Iterator
 from math import sqrt
 from pathlib import Path
 from typing import Any
@@ -7,6 +8,8 @@ from typing import Any
 import pytest
 
 from radhar_cli.config import Config, load_config
+from radhar_cli.config.request import Request
+from radhar_cli.config.section import Section, defaults_of
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.scene_checks.drawing import draw_valid_scene
@@ -124,3 +127,21 @@ def test_recordings_that_held_a_window_of_a_tenth_hold_the_default_one(prf: floa
         config = Config(duration_s=pulses / prf, radar=radar)
         window = config.processing.window_pulses(pulses / prf, prf, 77e9)
         assert 8 <= window <= max(8, pulses / 4 + 1, sqrt(0.004) * prf)
+
+
+def _kinds_of_section(kind: type[Section]) -> Iterator[type[Section]]:
+    for inner in kind.__subclasses__():
+        yield inner
+        yield from _kinds_of_section(inner)
+
+
+def test_defaults_that_are_not_validated_are_what_validation_gives() -> None:
+    """Sections stand as defaults of fields without being validated, which makes starting slow."""
+    compared = 0
+    for kind in set(_kinds_of_section(Section)):
+        required = any(field.is_required() for field in kind.model_fields.values())
+        if required or issubclass(kind, Request):
+            continue
+        assert defaults_of(kind).model_dump_json() == kind().model_dump_json(), kind
+        compared += 1
+    assert compared > 30

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from math import ceil
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from radhar_cli.config.annotations import at
 from radhar_cli.config.checks.smallest_waveform import ENDS, waveform_at
@@ -14,7 +14,9 @@ from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
-from radhar_cli.radar.ti_cfg import BoardHeader
+
+if TYPE_CHECKING:
+    from radhar_cli.radar.ti_cfg import BoardHeader
 
 MAX_CUBE = 2**27  # samples of all channels
 MAX_PADDING = 64
@@ -108,7 +110,7 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     yield from _missing_on_board(c)
 
 
-def _frame_problems(c: Request, board: BoardHeader) -> Iterator[Problem]:
+def _frame_problems(c: Request, board: "BoardHeader") -> Iterator[Problem]:
     """Find what does not fit the frames of a board: durations, clutter, detection."""
     clutter = c.processing.clutter
     if support(c.duration_s)[0] < board.period_s:

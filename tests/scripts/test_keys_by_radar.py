@@ -16,9 +16,9 @@ def test_every_key_acts_or_says_that_it_does_not() -> None:
     # What a reading of the code found silent.
     for radar in ("fmcw", "sfcw", "cw"):
         assert of_radars["receiver.noise_figure_db"][radar].word == "effect"
-        assert of_radars["radar.position_m"][radar].word == "warned"
+        assert of_radars["radar.position_m"][radar].word == "refused"
     for key in ("tx_m", "rx_m", "residual_video_phase"):
-        assert of_radars[f"radar.{key}"]["board"].word == "warned"
+        assert of_radars[f"radar.{key}"]["board"].word == "refused"
     assert of_radars["processing.overlap_fraction"]["board"].word == "warned"
     assert of_radars["radar.waveform"]["board"].word == "refused"
     assert of_motion["motion.paper.gait_hz"]["human"].word == "warned"

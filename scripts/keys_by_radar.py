@@ -55,6 +55,7 @@ chirpCfg 0 0 0 0 0 0 0 1
 chirpCfg 1 1 0 0 0 0 0 4
 chirpCfg 2 2 0 0 0 0 0 2
 frameCfg 0 2 12 0 50 1 0
+cfarCfg 0 2 8 4 3 0 1130
 """
 RADARS: dict[str, dict[str, Any]] = {
     "fmcw": {

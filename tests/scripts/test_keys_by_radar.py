@@ -6,8 +6,7 @@ import pytest
 from radhar_cli.config.data_set import Config
 from radhar_cli.errors import RadharError
 
-# Of `radhar generate --recordings`; of boards with a cfarCfg, which that of the tests has not.
-ELSEWHERE = {"recordings", "cloud.chain", "cloud.quantise"}
+ELSEWHERE = {"recordings"}  # of `radhar generate --recordings`
 
 
 def test_every_key_acts_or_says_that_it_does_not() -> None:

@@ -7,6 +7,8 @@ from errno import EINVAL
 from pathlib import Path
 from uuid import uuid4
 
+from radhar_cli.errors import FolderError
+
 UNFINISHED = ".radhar-unfinished-"
 
 
@@ -59,6 +61,20 @@ def _remove_leftovers(folder: Path) -> None:
         with suppress(OSError), leftover.open("rb") as file:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             leftover.unlink()
+
+
+def write_output(path: Path, content: bytes) -> None:
+    """Write a file that a user asked for, and its folder; it appears when it is whole.
+
+    Raises:
+        FolderError: the file cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(path) as unfinished:
+            unfinished.write_bytes(content)
+    except OSError as error:
+        raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
 
 
 def write_text(path: Path, text: str) -> None:

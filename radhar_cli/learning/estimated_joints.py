@@ -9,8 +9,8 @@ import numpy as np
 import torch
 from torch import nn
 
-from radhar_cli.errors import ConfigError, FolderError
-from radhar_cli.files.replacing import replacing
+from radhar_cli.errors import ConfigError
+from radhar_cli.files.replacing import write_output
 from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled, predict_batches
 from radhar_cli.learning.images.sequences import SequenceReader
 from radhar_cli.learning.report_folder import csv_text
@@ -53,12 +53,7 @@ class EstimatedJoints:
                 joint_names=np.array(self.names),
             )
             data = buffer.getvalue()
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with replacing(path) as unfinished:
-                unfinished.write_bytes(data)
-        except OSError as error:
-            raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
+        write_output(path, data)
 
     def _rows(self) -> Iterator[tuple[object, ...]]:
         for sample, frames, first_frame in zip(

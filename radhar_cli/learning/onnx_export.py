@@ -10,8 +10,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import interpolate
 
-from radhar_cli.errors import FolderError
-from radhar_cli.files.replacing import replacing
+from radhar_cli.files.replacing import write_output
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.images.sequences import COLUMNS
 from radhar_cli.learning.run_files import RunError
@@ -69,12 +68,7 @@ def export(run: Path, path: Path) -> float:
             f"{run}: ONNX Runtime's {metadata.task.outputs_name} differ from PyTorch's by "
             f"{difference:.2g}, more than {TOLERANCE:g}; {path} was not written"
         )
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as unfinished:
-            unfinished.write_bytes(content)
-    except OSError as error:
-        raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
+    write_output(path, content)
     return difference
 
 

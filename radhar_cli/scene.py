@@ -321,8 +321,8 @@ def _draw_config(config: Config, activity: Activity, draw: Draw, subject: int | 
     fixed = _fix_numbers(config, activity, draw)
     falling = fixed.motion.falling.direction
     if isinstance(falling, Falls):
-        directions = sorted(falling.choice, key=FALLS.index)
-        fixed = changed(fixed, {FALL: directions[draw.index(FALL, len(directions))]})
+        place = draw.index(FALL, len(falling.ordered))
+        fixed = changed(fixed, {FALL: falling.ordered[place]})
     files = config.files_of(activity)
     if files is not None and files.file is None:
         fixed = _with_file(fixed, activity, draw, subject)

@@ -107,10 +107,12 @@ def make_path_sources(
         mover = people[min(number, len(people) - 1)]
         stream_number = 0 if one_motion_per_person else number  # streams are the person's own
         body_sources = _trace_body(mover, motion, link, stream_number)
-        others = tuple(shade for place, shade in enumerate(shades) if place != number)
+        shades_of_others = tuple(s for place, s in enumerate(shades) if place != number)
         owner = people[number].number if one_motion_per_person else number
         for source in body_sources:
-            seen_past = ShadowedPaths(source, others, link.waveform.fc) if others else source
+            seen_past: PathSource = source
+            if shades_of_others:
+                seen_past = ShadowedPaths(source, shades_of_others, link.waveform.fc)
             sources.append(OwnedPaths(seen_past, owner, antennas.legs))
         sources += [
             OwnedPaths(replace(source, antennas=image), owner, image.legs)
@@ -186,7 +188,7 @@ def make_body_paths(
         body, first or antennas, waveform.wavelength, window, duration, largest_count
     )
     points = tuple(
-        _tapered(draw_points(count, person.own_stream(f"body/{number}/{segment.name}")))
+        _taper(draw_points(count, person.own_stream(f"body/{number}/{segment.name}")))
         for segment, count in zip(body.segments, counts, strict=True)
     )
     fast = compiled.pays(sum(counts[s] for s in numbers) * waveform.n_pulses)
@@ -195,7 +197,7 @@ def make_body_paths(
     )
 
 
-def _tapered(points: Points) -> Points:
+def _taper(points: Points) -> Points:
     """Points whose powers go with the width of the ellipsoid at their place, 0 at its ends."""
     share = points.share * (1 - 4 * points.along * points.along) ** 0.25
     return points._replace(share=share / np.sqrt((share * share).sum()))

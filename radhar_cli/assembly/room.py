@@ -74,7 +74,7 @@ def ways_of(scene: Scene) -> list[tuple[Leg, Leg]]:
     box, faces = box_of(scene), []
     face_offsets = {"floor": 0.0} if box is None else box.face_offsets
     normal = FACES["floor" if radar.polarisation == "vertical" else "left"]
-    for name, material in room.faces.given.items():
+    for name, material in room.faces.reflecting.items():
         parallel, reflection_coefficient = FACES[name] != normal, None
         if material == "metal":
             reflection_coefficient = -1.0 if parallel else 1.0

@@ -3,7 +3,7 @@
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, TypeAlias
 
-from radhar_cli.config.radar import RADARS, kind_of_radar
+from radhar_cli.config.radar import class_of_radar
 from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.fmcw_timing import FmcwTiming
@@ -135,8 +135,8 @@ def radar_section(radar: dict[str, Any], content: Content) -> dict[str, Any]:
     section = radar | _radar_keys(content, radar.get("waveform", "fmcw"))
     if isinstance(content, SlowTime):  # no board has a single sample a pulse
         section = {key: value for key, value in section.items() if key != "cfg"}
-    tag = kind_of_radar(section)
-    kind = next(kind for kind in RADARS if f"<{kind.kind}>" == tag)
+    kind = class_of_radar(section)
+    assert kind is not None  # a config was read, or content tells the kind
     return {key: value for key, value in section.items() if key in kind.model_fields}
 
 

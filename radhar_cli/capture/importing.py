@@ -274,7 +274,7 @@ def _content(source: Source, s: CaptureSettings, prf_hz: float, header: str) -> 
         CaptureError: a number that is needed is unknown.
     """
 
-    def need(key: str) -> float:
+    def require_number(key: str) -> float:
         number: float | None = getattr(s, key)
         if number is None:
             raise CaptureError(
@@ -282,11 +282,13 @@ def _content(source: Source, s: CaptureSettings, prf_hz: float, header: str) -> 
             )
         return number
 
-    carrier_hz = need("carrier_hz")
+    carrier_hz = require_number("carrier_hz")
     if source.samples is None:
         return SlowTime(carrier_hz, prf_hz)
-    bandwidth_hz = need("bandwidth_hz")
-    return Beat(FmcwTiming(carrier_hz, bandwidth_hz, need("adc_rate_hz"), source.samples, prf_hz))
+    bandwidth_hz = require_number("bandwidth_hz")
+    return Beat(
+        FmcwTiming(carrier_hz, bandwidth_hz, require_number("adc_rate_hz"), source.samples, prf_hz)
+    )
 
 
 def write_simulated(

@@ -38,7 +38,7 @@ Above: TypeAlias = Annotated[float, Field(gt=0, le=1e6)]
 Unvaried: TypeAlias = Annotated[float, Field(ge=0, le=0)]  # chirps that differ are not read
 
 
-def _at(*path: str, default: Any = ...) -> Any:
+def _field_at(*path: str, default: Any = ...) -> Any:
     """Field whose value lies at a path of the document."""
     return Field(default, validation_alias=AliasPath(*path))
 
@@ -48,14 +48,14 @@ class _Ti(Section):
 
 
 class _Profile(_Ti):
-    number: Whole = _at("rlProfileCfg_t", "profileId")
-    start_ghz: Above = _at("rlProfileCfg_t", "startFreqConst_GHz")
-    idle_us: Time = _at("rlProfileCfg_t", "idleTimeConst_usec")
-    adc_us: Time = _at("rlProfileCfg_t", "adcStartTimeConst_usec")
-    ramp_us: Annotated[Above, Field(ge=1e-3)] = _at("rlProfileCfg_t", "rampEndTime_usec")
-    slope: Annotated[Above, Field(ge=1e-3)] = _at("rlProfileCfg_t", "freqSlopeConst_MHz_usec")
-    samples: Annotated[Whole, Field(ge=2)] = _at("rlProfileCfg_t", "numAdcSamples")
-    rate_ksps: Annotated[Above, Field(ge=1e-3)] = _at("rlProfileCfg_t", "digOutSampleRate")
+    number: Whole = _field_at("rlProfileCfg_t", "profileId")
+    start_ghz: Above = _field_at("rlProfileCfg_t", "startFreqConst_GHz")
+    idle_us: Time = _field_at("rlProfileCfg_t", "idleTimeConst_usec")
+    adc_us: Time = _field_at("rlProfileCfg_t", "adcStartTimeConst_usec")
+    ramp_us: Annotated[Above, Field(ge=1e-3)] = _field_at("rlProfileCfg_t", "rampEndTime_usec")
+    slope: Annotated[Above, Field(ge=1e-3)] = _field_at("rlProfileCfg_t", "freqSlopeConst_MHz_usec")
+    samples: Annotated[Whole, Field(ge=2)] = _field_at("rlProfileCfg_t", "numAdcSamples")
+    rate_ksps: Annotated[Above, Field(ge=1e-3)] = _field_at("rlProfileCfg_t", "digOutSampleRate")
 
     def profile(self, place: str) -> ChirpProfile:
         """Return the profile, whose messages name `place`."""
@@ -72,37 +72,39 @@ class _Profile(_Ti):
 
 
 class _Chirp(_Ti):
-    first: Whole = _at("rlChirpCfg_t", "chirpStartIdx")
-    last: Whole = _at("rlChirpCfg_t", "chirpEndIdx")
-    profile: Whole = _at("rlChirpCfg_t", "profileId")
-    transmitters: Annotated[Whole, Field(ge=1)] = _at("rlChirpCfg_t", "txEnable")
-    start_change: Unvaried = _at("rlChirpCfg_t", "startFreqVar_MHz", default=0)
-    slope_change: Unvaried = _at("rlChirpCfg_t", "freqSlopeVar_KHz_usec", default=0)
-    idle_change: Unvaried = _at("rlChirpCfg_t", "idleTimeVar_usec", default=0)
-    adc_change: Unvaried = _at("rlChirpCfg_t", "adcStartTimeVar_usec", default=0)
+    first: Whole = _field_at("rlChirpCfg_t", "chirpStartIdx")
+    last: Whole = _field_at("rlChirpCfg_t", "chirpEndIdx")
+    profile: Whole = _field_at("rlChirpCfg_t", "profileId")
+    transmitters: Annotated[Whole, Field(ge=1)] = _field_at("rlChirpCfg_t", "txEnable")
+    start_change: Unvaried = _field_at("rlChirpCfg_t", "startFreqVar_MHz", default=0)
+    slope_change: Unvaried = _field_at("rlChirpCfg_t", "freqSlopeVar_KHz_usec", default=0)
+    idle_change: Unvaried = _field_at("rlChirpCfg_t", "idleTimeVar_usec", default=0)
+    adc_change: Unvaried = _field_at("rlChirpCfg_t", "adcStartTimeVar_usec", default=0)
 
 
 class _Device(_Ti):
-    receivers: Whole = _at("rfConfig", "rlChanCfg_t", "rxChannelEn")
-    bits: Annotated[Whole, Field(le=2)] = _at("rfConfig", "rlAdcOutCfg_t", "fmt", "b2AdcBits")
-    output: Annotated[Whole, Field(le=2)] = _at("rfConfig", "rlAdcOutCfg_t", "fmt", "b2AdcOutFmt")
-    profiles: tuple[_Profile, ...] = _at("rfConfig", "rlProfiles")
-    chirps: tuple[_Chirp, ...] = _at("rfConfig", "rlChirps")
-    first: Whole = _at("rfConfig", "rlFrameCfg_t", "chirpStartIdx")
-    frames: Whole = _at("rfConfig", "rlFrameCfg_t", "numFrames", default=0)
-    last: Whole = _at("rfConfig", "rlFrameCfg_t", "chirpEndIdx")
-    loops: Annotated[Whole, Field(ge=1)] = _at("rfConfig", "rlFrameCfg_t", "numLoops")
-    period_ms: Above = _at("rfConfig", "rlFrameCfg_t", "framePeriodicity_msec")
-    lanes: Whole = _at("rawDataCaptureConfig", "rlDevLaneEnable_t", "laneEn")
-    interleave: Whole = _at("rawDataCaptureConfig", "rlDevDataFmtCfg_t", "chInterleave")
-    swap: Whole = _at("rawDataCaptureConfig", "rlDevDataFmtCfg_t", "iqSwapSel")
-    packet: Annotated[Literal[1], BeforeValidator(_parse_hexadecimal)] = _at(
+    receivers: Whole = _field_at("rfConfig", "rlChanCfg_t", "rxChannelEn")
+    bits: Annotated[Whole, Field(le=2)] = _field_at("rfConfig", "rlAdcOutCfg_t", "fmt", "b2AdcBits")
+    output: Annotated[Whole, Field(le=2)] = _field_at(
+        "rfConfig", "rlAdcOutCfg_t", "fmt", "b2AdcOutFmt"
+    )
+    profiles: tuple[_Profile, ...] = _field_at("rfConfig", "rlProfiles")
+    chirps: tuple[_Chirp, ...] = _field_at("rfConfig", "rlChirps")
+    first: Whole = _field_at("rfConfig", "rlFrameCfg_t", "chirpStartIdx")
+    frames: Whole = _field_at("rfConfig", "rlFrameCfg_t", "numFrames", default=0)
+    last: Whole = _field_at("rfConfig", "rlFrameCfg_t", "chirpEndIdx")
+    loops: Annotated[Whole, Field(ge=1)] = _field_at("rfConfig", "rlFrameCfg_t", "numLoops")
+    period_ms: Above = _field_at("rfConfig", "rlFrameCfg_t", "framePeriodicity_msec")
+    lanes: Whole = _field_at("rawDataCaptureConfig", "rlDevLaneEnable_t", "laneEn")
+    interleave: Whole = _field_at("rawDataCaptureConfig", "rlDevDataFmtCfg_t", "chInterleave")
+    swap: Whole = _field_at("rawDataCaptureConfig", "rlDevDataFmtCfg_t", "iqSwapSel")
+    packet: Annotated[Literal[1], BeforeValidator(_parse_hexadecimal)] = _field_at(
         "rawDataCaptureConfig", "rlDevDataPathCfg_t", "transferFmtPkt0"
     )
 
 
 class _Studio(_Ti):
-    devices: tuple[_Device] = _at("mmWaveDevices")  # cascades are not read
+    devices: tuple[_Device] = _field_at("mmWaveDevices")  # cascades are not read
 
 
 def read_studio(path: Path) -> tuple[FrameHeader, LvdsFormat]:

@@ -41,7 +41,7 @@ class SequenceConfig(Section, Generic[N]):
     """Time at rest before each movement; left out, there is none."""
 
     @model_validator(mode="after")
-    def _joined(self) -> "SequenceConfig[N]":
+    def _require_joined_movements(self) -> "SequenceConfig[N]":
         count, last = len(self.sequence), len(self.sequence) - 1
         if not self.durations_s:
             object.__setattr__(self, "durations_s", (None,) * count)
@@ -124,7 +124,7 @@ class FilesConfig(Section, Generic[N]):
 
     @field_validator("files")
     @classmethod
-    def _known(cls, value: dict[str, str]) -> dict[str, str]:
+    def _require_motion_files(cls, value: dict[str, str]) -> dict[str, str]:
         for path in value:
             if not path.lower().endswith(SUFFIXES) or len(path) > MAX_PATH_LENGTH or "\0" in path:
                 raise value_error(f"should be paths of {', '.join(SUFFIXES)} files, not {path!r}")
@@ -134,14 +134,14 @@ class FilesConfig(Section, Generic[N]):
 
     @field_validator("joints")
     @classmethod
-    def _ours(cls, value: dict[str, str]) -> dict[str, str]:
+    def _require_known_joints(cls, value: dict[str, str]) -> dict[str, str]:
         for name in value:
             if name not in WANTED:
                 raise value_error(did_you_mean(name, WANTED, f"joints are {', '.join(WANTED)}"))
         return value
 
     @model_validator(mode="after")
-    def _one_of_them(self) -> "FilesConfig[N]":
+    def _require_fitting_files(self) -> "FilesConfig[N]":
         if self.file is not None and self.file >= len(self.files):
             raise value_error(f"should have a file below {len(self.files)}, the number of files")
         if self.skeleton is not None:
@@ -180,6 +180,7 @@ def _own_classes(value: dict[str, ClassConfig]) -> dict[str, ClassConfig]:
     return value
 
 
+# At most 200, as labels are uint8.
 Classes = Annotated[dict[str, ClassConfig], Field(max_length=200), AfterValidator(_own_classes)]
 
 

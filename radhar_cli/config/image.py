@@ -75,7 +75,7 @@ class ImageConfig(Section):
 
     @field_validator("colour_map")
     @classmethod
-    def _known(cls, value: str) -> str:
+    def _require_known_colour_map(cls, value: str) -> str:
         if value != DEFAULT_COLOUR_MAP:  # Matplotlib is slow to import
             from matplotlib import colormaps
 

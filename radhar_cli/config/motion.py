@@ -43,10 +43,10 @@ class Falls(Section):
 
     choice: Annotated[tuple[FallName, ...], Field(min_length=1)]
 
-    def drawn(self, u: float) -> FallName:
-        """The direction at a fraction u, 0 to 1, of the draws."""
-        ordered = sorted(self.choice, key=FALLS.index)
-        return ordered[min(int(u * len(ordered)), len(ordered) - 1)]
+    @property
+    def ordered(self) -> tuple[FallName, ...]:
+        """The directions in the order of FALLS, whichever was written first."""
+        return tuple(sorted(self.choice, key=FALLS.index))
 
 
 # People face the radar, and in 6 s walk 8 m towards it: they start far enough away, all within its

@@ -84,7 +84,7 @@ class Uniform(Distribution):
     uniform: tuple[Real, Real]
 
     @model_validator(mode="after")
-    def _ordered(self) -> "Uniform":
+    def _require_order(self) -> "Uniform":
         if self.uniform[0] > self.uniform[1]:
             raise value_error("should be {uniform: [low, high]} with low <= high")
         return self
@@ -109,7 +109,7 @@ class Normal(Distribution):
     max: Real | None = None
 
     @model_validator(mode="after")
-    def _sane(self) -> "Normal":
+    def _require_sense(self) -> "Normal":
         if self.normal[1] < 0:
             raise value_error("should be {normal: [mean, sd]} with sd >= 0")
         low, high = self.support
@@ -151,7 +151,7 @@ class Choice(Distribution):
     choice: tuple[Real, ...]
 
     @model_validator(mode="after")
-    def _some(self) -> "Choice":
+    def _require_values(self) -> "Choice":
         if not self.choice:  # Field(min_length=1) also complains where all values are wrong
             raise value_error("should be {choice: [a, b, ...]} with 1 value or more")
         return self
@@ -174,7 +174,7 @@ class Vary(Distribution):
     vary: tuple[Real, Real]
 
     @model_validator(mode="after")
-    def _sane(self) -> "Vary":
+    def _require_sense(self) -> "Vary":
         if not 0 <= self.vary[1] <= 1:
             raise value_error("should be {vary: [nominal, fraction]} with a fraction from 0 to 1")
         return self

@@ -49,7 +49,7 @@ class SplitConfig(Section):
     """Number of persons, who each perform every activity, with `by: subject`."""
 
     @model_validator(mode="after")
-    def _whole(self) -> "SplitConfig":
+    def _require_whole_split(self) -> "SplitConfig":
         total = self.train + self.validation + self.test
         if abs(total - 1) > 1e-9:
             raise value_error(

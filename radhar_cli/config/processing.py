@@ -31,7 +31,7 @@ class SavgolConfig(Section):
     """Number of pulses that the polynomial is fitted to; odd, above the order."""
 
     @model_validator(mode="after")
-    def _fits(self) -> "SavgolConfig":
+    def _require_fitting_frame(self) -> "SavgolConfig":
         if self.frame % 2 == 0 or self.frame <= self.order:
             raise value_error("should have a frame that is odd and above the order")
         return self

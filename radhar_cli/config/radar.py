@@ -171,7 +171,14 @@ class _Emission(AnyRadar[N], Generic[N]):
     """Transmitted power, which thermal noise (receiver.noise_figure_db) is compared with."""
 
 
-class FmcwRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
+class _Sweep(_Band[N], Generic[N]):
+    """Keys of pulses that sweep their band, whose beat is sampled."""
+
+    residual_video_phase: Flag = False
+    """Whether the beat keeps the residual video phase, the term pi K tau^2."""
+
+
+class FmcwRadar(_Emission[N], _AntennaPair[N], _Sweep[N], Generic[N]):
     """A radar that sends chirps: antennas, gains, and a linear sweep sampled by an ADC."""
 
     kind: ClassVar[str] = "fmcw"
@@ -185,8 +192,6 @@ class FmcwRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
     """Sampling rate of the ADC within a chirp."""
     chirp_s: Annotated[N, POSITIVE, within(1e-12, 1e4, "s")] = default_draw(40e-6)
     """Duration of a chirp, at most 1/prf_hz."""
-    residual_video_phase: Flag = False
-    """Whether the beat keeps the residual video phase, the term pi K tau^2."""
 
 
 def _require_waveform(schema: dict[str, Any]) -> None:
@@ -194,7 +199,7 @@ def _require_waveform(schema: dict[str, Any]) -> None:
     schema["required"] = [*schema.get("required", ()), "waveform"]
 
 
-class SfcwRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
+class SfcwRadar(_Emission[N], _AntennaPair[N], _Sweep[N], Generic[N]):
     """A radar that steps through frequencies and takes a sample at each."""
 
     kind: ClassVar[str] = "sfcw"
@@ -207,8 +212,6 @@ class SfcwRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
     """Number of frequencies of a sweep, carrier_hz + n bandwidth_hz/steps."""
     dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)]
     """Time that the radar stays on each frequency."""
-    residual_video_phase: Flag = False
-    """Whether the beat keeps the residual video phase, the term pi K tau^2."""
 
     @property
     def adc_rate_hz(self) -> float:  # type: ignore[override]
@@ -268,7 +271,7 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
 
     @field_validator("profile_m")
     @classmethod
-    def _rising(cls, value: tuple[float, float]) -> tuple[float, float]:
+    def _require_rising_ranges(cls, value: tuple[float, float]) -> tuple[float, float]:
         if not 0 <= value[0] < value[1]:
             raise value_error("should be [from, to], 0 <= from < to, with radar.waveform: impulse")
         return value
@@ -337,7 +340,7 @@ class BoardRadar(_Emission[N], Generic[N]):
     @property
     def prf_hz(self) -> float:  # type: ignore[override]
         """Loops per second within a frame."""
-        return 1 / (self.header.slot_s * len(self.header.order))
+        return self.header.prf_hz
 
     @property
     def adc_rate_hz(self) -> float:  # type: ignore[override]
@@ -450,14 +453,20 @@ for _kind in RADARS:
     _kind.ALTERNATIVES = tuple(other for other in RADARS if other is not _kind)
 
 
-def kind_of_radar(value: Any) -> str | None:
-    """Tell the tag of a radar, or of a mapping that describes one; None of an unknown kind."""
+def class_of_radar(value: Any) -> type[AnyRadar[Any]] | None:
+    """Return the class of a radar, or of a mapping that describes one; None of an unknown kind."""
     if isinstance(value, AnyRadar):
-        return f"<{value.kind}>"
+        return type(value)
     if not isinstance(value, dict):
-        return "<fmcw>"  # refused there, as no mapping
+        return FmcwRadar  # which refuses what is no mapping
     name = "board" if value.get("cfg") is not None else value.get("waveform", "fmcw")
-    return f"<{name}>" if name in [kind.kind for kind in RADARS] else None
+    return next((radar for radar in RADARS if radar.kind == name), None)
+
+
+def _tag_of_radar(value: Any) -> str | None:
+    """Return the tag in the union `Radar` of a radar, or of a mapping that describes one."""
+    radar = class_of_radar(value)
+    return None if radar is None else f"<{radar.kind}>"
 
 
 def _without_null_cfg(value: Any) -> Any:
@@ -475,7 +484,7 @@ Radar: TypeAlias = Annotated[
     | Annotated[ImpulseRadar[N], Tag("<impulse>")]
     | Annotated[BoardRadar[N], Tag("<board>")],
     Discriminator(
-        kind_of_radar,
+        _tag_of_radar,
         custom_error_type="wrong",
         custom_error_message="should have a waveform: fmcw, sfcw, cw or impulse; or cfg",
     ),

@@ -18,9 +18,9 @@ from radhar_cli.config.documents import BASE, OTHER_NAMES, Places, cfg_text, rea
 from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.motion_files import resolve_files
 from radhar_cli.config.number import FORMS
-from radhar_cli.config.radar import RADARS, AnyRadar, FmcwRadar, kind_of_radar
+from radhar_cli.config.radar import RADARS, AnyRadar, FmcwRadar, class_of_radar
 from radhar_cli.config.section import PerActivity, Problem, Section
-from radhar_cli.config.units import key_in_our_unit, value_with_unit
+from radhar_cli.config.units import key_in_our_unit, unit_of, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import escaped
@@ -60,7 +60,6 @@ ABSENT = {
 _OF_LAYERS = "is a key of layers: wall.layers: [{material: concrete}], or wall.eps_r"
 MISPLACED = {"wall.material": _OF_LAYERS, "wall.thickness_m": _OF_LAYERS}
 
-UNIT_SUFFIXES = ("m", "s", "hz", "mps", "deg", "db", "dbi", "dbm", "kg", "px")
 _MISSING = object()  # the value of a key that is not there
 MOVED_KEYS = {earlier: key for key, earlier in EARLIER_KEYS.items()}
 
@@ -115,7 +114,7 @@ def load_config(
 
     def refuse(key: str, value: object, right: str) -> ConfigError:
         return ConfigError(
-            _place(str(path), key, places, options) + _what(Problem(key, value, right))
+            _locate(str(path), key, places, options) + _value_and_advice(Problem(key, value, right))
         )
 
     return resolve_files(config, Path(path).parent, refuse)
@@ -192,8 +191,8 @@ def validated(
     except ValidationError as error:
         items = _mistakes_alone(error, document)
         mistakes = dict.fromkeys(
-            _place(where, problem.key, places, options) + _what(problem)
-            for problem in islice(_found(kind, items, document), MAX_MISTAKES)
+            _locate(where, problem.key, places, options) + _value_and_advice(problem)
+            for problem in islice(_problems_of(kind, items, document), MAX_MISTAKES)
         )
         more = len(items) - MAX_MISTAKES
         messages = [*mistakes, f"{where}: and {more} more"] if more > 0 else [*mistakes]
@@ -272,7 +271,7 @@ def _kinds_of_class(names: list[int | str], document: Any) -> list[type[BaseMode
     return [kind for key, kind in _CLASS_KINDS.items() if key in (its_keys or ())]
 
 
-def _found(kind: type[BaseModel], items: Iterable[Any], document: Any) -> Iterator[Problem]:
+def _problems_of(kind: type[BaseModel], items: Iterable[Any], document: Any) -> Iterator[Problem]:
     for item in items:
         if item["type"] == "across":
             yield from item["ctx"]["problems"]
@@ -355,13 +354,7 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
     of_person = names[2:] if names[:1] == ["people"] else names
     if moved := MOVED_KEYS.get(".".join(map(str, of_person))):
         return f"is now {moved}"
-    place: type[BaseModel] | None = kind
-    inner = document
-    for name in names[:-1]:
-        inner = inner.get(name) if isinstance(inner, dict) else None
-        if isinstance(name, str):  # no place in a list of sections
-            field = place.model_fields.get(name) if place else None
-            place = _section_of(field, inner) if field else None
+    place = _section_around(kind, names, document)
     places = _kinds_of_class(names, document) if len(names) == 3 else None
     if places is None:
         places = [] if place is None else [place]
@@ -378,8 +371,7 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
     known = [name for one in places for name in one.model_fields]
     if deeper := _key_of_group(str(names[-1]), places[0]):
         return f"is an unknown key; did you mean {deeper!r}?"
-    with_unit = [key for key in known if key.rpartition("_")[0] == names[-1] and key[-1:] != "_"]
-    with_unit = [key for key in with_unit if key.rpartition("_")[2] in UNIT_SUFFIXES]
+    with_unit = [key for key in known if unit_of(key) and key.rpartition("_")[0] == names[-1]]
     if with_unit:
         return f"is an unknown key; did you mean {with_unit[0]!r}?"
     in_our_unit = key_in_our_unit(str(names[-1]), value, known)
@@ -393,10 +385,20 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
 def _section_of(field: FieldInfo, value: Any) -> type[BaseModel] | None:
     """Section that a field holds: of several that it may, the one that its value tells."""
     kinds = sections(field)
-    if len(kinds) > 1:
-        tag = kind_of_radar(value)
-        return next((kind for kind in RADARS if f"<{kind.kind}>" == tag), None)
-    return next(iter(kinds), None)
+    return class_of_radar(value) if len(kinds) > 1 else next(iter(kinds), None)
+
+
+def _section_around(
+    kind: type[BaseModel], names: list[int | str], document: Any
+) -> type[BaseModel] | None:
+    """Section that a key of the document lies in; None below what is no section."""
+    place: type[BaseModel] | None = kind
+    for name in names[:-1]:
+        document = document.get(name) if isinstance(document, dict) else None
+        if isinstance(name, str):  # no place in a list of sections
+            field = place.model_fields.get(name) if place else None
+            place = _section_of(field, document) if field else None
+    return place
 
 
 def _key_of_group(name: str, section: type[BaseModel]) -> str | None:
@@ -430,16 +432,12 @@ def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
 
 def _holds_sections(kind: type[BaseModel], names: list[int | str], document: Any) -> bool:
     """Whether a key is of a list of sections, such as `people`."""
-    place: type[BaseModel] | None = kind
-    for name in names[:-1]:
-        document = document.get(name) if isinstance(document, dict) else None
-        field = place.model_fields.get(str(name)) if place else None
-        place = _section_of(field, document) if field else None
+    place = _section_around(kind, names, document)
     field = place.model_fields.get(str(names[-1])) if place else None
     return field is not None and bool(sections(field))
 
 
-def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> str:
+def _locate(where: str, key: str, places: Places, options: Mapping[str, str]) -> str:
     """Location of a value, "file:line: key", or the option of the command line that gave it."""
     within = [option for name, option in options.items() if _within(name, key)]
     of_options = [option for name, option in options.items() if _within(key, name)]
@@ -456,7 +454,7 @@ def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> 
     return f"{place or where}: {key}"
 
 
-def _what(problem: Problem) -> str:
+def _value_and_advice(problem: Problem) -> str:
     if not problem.key:  # of the whole
         return _short(problem.right, MAX_ADVICE)
     value = problem.value

@@ -35,7 +35,7 @@ class RecordedPart(Section):
 
     @field_validator("file")
     @classmethod
-    def _below(cls, value: str) -> str:
+    def _require_path_below(cls, value: str) -> str:
         place = PurePosixPath(value)
         if place.is_absolute() or ".." in place.parts or "\\" in value or not place.name:
             raise value_error("should be a path below the manifest's folder")
@@ -61,7 +61,7 @@ class RecordingsConfig(Section):
     """Whether the columns of masks are bits."""
 
     @model_validator(mode="after")
-    def _bounded(self) -> "RecordingsConfig":
+    def _require_few_windows(self) -> "RecordingsConfig":
         if (total := sum(map(self.count, self.parts))) > MAX_WINDOWS:
             raise value_error(f"should have at most {MAX_WINDOWS} windows; hop_s makes {total}")
         return self

@@ -50,7 +50,7 @@ from radhar_cli.errors import CaptureError
 Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
 
 
-# Of data sets of scenes and of recordings; labels are uint8.
+# Seed of a data set, of scenes or of recordings.
 Seed = Annotated[int, Field(ge=0, lt=2**63, strict=True)]
 
 
@@ -173,14 +173,10 @@ class Request(Section):
             _fill_for_board(self, self.radar, changed)
         for name, value in changed.pop("", {}).items():
             object.__setattr__(self, name, value)
-        for name, values in sorted(changed.items(), key=lambda item: -item[0].count(".")):
+        for name, values in changed.items():
             outer, _, inner = name.partition(".")
-            if inner:  # a group of motion, which lies in it
-                filled_group = _with_defaults(at(self, name), values)
-                changed_outer = _with_defaults(getattr(self, outer), {inner: filled_group})
-            else:
-                changed_outer = _with_defaults(getattr(self, outer), values)
-            object.__setattr__(self, outer, changed_outer)
+            section_filled = _with_defaults(getattr(self, outer), values, inner)
+            object.__setattr__(self, outer, section_filled)
         if self.people:
             filled = tuple(self._filled_person(n) for n in range(1, len(self.people) + 1))
             object.__setattr__(self, "people", filled)
@@ -330,8 +326,16 @@ class MeasuredRequest(Section):
 AnyRequest: TypeAlias = Request | MeasuredRequest
 
 
-def _with_defaults(section: S, values: Mapping[str, Any]) -> S:
-    """A section with defaults of other keys' making, which do not count as given."""
+def _with_defaults(section: S, values: Mapping[str, Any], inner: str = "") -> S:
+    """A section with defaults of other keys' making, which do not count as given.
+
+    Args:
+        section: the section.
+        values: {key: default}.
+        inner: key of the section within it whose keys they are; "" for its own.
+    """
+    if inner:
+        values = {inner: _with_defaults(getattr(section, inner), values)}
     filled = section.model_copy(update=dict(values))
     object.__setattr__(filled, "__pydantic_fields_set__", set(section.model_fields_set))
     return filled

@@ -150,7 +150,7 @@ class FacesConfig(Section, Generic[N]):
     """Material of the face at the larger x of room.box_m."""
 
     @property
-    def given(self) -> dict[str, Material | DielectricConfig[N]]:
+    def reflecting(self) -> dict[str, Material | DielectricConfig[N]]:
         """{name: material} of the faces that reflect."""
         return {
             name: material for name in type(self).model_fields if (material := getattr(self, name))

@@ -254,16 +254,16 @@ class _SampleComparison:
         largest, share = int(difference.max()), float(np.mean(difference > 0))
         self._report.worst_level = max(self._report.worst_level, largest)
         if self._is_mask:  # a cell at its threshold is set or not: whole levels, but few of them
-            is_off, amount = share > self._tolerated(MASK_SHARE), f"in {share:.2%} of its pixels"
+            is_off, amount = share > self._tolerance(MASK_SHARE), f"in {share:.2%} of its pixels"
         else:
-            is_off, amount = largest > self._tolerated(1), f"by up to {largest} grey levels"
+            is_off, amount = largest > self._tolerance(1), f"by up to {largest} grey levels"
         if is_off:
             self._say(f"/maps/{name}[{row}] ({scene_name}): differs {amount}")
         entropy = float(self._entropies[name][row])
         if abs(entropy - image.entropy) > 1e-3 * max(1.0, image.entropy):
             self._say(f"/entropy/{name}[{row}]: {entropy}, not {image.entropy}")
 
-    def _tolerated(self, rounding: float) -> float:
+    def _tolerance(self, rounding: float) -> float:
         """What of a difference is tolerated: that of rounding under other versions, else none."""
         return 0.0 if self._is_bitwise else rounding
 

@@ -102,7 +102,7 @@ def room_problems(c: Request) -> Iterator[Problem]:
             if support(getattr(radar, name)[2])[0] <= 0:
                 right = "should be above the floor of room.faces, at a height of 0"
                 yield Problem(f"radar.{name}", list(getattr(radar, name)), right)
-        if walls := [name for name in room.faces.given if name != "floor"]:
+        if walls := [name for name in room.faces.reflecting if name != "floor"]:
             right = f"should say where {', '.join(walls)} of room.faces are; a floor needs none"
             yield Problem("room.box_m", None, right)
         return

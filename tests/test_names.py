@@ -14,14 +14,8 @@ GENERAL = {
     "again", "asked", "theirs", "ours", "mine", "which", "shown", "what", "who", "whose", "here",
     "way", "thing", "things", "stuff", "whole", "taken", "everybody",
 }
-# Packages that are not yet through; one that is comes off this list and stays off.
-PENDING: set[str] = set()
 # fmt: on
 LONGEST_FUNCTION = 45  # lines, docstring left out
-
-
-def _package(path: Path) -> str:
-    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
 def _bound_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
@@ -45,8 +39,6 @@ FILES = sorted(path for path in PACKAGE.rglob("*.py"))
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_values_are_named_by_nouns_of_the_field(path: Path) -> None:
-    if _package(path) in PENDING:
-        return
     general = [
         f"{path}:{line}: {name}"
         for line, name in _bound_names(ast.parse(path.read_text()))
@@ -57,8 +49,6 @@ def test_values_are_named_by_nouns_of_the_field(path: Path) -> None:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_functions_fit_on_a_screen(path: Path) -> None:
-    if _package(path) in PENDING:
-        return
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             first = node.body[0]

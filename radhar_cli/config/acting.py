@@ -7,8 +7,6 @@ BOARD = OfRadar("board")
 NO_BOARD = OfRadar("fmcw", "sfcw", "cw", "impulse")
 NO_IMPULSE = OfRadar("fmcw", "sfcw", "cw", "board")
 EVEN = Unless("radar.frames_apart", "the pauses between a board's frames (radar.cfg)")
-
-
 RANGE_TIME = OnlyMaps((str(RTM),))
 SPECTRA = OnlyMaps(tuple(map(str, DOPPLER_TIME_KINDS)))
 STFTS, FSSTS = (

@@ -16,9 +16,10 @@ which take values and can be called alone.
 import json
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import assert_never
 
 from radhar_cli.config.data_set import AnyConfig, Config
-from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar
+from radhar_cli.config.radar import BoardRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
 from radhar_cli.errors import ConfigError
 from radhar_cli.extensions import own_products
 from radhar_cli.processing.map_kind import MAP_KINDS, TREATMENTS
@@ -108,9 +109,11 @@ def _radar_products(config: Config) -> Iterator[Product]:
         case ImpulseRadar():
             yield from _channel_products(config)
             yield from impulse_products(config)
-        case _:
+        case FmcwRadar() | SfcwRadar() | CwRadar():
             yield from _channel_products(config)
             yield from _engine_products(config)
+        case _:
+            assert_never(config.radar)
 
 
 def _channel_products(config: Config) -> Iterator[Product]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from radhar_cli.activities.activity import Activity
 from radhar_cli.config.annotations import Mark, of_kind
-from radhar_cli.config.classes import FilesConfig, SequenceConfig
+from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.motion import EARLIER_KEYS, FALLS, Falls, MotionConfig, TimingConfig
 from radhar_cli.config.number import Choice, Number, is_fixed, nominal, quantile
@@ -21,6 +21,7 @@ from radhar_cli.config.radar import SceneRadar
 from radhar_cli.config.receiver import ReceiverConfig
 from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.section import for_activity
+from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.numerics.randomness import PERSON, SCENE, stream
 
@@ -326,6 +327,10 @@ def _draw_config(config: Config, activity: Activity, draw: Draw, subject: int | 
     files = config.files_of(activity)
     if files is not None and files.file is None:
         fixed = _with_file(fixed, activity, draw, subject)
+    sequence = config.classes.get(activity.slug)
+    if isinstance(sequence, SequenceConfig) and sequence.is_drawn and sequence.order is None:
+        key = f"classes.{activity.slug}"
+        fixed = changed(fixed, {f"{key}.order": sequence.draw_order(f"{key}.sequence", draw)})
     return _with_possible_overlap(fixed, activity)
 
 
@@ -516,6 +521,8 @@ def redrawn(config: Config, activity: Activity) -> Redrawn:
     drawn_again += personal if config.split.subjects is None else []
     files = config.files_of(activity)
     listed = files is not None and files.file is None and len(files.files) > 1
+    sequence = config.classes.get(activity.slug)
+    listed |= isinstance(sequence, SequenceConfig) and sequence.is_drawn and not sequence.order
     if listed or isinstance(config.motion.falling.direction, Falls):
         return Redrawn.CHOICES
     if not drawn_again:

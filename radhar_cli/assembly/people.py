@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from radhar_cli.activities.activity import MOVEMENTS
-from radhar_cli.config.classes import SequenceConfig
 from radhar_cli.config.motion import (
     FallName,
     Falls,
@@ -20,6 +19,7 @@ from radhar_cli.config.motion import (
     MotionConfig,
     StrikingConfig,
 )
+from radhar_cli.config.sequence import SequenceConfig, SequenceStep
 from radhar_cli.motion.human.falling import (
     FallBackward,
     FallForward,
@@ -197,18 +197,22 @@ def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
     """Movements of a class that is a sequence, and the pause before each, s."""
     sequence = person.own_class
     assert isinstance(sequence, SequenceConfig)
-    movements = list[Movement]()
-    for place, (name, duration_s) in enumerate(
-        zip(sequence.sequence, sequence.durations_s, strict=True)
-    ):
-        usual = MOVEMENTS[name].seconds
-        duration = usual if duration_s is None else duration_s
-        repertoire = _repertoire(person, duration, place)
-        (movement,) = repertoire.sequence([name], [inf if duration is None else duration])
-        if isinstance(movement, GetUp | TryToGetUp) and movements:
-            movement = _getting_up_after(movements[-1], movement)
-        movements.append(movement)
-    return tuple(movements), sequence.pauses_s
+    movements, pauses = list[Movement](), list[float]()
+    for step in sequence.steps():
+        movements.append(_movement_of(person, step, movements))
+        pauses.append(step.pause)
+    return tuple(movements), tuple(pauses)
+
+
+def _movement_of(person: Person, step: SequenceStep, previous: list[Movement]) -> Movement:
+    """Movement of a step of a sequence, after the previous ones."""
+    usual = MOVEMENTS[step.name].seconds
+    duration = usual if step.duration is None else step.duration
+    repertoire = _repertoire(person, duration, step.place)
+    (movement,) = repertoire.sequence([step.name], [inf if duration is None else duration])
+    if isinstance(movement, GetUp | TryToGetUp) and previous:
+        return _getting_up_after(previous[-1], movement)
+    return movement
 
 
 def _getting_up_after(fall: Movement, getting_up: GetUp | TryToGetUp) -> Movement:

@@ -2,70 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias, cast
+from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator, model_validator
 
 from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, Activity, is_new_slug
-from radhar_cli.activities.vocabulary import advice_on
-from radhar_cli.config.number import (
-    NOT_NEGATIVE,
-    SECONDS,
-    Choice,
-    Number,
-    support,
-    uniform,
-    value_error,
-    within,
-)
+from radhar_cli.config.number import Choice, uniform, value_error, within
 from radhar_cli.config.section import N, Section, default_draw
+from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.errors import did_you_mean
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
 
-MIN_MOVEMENT_S = 0.3
-
-
 FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
-
-
-class SequenceConfig(Section, Generic[N]):
-    """A class of your own: movements one after the other, joined at rest."""
-
-    sequence: Annotated[tuple[str, ...], Field(min_length=1, max_length=64)]
-    """Movements of the class in order, by their names (docs/guide/motion.md)."""
-    durations_s: tuple[Annotated[N | None, NOT_NEGATIVE, SECONDS], ...] = ()
-    """Duration of each movement; null is the usual one, and of the last movement until the
-    recording ends."""
-    pauses_s: tuple[Annotated[N, NOT_NEGATIVE, SECONDS], ...] = ()
-    """Time at rest before each movement; left out, there is none."""
-
-    @model_validator(mode="after")
-    def _require_joined_movements(self) -> "SequenceConfig[N]":
-        count, last = len(self.sequence), len(self.sequence) - 1
-        if not self.durations_s:
-            object.__setattr__(self, "durations_s", (None,) * count)
-        if not self.pauses_s:
-            object.__setattr__(self, "pauses_s", (0.0,) * count)
-        if not len(self.durations_s) == len(self.pauses_s) == count:
-            raise value_error("should have as many durations_s, and pauses_s, as movements")
-        state = None
-        for n, (name, duration) in enumerate(zip(self.sequence, self.durations_s, strict=True)):
-            movement = MOVEMENTS.get(name)
-            if movement is None:
-                hint = advice_on(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
-                raise value_error(f"{name!r} is not a movement; {hint}")
-            if state not in (None, movement.before):
-                raise value_error(
-                    f"should be joined at rest: {name} begins {movement.before}, "
-                    f"{self.sequence[n - 1]} ends {state}"
-                )
-            if duration is not None and not support(cast(Number, duration))[0] >= MIN_MOVEMENT_S:
-                raise value_error(f"should have durations_s from {MIN_MOVEMENT_S} s on")
-            if movement.seconds is None and duration is None and n < last:
-                raise value_error(f"should have a duration of {name}, which something follows")
-            state = movement.after
-        return self
 
 
 MAX_FILES = 1500  # of all classes together
@@ -194,7 +143,7 @@ def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
             activities[slug] = replace(twelve[slug], movements=())
             continue
         number += 1
-        movements = section.sequence if isinstance(section, SequenceConfig) else ()
+        movements = section.possible_movements if isinstance(section, SequenceConfig) else ()
         movements += tuple(other for name in movements if (other := MOVEMENTS[name].like))
         activities[slug] = Activity(number, slug, movements)
     return activities

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from radhar_cli.config.annotations import range_of, sections
-from radhar_cli.config.classes import FilesConfig, SequenceConfig
+from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import Config, ConfigOfRecordings
 from radhar_cli.config.documents import BASE, OTHER_NAMES, Places, cfg_text, read_on_bases
 from radhar_cli.config.motion import EARLIER_KEYS
@@ -20,6 +20,7 @@ from radhar_cli.config.motion_files import resolve_files
 from radhar_cli.config.number import FORMS
 from radhar_cli.config.radar import RADARS, AnyRadar, FmcwRadar, class_of_radar
 from radhar_cli.config.section import PerActivity, Problem, Section
+from radhar_cli.config.sequence import PART_TAGS, SequenceConfig
 from radhar_cli.config.units import key_in_our_unit, unit_of, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
@@ -31,6 +32,7 @@ _UNION_TAGS = {
     *("<same>", "<per_activity>"),
     *("<movements>", "<recordings>"),
     *("<material>", "<dielectric>"),
+    *PART_TAGS,
     *(f"<{radar.kind}>" for radar in RADARS),
 }
 _CLASS_KINDS: dict[str, type[BaseModel]] = {"sequence": SequenceConfig, "files": FilesConfig}

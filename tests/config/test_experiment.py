@@ -18,7 +18,6 @@ from radhar_cli.config import (
     resolved,
     timing_warnings,
 )
-from radhar_cli.config.classes import SequenceConfig
 from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.number import Uniform
 from radhar_cli.config.people import PersonConfig, SubjectConfig
@@ -27,6 +26,7 @@ from radhar_cli.config.receiver import ToneConfig
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import BoxConfig, FacesConfig, LayerConfig, ReflectorConfig
 from radhar_cli.config.section import Section
+from radhar_cli.config.sequence import SequenceConfig
 
 
 def test_the_defaults_of_the_paper_are_its_free_space_data_set() -> None:

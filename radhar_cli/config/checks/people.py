@@ -4,10 +4,11 @@ from collections.abc import Iterator
 
 from radhar_cli.activities.activity import ACTIVITIES, DEFAULT, activity_named, own_activities
 from radhar_cli.config.annotations import Limits, People, annotations, at, of_kind
-from radhar_cli.config.classes import SequenceConfig, class_activities
+from radhar_cli.config.classes import class_activities
 from radhar_cli.config.number import MAX_NUMBER, support
 from radhar_cli.config.request import Request
 from radhar_cli.config.section import PerActivity, Problem, for_activity
+from radhar_cli.config.sequence import SequenceConfig
 
 
 def people_problems(c: Request) -> Iterator[Problem]:
@@ -41,7 +42,7 @@ def class_problems(c: Request) -> Iterator[Problem]:
     for slug, section in c.classes.items():
         if model != "human" and isinstance(section, SequenceConfig):
             right = f"should have files with motion.model: {model}; sequences are of people (human)"
-            yield Problem(f"classes.{slug}", list(section.sequence), right)
+            yield Problem(f"classes.{slug}", list(section.written), right)
     if model != "file":
         return
     for activity in c.chosen_activities:

@@ -491,7 +491,8 @@ def _of_person(same: ByIdentity, number: int) -> Config:
 @lru_cache(maxsize=64)
 def _fixed_and_drawn(same: ByIdentity, activity: Activity) -> tuple[Config, dict[str, Any]]:
     """Config of an activity with all numbers at their middle, and {dotted key: number to draw}."""
-    config, drawn = same.config, dict[str, Any]()
+    config = same.config.without_other_words().with_class_of(activity)
+    drawn = dict[str, Any]()
 
     def fix(key: str, number: Any) -> float:
         of_activity = for_activity(number, activity)

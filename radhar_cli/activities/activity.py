@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
+from zlib import crc32
 
 from radhar_cli.activities.vocabulary import advice_on, meaning_of
 from radhar_cli.extensions import load_extensions
@@ -41,7 +42,7 @@ EXERCISES = (
         )
     ),
 )
-# What sequences are made of (`classes:`).
+# What sequences are made of (`classes:`); each is a class by itself, too.
 MOVEMENTS = {
     "stationary": MovementInfo("standing", "standing", None),
     "punching": MovementInfo("standing", "standing", None),
@@ -86,9 +87,12 @@ class Activity:
     def index(self) -> int:
         """Number that names the activity's random streams: 0 to 11 for the twelve.
 
-        It is no label of a data set: that is a place in the config's `activities`.
+        That of a class named as a movement follows from the name, so that its scenes are the same
+        whatever other classes there are. It is no label of a data set: that is a place in the
+        config's `activities`.
         """
-        return self.number - 1
+        is_movement = self.number > len(ACTIVITIES) and self.slug in MOVEMENTS
+        return crc32(self.slug.encode()) if is_movement else self.number - 1
 
     @property
     def walks(self) -> bool:
@@ -117,6 +121,18 @@ DEFAULT = "default"  # in `per_activity`: what holds for activities that it does
 def _by_name(activities: Iterable[Activity]) -> dict[str, Activity]:
     """Activities by slug, and by label in lower case."""
     return {name: a for a in activities for name in (a.slug, a.label.lower())}
+
+
+def activity_of_movements(slug: str, movements: tuple[str, ...], number: int) -> Activity:
+    """Return the class of people who make movements one after the other.
+
+    Args:
+        slug: Name of the class.
+        movements: Names in MOVEMENTS.
+        number: Number of the class, 13 or more.
+    """
+    like = tuple(other for name in movements if (other := MOVEMENTS[name].like))
+    return Activity(number, slug, (*movements, *like))
 
 
 _BY_NAME = _by_name(ACTIVITIES)
@@ -166,7 +182,9 @@ def is_new_slug(slug: str) -> bool:
 
 
 def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> Activity:
-    """Find an activity by slug or label, whatever the case.
+    """Find an activity by slug, label, movement or another word for it, whatever the case.
+
+    A movement's name is a class of that movement alone.
 
     Args:
         name: as somebody wrote it.
@@ -174,7 +192,7 @@ def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> 
             `add_activity`.
 
     Raises:
-        ValueError: No such activity; the message suggests the nearest name, or lists them all.
+        ValueError: No such activity; the message suggests what is meant, or lists the slugs.
     """
     added = {activity.slug: activity for activity in own_activities()}
     known = _BY_NAME | added | _by_name((classes or {}).values())
@@ -182,15 +200,16 @@ def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> 
     if plain_name in known:
         return known[plain_name]
     slugs = list(dict.fromkeys(a.slug for a in known.values()))
-    meant = meaning_of(plain_name, (*slugs, *MOVEMENTS))
-    if meant in MOVEMENTS and meant not in slugs:
-        raise ValueError(
-            f"{name!r} is not an activity; {meant} is a movement, of which a class can be made: "
-            f"classes: {{my_class: {{sequence: [{meant}]}}}}, activities: [my_class, ...]"
-        )
-    completions = [slug for slug in slugs if len(plain_name) > 3 and slug.startswith(plain_name)]
-    list_of_slugs = "the slugs are " + ", ".join(slugs)
-    hint = advice_on(plain_name, [*slugs, *known], list_of_slugs)
+    slug = meaning_of(plain_name, (*slugs, *MOVEMENTS))
+    if slug in known:
+        return known[slug]
+    if slug is not None:
+        number = 1 + max(a.number for a in known.values())
+        return activity_of_movements(slug, (slug,), number)
+    names = list(dict.fromkeys((*slugs, *MOVEMENTS)))
+    list_of_slugs = f"there are {', '.join(slugs)} and the movements of docs/reference/movements.md"
+    hint = advice_on(plain_name, [*names, *known], list_of_slugs)
+    completions = [slug for slug in names if len(plain_name) > 3 and slug.startswith(plain_name)]
     if hint == list_of_slugs and completions:
         hint = f"did you mean {completions[0]!r}?"
     raise ValueError(f"{name!r} is not an activity; {hint}")

@@ -4,31 +4,42 @@ from collections.abc import Iterable
 
 from radhar_cli.errors import did_you_mean
 
-SIMILAR = 0.74  # share of letters from which a name is taken for a mistyped one
+# Share of letters from which a name is taken for a mistyped one: one letter of four is wrong, or
+# of longer names one in six.
+SHORT, SIMILAR_SHORT, SIMILAR = 5, 0.75, 0.8
 
-# {word: our names of the same meaning, of which the first that is known counts}
+# {word: our names of the same meaning, of which the first that is known counts}; a config may say
+# the word instead. A movement of the word's own name comes before these.
 MEANINGS: dict[str, tuple[str, ...]] = {
-    **dict.fromkeys(("picking_up", "pick_up", "picking", "bending", "bending_down"), ("grabbing",)),
-    **dict.fromkeys(("picking_up_object", "reaching", "grasping", "grab"), ("grabbing",)),
-    **dict.fromkeys(("boxing", "box", "punch", "hitting", "shadow_boxing"), ("punching",)),
+    **dict.fromkeys(("picking_up", "pick_up", "picking", "picking_up_object"), ("grabbing",)),
+    **dict.fromkeys(("picking_up_objects", "pick_up_object", "grasping", "grab"), ("grabbing",)),
+    **dict.fromkeys(("boxing", "box", "punch", "shadow_boxing"), ("punching",)),
     **dict.fromkeys(("kick", "front_kick"), ("kicking",)),
-    **dict.fromkeys(("standing", "still", "idle", "static", "no_movement"), ("stationary",)),
+    **dict.fromkeys(("standing", "still", "standing_still", "stand"), ("stationary",)),
+    **dict.fromkeys(("idle", "static", "no_movement"), ("stationary",)),
     **dict.fromkeys(("sit", "sit_down", "sitting"), ("sitting_down",)),
     **dict.fromkeys(("stand_up", "rising", "getting_up_from_chair"), ("standing_up",)),
     **dict.fromkeys(("stand_up_from_floor", "get_up", "rising_from_floor"), ("getting_up",)),
-    **dict.fromkeys(("turning", "rotating", "twisting", "body_rotation"), ("body_rotating",)),
-    **dict.fromkeys(("turn_around", "turn"), ("turning_around",)),
-    **dict.fromkeys(
-        ("walk", "strolling", "pacing", "walking_towards", "walking_away"), ("walking",)
-    ),
+    **dict.fromkeys(("rotating", "twisting", "body_rotation"), ("body_rotating",)),
+    **dict.fromkeys(("turn_around",), ("turning_around",)),
+    **dict.fromkeys(("walk", "strolling", "pacing"), ("walking",)),
     **dict.fromkeys(("fall", "fall_down", "falling_down", "collapsing"), ("falling",)),
     **dict.fromkeys(("squat", "squats"), ("squatting",)),
-    **dict.fromkeys(("jump", "jumps", "hopping"), ("jumping",)),
-    **dict.fromkeys(("jumping_jack", "jack", "jacks", "star_jumps"), ("jumping_jacks",)),
-    **dict.fromkeys(("lunge", "lunges"), ("right_lunge",)),
-    **dict.fromkeys(("waving", "wave", "hand_waving", "raise_arm"), ("raising_right_arm",)),
+    **dict.fromkeys(("jump", "jumps"), ("jumping",)),
+    **dict.fromkeys(("jumping_jack", "star_jumps"), ("jumping_jacks",)),
     **dict.fromkeys(("stumble",), ("stumbling",)),
     **dict.fromkeys(("trip",), ("tripping",)),
+}
+# {word: our names that come near it}: suggested, but not taken for the same.
+NEARBY: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("bending", "bending_down", "bend", "reaching", "lifting"), ("grabbing",)),
+    **dict.fromkeys(("hitting", "striking"), ("punching",)),
+    **dict.fromkeys(("turning", "turn"), ("body_rotating",)),
+    **dict.fromkeys(("walking_towards", "walking_away", "marching"), ("walking",)),
+    **dict.fromkeys(("hopping", "hop", "leaping"), ("jumping",)),
+    **dict.fromkeys(("jack", "jacks"), ("jumping_jacks",)),
+    **dict.fromkeys(("lunge", "lunges", "lunging"), ("right_lunge",)),
+    **dict.fromkeys(("waving", "wave", "hand_waving", "raise_arm"), ("raising_right_arm",)),
 }
 # Movements that no model of ours makes, nor one that means the same.
 UNKNOWN = frozenset(
@@ -65,6 +76,9 @@ UNKNOWN = frozenset(
             "sit_ups",
             "typing",
         ),
+        # of another meaning than the name of ours whose letters they nearly have
+        *("pinching", "picking_nose", "licking", "talking", "falling_asleep", "sitting_up"),
+        *("failing", "filling"),
     }
 )
 FROM_FILES = "no model moves like this; motion files can (docs/guide/motion_files.md)"
@@ -73,18 +87,25 @@ FROM_FILES = "no model moves like this; motion files can (docs/guide/motion_file
 def advice_on(name: str, known: Iterable[str], otherwise: str) -> str:
     """Advise on a name of a movement that is not known: what may be meant.
 
+    Letters alone suggest a name only where a slip of the hand explains the difference: most of
+    them are the same, the first one included.
+
     Args:
         name: as somebody wrote it.
         known: our names that would do.
         otherwise: what is returned where nothing is meant.
     """
-    names = list(known)
+    names, word = list(known), _plain(name)
     meant = meaning_of(name, names)
     if meant is not None:
         return f"did you mean {meant!r}?"
-    if _plain(name) in UNKNOWN:
+    near = next((candidate for candidate in NEARBY.get(word, ()) if candidate in names), None)
+    if near is not None:
+        return f"{near!r} comes near it"
+    if word in UNKNOWN:
         return FROM_FILES
-    return did_you_mean(_plain(name), names, otherwise, SIMILAR)
+    similar = SIMILAR_SHORT if len(word) <= SHORT else SIMILAR
+    return did_you_mean(word, [one for one in names if one[:1] == word[:1]], otherwise, similar)
 
 
 def meaning_of(name: str, known: Iterable[str]) -> str | None:
@@ -93,6 +114,11 @@ def meaning_of(name: str, known: Iterable[str]) -> str | None:
     return next(
         (candidate for candidate in (word, *MEANINGS.get(word, ())) if candidate in names), None
     )
+
+
+def is_other_word(name: str, slug: str) -> bool:
+    """Whether a name is another word for a slug, not the slug in another way of writing it."""
+    return _plain(name) != slug and slug in MEANINGS.get(_plain(name), ())
 
 
 def _plain(name: str) -> str:

@@ -5,7 +5,14 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import Activity, Nominal, Overrides, Replace, refuse_to_replace
+from radhar_cli.commands.options import (
+    Activity,
+    Nominal,
+    Overrides,
+    Replace,
+    find_activity,
+    refuse_to_replace,
+)
 from radhar_cli.commands.tell import report, tell
 
 
@@ -37,9 +44,9 @@ def motion(
     if out.suffix.lower() != ".bvh":
         raise ConfigError(f"{out}: should end in .bvh")
     refuse_to_replace(out, overwrite, "walk.bvh")
-    text, frames = scene_bvh(
-        load_config(config, set_ or []), activity, index=index, nominal=nominal, rate=rate
-    )
+    loaded = load_config(config, set_ or [])
+    person_activity = find_activity(activity, loaded)
+    text, frames = scene_bvh(loaded, person_activity, index=index, nominal=nominal, rate=rate)
     try:
         write_text(out, text)
     except OSError as error:

@@ -12,6 +12,8 @@ from radhar_cli.errors import INTERRUPTED, FolderError
 from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
+    from radhar_cli.activities.activity import Activity as ActivityOfPeople
+    from radhar_cli.config.data_set import Config
     from radhar_cli.config.reading import Override
 
 Overrides: TypeAlias = Annotated[
@@ -25,7 +27,9 @@ Overrides: TypeAlias = Annotated[
 Activity: TypeAlias = Annotated[
     str | None,
     typer.Option(
-        "--activity", "-a", help="Activity, by slug or label; optional if there is only one."
+        "--activity",
+        "-a",
+        help="Activity or movement, by name or label; optional if there is only one.",
     ),
 ]
 Nominal: TypeAlias = Annotated[
@@ -56,6 +60,25 @@ Tolerance: TypeAlias = Annotated[
         "engine.tolerance_db.",
     ),
 ]
+
+
+def find_activity(name: str | None, config: "Config") -> "ActivityOfPeople":
+    """Find the activity that --activity names, and say so where it is another word for it.
+
+    Raises:
+        ConfigError: there is no such activity, or none is named and the config has several.
+    """
+    from radhar_cli.activities.vocabulary import is_other_word
+    from radhar_cli.errors import ConfigError
+    from radhar_cli.single_scene.request import activity_of
+
+    try:
+        activity = activity_of(name, config)
+    except ConfigError as error:
+        raise ConfigError(f"--activity: {error}") from None
+    if name is not None and is_other_word(name, activity.slug):
+        tell(f"--activity: {name} is taken for {activity.slug}", err=True)
+    return activity
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from radhar_cli.commands.options import (
     Overrides,
     ReplaceResults,
     Tolerance,
+    find_activity,
     with_tolerance,
 )
 from radhar_cli.commands.scene_folder import (
@@ -107,7 +108,8 @@ def simulate(
     overrides = _motion_overrides(activity or FROM_FILE, motion, up, joints, skeleton)
     loaded = load_config(config, [*overrides, *with_tolerance(set_, tolerance)])
     chosen_maps = None if maps is None else map_names(maps.split(","), loaded)
-    request = SceneRequest(loaded, activity, seed, index, nominal, joint, chosen_maps, raw)
+    person_activity = find_activity(activity, loaded)
+    request = SceneRequest(loaded, person_activity, seed, index, nominal, joint, chosen_maps, raw)
     require_scene_folder(out, overwrite)
     with BarProgress() as bars:
         simulation = simulate_scene(request, bars)

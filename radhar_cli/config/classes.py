@@ -6,8 +6,14 @@ from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator, model_validator
 
-from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, Activity, is_new_slug
-from radhar_cli.config.number import Choice, uniform, value_error, within
+from radhar_cli.activities.activity import (
+    ACTIVITIES,
+    MOVEMENTS,
+    Activity,
+    activity_of_movements,
+    is_new_slug,
+)
+from radhar_cli.config.number import Choice, uniform, value_error, vary, within
 from radhar_cli.config.section import N, Section, default_draw
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.errors import did_you_mean
@@ -15,6 +21,16 @@ from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
 
 FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
+
+
+SPREAD = 0.15  # share by which a movement that is a class takes longer or shorter than usual
+
+
+def movement_class(name: str) -> SequenceConfig:
+    """Class of people who make one movement, whose duration differs from sample to sample."""
+    seconds = MOVEMENTS[name].seconds
+    durations = () if seconds is None else (vary(seconds, SPREAD),)
+    return SequenceConfig(sequence=(name,), durations_s=durations)
 
 
 MAX_FILES = 1500  # of all classes together
@@ -144,6 +160,5 @@ def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
             continue
         number += 1
         movements = section.possible_movements if isinstance(section, SequenceConfig) else ()
-        movements += tuple(other for name in movements if (other := MOVEMENTS[name].like))
-        activities[slug] = Activity(number, slug, movements)
+        activities[slug] = activity_of_movements(slug, movements, number)
     return activities

@@ -1,6 +1,7 @@
 """All sections together: what a data set is asked for, not yet checked across sections."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache, cached_property, partial
 from itertools import count
@@ -13,9 +14,11 @@ from radhar_cli.activities.activity import (
     DEFAULT,
     EXERCISES,
     MOVEMENTS,
+    TWELVE,
     Activity,
     activity_named,
 )
+from radhar_cli.activities.vocabulary import is_other_word
 from radhar_cli.config.acting import BOARD
 from radhar_cli.config.annotations import (
     GIVEN,
@@ -31,20 +34,26 @@ from radhar_cli.config.annotations import (
     of_kind,
     section,
 )
-from radhar_cli.config.classes import Classes, FilesConfig, class_activities
+from radhar_cli.config.classes import (
+    Classes,
+    FilesConfig,
+    class_activities,
+    movement_class,
+)
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES, OF_FRAMES, OF_POINTS, Maps
 from radhar_cli.config.motion import MotionConfig, TimingConfig
 from radhar_cli.config.number import Decibel, Positive, nominal, uniform, value_error, within
 from radhar_cli.config.output import OutputConfig, SplitConfig
-from radhar_cli.config.people import BodyConfig, PersonConfig, SubjectConfig
+from radhar_cli.config.people import BodyConfig, OneOf, PersonConfig, SubjectConfig
 from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
 from radhar_cli.config.radar import BoardRadar, FmcwRadar, Radar
 from radhar_cli.config.receiver import BOARD_NOISE_FIGURE_DB, ReceiverConfig
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.section import By, PerActivity, S, Section, defaults_of, for_activity
+from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.errors import CaptureError
 
 Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
@@ -66,8 +75,9 @@ class Request(Section):
     """Classes of your own: `{name: {sequence: [...]}}` of movements, `{name: [walk/*.bvh]}` of
     files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
-    """Classes of the data set: all is the twelve and those of `classes`; or a list of slugs or S1
-    to S12, [walking, S12]. A place in it, from 0, is a label of the data set."""
+    """Classes of the data set: all is the twelve and those of `classes`; or a list of slugs, S1 to
+    S12 and movements, [walking, S12, squatting]. A place in it, from 0, is a label of the data
+    set."""
     duration_s: Annotated[
         Positive | None,
         within(1e-9, 1e7, "s"),
@@ -115,6 +125,7 @@ class Request(Section):
     engine: EngineConfig = defaults_of(EngineConfig)
     output: OutputConfig = defaults_of(OutputConfig)
     _places: tuple[dict[str, str], dict[str, str]] = ({}, {})  # {key: file:line}, {key: option}
+    _other_words: dict[str, str] = {}  # {word of the file: our name of the same meaning}
 
     recordings: RecordingsConfig | None = None
     """How `radhar generate --recordings` cuts recordings into samples: see
@@ -130,9 +141,11 @@ class Request(Section):
             chosen = [activity_named(str(name), classes) for name in value]
         except ValueError as error:
             raise value_error(str(error)) from None
-        if not chosen or len({a.slug for a in chosen}) != len(chosen):
-            raise value_error("should name at least one activity, each once")
-        return tuple(a.slug for a in chosen)
+        _require_each_once([str(name) for name in value], [a.slug for a in chosen])
+        return tuple(
+            str(name) if is_other_word(str(name), a.slug) else a.slug
+            for name, a in zip(value, chosen, strict=True)
+        )  # other words stay until `filled` has noted them
 
     @property
     def stored(self) -> tuple[str, ...]:
@@ -156,6 +169,7 @@ class Request(Section):
 
         So do activities that a number by activity does not name.
         """
+        self._name_classes()
         changed = _missing_defaults(self)
         for key, default in of_kind(Request, ByModel):
             name, _, rest = key.rpartition(".")
@@ -185,6 +199,46 @@ class Request(Section):
             object.__setattr__(self, "processing", _with_defaults(self.processing, window))
         return self
 
+    def _name_classes(self) -> None:
+        """Call what is done by our names, and enter movements that are classes in `classes`."""
+        words = dict(self._other_words)
+        for own_class in self.classes.values():
+            if isinstance(own_class, SequenceConfig):
+                words |= own_class.take_other_words()
+        chosen = self.chosen_activities
+        pairs = [] if self.activities == "all" else [*zip(self.activities, chosen, strict=True)]
+        for number, person in enumerate(self.people, 1):
+            with suppress(ValueError):  # of names that are unknown, which checks report
+                pairs += zip(person.names, self.activities_of(number), strict=True)
+        words |= {word: a.slug for word, a in pairs if is_other_word(word, a.slug)}
+        if self.activities != "all":
+            object.__setattr__(self, "activities", tuple(a.slug for a in chosen))
+            for activity in chosen:
+                object.__setattr__(self, "classes", self.with_class_of(activity).classes)
+        self._other_words = words
+
+    def with_class_of(self, activity: Activity) -> Self:
+        """Config whose `classes` have that of an activity which is a movement.
+
+        Other activities, and `motion.model` other than human, leave it as it is.
+        """
+        slug = activity.slug
+        is_known = slug in self.classes or slug in TWELVE or activity.motion is not None
+        if is_known or slug not in MOVEMENTS or self.motion.model != "human":
+            return self
+        return self.model_copy(update={"classes": {**self.classes, slug: movement_class(slug)}})
+
+    @property
+    def other_words(self) -> Mapping[str, str]:
+        """Words that somebody used for names of ours, {word: name}; scenes have none."""
+        return self._other_words
+
+    def without_other_words(self) -> Self:
+        """Copy that has forgotten them, and equals one that is read from what it writes."""
+        copy = self.model_copy()
+        copy._other_words = {}
+        return copy
+
     def of_person(self, number: int) -> Self:
         """Config of one of `people`, 1 the first: with their numbers at the top level."""
         person = self.people[number - 1]
@@ -203,7 +257,7 @@ class Request(Section):
         Raises:
             ValueError: there is no such activity.
         """
-        by_slug = {one.slug: one for one in self.every_class}
+        by_slug = self.listed_classes
         return tuple(activity_named(name, by_slug) for name in self.people[number - 1].names)
 
     def _filled_person(self, number: int) -> PersonConfig:
@@ -211,7 +265,14 @@ class Request(Section):
         motion = filled.motion
         if "cross_range_m" not in person.motion.model_fields_set:
             motion = motion.model_copy(update={"cross_range_m": uniform(-1.5, 1.5)})
-        return person.model_copy(update={"motion": motion, "timing": filled.timing})
+        changed = {"motion": motion, "timing": filled.timing, "activity": self._doing_of(number)}
+        return person.model_copy(update=changed)
+
+    def _doing_of(self, number: int) -> str | OneOf:
+        """What one of `people` does, by our names where other words were used."""
+        person = self.people[number - 1]
+        names = [self._other_words.get(name, name) for name in person.names]
+        return names[0] if isinstance(person.activity, str) else OneOf(choice=tuple(names))
 
     def samples_of(self, activity: Activity) -> int:
         """How many samples of an activity there are."""
@@ -223,10 +284,19 @@ class Request(Section):
         """Every class that anybody may show.
 
         First the chosen ones, whose place here is their label, then the others of the twelve and of
-        `classes`, which only `people` do.
+        `classes`, and movements, which only `people` do.
         """
+        every = self.listed_classes
+        for number in range(1, len(self.people) + 1):
+            with suppress(ValueError):  # of names that are unknown, which checks report
+                every |= {a.slug: a for a in self.activities_of(number) if a.slug not in every}
+        return (*every.values(),)
+
+    @property
+    def listed_classes(self) -> dict[str, Activity]:
+        """{slug: activity} of the chosen ones, then the others of the twelve and of `classes`."""
         known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
-        return (*({a.slug: a for a in self.chosen_activities} | known).values(),)
+        return {a.slug: a for a in self.chosen_activities} | known
 
     @property
     def chosen_activities(self) -> tuple[Activity, ...]:
@@ -326,6 +396,18 @@ class MeasuredRequest(Section):
 AnyRequest: TypeAlias = Request | MeasuredRequest
 
 
+def _require_each_once(names: Sequence[str], slugs: Sequence[str]) -> None:
+    """Refuse a list of names that is empty or has a class twice, whatever it is called."""
+    if not names:
+        raise value_error("should name at least one activity")
+    first = dict[str, str]()
+    for name, slug in zip(names, slugs, strict=True):
+        if slug in first:
+            both = name if name == first[slug] else f"{first[slug]} and {name}"
+            raise value_error(f"should name each class once: {both} is {slug} twice")
+        first[slug] = name
+
+
 def _with_defaults(section: S, values: Mapping[str, Any], inner: str = "") -> S:
     """A section with defaults of other keys' making, which do not count as given.
 
@@ -342,14 +424,20 @@ def _with_defaults(section: S, values: Mapping[str, Any], inner: str = "") -> S:
 
 
 def _missing_defaults(c: Request) -> dict[str, dict[str, Any]]:
-    """{section: {key: number}} of numbers by activity that have no default: that of the key."""
+    """{section: {key: number}} of numbers by activity that lack a default, or our names."""
     by_model, changed = dict(of_kind(Request, ByModel)), dict[str, dict[str, Any]]()
+    known = c.listed_classes
     groups = [key for key, field in MotionConfig.model_fields.items() if section(field)]
     for name in ("", "motion", *(f"motion.{group}" for group in groups), "timing"):
         holder: BaseModel = at(c, name) if name else c
         for key, field in type(holder).model_fields.items():
             value = getattr(holder, key)
-            if not isinstance(value, PerActivity) or DEFAULT in value.per_activity:
+            if not isinstance(value, PerActivity):
+                continue
+            written, value = value, _by_our_names(value, known)
+            if value is not written:
+                changed.setdefault(name, {})[key] = value
+            if DEFAULT in value.per_activity:
                 continue
             dotted = f"{name}.{key}" if name else key
             usual = field.get_default(call_default_factory=False)
@@ -363,6 +451,24 @@ def _missing_defaults(c: Request) -> dict[str, dict[str, Any]]:
                 numbers = {DEFAULT: next(iter(value.per_activity.values())), **value.per_activity}
             changed.setdefault(name, {})[key] = PerActivity(numbers)
     return changed
+
+
+def _by_our_names(number: PerActivity[Any], known: Mapping[str, Activity]) -> PerActivity[Any]:
+    """A number whose activities have our names where other words were used, each once.
+
+    Args:
+        number: the number by activity.
+        known: {slug: activity} that is known beside movements.
+    """
+    names = dict[str, str]()
+    for word in number.per_activity:
+        try:
+            names[word] = word if word == DEFAULT else activity_named(word, known).slug
+        except ValueError:  # of an unknown name, which checks report
+            names[word] = word
+    if all(word == name for word, name in names.items()) or len({*names.values()}) < len(names):
+        return number
+    return PerActivity({names[word]: one for word, one in number.per_activity.items()})
 
 
 def _fill_for_board(c: Request, radar: BoardRadar, changed: dict[str, dict[str, Any]]) -> None:

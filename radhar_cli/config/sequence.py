@@ -12,7 +12,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.activities.links import links_between
-from radhar_cli.activities.vocabulary import advice_on
+from radhar_cli.activities.vocabulary import advice_on, is_other_word, meaning_of
 from radhar_cli.config.number import NOT_NEGATIVE, SECONDS, Number, Share, support, value_error
 from radhar_cli.config.section import Flag, N, Section
 
@@ -115,6 +115,30 @@ def written_movements(part: AnyPart) -> tuple[str, ...]:
     if isinstance(part, str):
         return (part,)
     return tuple(name for inner in inner_parts(part) for name in written_movements(inner))
+
+
+def rename_movements(part: AnyPart, names: Mapping[str, str]) -> AnyPart:
+    """Return a part whose movements have other names, {name: other name}."""
+    if isinstance(part, str):
+        return names[part]
+    inner = tuple(rename_movements(one, names) for one in inner_parts(part))
+    match part:
+        case ChosenPart():
+            return part.model_copy(update={"choice": inner})
+        case OptionalPart():
+            return part.model_copy(update={"optional": inner[0]})
+        case Shuffled():
+            return part.model_copy(update={"shuffled": inner})
+    return inner
+
+
+def movement_named(word: str) -> str:
+    """Name of the movement that a word of a file means."""
+    name = meaning_of(word, MOVEMENTS)
+    if name is None:
+        hint = advice_on(word, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
+        raise value_error(f"{word!r} is not a movement; {hint}")
+    return name
 
 
 def draw_part(part: AnyPart, first: int, key: str, chance: Chance) -> list[int]:
@@ -239,6 +263,12 @@ class SequenceConfig(Section, Generic[N]):
     """Class that each movement is labelled with, filled in for a scene of a stream."""
 
     NUMBERS: ClassVar = ("durations_s", "pauses_s")
+    _other_words: dict[str, str] = {}  # {word of the file: movement that it means}
+
+    def take_other_words(self) -> dict[str, str]:
+        """Return {word of the file: movement that it means}, and forget it."""
+        words, self._other_words = self._other_words, {}
+        return words
 
     @property
     def written(self) -> tuple[str, ...]:
@@ -284,6 +314,10 @@ class SequenceConfig(Section, Generic[N]):
 
     @model_validator(mode="after")
     def _require_joined_movements(self) -> "SequenceConfig[N]":
+        names = {word: movement_named(word) for word in self.written}
+        self._other_words = {word: n for word, n in names.items() if is_other_word(word, n)}
+        renamed = tuple(rename_movements(part, names) for part in self.sequence)
+        object.__setattr__(self, "sequence", renamed)
         written = self.written
         count = len(written)
         if not self.durations_s:
@@ -292,10 +326,6 @@ class SequenceConfig(Section, Generic[N]):
             object.__setattr__(self, "pauses_s", (0.0,) * count)
         if not len(self.durations_s) == len(self.pauses_s) == count:
             raise value_error("should have as many durations_s, and pauses_s, as movements")
-        for name in written:
-            if name not in MOVEMENTS:
-                hint = advice_on(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
-                raise value_error(f"{name!r} is not a movement; {hint}")
         if all(isinstance(part, OptionalPart) for part in self.sequence):
             raise value_error("should have a part that is not optional")
         states_after(self.sequence, ANY_STATE, self.links)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.activities.vocabulary import FROM_FILES, advice_on
+from radhar_cli.activities.vocabulary import FROM_FILES, advice_on, meaning_of
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.data_set import Config, MeasuredConfig
@@ -45,6 +45,7 @@ def choose_rows(data: Dataset, samples: Sequence[str]) -> list[int]:
     rows = []
     for sample in samples:
         slug, _, index = sample.partition("/")
+        slug = slug if slug in known else meaning_of(slug, known) or slug
         if slug not in known:
             names = [activity.slug for activity, _ in classes]
             known_classes = f"there are {', '.join(sorted(names))}"

@@ -7,7 +7,7 @@ import numpy as np
 
 from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import ways_of
-from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings
+from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings, word_warnings
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar
 from radhar_cli.echo.accuracy import COARSEST_DB
@@ -29,6 +29,7 @@ def config_warnings(config: Config) -> list[str]:
     radar = config.radar
     header_lines = _header_warnings(config, radar) if isinstance(radar, BoardRadar) else ()
     return [
+        *word_warnings(config),
         *unused_keys(config),
         *tone_warnings(config),
         *header_lines,

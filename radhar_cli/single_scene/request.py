@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from typing import Literal
 
-from radhar_cli.activities.activity import Activity, activity_named
+from radhar_cli.activities.activity import MOVEMENTS, Activity, activity_named
 from radhar_cli.config.checks.signal import problems_of_maps
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
@@ -189,6 +189,10 @@ def activity_of(activity: str | Activity | None, config: Config) -> Activity:
         named = activity_named(activity, classes) if isinstance(activity, str) else activity
     except ValueError as error:
         raise ConfigError(str(error)) from None
+    is_movement = named.slug in MOVEMENTS and named.slug not in classes
+    if is_movement and config.motion.model != "human":
+        right = "is a movement of people, which motion.model: human makes"
+        raise ConfigError(f"activity = {named.slug}: {right}")
     return classes.get(named.slug, named)
 
 

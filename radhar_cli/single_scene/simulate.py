@@ -8,6 +8,7 @@ from radhar_cli.activities.activity import Activity
 from radhar_cli.assembly.bodies import Link, make_path_sources
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.room import reflectors_of
+from radhar_cli.config.checks.doubts import word_warnings
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.config.reading import as_config
@@ -151,7 +152,7 @@ def simulate_scene(request: SceneRequest, progress: Progress = NO_PROGRESS) -> S
         ConfigError, SceneError: as `simulate`.
     """
     scene = request.draw_scene()
-    scene_notes = scene_warnings(scene)
+    scene_notes = [*scene_warnings(scene), *word_warnings(request.config)]
     motions = tuple(map(motion_of, scene.people))
     echoing = request.echoing_motions(motions)
     names = request.product_names(scene.config.maps)

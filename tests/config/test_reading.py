@@ -275,7 +275,7 @@ BROKEN = [
     ),
     # Activities and maps.
     Broken("activities: [wlking]", '1: activities = ["wlking"]', "did you mean 'walking'"),
-    Broken("activities: [S8, walking]", '1: activities = ["S8", "walking"]', "each once"),
+    Broken("activities: [S8, walking]", '1: activities = ["S8", "walking"]', "each class once"),
     Broken("activities: []", "1: activities = []", "at least one"),
     Broken("maps: [stft, stft]", '1: maps = ["stft", "stft"]', "each map once"),
     Broken(
@@ -313,8 +313,8 @@ BROKEN = [
         "'jogging' is not an activity; no model moves like this; motion files can",
     ),
     Broken(
-        "seed: 1\nsamples_per_class: {per_activity: {default: 3, sitting: 2}}",
-        "2: samples_per_class.per_activity.sitting = 2",
+        "seed: 1\nsamples_per_class: {per_activity: {default: 3, sittng_down: 2}}",
+        "2: samples_per_class.per_activity.sittng_down = 2",
         "did you mean 'sitting_down'?",
     ),
     Broken(
@@ -330,9 +330,9 @@ BROKEN = [
     ),
     Broken(
         "classes: {home: {sequence: [walking]}}\n"
-        "samples_per_class: {per_activity: {default: 3, Home: 2}}",
+        "samples_per_class: {per_activity: {default: 3, Home: 2, home: 1}}",
         "2: samples_per_class.per_activity.Home = 2",
-        "should be called home",
+        "is home, named here, too",
     ),
     # One mistake, though `home` is then no class that `activities` could name.
     Broken(

@@ -8,6 +8,19 @@ from radhar_cli.config.request import Request
 from radhar_cli.config.section import for_activity
 
 
+def word_warnings(c: Request) -> list[str]:
+    """Say in one line which words of a config are taken for which names of ours."""
+    if not c.other_words:
+        return []
+    pairs = ", ".join(f"{word} is taken for {slug}" for word, slug in c.other_words.items())
+    classes = [pair for pair in c.other_words.items() if pair[1] in c.activities]
+    advice = ""
+    if classes:
+        word, slug = classes[0]
+        advice = f"; a class called {word} would be classes: {{{word}: {{sequence: [{slug}]}}}}"
+    return [pairs + advice]
+
+
 def tone_warnings(c: Request) -> list[str]:
     """Say which interference tones of a config alias, a sentence for each."""
     highest = support(c.radar.prf_hz)[0] / 2

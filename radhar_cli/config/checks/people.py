@@ -2,7 +2,14 @@
 
 from collections.abc import Iterator
 
-from radhar_cli.activities.activity import ACTIVITIES, DEFAULT, activity_named, own_activities
+from radhar_cli.activities.activity import (
+    ACTIVITIES,
+    DEFAULT,
+    MOVEMENTS,
+    TWELVE,
+    activity_named,
+    own_activities,
+)
 from radhar_cli.config.annotations import Limits, People, annotations, at, of_kind
 from radhar_cli.config.classes import class_activities
 from radhar_cli.config.number import MAX_NUMBER, support
@@ -43,6 +50,11 @@ def class_problems(c: Request) -> Iterator[Problem]:
         if model != "human" and isinstance(section, SequenceConfig):
             right = f"should have files with motion.model: {model}; sequences are of people (human)"
             yield Problem(f"classes.{slug}", list(section.written), right)
+    if model == "paper":
+        for activity in c.chosen_activities:
+            if activity.slug in MOVEMENTS and activity.slug not in (*c.classes, *TWELVE):
+                right = "is a movement of people, which motion.model: human makes"
+                yield Problem("activities", activity.slug, right)
     if model != "file":
         return
     for activity in c.chosen_activities:
@@ -54,7 +66,8 @@ def class_problems(c: Request) -> Iterator[Problem]:
 def unknown_activities(c: Request) -> Iterator[Problem]:
     """Names under `per_activity` that are neither an activity nor a user-defined class."""
     classes = class_activities(c.classes)
-    names = {DEFAULT, *(a.slug for a in (*ACTIVITIES, *classes.values(), *own_activities()))}
+    activities = (*ACTIVITIES, *classes.values(), *own_activities())
+    names = {DEFAULT, *MOVEMENTS, *(activity.slug for activity in activities)}
     keys = ["samples_per_class"]
     of_people = [f"people.{n}." for n in range(len(c.people))]
     of_movement = [key for key in annotations(Request) if key.startswith(("motion.", "timing."))]
@@ -65,7 +78,9 @@ def unknown_activities(c: Request) -> Iterator[Problem]:
             if slug in names:
                 continue
             try:
-                advice = f"should be called {activity_named(slug, classes).slug}"
+                meant = activity_named(slug, classes).slug
+                named = meant in value.per_activity
+                advice = f"is {meant}, named here, too" if named else f"should be called {meant}"
             except ValueError as error:
                 advice = str(error)
             yield Problem(f"{key}.per_activity.{slug}", number, advice)

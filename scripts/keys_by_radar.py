@@ -175,6 +175,7 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "image.size_px": (20,),
     "image.colour_map": ("gray",),
     "image.doppler_limits_mps": ([-0.5, 0.5], [-3.0, 3.0]),
+    "image.range_limits_m": ([1.0, 3.0],),
     "image.cfar.guard": ([2, 1],),
     "image.cfar.training": ([2, 2],),
     "wall.center_m": ([1.2, 0.0, 1.25],),

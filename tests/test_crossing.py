@@ -165,7 +165,7 @@ FACTORS: dict[str, dict[str, Document]] = {
             "image": {"kind": "cfar", "cfar": {"guard": [1, 1], "training": [4, 4]}},
         },
         "signed": {"image": {"kind": "signed"}},
-        "limits": {"image": {"doppler_limits_mps": [-2, 3]}},
+        "limits": {"image": {"doppler_limits_mps": [-2, 3], "range_limits_m": [0.5, 3]}},
         "colours": {"image": {"colour_map": "jet", "size_px": [16, 32]}},
     },
     "output": {

@@ -1,6 +1,7 @@
 """Conditions under which a key acts that several sections share."""
 
 from radhar_cli.config.annotations import OfRadar, OnlyMaps, Unless
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import DOPPLER_TIME_KINDS, RTM, Transform
 
 BOARD = OfRadar("board")
@@ -8,6 +9,7 @@ NO_BOARD = OfRadar("fmcw", "sfcw", "cw", "impulse")
 NO_IMPULSE = OfRadar("fmcw", "sfcw", "cw", "board")
 EVEN = Unless("radar.frames_apart", "the pauses between a board's frames (radar.cfg)")
 RANGE_TIME = OnlyMaps((str(RTM),))
+OVER_RANGE = OnlyMaps((str(RTM), *(kind.name for kind in FRAME_MAP_KINDS.values())))
 SPECTRA = OnlyMaps(tuple(map(str, DOPPLER_TIME_KINDS)))
 STFTS, FSSTS = (
     OnlyMaps(tuple(str(kind) for kind in DOPPLER_TIME_KINDS if kind.transform is transform))

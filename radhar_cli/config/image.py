@@ -4,7 +4,7 @@ from typing import Annotated, Generic, Literal
 
 from pydantic import BeforeValidator, Field, field_validator
 
-from radhar_cli.config.acting import SPECTRA
+from radhar_cli.config.acting import OVER_RANGE, SPECTRA
 from radhar_cli.config.annotations import ActsIf
 from radhar_cli.config.number import DECIBEL, POSITIVE, Real, require, uniform, value_error, within
 from radhar_cli.config.section import N, Section, default_draw, defaults_of
@@ -43,9 +43,9 @@ class CfarConfig(Section, Generic[N]):
 
 
 class ImageConfig(Section):
-    """Size (height, width; one number means square), what pixels show, colour map, Doppler limits.
+    """Size (height, width; one number means square), what pixels show, colour map, limits.
 
-    Doppler limits are speeds, positive approaching.
+    Limits of the Doppler are speeds, positive approaching.
     """
 
     size_px: Annotated[
@@ -72,6 +72,13 @@ class ImageConfig(Section):
         SPECTRA,
     ] = None
     """Speeds [low, high] that Doppler maps show, approaching positive; null is all."""
+    range_limits_m: Annotated[
+        tuple[Real, Real] | None,
+        require(lambda value: 0 <= value[0] < value[1], "should be [near, far], 0 <= near < far"),
+        OVER_RANGE,
+    ] = None
+    """Ranges [near, far] at the edges of images of rtm and of a board's frame maps; null is where
+    people can be (model: human), or all."""
 
     @field_validator("colour_map")
     @classmethod

@@ -49,6 +49,7 @@ from radhar_cli.config.output import OutputConfig, SplitConfig
 from radhar_cli.config.people import BodyConfig, OneOf, PersonConfig, SubjectConfig
 from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
 from radhar_cli.config.radar import BoardRadar, FmcwRadar, Radar
+from radhar_cli.config.range_zone import range_zone
 from radhar_cli.config.receiver import BOARD_NOISE_FIGURE_DB, ReceiverConfig
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import RoomConfig, WallConfig
@@ -197,6 +198,9 @@ class Request(Section):
         if self.motion.model == "paper" and self.processing.window_s is None:
             window = {"window_s": PAPER_WINDOW * nominal(self.duration_s)}
             object.__setattr__(self, "processing", _with_defaults(self.processing, window))
+        if self.motion.model == "human" and self.image.range_limits_m is None:
+            limits = {"range_limits_m": range_zone(self)}
+            object.__setattr__(self, "image", _with_defaults(self.image, limits))
         return self
 
     def _name_classes(self) -> None:

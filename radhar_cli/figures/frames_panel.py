@@ -82,7 +82,7 @@ def _draw_map(axes: Axes, maps: FrameMaps, frame: int, content: BoardFrames) -> 
     extent = (*maps.columns.edges, *maps.rows.edges)
     lowest = -content.image.dynamic_range_db
     drawn = axes.imshow(level, extent=extent, vmin=lowest, vmax=0, **look)
-    axes.set_ylim(0, min(content.farthest or np.inf, maps.rows.edges[1]))
+    axes.set_ylim(maps.limits or (0, min(content.farthest or np.inf, maps.rows.edges[1])))
     if maps.columns.name == "azimuth":  # left of the radar is left
         axes.invert_xaxis()
     axes.set_xlabel(f"{maps.columns.name} ({maps.columns.unit})", fontsize=7)

@@ -69,7 +69,7 @@ def draw_map(axes: Axes, name: str, page_content: MapsPage) -> AxesImage:
     rows, columns = power_map.rows, power_map.columns
     is_range, is_doppler = rows.name == "range", rows.name == "frequency"
     unit = 1e3 if is_doppler and rows.values.max() >= 2000 else 1.0
-    left, right, low, high = power_map.extent
+    (left, right), (low, high) = columns.edges, rows.edges
     look: dict[str, Any] = {"cmap": image.colour_map, "origin": "lower", "aspect": "auto"}
     if power_map.real is None:
         cells = decibels(power_map.power, image.dynamic_range_db)
@@ -87,7 +87,7 @@ def draw_map(axes: Axes, name: str, page_content: MapsPage) -> AxesImage:
     axes.tick_params(labelsize=7)
     if is_range:
         axes.set_ylabel("range (m)", fontsize=8)
-        axes.set_ylim(0, min(high, page_content.farthest))
+        axes.set_ylim(power_map.limits or (0, min(high, page_content.farthest)))
     elif not is_doppler:
         axes.set_ylabel(f"{rows.name} ({rows.unit})", fontsize=8)
     else:

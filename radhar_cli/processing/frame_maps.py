@@ -26,6 +26,22 @@ class FrameMaps:
     rows: Axis
     columns: Axis
     times: Float  # middles of the frames [frame], s
+    # outer edges of the rows of their images, in their unit; None for those of the rows
+    limits: tuple[float, float] | None = None
+
+    def within(self, limits: tuple[float, float] | None) -> "FrameMaps":
+        """Maps of the rows within limits, which are the edges of images; None for all rows."""
+        if limits is None:
+            return self
+        rows = self.rows.cells_within(limits)
+        axis = self.rows.only(rows)
+        edges = axis.within_edges(limits)
+        return FrameMaps(self.power[:, rows], axis, self.columns, self.times, edges)
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Outer edges of an image of a frame (columns from, columns to, rows from, rows to)."""
+        return (*self.columns.edges, *(self.limits or self.rows.edges))
 
 
 def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:

@@ -37,12 +37,13 @@ def maps_sheet(maps: FrameMaps, size: Size, dynamic_range_db: float) -> MapImage
     chosen, places = _tiles(len(maps.power), size)
     cells = np.zeros(size, np.float32)
     scaled = np.ldexp(maps.power[chosen].astype(float), -binary_exponent(maps.power))
+    span = None if maps.limits is None else maps.rows.places_of(maps.limits)
     for power, (rows, columns) in zip(scaled, places, strict=True):
         shape = rows.stop - rows.start, columns.stop - columns.start
         if min(shape) > 0:
-            cells[rows, columns] = reduced([power.T], power.shape[1], shape, None, False).cells
-    extent = (*maps.columns.edges, *maps.rows.edges)
-    return MapImage(levels(cells, dynamic_range_db), entropy_bits(maps.power), extent)
+            small = reduced([power.T], power.shape[1], shape, entropy=False, rows=span)
+            cells[rows, columns] = small.cells
+    return MapImage(levels(cells, dynamic_range_db), entropy_bits(maps.power), maps.extent)
 
 
 def cloud_sheet(cloud: Cloud, size: Size) -> MapImage:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from math import ceil, floor, log, log10, nan
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from radhar_cli.processing.cfar import FLOOR_DB
 from radhar_cli.processing.entropy import EntropySum, largest_power
 
 BAND = 64  # rows or columns per matrix product, besides the overlap
+Span: TypeAlias = tuple[float, float]  # where it begins and ends
 
 
 class Reduced(NamedTuple):
@@ -34,10 +35,12 @@ def reduced(
     size: tuple[int, int],
     of: Callable[[Float], Float] | None = None,
     entropy: bool = True,
+    rows: Span | None = None,
 ) -> Reduced:
     """Resize a power map that comes in blocks of columns, and sum up its entropy.
 
     Resizing is Pillow's BILINEAR with antialiasing, a weighted sum over rows and then columns.
+    Row r of `height` has its centre (r + 1/2)/height of the way through `rows`.
 
     Args:
         blocks: Blocks [columns, rows] of a scale near 1, the lowest row first, in the order of
@@ -46,6 +49,8 @@ def reduced(
         size: (height, width) of the result.
         of: Function of the power that is resized instead of it, such as its decibels.
         entropy: Whether the entropy is computed.
+        rows: Places in the rows where the result begins and ends, the outer edge of the first row
+            being 0; None for all of them.
 
     Raises:
         RadharError: The map has an infinity or a NaN.
@@ -57,9 +62,11 @@ def reduced(
             entropy_sum.add(block)
         block = block if of is None else of(block)
         low = np.zeros((len(block), height), block.dtype)
-        for rows, pixels, weights in _bands(0, block.shape[1], block.shape[1], height, low.dtype):
-            low[:, pixels] += block[:, rows] @ weights
-        for band, pixels, weights in _bands(first, len(block), columns, width, low.dtype):
+        count, span = block.shape[1], rows or (0.0, float(block.shape[1]))
+        for band, pixels, weights in _bands(0, count, count, height, low.dtype, span):
+            low[:, pixels] += block[:, band] @ weights
+        every = (0.0, float(columns))
+        for band, pixels, weights in _bands(first, len(block), columns, width, low.dtype, every):
             cells[:, pixels] += low[band].T @ weights
         first += len(block)
     total = entropy_sum.total if entropy else float(cells.sum())
@@ -73,10 +80,11 @@ def reduced_map(
     size: tuple[int, int],
     of: Callable[[Float], Float] | None = None,
     entropy: bool = True,
+    rows: Span | None = None,
 ) -> Reduced:
     """Resize a whole map [frequency or range, time] of any scale, as `reduced` does."""
     scaled = np.ldexp(power.T, -binary_exponent(power))
-    return reduced([scaled], power.shape[1], size, of, entropy)
+    return reduced([scaled], power.shape[1], size, of, entropy, rows)
 
 
 def binary_exponent(power: Float) -> int:
@@ -109,16 +117,19 @@ def levels(power: Float, dynamic_range_db: float) -> Levels:
     return grey.astype(np.uint8)
 
 
-def signed_levels(x: Float, size: tuple[int, int], clipped: float) -> Levels:
+def signed_levels(
+    x: Float, size: tuple[int, int], clipped: float, rows: Span | None = None
+) -> Levels:
     """Grey levels round(127.5 (1 + clip(x/q, -1, 1))) of resized real samples.
 
     Args:
         x: Samples [range, time]; zeros have the level 128.
         size: (height, width) of the result.
         clipped: Share of the samples that is clipped: q is the quantile 1 - clipped of |x|.
+        rows: Places in the rows where the result begins and ends; None for all of them.
     """
     scaled = np.ldexp(x.T, -binary_exponent(np.abs(x)))
-    cells = reduced([scaled], x.shape[1], size, entropy=False).cells.astype(float)
+    cells = reduced([scaled], x.shape[1], size, entropy=False, rows=rows).cells.astype(float)
     q = max(float(np.quantile(np.abs(cells), 1 - clipped)), np.finfo(float).tiny)
     return np.rint(127.5 * (1 + np.clip(cells / q, -1, 1))).astype(np.uint8)
 
@@ -138,7 +149,7 @@ def decibels(power: Float, dynamic_range_db: float) -> Float:
 
 
 def _bands(
-    first: int, count: int, inputs: int, outputs: int, dtype: np.dtype[Any]
+    first: int, count: int, inputs: int, outputs: int, dtype: np.dtype[Any], span: Span
 ) -> Iterator[tuple[slice, slice, Float]]:
     """Yield the weights that resize `count` inputs from `first` on: y[pixels] += x[band] @ weights.
 
@@ -147,25 +158,29 @@ def _bands(
     step = BAND + 4 * ceil(inputs / outputs)
     for start in range(0, count, step):
         stop = min(start + step, count)
-        pixels, weights = _triangles(first + start, first + stop, inputs, outputs, dtype)
-        yield slice(start, stop), pixels, weights
+        pixels, weights = _triangles(first + start, first + stop, inputs, outputs, dtype, span)
+        if pixels.stop > pixels.start:
+            yield slice(start, stop), pixels, weights
 
 
 @lru_cache(maxsize=256)
 def _triangles(
-    start: int, stop: int, inputs: int, outputs: int, dtype: np.dtype[Any]
+    start: int, stop: int, inputs: int, outputs: int, dtype: np.dtype[Any], span: Span
 ) -> tuple[slice, Float]:
     """Outputs that inputs start .. stop - 1 reach, and weights [stop - start, those outputs].
 
-    Output j is the mean of the inputs under a triangle around (j + 1/2) s, s = inputs/outputs,
-    whose half width is s or 1, the larger.
+    Output j is the mean of the inputs under a triangle around a + (j + 1/2) s, s = (b - a)/outputs,
+    whose half width is s or 1, the larger, with the span [a, b] of the outputs.
     """
-    scale = inputs / outputs
+    begin, scale = span[0], (span[1] - span[0]) / outputs
     reach = max(scale, 1.0)
-    low = max(floor((start - reach) / scale - 0.5), 0)
-    high = min(ceil((stop + reach) / scale + 0.5), outputs)
-    centre = (np.arange(low, high) + 0.5) * scale
-    first, last = max(floor(centre[0] - reach), 0), min(ceil(centre[-1] + reach), inputs)
+    low = max(floor((start - begin - reach) / scale - 0.5), 0)
+    high = min(ceil((stop - begin + reach) / scale + 0.5), outputs)
+    if high <= low:
+        return slice(0, 0), np.empty((stop - start, 0), dtype)
+    centre = begin + (np.arange(low, high) + 0.5) * scale
+    first = min(max(floor(centre[0] - reach), 0), start)
+    last = max(min(ceil(centre[-1] + reach), inputs), stop)
     weights = np.maximum(0, 1 - np.abs(np.arange(first, last)[:, None] + 0.5 - centre) / reach)
     weights /= weights.sum(axis=0)
     return slice(low, high), weights[start - first : stop - first].astype(dtype)

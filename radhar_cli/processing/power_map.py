@@ -1,11 +1,15 @@
 """A power map with its axes, and its image."""
 
 import hashlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import nan
+
+import numpy as np
 
 from radhar_cli.numerics.arrays import Float, Half, Levels
 from radhar_cli.processing.entropy import entropy_bits
+
+ROUNDING = 1e-6  # share of a cell by which a limit may miss its edge
 
 
 @dataclass(frozen=True)
@@ -24,6 +28,31 @@ class Axis:
         half = 0.5 * (float(self.values[1] - self.values[0]) if several else self.cell)
         return float(self.values[0] - half), float(self.values[-1] + half)
 
+    def cells_within(self, limits: tuple[float, float]) -> slice:
+        """Numbers of the cells that lie within limits, in whole or in part; one at least."""
+        low, high = self.edges
+        places = (np.array(limits) - low) * (self.values.size / (high - low))
+        first = int(np.clip(np.floor(places[0] + ROUNDING), 0, self.values.size - 1))
+        stop = int(np.clip(np.ceil(places[1] - ROUNDING), first + 1, self.values.size))
+        return slice(first, stop)
+
+    def only(self, cells: slice) -> "Axis":
+        """Axis of some of the cells, which keep their width."""
+        low, high = self.edges
+        return replace(self, values=self.values[cells], cell=(high - low) / self.values.size)
+
+    def within_edges(self, limits: tuple[float, float]) -> tuple[float, float]:
+        """Limits, cut where the axis ends; the edges of the axis where nothing is left of them."""
+        low, high = max(limits[0], self.edges[0]), min(limits[1], self.edges[1])
+        return (low, high) if low < high else self.edges
+
+    def places_of(self, limits: tuple[float, float]) -> tuple[float, float]:
+        """Places of limits on the axis, in cells from the outer edge of the first."""
+        low, high = self.edges
+        places = (np.array(limits) - low) * (self.values.size / (high - low))
+        first, last = np.clip(places, 0, self.values.size).tolist()
+        return first, last
+
 
 @dataclass(frozen=True)
 class PowerMap:
@@ -37,6 +66,22 @@ class PowerMap:
     columns: Axis
     # the samples with their sign [rows, columns], where those are shown
     real: Float | None = field(default=None, repr=False)
+    # outer edges of the rows of its image, in their unit; None for those of the first and last row
+    limits: tuple[float, float] | None = None
+
+    def within(self, limits: tuple[float, float] | None) -> "PowerMap":
+        """Map of the rows within limits, which are the edges of its image; None for all rows."""
+        if limits is None:
+            return self
+        rows = self.rows.cells_within(limits)
+        real = None if self.real is None else self.real[rows]
+        axis = self.rows.only(rows)
+        return PowerMap(self.power[rows], axis, self.columns, real, axis.within_edges(limits))
+
+    @property
+    def image_rows(self) -> tuple[float, float] | None:
+        """Places in the rows where its image begins and ends; None for all of them."""
+        return None if self.limits is None else self.rows.places_of(self.limits)
 
     @property
     def shown(self) -> Float:
@@ -50,8 +95,8 @@ class PowerMap:
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """Outer edges (columns from, columns to, rows from, rows to)."""
-        return (*self.columns.edges, *self.rows.edges)
+        """Outer edges of its image (columns from, columns to, rows from, rows to)."""
+        return (*self.columns.edges, *(self.limits or self.rows.edges))
 
 
 @dataclass(frozen=True)

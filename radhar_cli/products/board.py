@@ -25,7 +25,7 @@ from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.numerics.randomness import NOISE, stream
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
-from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, FrameMapKind, FrameMaps
 from radhar_cli.processing.frame_sheets import cloud_sheet, maps_sheet
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate
@@ -151,7 +151,12 @@ def _frame_rows(config: Config) -> Iterator[Product]:
     """Rows of the maps and points of frames, and of their sheets."""
     of_cube, image = ("cube", "board"), config.image
     for kind in FRAME_MAP_KINDS.values():
-        make = partial(kind.make, remove_mean=config.processing.clutter == "mean")
+        make = partial(
+            make_frame_maps,
+            kind=kind,
+            remove_mean=config.processing.clutter == "mean",
+            limits_m=image.range_limits_m,
+        )
         yield Product(kind.name, of_cube, make, f"{kind.title} maps of the frames", is_array=True)
         sheet = partial(maps_sheet, size=image.size_px, dynamic_range_db=image.dynamic_range_db)
         yield Product(image_name(kind.name), (kind.name,), sheet, "sheet of frames")
@@ -306,6 +311,26 @@ def draw_channel_errors(scene: Scene, channels: int) -> Complex | None:
     gain_db, phase_deg = gain * receiver.channel_gain_db, phase * receiver.channel_phase_deg
     factors: Complex = 10 ** (gain_db / 20) * np.exp(1j * np.radians(phase_deg))
     return factors
+
+
+def make_frame_maps(
+    cube: Complex,
+    board: Board,
+    kind: FrameMapKind,
+    remove_mean: bool,
+    limits_m: tuple[float, float] | None = None,
+) -> FrameMaps:
+    """Make the maps of a cube's frames, of the ranges that images show.
+
+    Args:
+        cube: raw samples [frame, loop, virtual, sample].
+        board: board of the cube.
+        kind: which maps.
+        remove_mean: whether the mean over the loops of a frame is taken out.
+        limits_m: nearest and farthest range, m; None for all. Rows of other quantities are kept.
+    """
+    maps = kind.make(cube, board, remove_mean=remove_mean)
+    return maps.within(limits_m if maps.rows.name == "range" else None)
 
 
 def find_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:

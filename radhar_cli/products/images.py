@@ -72,9 +72,9 @@ def draw_map(power_map: PowerMap, scale: Scale, form: ImageForm) -> MapImage:
         form: size of the image, and whether it has decibels.
     """
     if power_map.real is not None:
-        grey = signed_levels(power_map.real, form.size_px, form.clipped)
+        grey = signed_levels(power_map.real, form.size_px, form.clipped, power_map.image_rows)
         return MapImage(grey, power_map.entropy, power_map.extent)
-    resize = partial(reduced_map, power_map.power, form.size_px)
+    resize = partial(reduced_map, power_map.power, form.size_px, rows=power_map.image_rows)
     image_exponent = binary_exponent(power_map.power)
     return _draw_resized(resize, power_map.extent, image_exponent, scale, form.has_decibels)
 

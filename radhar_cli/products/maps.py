@@ -52,6 +52,7 @@ def map_products(config: AnyConfig) -> Iterator[Product]:
         make_range_time_map,
         gain_power=config.processing.range_gain_power,
         has_sign=config.image.kind == "signed",
+        limits_m=config.image.range_limits_m,
     )
     does = "power of the range profiles"
     yield Product(str(RTM), ("range_profiles",), rtm, does, is_array=True)
@@ -85,7 +86,10 @@ def make_fsst_frames(scene: Scene, waveform: Waveform) -> Frames:
 
 
 def make_range_time_map(
-    profiles: Signal, gain_power: float = 0.0, has_sign: bool = False
+    profiles: Signal,
+    gain_power: float = 0.0,
+    has_sign: bool = False,
+    limits_m: tuple[float, float] | None = None,
 ) -> PowerMap:
     """Make the range-time map: the power of range profiles, summed over the channels.
 
@@ -93,6 +97,7 @@ def make_range_time_map(
         profiles: range profiles [channel, bin, pulse].
         gain_power: exponent p of the gain (R/largest R)^p of the bins.
         has_sign: whether the map also has the real samples of the first channel.
+        limits_m: nearest and farthest range of its image, m; None for all.
     """
     x, ranges = profiles.x, profiles.ranges
     assert ranges is not None
@@ -101,7 +106,8 @@ def make_range_time_map(
     power = (x.real**2 + x.imag**2).sum(axis=0)
     real = x[0].real if has_sign else None
     rows = Axis("range", "m", ranges, profiles.range_step)
-    return PowerMap(power, rows, Axis("time", "s", profiles.t, 1 / profiles.prf), real)
+    columns = Axis("time", "s", profiles.t, 1 / profiles.prf)
+    return PowerMap(power, rows, columns, real).within(limits_m)
 
 
 def doppler_transform(config: AnyConfig, kind: MapKind) -> DopplerTransform | None:

@@ -260,6 +260,7 @@ CHANGES: dict[str, object] = {
     "image.kind": "cfar",
     "image.clipped": 0.05,
     "image.doppler_limits_mps": (-3.0, 3.0),
+    "image.range_limits_m": (0.5, 5.0),
     "image.cfar.guard": (9, 2),
     "image.cfar.training": (40, 10),
     "image.cfar.pfa": 0.1,

@@ -57,7 +57,8 @@ def test_a_range_time_map_of_one_bin_spans_it(tmp_path, power):
     gain = f"processing.range_gain_power={power}"
     with built(tmp_path, SMALL, radar, "maps=[rtm]", gain) as file:
         *_, bottom, top = file["extent/rtm"][0]
-        assert top - bottom == pytest.approx(299792458 * 2e4 / (4 * 1e9 / 1e-4), rel=1e-9)
+        assert bottom == 0  # of the cell from -0.07 to 0.07 m
+        assert top == pytest.approx(299792458 * 2e4 / (8 * 1e9 / 1e-4), rel=1e-9)
         assert len(np.unique(file["maps/rtm"][0], axis=0)) == 1
 
 

@@ -131,3 +131,34 @@ def test_decibels_below_the_largest():
     right = [[-10 * np.log10(2), 0], [-50, -50]]
     assert decibels(power, 50.0) == pytest.approx(np.array(right), abs=1e-12)
     assert np.array_equal(decibels(np.zeros((2, 3)), 40.0), np.full((2, 3), -40.0))
+
+
+@pytest.mark.parametrize("span", [(0.0, 40.0), (3.0, 17.0), (0.5, 12.5), (10.25, 11.75)], ids=str)
+@pytest.mark.parametrize("height", [7, 40, 256])
+def test_rows_of_a_span_are_those_of_pillow(span, height):
+    """Row r has its centre (r + 1/2)/height of the way through the span, wherever that begins."""
+    power = random_map((40, 9))
+    picture = Image.fromarray(power.astype(np.float32))
+    box = (0, span[0], 9, span[1])
+    expected = np.asarray(picture.resize((9, height), Image.Resampling.BILINEAR, box=box))
+    found = image.reduced_map(power, (height, 9), rows=span)
+    scale = 2.0 ** image.binary_exponent(power)
+    assert found.cells[::-1] * scale == pytest.approx(expected, rel=1e-4, abs=1e-6)
+
+
+def test_a_ramp_over_a_span_reads_the_centres_of_rows():
+    """Interpolation is linear: a map whose value is its row has in every row that row's place."""
+    ramp = np.arange(64.0)[:, None] + np.zeros(3)
+    span, height = (12.3, 40.7), 100
+    found = image.reduced_map(ramp, (height, 3), rows=span).cells[::-1, 0]
+    centres = span[0] + (np.arange(height) + 0.5) * (span[1] - span[0]) / height
+    scale = 2.0 ** image.binary_exponent(ramp)
+    assert found * scale == pytest.approx(centres - 0.5, abs=1e-4)
+
+
+def test_a_span_of_a_map_that_comes_in_many_bands_is_the_same():
+    power = random_map((1000, 5))
+    scaled = [np.ldexp(power.T, -image.binary_exponent(power))]
+    part = reduced(scaled, 5, (50, 5), rows=(300.0, 500.0)).cells
+    near = reduced([scaled[0][:, 290:510]], 5, (50, 5), rows=(10.0, 210.0)).cells
+    assert part == pytest.approx(near, rel=1e-6)

@@ -161,6 +161,7 @@ def _image_problems(c: AnyRequest) -> Iterator[Problem]:
             f"{list(cfar.guard)} on each side it takes {reach[0]} x {reach[1]}"
         )
         yield Problem("image.cfar.training", list(cfar.training), right)
+    yield from _range_limit_problems(c)
     limits = c.image.doppler_limits_mps
     if limits is None or not set(c.maps) - {"rtm", *FRAME_MAPS}:
         return
@@ -178,3 +179,18 @@ def _image_problems(c: AnyRequest) -> Iterator[Problem]:
     if limits[1] - limits[0] < 2 * step:
         right = f"should hold at least 2 Doppler bins (one has {step:.3g} m/s)"
         yield Problem("image.doppler_limits_mps", list(limits), right)
+
+
+def _range_limit_problems(c: AnyRequest) -> Iterator[Problem]:
+    """Limits of the range of which a radar shows less than two bins."""
+    limits = c.image.range_limits_m
+    if limits is None or "rtm" not in c.maps or "range_limits_m" not in c.image.model_fields_set:
+        return
+    shortest, longest = waveform_at(c, "bandwidth_hz"), waveform_at(c, "adc_rate_hz", "chirp_s")
+    farthest, step = shortest.half_band_range, longest.range_step
+    if limits[1] - limits[0] < 2 * step or limits[0] > max(farthest - step, 0.0):
+        right = (
+            f"should hold at least 2 range bins (one has {step:.3g} m) within the "
+            f"{farthest:.4g} m that the radar sees"
+        )
+        yield Problem("image.range_limits_m", list(limits), right)

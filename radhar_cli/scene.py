@@ -254,18 +254,32 @@ class Scene:
         """Name of the sample in messages, such as walking/3."""
         return f"{self.activity.slug}/{self.index}"
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nobody is in the scene (class `nobody`)."""
+        return self.activity.is_nobody
+
     @cached_property
     def people(self) -> tuple[Person, ...]:
-        """Everybody in the scene, the sample's main person first."""
+        """Everybody in the scene, the sample's main person first.
+
+        In an empty scene it is who would stand there alone, who makes no echo: an SNR refers to
+        theirs, and gates follow their place.
+        """
         scene = replace(self)  # a twin: with the scene itself, motions would be freed late
         others = (
             Person(
                 scene, self.config.activities_of(number)[0], self.config.of_person(number), number
             )
             for number, one in enumerate(self.config.people, 1)
-            if one.share > 0
+            if one.share > 0 and not self.is_empty
         )
         return (Person(scene, self.activity, self.config), *others)
+
+    @property
+    def present(self) -> tuple[Person, ...]:
+        """Everybody who makes an echo: `people`, and nobody in an empty scene."""
+        return () if self.is_empty else self.people
 
 
 def draw_scene(

@@ -107,6 +107,10 @@ FACTORS: dict[str, dict[str, Document]] = {
             "activities": ["grab", "grabbing"],
             "motion": STANDING,
         },
+        "nobody": {
+            "activities": ["nobody", "walking"],
+            "motion": STANDING,
+        },
         "files": {
             "classes": {"seat": ["walk.bvh"]},
             "activities": ["seat", "sitting_down"],

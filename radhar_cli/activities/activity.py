@@ -42,6 +42,9 @@ EXERCISES = (
         )
     ),
 )
+# The class of recordings in which nobody is. Its radar sees the room alone; who would stand there
+# says how strong the noise of an `snr_db` is, and which ranges a gate follows.
+NOBODY = "nobody"
 # What sequences are made of (`classes:`); each is a class by itself, too.
 MOVEMENTS = {
     "stationary": MovementInfo("standing", "standing", None),
@@ -62,6 +65,7 @@ MOVEMENTS = {
     "getting_up": MovementInfo("lying", "standing", 3.0),
     "turning_around": MovementInfo("standing", "standing", 1.8),
     **{name: MovementInfo("standing", "standing", None) for name in EXERCISES},
+    NOBODY: MovementInfo("nowhere", "nowhere", None, "stationary"),
 }
 
 
@@ -93,6 +97,11 @@ class Activity:
         """
         is_movement = self.number > len(ACTIVITIES) and self.slug in MOVEMENTS
         return crc32(self.slug.encode()) if is_movement else self.number - 1
+
+    @property
+    def is_nobody(self) -> bool:
+        """Whether nobody is in scenes of the class."""
+        return NOBODY in self.movements
 
     @property
     def walks(self) -> bool:

@@ -28,6 +28,7 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("jump", "jumps"), ("jumping",)),
     **dict.fromkeys(("jumping_jack", "star_jumps"), ("jumping_jacks",)),
     **dict.fromkeys(("stumble",), ("stumbling",)),
+    **dict.fromkeys(("empty", "empty_room", "no_one", "no_person", "absent"), ("nobody",)),
     **dict.fromkeys(("trip",), ("tripping",)),
 }
 # {word: our names that come near it}: suggested, but not taken for the same.

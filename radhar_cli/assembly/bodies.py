@@ -10,7 +10,13 @@ import numpy as np
 from radhar_cli.assembly.motion import body_of
 from radhar_cli.assembly.processing import frames_of
 from radhar_cli.assembly.room import ways_of
-from radhar_cli.bodies.motion_paths import MotionPaths, Shade, ShadowedPaths, SumOfPaths
+from radhar_cli.bodies.motion_paths import (
+    MotionPaths,
+    NothingPath,
+    Shade,
+    ShadowedPaths,
+    SumOfPaths,
+)
 from radhar_cli.bodies.segment_paths import Points, SegmentPaths, draw_points, point_counts
 from radhar_cli.bodies.surface_paths import SurfacePaths, draw_surface
 from radhar_cli.echo import compiled
@@ -81,18 +87,37 @@ def make_path_sources(
     motions: tuple[Motion, ...],
     link: Link,
     room: Reflectors | None = None,
-    mirrored: bool = True,
 ) -> list[OwnedPaths]:
     """Make the paths of everything in a scene: of who moves, and of what stands in the room.
 
-    People shadow each other, unless `body.shadowing` is false. By way of a room's faces they are
-    there again, unshadowed, unless not `mirrored`.
+    Where that is nothing, as in an empty scene without reflectors, there is a path of no power.
 
     Args:
         scene: what is simulated.
         motions: motions of its people, or of parts of one.
         link: antennas, wall and waveform of a channel.
         room: what stands in the room.
+    """
+    sources = [] if scene.is_empty else trace_people(scene, motions, link)
+    if room is not None:
+        sources.append(OwnedPaths(link.trace_motion(room), -1, link.antennas.legs))
+    if not sources:
+        sources.append(OwnedPaths(NothingPath(link.antennas), -1, link.antennas.legs))
+    return sources
+
+
+def trace_people(
+    scene: Scene, motions: tuple[Motion, ...], link: Link, mirrored: bool = True
+) -> list[OwnedPaths]:
+    """Make the paths of people.
+
+    They shadow each other, unless `body.shadowing` is false. By way of a room's faces they are
+    there again, unshadowed, unless not `mirrored`.
+
+    Args:
+        scene: what is simulated.
+        motions: motions of its people, or of parts of one.
+        link: antennas, wall and waveform of a channel.
         mirrored: whether people are there again by way of the room's faces.
     """
     antennas, people = link.antennas, scene.people
@@ -119,8 +144,6 @@ def make_path_sources(
             for image in images
             for source in body_sources
         ]
-    if room is not None:
-        sources.append(OwnedPaths(link.trace_motion(room), -1, antennas.legs))
     return sources
 
 

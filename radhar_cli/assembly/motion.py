@@ -23,6 +23,8 @@ def motion_of(person: Person) -> Motion:
         from radhar_cli.assembly.motion_files import file_motion
 
         return file_motion(person)
+    if person.activity.is_nobody and person.motion.model != "human":
+        return _who_would_stand_there(person)
     if person.motion.model == "human":
         from radhar_cli.assembly.people import human_motion  # slow to import
 
@@ -48,6 +50,18 @@ def body_of(person: Person, motion: Motion) -> Body:
         stature,
         thickness(stature, weight),
     )
+
+
+def _who_would_stand_there(person: Person) -> Motion:
+    """Somebody who stands still where a person of an empty scene would begin."""
+    from radhar_cli.motion.human.idle import Idle
+    from radhar_cli.motion.human.motion import HumanMotion
+    from radhar_cli.motion.human.physique import Physique
+    from radhar_cli.motion.human.standing import Stand
+
+    motion, physique = person.motion, Physique(person.subject.height_m)
+    start, heading = (motion.range_m, motion.cross_range_m), radians(motion.angle_deg)
+    return HumanMotion(physique, (Stand(),), start, heading, 0.0, person.seconds, Idle(physique))
 
 
 def _paper_body(person: Person) -> PaperBody:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, le
 from radhar_cli.radar.transmission import pass_wall, wall_delay
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+NEARBY_M = 1.0
 
 
 class OfMotion:
@@ -65,6 +67,23 @@ class MotionPaths(OfMotion):
             return Paths(tau, a)
         cosine = pass_wall(p, self.antennas, self.wall, self.fc, tau, a)
         return Paths(tau, a, Through.of(self.wall.layers, cosine))
+
+
+@dataclass(frozen=True)
+class NothingPath:
+    """The echo of nothing: a path of amplitude 0 from NEARBY_M ahead, a `PathSource`."""
+
+    antennas: Antennas
+
+    breakpoints: ClassVar[tuple[float, ...]] = ()
+    highest_frequency: ClassVar[float] = 0.0
+    smooth: ClassVar[bool] = True
+
+    def __call__(self, t: Float) -> Paths:
+        """The path at times t [M] (s)."""
+        place = np.add(self.antennas.tx, (NEARBY_M, 0.0, 0.0))[:, None, None]
+        delay = point_delay(np.broadcast_to(place, (3, 1, t.size)), self.antennas, None)
+        return Paths(delay, np.zeros_like(delay))
 
 
 @dataclass(frozen=True)

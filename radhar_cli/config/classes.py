@@ -9,13 +9,14 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator,
 from radhar_cli.activities.activity import (
     ACTIVITIES,
     MOVEMENTS,
+    NOBODY,
     Activity,
     activity_of_movements,
     is_new_slug,
 )
 from radhar_cli.config.number import Choice, uniform, value_error, vary, within
 from radhar_cli.config.section import N, Section, default_draw
-from radhar_cli.config.sequence import SequenceConfig
+from radhar_cli.config.sequence import BY_ITSELF, SequenceConfig
 from radhar_cli.errors import did_you_mean
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
@@ -135,6 +136,8 @@ ClassConfig: TypeAlias = Annotated[
 def _own_classes(value: dict[str, ClassConfig]) -> dict[str, ClassConfig]:
     twelve = {activity.slug for activity in ACTIVITIES}
     for slug, section in value.items():
+        if getattr(section, "sequence", ()) == (NOBODY,) != (slug,):
+            raise value_error(f"should be called {NOBODY}, which is a class by itself: {BY_ITSELF}")
         if not (is_new_slug(slug) or (isinstance(section, FilesConfig) and slug in twelve)):
             raise value_error(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
     if (

@@ -8,15 +8,16 @@ from collections.abc import Iterator, Mapping
 from itertools import accumulate
 from typing import Annotated, Any, ClassVar, Generic, NamedTuple, Protocol, TypeAlias, cast
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
-from radhar_cli.activities.activity import MOVEMENTS
+from radhar_cli.activities.activity import MOVEMENTS, NOBODY
 from radhar_cli.activities.links import links_between
 from radhar_cli.activities.vocabulary import advice_on, is_other_word, meaning_of
 from radhar_cli.config.number import NOT_NEGATIVE, SECONDS, Number, Share, support, value_error
 from radhar_cli.config.section import Flag, N, Section
 
 MIN_MOVEMENT_S = 0.3
+BY_ITSELF = f"activities: [{NOBODY}, ...]"
 MAX_MOVEMENTS = 4096  # of a sequence, as streams of ten minutes have
 
 
@@ -312,6 +313,13 @@ class SequenceConfig(Section, Generic[N]):
             yield SequenceStep(name, duration, pause, labels[place], place)
             state = MOVEMENTS[name].after
 
+    @field_validator("sequence", mode="before")
+    @classmethod
+    def _require_movements(cls, value: object) -> object:
+        if value in ([], ()):
+            raise value_error(f"should have movements; a room with nobody is {BY_ITSELF}")
+        return value
+
     @model_validator(mode="after")
     def _require_joined_movements(self) -> "SequenceConfig[N]":
         names = {word: movement_named(word) for word in self.written}
@@ -326,6 +334,10 @@ class SequenceConfig(Section, Generic[N]):
             object.__setattr__(self, "pauses_s", (0.0,) * count)
         if not len(self.durations_s) == len(self.pauses_s) == count:
             raise value_error("should have as many durations_s, and pauses_s, as movements")
+        if NOBODY in written and self.sequence != (NOBODY,):
+            raise value_error(
+                f"should be without {NOBODY}, which is a class by itself: {BY_ITSELF}"
+            )
         if all(isinstance(part, OptionalPart) for part in self.sequence):
             raise value_error("should have a part that is not optional")
         states_after(self.sequence, ANY_STATE, self.links)

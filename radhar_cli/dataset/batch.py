@@ -108,7 +108,11 @@ def _write_batch(batch: Batch) -> int:
                 data = encode_png(image.levels, batch.table, config.output.png_level)
                 path = rows.png_path(name, int(batch.split[number]), batch.start + number)
                 write_whole(batch.folder, batch.folder / path, data)
-        made_rows.append(row._replace(flags=row.flags | _flags_of_sample(row.sample)))
+        activity, _ = rows[batch.start + number]
+        flags = _flags_of_sample(row.sample)
+        if activity.is_nobody:  # whose maps without noise are black
+            flags &= ~Flags.BLACK
+        made_rows.append(row._replace(flags=row.flags | flags))
     data = encode_shard(config, batch.identity_hash, batch.start, made_rows)
     write_shard(batch.folder, batch.start, batch.stop, data)
     return batch.stop - batch.start

@@ -35,4 +35,5 @@ def label_columns(scene: Scene, motion: Motion, image: MapImage, names: Sequence
     width = image.levels.shape[1]
     t = left + (np.arange(width) + 0.5) * (right - left) / width
     slug = scene.activity.slug
-    return phase_numbers(motion.phases, t, names, names.index(slug) if slug in names else 0)
+    phases = () if scene.is_empty else motion.phases
+    return phase_numbers(phases, t, names, names.index(slug) if slug in names else 0)

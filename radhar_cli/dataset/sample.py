@@ -140,10 +140,11 @@ def labels_of(scene: Scene, config: Config) -> dict[str, NDArray[Any]]:
         return {}
     classes = [activity.slug for activity in config.every_class]
     person = np.full(1 + len(scene.config.people), -1, np.int16)
-    for someone in scene.people:
+    for someone in scene.present:
         person[someone.number] = classes.index(someone.activity.slug)
     present = np.zeros(len(classes), np.uint8)
     present[person[person >= 0]] = 1
+    present[classes.index(scene.activity.slug)] = 1  # `nobody` is a label, too
     return {LABELS: present, PERSON_LABEL: person}
 
 

@@ -46,7 +46,7 @@ def of_simulation(simulation: Simulation) -> BoardFrames:
         simulation.config.image,
         title(simulation),
         simulation.motion.parents,
-        float(np.sqrt((p**2).sum(axis=0)).max()) * 1.2 + 0.5,
+        None if simulation.scene.is_empty else float(np.sqrt((p**2).sum(axis=0)).max()) * 1.2 + 0.5,
     )
 
 
@@ -117,6 +117,7 @@ def _moment(content: BoardFrames, frame: int) -> tuple[Float, Float, Float]:
 def _limits(content: BoardFrames) -> tuple[Float, float]:
     """Lowest and highest (ahead, left, up) to draw [3, 2], m, and the highest speed, m/s."""
     points, joints = content.products["cloud"].points, _joints(content).reshape(-1, 3)
+    joints = joints[np.isfinite(joints).all(axis=1)]
     places = joints if len(joints) else points[:, :3]
     limits = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
     if len(places):

@@ -40,7 +40,10 @@ class SceneView(NamedTuple):
 
 
 def view_scene(scene: Scene, motions: Sequence[Motion]) -> SceneView:
-    """Compute the view of a scene: everybody's skeleton and true Doppler, in order of `motions`."""
+    """Compute the view of a scene: everybody's skeleton and true Doppler, in order of `motions`.
+
+    Of an empty scene there are none; maps reach as far as with who would stand there.
+    """
     results = record(scene, ("antennas", "wall", "waveform"), motions=tuple(motions))
     antennas, wall, waveform = results["antennas"], results["wall"], results["waveform"]
     last_pulse = np.array([waveform.n_pulses - 1.0])
@@ -49,14 +52,16 @@ def view_scene(scene: Scene, motions: Sequence[Motion]) -> SceneView:
     bodies, curves, farthest = list[MovingBody](), dict[str, Float](), 0.0
     for person, motion in zip(scene.people, motions, strict=True):
         true = evaluate_truth(motion, antennas, wall, waveform, fine)
+        delays = point_delay(true.positions.T, antennas, wall)
+        farthest = max(farthest, delays.max() * SPEED_OF_LIGHT / 2)
+        if scene.is_empty:
+            break
         joints = np.concatenate([true.positions, -true.radial_velocity[..., None]], axis=2)
         bones = limbs(joints, motion.parents, true.hip_joints)[::FINER]
         name = f"{person.activity.label} {person.activity.slug}"
         bodies.append(MovingBody(name, motion.names, bones))
         prefix = f"{person.number} " if len(motions) > 1 else ""
         curves |= {prefix + joint: true.doppler[:, n] for n, joint in enumerate(motion.names)}
-        delays = point_delay(true.positions.T, antennas, wall)
-        farthest = max(farthest, delays.max() * SPEED_OF_LIGHT / 2)
     return SceneView(
         time,
         bodies,

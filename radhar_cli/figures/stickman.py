@@ -27,19 +27,20 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
         advance: called with 1 after every frame.
     """
     truth = simulation.truth
-    people = [(truth, simulation.motion)]
+    people = [] if simulation.scene.is_empty else [(truth, simulation.motion)]
     people += [(other.truth, other.motion) for other in simulation.others]
     alone = len(people) == 1
-    middle = truth.positions.mean(axis=1) * (alone, alone, 0)
+    middle = np.nan_to_num(truth.positions.mean(axis=1)) * (alone, alone, 0)
     tracks = [joint for person, _ in people for joint in person.positions.swapaxes(0, 1)]
     bounds = [((p - middle).min(axis=0), (p - middle).max(axis=0)) for p in tracks]
+    bounds = bounds or [(np.zeros(3), np.zeros(3))]  # nobody is there
     low = np.min([least for least, _ in bounds], axis=0) - 0.1
     high = np.max([most for _, most in bounds], axis=0) + 0.1
     centre = np.round((low + high) / 2) * (1, 1, 0)
     low = np.minimum(low, centre - (1, 1, 0))
     high = np.maximum(high, np.add(centre, (1, 1, 2)))
     limits = np.stack([low, high], axis=1)
-    fastest = max(float(np.abs(truth.radial_velocity).max()), 0.1)
+    fastest = max(float(np.nan_to_num(np.abs(truth.radial_velocity)).max()), 0.1)
     film = Film(title(simulation), limits, fastest, share=0.7)
     cursor = []
     map_names = [name for name in SHOWN_BESIDE if name in simulation.maps] or list(simulation.maps)
@@ -59,7 +60,8 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
         clock = f"t = {t:.2f} s"
         clock += f", at x = {centre_now[0]:.1f} m, y = {centre_now[1]:.1f} m" if alone else ""
         clock += "" if phase == WHOLE else f"   {phase}"
-        joints, ends = truth.positions[pulse] - centre_now, np.concatenate(lines) - centre_now
+        joints = truth.positions[pulse] - centre_now
+        ends = np.concatenate([np.empty((0, 2, 3)), *lines]) - centre_now
         film.show(joints, -truth.radial_velocity[pulse], ends, clock)
         for line in cursor:
             line.set_xdata([t, t])

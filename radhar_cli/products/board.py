@@ -51,9 +51,9 @@ from radhar_cli.products.signal import choose_columns, sum_over_range
 from radhar_cli.products.signal_power import (
     PowerSource,
     make_snr_paths,
+    needs_other_paths,
     power_of_echo,
     power_product,
-    refers_to_other_paths,
 )
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.detection import Detection
@@ -133,7 +133,7 @@ def _echo_rows(config: Config) -> Iterator[Product]:
     else:
         yield Product("echo", needs[:2], compute_exact_echo, "raw samples, exact sums")
     yield Product("accuracy", ("echo",), accuracy_of_board, "its measured error")
-    if refers_to_other_paths(config):
+    if needs_other_paths(config):
         needs = ("scene", "motions", "board", "wall")
         does = "paths of the own person in every channel, for the SNR"
         yield Product("snr_channels", needs, make_snr_channels, does)

@@ -45,6 +45,8 @@ class Owners(NamedTuple):
 def locate_skeletons(scene: Scene, motions: tuple[Motion, ...], board: Board) -> Skeletons:
     """Locate the joints of everybody; NaN of who is absent, and of joints that one lacks.
 
+    In an empty scene all are NaN.
+
     Args:
         scene: what is simulated.
         motions: motions of its people, or of parts of one; the first names the joints.
@@ -57,6 +59,8 @@ def locate_skeletons(scene: Scene, motions: tuple[Motion, ...], board: Board) ->
     shape = (board.frames, person_count, len(names), 3)
     positions, velocities = np.full((2, *shape), np.nan, np.float32)
     t = board.middles
+    if scene.is_empty:
+        return Skeletons(positions, velocities, names)
     for number, motion in zip(numbers, motions, strict=True):
         before, now, after = (
             board.aim.to_radar(motion.positions(t + step))

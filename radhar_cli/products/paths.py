@@ -17,7 +17,7 @@ from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.products.knot_rate import KnotRate
 from radhar_cli.products.plan import Product
-from radhar_cli.products.signal_power import make_snr_paths, refers_to_other_paths
+from radhar_cli.products.signal_power import make_snr_paths, needs_other_paths
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
@@ -37,7 +37,7 @@ def scene_products(config: Config) -> Iterator[Product]:
         yield Product("room", ("scene",), reflectors_of, "what stands in the room")
     does = f"delay and amplitude of all {config.body.scatterers}, {through}"
     yield Product("paths", ("scene", *needs, *room), make_paths, does)
-    if refers_to_other_paths(config):
+    if needs_other_paths(config):
         does = "paths of people, for the SNR"
         yield Product("snr_paths", ("scene", *needs), make_snr_paths, does)
     rate = KnotRate.of(config) if config.engine.kind == "direct" else None

@@ -6,9 +6,10 @@ It has one producer for each kind of echo: `power_at_pulses` and `power_at_knots
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple, Protocol
+from functools import partial
+from typing import Any, NamedTuple, Protocol
 
-from radhar_cli.assembly.bodies import Link, make_path_sources, sum_of_paths
+from radhar_cli.assembly.bodies import Link, sum_of_paths, trace_people
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo.exact import signal_power
@@ -53,7 +54,25 @@ def power_product(config: Config, of_echo: PowerSource, of_paths: PowerSource) -
         of_paths: P_s of other paths, which the SNR may refer to.
     """
     source = of_paths if refers_to_other_paths(config) else of_echo
+    if source is of_echo and has_nobody(config):
+        needs = ("scene", *of_echo.needs, *of_paths.needs)
+        source = PowerSource(needs, partial(power_unless_empty, of_echo, of_paths))
     return Product("signal_power", source.needs, source.make, "P_s, for snr_db")
+
+
+def power_unless_empty(
+    of_echo: PowerSource, of_paths: PowerSource, scene: Scene, *products: Any
+) -> float:
+    """P_s of the simulated echo; in an empty scene that of who would stand there.
+
+    Args:
+        of_echo: P_s of the simulated echo.
+        of_paths: P_s of other paths.
+        scene: what is simulated.
+        products: what `of_echo` needs, then what `of_paths` needs.
+    """
+    count = len(of_echo.needs)
+    return of_paths.make(*products[count:]) if scene.is_empty else of_echo.make(*products[:count])
 
 
 def power_at_pulses(paths: PathSource, waveform: Waveform) -> float:
@@ -73,8 +92,18 @@ def power_of_echo(echo: EchoOfKnownPower) -> float:
     return echo.signal_power()
 
 
+def has_nobody(config: Config) -> bool:
+    """Whether a config has scenes in which nobody is."""
+    return any(activity.is_nobody for activity in config.chosen_activities)
+
+
+def needs_other_paths(config: Config) -> bool:
+    """Whether the SNR refers to another echo than the simulated one, in some scenes or in all."""
+    return refers_to_other_paths(config) or has_nobody(config)
+
+
 def refers_to_other_paths(config: Config) -> bool:
-    """Whether the SNR refers to another echo than the simulated one.
+    """Whether the SNR refers to another echo than the simulated one in every scene.
 
     It refers to the sample's own person, without the room and without others; in free space also
     without what wall and beam take.
@@ -96,6 +125,8 @@ def make_snr_paths(
 ) -> PathSource:
     """Make the paths whose power is P_s: of the sample's own person, straight there and back.
 
+    In an empty scene they are those of who would stand there.
+
     Args:
         scene: what is simulated; its `snr_reference` counts.
         motions: motions of its people, of which the first counts.
@@ -107,4 +138,4 @@ def make_snr_paths(
     if scene.config.snr_reference == "free_space":
         antennas, wall = replace(antennas, aim=None), None
     link = Link(antennas, wall, waveform, first)
-    return sum_of_paths(make_path_sources(scene, motions[:1], link, mirrored=False))
+    return sum_of_paths(trace_people(scene, motions[:1], link, mirrored=False))

@@ -72,5 +72,7 @@ def scene_bvh(
     frames = round(scene.seconds * rate) + 1
     if frames > MAX_FRAMES:
         raise ConfigError(f"{frames} frames; should be at most {MAX_FRAMES}: --rate, duration_s")
+    if scene.is_empty:
+        raise ConfigError(f"{scene.name}: nobody is there whose motion could be written")
     joints = sample_joints(motion_of(scene.people[0]), np.arange(frames) / rate)
     return bvh_text(joints, rate), frames

@@ -66,6 +66,8 @@ class SceneRequest:
                 for mistake in mistakes
             )
             raise ConfigError("\n".join(dict.fromkeys(lines)))
+        if self.joint is not None and activity.is_nobody:
+            raise ConfigError(f"joint = {self.joint!r}: should be left out; nobody is there")
         seed = self.config.seed if self.seed is None else self.seed
         config = self.config.model_copy(update={"maps": maps, "seed": seed})
         return scene_of(config, activity, self.index, self.nominal)

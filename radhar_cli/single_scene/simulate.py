@@ -31,7 +31,13 @@ from radhar_cli.scene_checks.flags import BLACK
 from radhar_cli.scene_checks.warnings import scene_warnings
 from radhar_cli.single_scene.raw_echo import RAW_ECHO, RAW_PROFILES
 from radhar_cli.single_scene.request import ProductNames, SceneRequest
-from radhar_cli.single_scene.truth import PathTruth, Truth, evaluate_path_truth, evaluate_truth
+from radhar_cli.single_scene.truth import (
+    PathTruth,
+    Truth,
+    evaluate_path_truth,
+    evaluate_truth,
+    truth_of_nobody,
+)
 
 
 class OtherPerson(NamedTuple):
@@ -181,6 +187,7 @@ def _simulation_of(
         scene_notes: warnings of the scene itself.
     """
     radar = {name: results[name] for name in ("antennas", "wall", "waveform")}
+    truth = evaluate_truth(motions[0], **radar)
     accuracy: EchoAccuracy | None = results.products.get("accuracy")
     others = [
         OtherPerson(person, motion, evaluate_truth(motion, **radar))
@@ -194,9 +201,9 @@ def _simulation_of(
         joint=joint,
         maps={name: results[name] for name in names.maps},
         signals={treatment: results[name] for treatment, name in names.signals.items()},
-        truth=evaluate_truth(motions[0], **radar),
+        truth=truth_of_nobody(truth, scene.activity.slug) if scene.is_empty else truth,
         others=others,
-        warnings=[*scene_notes, *_result_warnings(names, results)],
+        warnings=[*scene_notes, *_result_warnings(names, results, scene.is_empty)],
         seconds=results.seconds,
         accuracy=accuracy if isinstance(accuracy, Accuracy) else None,
         beat=results["raw_echo"] if "raw_echo" in names.others else None,
@@ -206,8 +213,14 @@ def _simulation_of(
     )
 
 
-def _result_warnings(names: ProductNames, results: Results) -> list[str]:
-    """Warn of an engine that the direct one fell back to, and of maps without any power."""
+def _result_warnings(names: ProductNames, results: Results, is_empty: bool) -> list[str]:
+    """Warn of an engine that the direct one fell back to, and of maps without any power.
+
+    Args:
+        names: names of the products.
+        results: the products.
+        is_empty: whether nobody is in the scene, so that maps may be black.
+    """
     warnings = []
     accuracy = results.products.get("accuracy")
     if isinstance(accuracy, Fallback):
@@ -216,7 +229,9 @@ def _result_warnings(names: ProductNames, results: Results) -> list[str]:
     black_maps += [
         {"cloud": "points"}.get(name, name) for name in names.frames if _is_empty(results[name])
     ]
-    return [*warnings, f"{', '.join(black_maps)}: {BLACK}"] if black_maps else warnings
+    if not black_maps or is_empty:
+        return warnings
+    return [*warnings, f"{', '.join(black_maps)}: {BLACK}"]
 
 
 def _is_empty(product: object) -> bool:

@@ -1,7 +1,7 @@
 """What really moved: positions, radial velocities, and which movement is under way."""
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +29,8 @@ class Truth:
 
     Attributes:
         time: times t_m [M], s.
-        positions: positions of the scatterers [M, I, 3], m.
+        positions: positions of the scatterers [M, I, 3], m; NaN in an empty scene, as are the
+            other numbers.
         radial_velocity: half the rate of the two-way path [M, I], m/s, positive receding.
         doppler: -f0 dtau/dt [M, I], Hz, with the wall, before aliasing.
         phase_label: number in `phases` of the movement that is under way [M].
@@ -130,6 +131,24 @@ def evaluate_truth(
         phase_label=phase_numbers(motion.phases, t, phases, other=0),
         phases=phases,
         hip_joints=hips,
+    )
+
+
+def truth_of_nobody(truth: Truth, slug: str) -> Truth:
+    """Truth of an empty scene: every number is NaN, and the one phase that of its class.
+
+    Args:
+        truth: truth of who would be there, of which times and shapes are kept.
+        slug: name of the class.
+    """
+    return replace(
+        truth,
+        positions=np.full_like(truth.positions, np.nan),
+        radial_velocity=np.full_like(truth.radial_velocity, np.nan),
+        doppler=np.full_like(truth.doppler, np.nan),
+        hip_joints=None if truth.hip_joints is None else np.full_like(truth.hip_joints, np.nan),
+        phase_label=np.zeros_like(truth.phase_label),
+        phases=(slug,),
     )
 
 

@@ -22,7 +22,9 @@ PARTS = [
     {"shuffled": ["punching", "turning_around", {"choice": ["squatting", "jumping"]}]},
 ]
 DURATIONS = [2, None, None, None, 2, 2, None, 2, 2]
-STATES = sorted({state for one in MOVEMENTS.values() for state in (one.before, one.after)})
+STATES = sorted(
+    {state for one in MOVEMENTS.values() for state in (one.before, one.after)} - {"nowhere"}
+)
 
 
 def config_of(sequence: list[Any], **others: Any) -> Config:

@@ -6,6 +6,7 @@ from radhar_cli.activities.activity import (
     ACTIVITIES,
     DEFAULT,
     MOVEMENTS,
+    NOBODY,
     TWELVE,
     activity_named,
     own_activities,
@@ -34,6 +35,10 @@ def people_problems(c: Request) -> Iterator[Problem]:
         except ValueError as error:
             yield Problem(f"{key}.activity", ", ".join(person.names), str(error))
             continue
+        if any(a.is_nobody for a in activities):
+            right = f"should be what somebody does; {key}.share is how often they are there"
+            yield Problem(f"{key}.activity", NOBODY, right)
+            continue
         files = [a.slug for a in activities if c.files_of(a) is not None]
         if files:
             yield Problem(f"{key}.activity", files[0], "should be a movement, not motion files")
@@ -47,17 +52,21 @@ def class_problems(c: Request) -> Iterator[Problem]:
     """Classes that the model of motion cannot make."""
     model = c.motion.model
     for slug, section in c.classes.items():
-        if model != "human" and isinstance(section, SequenceConfig):
+        is_nobody = isinstance(section, SequenceConfig) and section.sequence == (NOBODY,)
+        if model != "human" and isinstance(section, SequenceConfig) and not is_nobody:
             right = f"should have files with motion.model: {model}; sequences are of people (human)"
             yield Problem(f"classes.{slug}", list(section.written), right)
     if model == "paper":
         for activity in c.chosen_activities:
-            if activity.slug in MOVEMENTS and activity.slug not in (*c.classes, *TWELVE):
+            known = (NOBODY, *c.classes, *TWELVE)
+            if activity.slug in MOVEMENTS and activity.slug not in known:
                 right = "is a movement of people, which motion.model: human makes"
                 yield Problem("activities", activity.slug, right)
     if model != "file":
         return
     for activity in c.chosen_activities:
+        if activity.is_nobody:
+            continue
         if activity.motion is None and activity.slug not in c.classes:
             right = "should have files of it under classes, or motion.model: human makes it"
             yield Problem("activities", activity.slug, right)

@@ -131,6 +131,8 @@ def kinect_joints(joints: Float) -> Float:
 def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write featuremap_<split>.npy, labels_<split>.npy and frames_<split>.npy of all three splits.
 
+    Samples in which nobody is have no joints, and are left out.
+
     Raises:
         FolderError: there are no points, or skeletons are not of the thirteen joints.
     """
@@ -142,8 +144,10 @@ def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
             f"{len(JOINTS)}"
         )
     shapes = {"featuremap": (SIDE, SIDE, 5), "labels": (3 * len(MARS_JOINTS),), "frames": (3,)}
+    rows = Rows.of(data.config)
     for split, part in enumerate(MARS_SPLITS):
-        total, done = int(counts[data.split == split].sum()), 0
+        of_people = [one for one in _of_split(data, split) if not rows[one.row][0].is_nobody]
+        total, done = int(counts[[one.row for one in of_people]].sum()), 0
         features, labels, frames = (
             _new_array(
                 folder / f"{name}_{part}.npy",
@@ -152,7 +156,7 @@ def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
             )
             for name, shape in shapes.items()
         )
-        for entry in _of_split(data, split):
+        for entry in of_people:
             clouds = clouds_of(data, entry.row)
             for frame, skeleton in enumerate(kinect_joints(clouds.joints)):
                 features[done] = feature_map(clouds, frame)

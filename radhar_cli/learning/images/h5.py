@@ -144,8 +144,10 @@ def _activities(data: Dataset) -> Objects | None:
     """Classes of all persons in each row [N], the main person's first; None without `people`."""
     if data.person_label is None:
         return None
+    labels = zip(data.label, data.person_label[:, 1:], strict=True)
     return objects(
-        tuple(data.class_slugs[n] for n in numbers if n >= 0) for numbers in data.person_label
+        (data.classes[label], *(data.class_slugs[n] for n in others if n >= 0))
+        for label, others in labels
     )
 
 

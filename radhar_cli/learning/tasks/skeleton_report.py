@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from radhar_cli.errors import FolderError
 from radhar_cli.figures.evaluation import bars_png
 from radhar_cli.figures.skeletons import skeletons_png
 from radhar_cli.learning.metrics import NEAR_M
@@ -26,12 +27,17 @@ def report_skeletons(evaluation: Evaluation) -> dict[str, Any]:
 
     Returns:
         Plain numbers by their keys in report.json.
+
+    Raises:
+        FolderError: no frame has a true skeleton, as where nobody is in any of them.
     """
     predictions, page = evaluation.predictions, evaluation.page
     rows, names = predictions.rows, predictions.names
     skeletons = predictions.images.skeletons
     true = np.stack([skeletons[int(row)] for row in rows])  # [N, T, joint, 3], NaN after the end
     is_known: Bool = np.all(np.isfinite(true), axis=(2, 3))  # [N, T]
+    if not is_known.any():
+        raise FolderError(f"{predictions.images.where}: has no frame with a true skeleton")
     deviation, joints = (predictions.values - true)[is_known], true[is_known]  # [frame, joint, 3]
     distance = np.linalg.norm(deviation, axis=2)  # [frame, joint]
     by_joint = 100 * distance.mean(0)

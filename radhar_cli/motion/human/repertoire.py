@@ -108,6 +108,7 @@ class Repertoire:
 # How a person makes each movement of a sequence, from a repertoire and a duration, s.
 # `activities.activity.MOVEMENTS` has the states that it begins and ends in.
 MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {
+    "nobody": lambda person, duration: Stand(duration),  # who would be there; makes no echo
     "stationary": lambda person, duration: Stand(duration),
     "punching": lambda person, duration: replace(person.punch, duration=duration, from_rest=True),
     "kicking": lambda person, duration: replace(person.kick, duration=duration, from_rest=True),

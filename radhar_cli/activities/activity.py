@@ -64,6 +64,8 @@ MOVEMENTS = {
     "trying_to_get_up": MovementInfo("lying", "lying", 3.0),
     "getting_up": MovementInfo("lying", "standing", 3.0),
     "turning_around": MovementInfo("standing", "standing", 1.8),
+    "running": MovementInfo("standing", "standing", None),
+    "jogging_in_place": MovementInfo("standing", "standing", None),
     **{name: MovementInfo("standing", "standing", None) for name in EXERCISES},
     NOBODY: MovementInfo("nowhere", "nowhere", None, "stationary"),
 }

@@ -572,9 +572,12 @@ def _movements(model: str) -> dict[str, Any]:
     """The twelve, and of people every movement there is, each after what leads to it."""
     document: dict[str, Any] = {"duration_s": 8.0, "motion": {"model": model}, "maps": ["stft"]}
     if model == "human":
-        first = {"standing": [], "seated": ["sitting_down"], "lying": ["falling"]}
+        first = {"seated": ["sitting_down"], "lying": ["falling"]}
+        alone = "lying", "turning_over", "sitting"
         document["classes"] = {
-            f"own_{name}": {"sequence": [*first[one.before], name]}
+            f"own_{name}": {
+                "sequence": [*([] if name in alone else first.get(one.before, [])), name]
+            }
             for name, one in MOVEMENTS.items()
         }
     return document

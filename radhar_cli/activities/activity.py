@@ -1,6 +1,6 @@
 """The activities: label, slug, class number and the movements of people each one consists of."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 from zlib import crc32
@@ -15,13 +15,20 @@ if TYPE_CHECKING:
 class MovementInfo(NamedTuple):
     """A movement of people: the states it begins and ends in, and its usual duration (s).
 
-    `like` names another movement, whose numbers of the config it depends on, too.
+    `like` names another movement, whose numbers of the config it depends on, too; `also` has
+    further states in which it may begin, each with the state in which it then ends.
     """
 
     before: str
     after: str
     seconds: float | None  # usual duration, s; None for one that lasts as long as it is asked for
     like: str | None = None
+    also: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def states(self) -> dict[str, str]:
+        """States in which it may begin, the usual one first, and in which it then ends."""
+        return {self.before: self.after, **dict(self.also)}
 
 
 EXERCISES = (
@@ -62,13 +69,52 @@ MOVEMENTS = {
     "stumbling": MovementInfo("standing", "standing", 1.3),
     "tripping": MovementInfo("standing", "standing", None, "walking"),
     "trying_to_get_up": MovementInfo("lying", "lying", 3.0),
-    "getting_up": MovementInfo("lying", "standing", 3.0),
+    "getting_up": MovementInfo(
+        "lying", "standing", 3.0, also=(("kneeling", "standing"), ("on_fours", "standing"))
+    ),
     "turning_around": MovementInfo("standing", "standing", 1.8),
-    "running": MovementInfo("standing", "standing", None),
-    "jogging_in_place": MovementInfo("standing", "standing", None),
+    "sitting": MovementInfo("seated", "seated", None),
+    "kneeling": MovementInfo("kneeling", "kneeling", None),
+    "kneeling_down": MovementInfo("standing", "kneeling", 3.0),
+    "getting_on_fours": MovementInfo("standing", "on_fours", 3.0),
+    "lying": MovementInfo("lying", "lying", None, also=(("in_bed", "in_bed"),)),
+    "turning_over": MovementInfo("lying", "lying", 2.5, also=(("in_bed", "in_bed"),)),
+    "lying_down": MovementInfo("standing", "in_bed", 5.0),
+    "getting_up_from_bed": MovementInfo("in_bed", "standing", 4.5),
     **{name: MovementInfo("standing", "standing", None) for name in EXERCISES},
     NOBODY: MovementInfo("nowhere", "nowhere", None, "stationary"),
 }
+
+
+OR = " or "  # between states of which whoever begins a sequence has the choice
+
+
+def state_after(name: str, state: str | None) -> str | None:
+    """State in which a movement ends.
+
+    Args:
+        name: The movement.
+        state: State in which it begins, or several joined by `OR` of which one will do; None where
+            it is the first.
+
+    Returns:
+        The state, or several likewise; None where the movement cannot begin so.
+    """
+    states = MOVEMENTS[name].states
+    befores = states if state is None else [one for one in state.split(OR) if one in states]
+    return OR.join(dict.fromkeys(states[before] for before in befores)) or None
+
+
+def first_states(names: Sequence[str]) -> tuple[str, ...]:
+    """States in which a sequence of movements may begin, so that each joins the one before it."""
+    firsts = []
+    for first in MOVEMENTS[names[0]].states:
+        state: str | None = first
+        for name in names:
+            state = None if state is None else state_after(name, state)
+        if state is not None:
+            firsts.append(first)
+    return tuple(firsts)
 
 
 @dataclass(frozen=True)

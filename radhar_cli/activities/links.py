@@ -7,7 +7,7 @@ movements that MOVEMENTS lists first.
 
 from functools import cache
 
-from radhar_cli.activities.activity import MOVEMENTS
+from radhar_cli.activities.activity import MOVEMENTS, OR, state_after
 
 
 def is_link(name: str) -> bool:
@@ -26,7 +26,22 @@ def links_between(before: str, after: str) -> tuple[str, ...] | None:
         if state == after:
             return ways[state]
         for name, movement in MOVEMENTS.items():
-            if movement.before == state and movement.after not in ways and is_link(name):
-                ways[movement.after] = (*ways[state], name)
-                states.append(movement.after)
+            end = movement.states.get(state)
+            if end is not None and end not in ways and is_link(name):
+                ways[end] = (*ways[state], name)
+                states.append(end)
     return None
+
+
+def links_to(state: str, name: str) -> tuple[str, ...] | None:
+    """Movements that lead from a state of rest to one in which a movement may begin.
+
+    Args:
+        state: the state, or several joined by `OR` of which one will do.
+        name: the movement.
+    """
+    if state_after(name, state) is not None:
+        return ()
+    ends = [(one, begin) for one in state.split(OR) for begin in MOVEMENTS[name].states]
+    ways = [way for way in (links_between(*both) for both in ends) if way is not None]
+    return min(ways, key=len) if ways else None

@@ -17,7 +17,15 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("kick", "front_kick"), ("kicking",)),
     **dict.fromkeys(("standing", "still", "standing_still", "stand"), ("stationary",)),
     **dict.fromkeys(("idle", "static", "no_movement"), ("stationary",)),
-    **dict.fromkeys(("sit", "sit_down", "sitting"), ("sitting_down",)),
+    **dict.fromkeys(("sit", "sit_down"), ("sitting_down",)),
+    **dict.fromkeys(("seated", "sitting_still"), ("sitting",)),
+    **dict.fromkeys(("kneel", "on_knees"), ("kneeling",)),
+    **dict.fromkeys(("sleeping", "sleep", "lying_still", "laying", "resting"), ("lying",)),
+    **dict.fromkeys(("lie_down", "going_to_bed", "go_to_bed", "laying_down"), ("lying_down",)),
+    **dict.fromkeys(
+        ("get_out_of_bed", "leaving_bed", "getting_out_of_bed"), ("getting_up_from_bed",)
+    ),
+    **dict.fromkeys(("turn_over", "rolling_over", "rolling", "roll_over"), ("turning_over",)),
     **dict.fromkeys(("stand_up", "rising", "getting_up_from_chair"), ("standing_up",)),
     **dict.fromkeys(("stand_up_from_floor", "get_up", "rising_from_floor"), ("getting_up",)),
     **dict.fromkeys(("rotating", "twisting", "body_rotation"), ("body_rotating",)),
@@ -27,10 +35,6 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("squat", "squats"), ("squatting",)),
     **dict.fromkeys(("jump", "jumps"), ("jumping",)),
     **dict.fromkeys(("jumping_jack", "star_jumps"), ("jumping_jacks",)),
-    **dict.fromkeys(("run", "jogging", "jog", "sprinting", "sprint"), ("running",)),
-    **dict.fromkeys(
-        ("running_in_place", "jog_in_place", "running_on_the_spot"), ("jogging_in_place",)
-    ),
     **dict.fromkeys(("stumble",), ("stumbling",)),
     **dict.fromkeys(("empty", "empty_room", "no_one", "no_person", "absent"), ("nobody",)),
     **dict.fromkeys(("trip",), ("tripping",)),
@@ -50,11 +54,17 @@ NEARBY: dict[str, tuple[str, ...]] = {
 UNKNOWN = frozenset(
     {
         *(
+            "running",
+            "run",
+            "jogging",
+            "jog",
+            "sprinting",
+            "sprint",
             "crawling",
             "crawl",
             "creeping",
         ),
-        *("clapping", "clap", "lying", "lying_down", "lie_down", "sleeping", "dancing", "climbing"),
+        *("clapping", "clap", "dancing", "climbing"),
         *(
             "climbing_stairs",
             "stairs",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from radhar_cli.activities.activity import MOVEMENTS
-from radhar_cli.assembly.gaits import jogging_gait, running_gait
+from radhar_cli.assembly.floor import draw_floor_movements, join_on_floor
 from radhar_cli.config.motion import (
     FallName,
     Falls,
@@ -30,7 +30,7 @@ from radhar_cli.motion.human.falling import (
     Supine,
 )
 from radhar_cli.motion.human.falling_from_seat import FallFromSeat
-from radhar_cli.motion.human.falling_sideways import FallingSideways, FallSideways, RiseFromSide
+from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import (
@@ -211,17 +211,7 @@ def _movement_of(person: Person, step: SequenceStep, previous: list[Movement]) -
     duration = usual if step.duration is None else step.duration
     repertoire = _repertoire(person, duration, step.place)
     (movement,) = repertoire.sequence([step.name], [inf if duration is None else duration])
-    if isinstance(movement, GetUp | TryToGetUp) and previous:
-        return _getting_up_after(previous[-1], movement)
-    return movement
-
-
-def _getting_up_after(fall: Movement, getting_up: GetUp | TryToGetUp) -> Movement:
-    """Getting up, or trying to, from how people lie after that fall."""
-    fall_part = fall.part(Physique(1.7), 0.0, 0.0)
-    if isinstance(fall_part, FallingSideways):
-        return RiseFromSide(fall_part.fall, getting_up.duration, isinstance(getting_up, TryToGetUp))
-    return replace(getting_up, before=fall_part.after)
+    return join_on_floor(previous, movement)
 
 
 def _punch(striking: StrikingConfig[float], paces: Float, sizes: Float) -> Punch:
@@ -275,6 +265,7 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
     paces, sizes = _repetitions(person, ceil(3 * person.seconds) + 8, place)
     lags = _lags(person, place)
     sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
+    floor = draw_floor_movements(person, duration, rise)
     return Repertoire(
         gait=_gait(person, place),
         walk=person.timing.walk_stop_s,
@@ -290,8 +281,6 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
             paces=_nonzero_tuple(paces),
             sizes=_nonzero_tuple(sizes),
         ),
-        run=running_gait(person, place),
-        jog=jogging_gait(person, place),
         fall=_fall(person, duration),
         fall_on_hands=_fall(person, duration, caught=True),
         fall_off_seat=_fall_off_seat(seat, person, 1.0 if duration is None else duration),
@@ -301,6 +290,7 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
         get_up=_with_duration(duration, GetUp()),
         try_to_get_up=_with_duration(duration, TryToGetUp()),
         turn_around=_with_duration(duration, AROUND),
+        **floor._asdict(),
         exercise_period=motion.exercises.period,
         exercise_paces=_nonzero_tuple(paces),
         exercise_sizes=_nonzero_tuple(motion.exercises.size * np.minimum(sizes, 1.05)),

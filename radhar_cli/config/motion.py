@@ -23,6 +23,7 @@ from radhar_cli.config.number import (
     SECONDS,
     SIGNED,
     SPEED,
+    Choice,
     normal,
     uniform,
     vary,
@@ -35,10 +36,8 @@ FallName = Literal["forward", "backward", "sideways"]
 FALLS: tuple[FallName, ...] = FallName.__args__  # type: ignore[attr-defined]
 
 
-RUNS = "running jogging_in_place"
-
-
-SEATS = "sitting_down standing_up falling_off_seat falling_on_rising"
+SEATS = "sitting sitting_down standing_up falling_off_seat falling_on_rising"
+LYING = "lying turning_over lying_down getting_up_from_bed"
 
 
 class Falls(Section):
@@ -115,39 +114,6 @@ class WalkingConfig(Section, Generic[B]):
         default_draw(0.6)
     )
     """Strides in which a walker gains speed from rest."""
-
-
-class RunningConfig(Section, Generic[B]):
-    """How people run, and jog on the spot."""
-
-    speed_mps: Annotated[
-        B, ByActivity(NOT_NEGATIVE, SPEED), People("running", 1.0, 7.0), PERSONAL
-    ] = default_draw(normal(3.3, 0.7, 2.5, 6.0))
-    """Speed of a run."""
-    cadence: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0.85, 1.15), PERSONAL] = (
-        default_draw(normal(1.0, 0.05, 0.9, 1.1))
-    )
-    """Steps per second of a run, relative to the usual ones at its speed."""
-    trunk_pitch_deg: Annotated[B, ByActivity(ANGLE), People(RUNS, -5, 25), PERSONAL] = default_draw(
-        normal(7.0, 3.0, 1.0, 15.0)
-    )
-    """Forward pitch of a runner's trunk."""
-    arm_swing: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0, 1.6), PERSONAL] = (
-        default_draw(uniform(0.7, 1.3))
-    )
-    """Arm swing of a runner, relative to the usual one."""
-    elbow_deg: Annotated[B, ByActivity(ANGLE), People(RUNS, 40, 120), PERSONAL] = default_draw(
-        normal(90.0, 12.0, 65.0, 115.0)
-    )
-    """Mean flexion of a runner's elbows."""
-    knee_deg: Annotated[B, ByActivity(ANGLE), People("jogging_in_place", 45, 115), PERSONAL] = (
-        default_draw(uniform(60.0, 105.0))
-    )
-    """Largest flexion of the knees in jogging on the spot."""
-    variation: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0, 0.05), UNSTEADY] = (
-        default_draw(uniform(0.0, 0.03))
-    )
-    """Relative standard deviation of the time and of the speed of a runner's steps."""
 
 
 class PaperGaitConfig(Section, Generic[B]):
@@ -259,7 +225,10 @@ class SittingConfig(Section, Generic[B]):
     )
     """Height of the seated hip, relative to the stature."""
     lean_deg: Annotated[
-        B, ByActivity(ANGLE), People("sitting_down standing_up", 0, 60), PERSONAL
+        B,
+        ByActivity(ANGLE),
+        People("sitting_down standing_up lying_down getting_up_from_bed", 0, 60),
+        PERSONAL,
     ] = default_draw(normal(42.0, 8.0, 25.0, 58.0))
     """Forward pitch of the trunk while sitting down or rising."""
     recline_deg: Annotated[B, ByActivity(ANGLE), People(SEATS, -10, 45)] = default_draw(0.0)
@@ -311,6 +280,45 @@ class FallingConfig(Section, Generic[B]):
     that."""
 
 
+class LyingConfig(Section, Generic[B]):
+    """How people lie, on the floor or in bed, lie down, turn over and get up from bed."""
+
+    roll_deg: Annotated[B, ByActivity(ANGLE), People(LYING, -180, 180)] = default_draw(
+        Choice(choice=(0.0, 0.0, 0.0, 90.0, 90.0, -90.0, -90.0, 180.0))
+    )
+    """How who lies is turned: 0 on the back, 90 on the left side, -90 on the right, 180 on the
+    belly."""
+    turn_deg: Annotated[B, ByActivity(ANGLE), People("turning_over", -180, 180)] = default_draw(
+        Choice(choice=(90.0, -90.0, 180.0, -180.0))
+    )
+    """How far who turns over rolls, to the left or, below 0, to the right."""
+    bed: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("lying turning_over", 0, 1)] = (
+        default_draw(Choice(choice=(0.0, 1.0)))
+    )
+    """Whether who lies at first lies in bed: above 0.5 in bed, else on the floor."""
+    bed_height: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(LYING, 0.19, 0.3)] = (
+        default_draw(normal(0.25, 0.02, 0.2, 0.29))
+    )
+    """Height of the mattress under a person, relative to the stature."""
+    head_deg: Annotated[B, ByActivity(ANGLE), People("lying turning_over", -360, 360)] = (
+        default_draw(uniform(-180.0, 180.0))
+    )
+    """Direction of the head of who lies at first, from where people head (angle_deg)."""
+    hands: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(LYING, 0, 1)] = default_draw(
+        uniform(0.0, 1.0)
+    )
+    """Place of the hands of who lies on the back: 0 is beside the body, 1 on the belly."""
+
+
+class KneelingConfig(Section, Generic[B]):
+    """How people kneel."""
+
+    sit_back: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("kneeling kneeling_down", 0, 1)
+    ] = default_draw(Choice(choice=(0.0, 1.0)))
+    """How far who kneels sits back: 0 is upright on the knees, 1 on the heels."""
+
+
 class IdleConfig(Section, Generic[B]):
     """What people do who stand or sit."""
 
@@ -358,7 +366,6 @@ class MotionConfig(Section, Generic[B]):
     ] = default_draw(None)
     """Heading of people; 0 faces away from the radar, 180 faces it."""
     walking: WalkingConfig[B] = defaults_of(WalkingConfig)
-    running: RunningConfig[B] = defaults_of(RunningConfig)
     paper: PaperGaitConfig[B] = defaults_of(PaperGaitConfig)
     rotating: RotatingConfig[B] = defaults_of(RotatingConfig)
     striking: StrikingConfig[B] = defaults_of(StrikingConfig)
@@ -368,6 +375,8 @@ class MotionConfig(Section, Generic[B]):
     sitting: SittingConfig[B] = defaults_of(SittingConfig)
     transitions: TransitionsConfig[B] = defaults_of(TransitionsConfig)
     falling: FallingConfig[B] = defaults_of(FallingConfig)
+    lying: LyingConfig[B] = defaults_of(LyingConfig)
+    kneeling: KneelingConfig[B] = defaults_of(KneelingConfig)
     idle: IdleConfig[B] = defaults_of(IdleConfig)
 
 

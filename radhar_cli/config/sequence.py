@@ -10,8 +10,8 @@ from typing import Annotated, Any, ClassVar, Generic, NamedTuple, Protocol, Type
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
-from radhar_cli.activities.activity import MOVEMENTS, NOBODY
-from radhar_cli.activities.links import links_between
+from radhar_cli.activities.activity import MOVEMENTS, NOBODY, OR, state_after
+from radhar_cli.activities.links import links_to
 from radhar_cli.activities.vocabulary import advice_on, is_other_word, meaning_of
 from radhar_cli.config.number import NOT_NEGATIVE, SECONDS, Number, Share, support, value_error
 from radhar_cli.config.section import Flag, N, Section
@@ -191,7 +191,8 @@ def states_after(part: AnyPart, states: States, links: bool) -> States:
     if isinstance(part, str):
         for state, previous in states.items():
             _require_joined(part, state, previous, links)
-        return {MOVEMENTS[part].after: part}
+        befores = (_state_before(part, state) for state in states)
+        return {cast(str, state_after(part, before)): part for before in befores}
     inner = inner_parts(part)
     if isinstance(part, OptionalPart):
         return {**states_after(inner[0], states, links), **states}
@@ -216,19 +217,26 @@ def _states_after_any_order(parts: tuple[AnyPart, ...], states: States, links: b
     return reached[2 ** len(parts) - 1]
 
 
+def _state_before(name: str, state: str | None) -> str | None:
+    """State in which a movement begins that is joined, by links or not, to a state."""
+    for link in () if state is None else links_to(state, name) or ():
+        state = state_after(link, state)
+    return state
+
+
 def _require_joined(name: str, state: str | None, previous: str, links: bool) -> None:
     """Refuse a movement that does not begin in the state in which the one before it ends."""
-    before = MOVEMENTS[name].before
-    if state in (None, before):
+    if state is None or state_after(name, state) is not None:
         return
-    linked = links_between(state, before)
+    linked = links_to(state, name)
     if links and linked is not None:
         return
     cure = ""
     if not links and linked is not None:
         cure = f"; links: true would put {', '.join(linked)} between them"
+    begins = OR.join(MOVEMENTS[name].states)
     raise value_error(
-        f"should be joined at rest: {name} begins {before}, {previous} ends {state}{cure}"
+        f"should be joined at rest: {name} begins {begins}, {previous} ends {state}{cure}"
     )
 
 
@@ -287,9 +295,8 @@ class SequenceConfig(Section, Generic[N]):
         written = self.written
         if not self.links:
             return tuple(dict.fromkeys(written))
-        ends = sorted({MOVEMENTS[name].after for name in written})
-        begins = sorted({MOVEMENTS[name].before for name in written})
-        ways = (links_between(end, begin) or () for end in ends for begin in begins)
+        ends = sorted({end for name in written for end in MOVEMENTS[name].states.values()})
+        ways = (links_to(end, name) or () for end in ends for name in sorted(set(written)))
         return tuple(dict.fromkeys((*written, *(name for way in ways for name in way))))
 
     def draw_order(self, key: str, chance: Chance) -> tuple[int, ...]:
@@ -302,16 +309,16 @@ class SequenceConfig(Section, Generic[N]):
         labels = self.labels or ("",) * len(written)
         for place in range(len(written)) if self.order is None else self.order:
             name, pause = written[place], cast(float, self.pauses_s[place])
-            before = MOVEMENTS[name].before
             linking: tuple[str, ...] = ()
             if self.links and state is not None:
-                linking = links_between(state, before) or ()
+                linking = links_to(state, name) or ()
             for number, link in enumerate(linking, 1):
                 # Streams of links have numbers of their own beside those of the places.
                 yield SequenceStep(link, None, 0.0, "", MAX_MOVEMENTS * number + place)
             duration = cast(float | None, self.durations_s[place])
             yield SequenceStep(name, duration, pause, labels[place], place)
-            state = MOVEMENTS[name].after
+            for movement in (*linking, name):
+                state = state_after(movement, state)
 
     @field_validator("sequence", mode="before")
     @classmethod

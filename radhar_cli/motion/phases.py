@@ -28,6 +28,10 @@ PHASES = (
     "jumping",
     "raising",
     "stumbling",
+    "kneeling",
+    "getting down",
+    "lying down",
+    "turning over",
 )
 
 

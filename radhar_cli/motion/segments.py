@@ -199,14 +199,23 @@ def _add_points(points: dict[str, Float], scale: float, count: int) -> tuple[Flo
         knee, ankle = points.get(f"{side}_knee"), points.get(f"{side}_ankle")
         if knee is not None and ankle is not None:
             toes = points.get(f"{side}_toes")
-            foot = _foot(knee, ankle, across, scale) if toes is None else unit(toes - ankle)
+            foot = (
+                foot_direction(knee, ankle, across, scale) if toes is None else unit(toes - ankle)
+            )
             points[f"{side}_heel"] = ankle - HEEL * scale * foot
             points[f"{side}_toes"] = ankle + TOES * scale * foot
     return left, behind
 
 
-def _foot(knee: Float, ankle: Float, left: Float, scale: float) -> Float:
-    """Direction [3, M] from ankle to toes: at right angles to the shank, flat near the floor."""
+def foot_direction(knee: Float, ankle: Float, left: Float, scale: float) -> Float:
+    """Direction [3, M] from ankle to toes: at right angles to the shank, flat near the floor.
+
+    Args:
+        knee: Knee [3, M], m.
+        ankle: Ankle [3, M], m.
+        left: Unit vector from the right to the left hip joint [3, M].
+        scale: Stature over that of the reference.
+    """
     foot = soft_unit(cross(unit(ankle - knee), left))
     middle, width = 0.5 * (FLAT_BELOW + BENT_ABOVE) * scale, (BENT_ABOVE - FLAT_BELOW) * scale
     foot[2] *= 0.5 + 0.5 * np.tanh((ankle[2] - middle) / (0.24 * width))

@@ -74,7 +74,7 @@ FOREIGN = (
     "crossing_hands sneezing coughing staggering nausea fanning pushing patting_back pointing "
     "hugging giving shaking_hands snapping_fingers juggling tossing_coin whispering yawning "
     "stretching blowing_nose sweeping mopping cooking typing washing swinging grinning weaving "
-    "baking talking_on_phone lying sleeping knitting rowing skating skiing walling_off failing "
+    "baking talking_on_phone knitting rowing skating skiing walling_off failing "
     "filling stalking sitting_up racing fishing"
 )
 

@@ -84,6 +84,8 @@ def at_the_limits(rng: np.random.Generator) -> Config:
     document |= {"subject": {}, "motion": {"model": "human"}, "timing": {}}
     for key, (low, high) in HUMAN_LIMITS.items():
         section, _, name = key.rpartition(".")
+        if section in ("motion.lying", "motion.kneeling", "motion.crawling"):
+            continue  # of which the twelve have no use (motion/human/test_floor.py)
         if section and name != "walk_start_s":
             high = 4.0 if section == "timing" and high > 4 else high  # s, of a recording of 5 s
             at = rng.choice([low, high]) if rng.random() < 0.5 else rng.uniform(low, high)
@@ -519,7 +521,10 @@ def document(key: str, value: float) -> dict[str, Any]:
         "duration_s": 5.0,
         "radar": {"prf_hz": 500},
         "motion": {"model": "human"},
-        "classes": {"squats": {"sequence": ["squatting"]}, "trips": {"sequence": ["tripping"]}},
+        "classes": {
+            f"own_{name}": {"sequence": [name]}
+            for name in ("squatting", "tripping", "turning_over", "kneeling")
+        },
     }
     if key == "motion.walking.lane_start":  # which acts on lanes alone
         base["motion"]["walking"] = {"lane_m": 3.0}

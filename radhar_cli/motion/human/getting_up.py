@@ -73,18 +73,17 @@ class GetUp:
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         lying = _lying_posture(person, self.before)
         rest = resting_channels(person)
-        steps_of = self._over_knees if self.before in ON_BELLY else self._over_squat
+        steps_of = self.over_knees if self.before in ON_BELLY else self._over_squat
         steps = [
             *steps_of(person, lying, rest),
-            Step("standing", 1.0, 0.5, 0.5),
-            Step("upright", 1.0, 0.2, 0.8),
+            *standing_up_steps(lying),
         ]
         course = Course.of(lying, scale_steps(steps, begin, self.duration))
         end = begin + self.duration
         phases = (Phase(begin, "getting up"), Phase(end, "standing"))
         return Planted(person, course, begin, end, phases, self.before, STANDING)
 
-    def _over_knees(
+    def over_knees(
         self, person: Physique, lying: dict[str, float], rest: dict[str, float]
     ) -> list[Step]:
         """Steps from lying on the belly, over hands and knees, to standing."""
@@ -129,6 +128,11 @@ class GetUp:
         if lying["hands"]:
             steps.append(Step("hands", -1.0, 0.05, 0.35))
         return steps
+
+
+def standing_up_steps(lying: dict[str, float]) -> list[Step]:
+    """Steps in which the body begins to sway as it stands up, in units of the duration."""
+    return [Step("standing", 1.0, 0.5, 0.5), Step("upright", 1.0 - lying["upright"], 0.2, 0.8)]
 
 
 # How far people get who try to get up, by state: {channel: rad}.

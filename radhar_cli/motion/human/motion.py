@@ -13,15 +13,18 @@ from radhar_cli.motion import skeleton
 from radhar_cli.motion.human.exercises import Exercise
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.lying import Lying
 from radhar_cli.motion.human.part import LYING, SEATED, STANDING, Part, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted
-from radhar_cli.motion.human.pose import Pose
-from radhar_cli.motion.human.running import GoRunning
+from radhar_cli.motion.human.pose import Pose, feet
+from radhar_cli.motion.human.transfer import Transfer
 from radhar_cli.motion.human.walking import Walking
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Float
 
+HIPS, TOES = ("right_hip", "left_hip"), ("right_toes", "left_toes")
+KNOWS_TOES = (Lying, Transfer)  # parts that say where the toes are
 BLOCK = 4096  # instants at once: what a block needs stays in the cache
 
 
@@ -59,14 +62,19 @@ class HumanMotion:
 
     names = JOINTS
     parents = PARENTS
-    landmarks = (*JOINTS, "right_hip", "left_hip")
+
+    @cached_property
+    def landmarks(self) -> tuple[str, ...]:
+        """Names of joints and hip joints, and of the toes of who lies, whose feet do not stand."""
+        toes = any(isinstance(part, KNOWS_TOES) for part, _ in self.parts)
+        return (*JOINTS, *HIPS, *(TOES if toes else ()))
 
     @property
     def highest_frequency(self) -> float:
-        """Frequency that the fastest movement counts as, Hz: highest for kicks, exercises, runs."""
+        """Frequency that the fastest movement counts as, Hz: highest for kicks and exercises."""
         return (
             4.0
-            if any(isinstance(movement, Kick | Exercise | GoRunning) for movement in self.movements)
+            if any(isinstance(movement, Kick | Exercise) for movement in self.movements)
             else 3.0
         )
 
@@ -124,11 +132,16 @@ class HumanMotion:
         return self._gather(t, len(JOINTS), lambda pose, p: pose.joints(self.person, p))
 
     def landmark_positions(self, t: Float) -> Float:
-        """Positions [3, 15, M] (m) of the joints, then of the right and left hip joint."""
+        """Positions [3, len(landmarks), M] (m) of the joints, then of hip joints and toes."""
+        toes = self.landmarks[-len(TOES) :] == TOES
 
         def fill(pose: Pose, p: Float) -> None:
             pose.joints(self.person, p)
-            p[:, len(JOINTS) :] = pose.hip_joints
+            p[:, len(JOINTS) : len(JOINTS) + len(HIPS)] = pose.hip_joints
+            if toes:
+                p[:, -len(TOES) :] = pose.ankles + self.person.toes * (
+                    feet(self.person, pose) if pose.toes is None else pose.toes
+                )
 
         return self._gather(t, len(self.landmarks), fill)
 

@@ -7,6 +7,7 @@ from radhar_cli.motion.human.pose import Pose
 from radhar_cli.numerics.arrays import Float
 
 STANDING, SEATED, LYING = "standing", "seated", "lying"
+KNEELING, ON_FOURS = "kneeling", "on hands and knees"
 
 
 class Phase(NamedTuple):

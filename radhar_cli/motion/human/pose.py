@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.segments import REFERENCE_STATURE, foot_direction, unit
 from radhar_cli.numerics.arrays import Float
 
 SIDES = np.array([[-1.0], [1.0]])  # right, left: the sign of y
@@ -49,6 +50,7 @@ class Pose:
     upper_arms: Float
     forearms: Float
     breath: Float | float = 0.0  # distance of the torso ahead of its place, [M] or a number
+    toes: Float | None = None  # unit vectors from the ankles to the toes [3, 2, M], where known
 
     def at(self, x: Float, y: Float, heading: Float | None) -> "Pose":
         """Turn the pose to a heading [M] (rad), if there is one, and move it by x and y [M] (m)."""
@@ -88,6 +90,20 @@ def shoulder_points(person: Physique, hip: Float, trunk: Axes) -> Float:
     neck = hip + (person.trunk + person.shoulder) * trunk.up
     points: Float = neck[:, None] + person.shoulder * (SIDES * trunk.left[:, None])
     return points
+
+
+def feet(person: Physique, pose: Pose) -> Float:
+    """Directions [3, 2, M] from the ankles to the toes of feet at right angles to the shanks.
+
+    Near the floor they are flat on it, as in `radhar_cli.motion.segments`.
+    """
+    across = unit(pose.hip_joints[:, 1] - pose.hip_joints[:, 0])
+    scale = person.stature / REFERENCE_STATURE
+    both = (
+        foot_direction(pose.knees[:, side], pose.ankles[:, side], across, scale)
+        for side in range(2)
+    )
+    return np.stack(list(both), axis=1)
 
 
 def turned(v: Float, angle: Float) -> Float:

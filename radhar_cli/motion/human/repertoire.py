@@ -11,19 +11,20 @@ from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.kneeling import GetDown, Kneel
+from radhar_cli.motion.human.lying import Lie, TurnOver
 from radhar_cli.motion.human.motion import Movement
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.punching import Punch
-from radhar_cli.motion.human.running import GoRunning, RunningGait
-from radhar_cli.motion.human.sitting import SitDown, StandUp
+from radhar_cli.motion.human.sitting import Sit, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
 from radhar_cli.motion.human.stepping import STUMBLES, StepTo
+from radhar_cli.motion.human.transfer import GoToBed, LeaveBed
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 
 ON_HANDS = FallForward(prone=OnFours())
 ON_RISING = FallFromSeat(rising=0.9)
-RUNNING, ON_THE_SPOT = RunningGait(3.3), RunningGait(0.0)
 AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
 
 
@@ -40,8 +41,6 @@ class Repertoire:
     sit_down: SitDown = field(default_factory=SitDown)
     stand_up: StandUp = field(default_factory=StandUp)
     turn: Turn = field(default_factory=Turn)
-    run: RunningGait = RUNNING
-    jog: RunningGait = ON_THE_SPOT
     # in which direction people fall, and how
     fall: FallForward | FallBackward | FallSideways = field(default_factory=FallForward)
     fall_on_hands: FallForward | FallBackward | FallSideways = ON_HANDS
@@ -52,6 +51,13 @@ class Repertoire:
     get_up: GetUp = field(default_factory=GetUp)
     try_to_get_up: TryToGetUp = field(default_factory=TryToGetUp)
     turn_around: StepTo = AROUND
+    kneel: Kneel = field(default_factory=Kneel)
+    kneel_down: GetDown = field(default_factory=lambda: GetDown(Kneel()))
+    get_on_fours: GetDown = field(default_factory=GetDown)
+    lie: Lie = field(default_factory=Lie)
+    turn_over: TurnOver = field(default_factory=TurnOver)
+    go_to_bed: GoToBed = field(default_factory=GoToBed)
+    leave_bed: LeaveBed = field(default_factory=LeaveBed)
     # period of every exercise over the usual one; time and size of each repetition over the usual
     exercise_period: float = 1.0
     exercise_paces: tuple[float, ...] = ()
@@ -123,8 +129,6 @@ MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {
         person.turn, duration=duration, from_rest=True
     ),
     "walking": lambda person, duration: Walk(person.gait, duration),
-    "running": lambda person, duration: GoRunning(person.run, duration),
-    "jogging_in_place": lambda person, duration: GoRunning(person.jog, duration),
     "falling": lambda person, duration: person.fall,
     "falling_on_hands": lambda person, duration: person.fall_on_hands,
     "falling_off_seat": lambda person, duration: person.fall_off_seat,
@@ -134,6 +138,14 @@ MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {
     "getting_up": lambda person, duration: person.get_up,
     "trying_to_get_up": lambda person, duration: person.try_to_get_up,
     "turning_around": lambda person, duration: person.turn_around,
+    "sitting": lambda person, duration: Sit(duration, person.sit_down.seat),
+    "kneeling": lambda person, duration: replace(person.kneel, duration=duration),
+    "kneeling_down": lambda person, duration: person.kneel_down,
+    "getting_on_fours": lambda person, duration: person.get_on_fours,
+    "lying": lambda person, duration: replace(person.lie, duration=duration),
+    "turning_over": lambda person, duration: person.turn_over,
+    "lying_down": lambda person, duration: person.go_to_bed,
+    "getting_up_from_bed": lambda person, duration: person.leave_bed,
     **{
         name: lambda person, duration, name=name: person.exercise(name, duration)  # type: ignore[misc]
         for name in EXERCISES

@@ -5,7 +5,7 @@ through a posture on the way: Yamasaki et al., 2014.
 """
 
 from dataclasses import dataclass, field, replace
-from math import acos, cos, radians
+from math import acos, cos, inf, radians
 
 from radhar_cli.motion.human.minimum_jerk import Course, Lags, Step, mirrored
 from radhar_cli.motion.human.part import SEATED, STANDING, Phase
@@ -69,6 +69,18 @@ class Rise:
             *(to_rest(channel, 0.4, 0.5) for channel in (*SHOULDERS, *ELBOWS)),
             to_rest("standing", 0.3, 0.7),
         ]
+
+
+@dataclass(frozen=True)
+class Sit:
+    """Sits for `duration` s; trunk and arms sway and fidget."""
+
+    duration: float = inf
+    seat: Seat = field(default_factory=Seat)
+
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
+        course, phases = Course.of(self.seat.posture(person), ()), (Phase(begin, "seated"),)
+        return Planted(person, course, begin, begin + self.duration, phases, SEATED, SEATED)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Properties of every person and activity: stiff links, planted feet, a floor, no jumps."""
 
 from dataclasses import replace
-from math import inf
+from math import inf, pi
 
 import numpy as np
 import pytest
@@ -25,15 +25,18 @@ from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.kneeling import Kneel
 from radhar_cli.motion.human.lane import Lane, position_along_lane
+from radhar_cli.motion.human.lying import Lie, Rest, TurnOver
 from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.punching import Punch
-from radhar_cli.motion.human.sitting import Seat, SitDown, StandUp
+from radhar_cli.motion.human.sitting import Seat, Sit, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
 from radhar_cli.motion.human.stepping import STUMBLES, StepTo
+from radhar_cli.motion.human.transfer import GoToBed, LeaveBed, LieStill, RiseFromRest, Settle
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
@@ -70,6 +73,7 @@ GAITS = st.builds(
 )
 
 
+SOME, SLIDE = Physique(1.7), FallFromSeat(ahead=False)
 LEGS_LAG = Lags(0.6, {"shank": 1.0, "thigh": 0.7, "right_elbow": 0.4})
 TRUNK_LAGS = Lags(0.6, {"trunk": 1.0, "right_shoulder": 0.5, "left_elbow": 0.9})
 
@@ -82,6 +86,10 @@ def both_ways_up(lying: str) -> tuple[Movement, ...]:
 def and_up(fall: FallSideways) -> tuple[Movement, ...]:
     """The same of who has fallen to the side."""
     return fall, RiseFromSide(fall, tries=True), RiseFromSide(fall)
+
+
+BELLY = Rest(pi, 0.0)
+IN_BED = Rest(0.0, 0.22, 0.7, bed=True)
 
 
 def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
@@ -138,6 +146,26 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
             FallForward(),
             GetUp(),
             Grab(),
+        ),
+        "sits": (Sit(seat=Seat(recline=0.3)),),
+        "kneels": (Kneel(1.0),),
+        "lies": (Lie(Rest(0.4, 0.0, 1.0), head=0.7),),
+        "turns over": (TurnOver(Rest()), TurnOver(Rest(pi / 2)), TurnOver(BELLY, -pi, 3.0)),
+        "to bed and up": (
+            GoToBed(IN_BED),
+            TurnOver(IN_BED, -pi / 2),
+            LeaveBed(replace(IN_BED, roll=-pi / 2)),
+        ),
+        "falls and turns": (
+            FallForward(),
+            LieStill(FallForward(), 0.5),
+            Settle(FallForward(), -pi),
+        ),
+        "slides and turns": (SLIDE, Settle(SLIDE), RiseFromRest(Settle(SLIDE).rest(SOME), GetUp())),
+        "falls aside and turns": (
+            FallSideways(),
+            Settle(FallSideways()),
+            RiseFromRest(BELLY, GetUp()),
         ),
         **{
             name: (replace(EXERCISES[name], duration=3.0, sizes=(0.8, 1.1)),)

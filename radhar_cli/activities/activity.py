@@ -73,6 +73,8 @@ MOVEMENTS = {
         "lying", "standing", 3.0, also=(("kneeling", "standing"), ("on_fours", "standing"))
     ),
     "turning_around": MovementInfo("standing", "standing", 1.8),
+    "running": MovementInfo("standing", "standing", None),
+    "jogging_in_place": MovementInfo("standing", "standing", None),
     "sitting": MovementInfo("seated", "seated", None),
     "kneeling": MovementInfo("kneeling", "kneeling", None),
     "kneeling_down": MovementInfo("standing", "kneeling", 3.0),

@@ -35,6 +35,10 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("squat", "squats"), ("squatting",)),
     **dict.fromkeys(("jump", "jumps"), ("jumping",)),
     **dict.fromkeys(("jumping_jack", "star_jumps"), ("jumping_jacks",)),
+    **dict.fromkeys(("run", "jogging", "jog", "sprinting", "sprint"), ("running",)),
+    **dict.fromkeys(
+        ("running_in_place", "jog_in_place", "running_on_the_spot"), ("jogging_in_place",)
+    ),
     **dict.fromkeys(("stumble",), ("stumbling",)),
     **dict.fromkeys(("empty", "empty_room", "no_one", "no_person", "absent"), ("nobody",)),
     **dict.fromkeys(("trip",), ("tripping",)),
@@ -54,12 +58,6 @@ NEARBY: dict[str, tuple[str, ...]] = {
 UNKNOWN = frozenset(
     {
         *(
-            "running",
-            "run",
-            "jogging",
-            "jog",
-            "sprinting",
-            "sprint",
             "crawling",
             "crawl",
             "creeping",

@@ -13,6 +13,7 @@ import numpy as np
 
 from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.assembly.floor import draw_floor_movements, join_on_floor
+from radhar_cli.assembly.gaits import jogging_gait, running_gait
 from radhar_cli.config.motion import (
     FallName,
     Falls,
@@ -281,6 +282,8 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
             paces=_nonzero_tuple(paces),
             sizes=_nonzero_tuple(sizes),
         ),
+        run=running_gait(person, place),
+        jog=jogging_gait(person, place),
         fall=_fall(person, duration),
         fall_on_hands=_fall(person, duration, caught=True),
         fall_off_seat=_fall_off_seat(seat, person, 1.0 if duration is None else duration),

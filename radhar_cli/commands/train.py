@@ -39,7 +39,8 @@ def train(
         str | None,
         typer.Option(
             help="What to learn: classes (the activity of the main person), labels (the activities "
-            "of everybody), count (the number of people) or skeleton (joints in every frame)."
+            "of everybody), count (the number of people), person (who it is) or skeleton (joints "
+            "in every frame)."
         ),
     ] = None,
     init: Annotated[

@@ -36,6 +36,9 @@ FallName = Literal["forward", "backward", "sideways"]
 FALLS: tuple[FallName, ...] = FallName.__args__  # type: ignore[attr-defined]
 
 
+RUNS = "running jogging_in_place"
+
+
 SEATS = "sitting sitting_down standing_up falling_off_seat falling_on_rising"
 LYING = "lying turning_over lying_down getting_up_from_bed"
 
@@ -114,6 +117,39 @@ class WalkingConfig(Section, Generic[B]):
         default_draw(0.6)
     )
     """Strides in which a walker gains speed from rest."""
+
+
+class RunningConfig(Section, Generic[B]):
+    """How people run, and jog on the spot."""
+
+    speed_mps: Annotated[
+        B, ByActivity(NOT_NEGATIVE, SPEED), People("running", 1.0, 7.0), PERSONAL
+    ] = default_draw(normal(3.3, 0.7, 2.5, 6.0))
+    """Speed of a run."""
+    cadence: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0.85, 1.15), PERSONAL] = (
+        default_draw(normal(1.0, 0.05, 0.9, 1.1))
+    )
+    """Steps per second of a run, relative to the usual ones at its speed."""
+    trunk_pitch_deg: Annotated[B, ByActivity(ANGLE), People(RUNS, -5, 25), PERSONAL] = default_draw(
+        normal(7.0, 3.0, 1.0, 15.0)
+    )
+    """Forward pitch of a runner's trunk."""
+    arm_swing: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0, 1.6), PERSONAL] = (
+        default_draw(uniform(0.7, 1.3))
+    )
+    """Arm swing of a runner, relative to the usual one."""
+    elbow_deg: Annotated[B, ByActivity(ANGLE), People(RUNS, 40, 120), PERSONAL] = default_draw(
+        normal(90.0, 12.0, 65.0, 115.0)
+    )
+    """Mean flexion of a runner's elbows."""
+    knee_deg: Annotated[B, ByActivity(ANGLE), People("jogging_in_place", 45, 115), PERSONAL] = (
+        default_draw(uniform(60.0, 105.0))
+    )
+    """Largest flexion of the knees in jogging on the spot."""
+    variation: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0, 0.05), UNSTEADY] = (
+        default_draw(uniform(0.0, 0.03))
+    )
+    """Relative standard deviation of the time and of the speed of a runner's steps."""
 
 
 class PaperGaitConfig(Section, Generic[B]):
@@ -366,6 +402,7 @@ class MotionConfig(Section, Generic[B]):
     ] = default_draw(None)
     """Heading of people; 0 faces away from the radar, 180 faces it."""
     walking: WalkingConfig[B] = defaults_of(WalkingConfig)
+    running: RunningConfig[B] = defaults_of(RunningConfig)
     paper: PaperGaitConfig[B] = defaults_of(PaperGaitConfig)
     rotating: RotatingConfig[B] = defaults_of(RotatingConfig)
     striking: StrikingConfig[B] = defaults_of(StrikingConfig)

@@ -45,6 +45,7 @@ TASKS = {
     "classes": TaskChoice("radhar_cli.learning.tasks.classes:Classes"),
     "labels": TaskChoice("radhar_cli.learning.tasks.labels:Labels"),
     "count": TaskChoice("radhar_cli.learning.tasks.count:Count"),
+    "person": TaskChoice("radhar_cli.learning.tasks.person:Persons"),
     "skeleton": TaskChoice("radhar_cli.learning.tasks.skeleton:Skeleton", of_sequences=True),
 }
 

@@ -76,7 +76,7 @@ def open_for_model(
         )
     images = recolour(images, metadata.colours)
     if not labelled:
-        return images
+        return metadata.task.split_as_learned(images)
     images = metadata.task.match(images, metadata, names or {})
     return _with_split_of_training(images, metadata)
 

@@ -108,7 +108,7 @@ class TrainConfig(Section):
     """Network: smallnet, the paper's fftnet, any of timm's; of sequences framenet, cloudnet."""
     target: Target = "classes"
     """Target of learning. classes: the main person's class; labels: what anybody does; count: the
-    number of people; skeleton, of sequences: the joints in every frame."""
+    number of people; person: who it is; skeleton, of sequences: the joints in every frame."""
     map: str | None = None
     """Map that is learned from; null is the first one of the data set."""
     input: Literal["rgb", "gray"] = "rgb"

@@ -127,6 +127,7 @@ def _image_set(
         split=data.split,
         scene=objects(_scenes(data, slugs.tolist())),
         person=_persons(data),
+        recording=_recordings(data),
         activities=_activities(data),
     )
     return ImageSet(
@@ -152,13 +153,24 @@ def _activities(data: Dataset) -> Objects | None:
 
 
 def _persons(data: Dataset) -> Objects | None:
-    """Person of each row [N], or its recording where that names none; None if neither is known."""
+    """Person of each row [N], or its recording where that names none; None if neither is known.
+
+    The name of a person who was drawn has the seed of the data set: another draws other persons.
+    """
     if isinstance(data.config, MeasuredConfig):
         parts = (window.part for window in windows(data.config))
         return objects(f"file {p.file}" if p.person is None else p.person for p in parts)
     if data.config.split.subjects is None:
         return None
-    return objects(map(str, data.scene["subject"][:].tolist()))
+    seed = data.config.seed
+    return objects(f"person {n} (seed {seed})" for n in data.scene["subject"][:].tolist())
+
+
+def _recordings(data: Dataset) -> Objects | None:
+    """Recording that each row [N] is cut from; None where each is a recording of its own."""
+    if not isinstance(data.config, MeasuredConfig):
+        return None
+    return objects(f"file {window.part.file}" for window in windows(data.config))
 
 
 def _scenes(data: Dataset, slugs: list[str]) -> list[str]:

@@ -22,6 +22,7 @@ class SampleTable:
     split: Levels | None = None  # [N] 0 train, 1 validation, 2 test
     scene: Objects | None = None  # [N] fingerprint of person and motion, text
     person: Objects | None = None  # [N] text: who is seen, or the recording it was cut from
+    recording: Objects | None = None  # [N] text; None where each sample is a recording of its own
     # [N] tuples of the classes of all persons, the main person's first; None with one person each
     activities: Objects | None = None
 

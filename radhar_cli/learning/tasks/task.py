@@ -63,6 +63,14 @@ class Task(ABC):
         """Give images the classes of the task; those of the source unless it has others."""
         return images
 
+    def split_as_learned(self, images: ImageSet) -> ImageSet:
+        """Images with the split that the task learns with; their own unless it makes another.
+
+        Args:
+            images: the set, as it was opened.
+        """
+        return images
+
     def check_training(self, images: ImageSet, path: str) -> None:
         """Make sure that a set with a split can be learned from.
 

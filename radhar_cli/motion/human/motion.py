@@ -18,6 +18,7 @@ from radhar_cli.motion.human.part import LYING, SEATED, STANDING, Part, Phase, P
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted
 from radhar_cli.motion.human.pose import Pose, feet
+from radhar_cli.motion.human.running import GoRunning
 from radhar_cli.motion.human.transfer import Transfer
 from radhar_cli.motion.human.walking import Walking
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
@@ -71,10 +72,10 @@ class HumanMotion:
 
     @property
     def highest_frequency(self) -> float:
-        """Frequency that the fastest movement counts as, Hz: highest for kicks and exercises."""
+        """Frequency that the fastest movement counts as, Hz: highest for kicks, exercises, runs."""
         return (
             4.0
-            if any(isinstance(movement, Kick | Exercise) for movement in self.movements)
+            if any(isinstance(movement, Kick | Exercise | GoRunning) for movement in self.movements)
             else 3.0
         )
 

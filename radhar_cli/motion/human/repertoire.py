@@ -16,6 +16,7 @@ from radhar_cli.motion.human.lying import Lie, TurnOver
 from radhar_cli.motion.human.motion import Movement
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.punching import Punch
+from radhar_cli.motion.human.running import GoRunning, RunningGait
 from radhar_cli.motion.human.sitting import Sit, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
 from radhar_cli.motion.human.stepping import STUMBLES, StepTo
@@ -25,6 +26,7 @@ from radhar_cli.motion.human.walking import Gait, Walk
 
 ON_HANDS = FallForward(prone=OnFours())
 ON_RISING = FallFromSeat(rising=0.9)
+RUNNING, ON_THE_SPOT = RunningGait(3.3), RunningGait(0.0)
 AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
 
 
@@ -41,6 +43,8 @@ class Repertoire:
     sit_down: SitDown = field(default_factory=SitDown)
     stand_up: StandUp = field(default_factory=StandUp)
     turn: Turn = field(default_factory=Turn)
+    run: RunningGait = RUNNING
+    jog: RunningGait = ON_THE_SPOT
     # in which direction people fall, and how
     fall: FallForward | FallBackward | FallSideways = field(default_factory=FallForward)
     fall_on_hands: FallForward | FallBackward | FallSideways = ON_HANDS
@@ -129,6 +133,8 @@ MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {
         person.turn, duration=duration, from_rest=True
     ),
     "walking": lambda person, duration: Walk(person.gait, duration),
+    "running": lambda person, duration: GoRunning(person.run, duration),
+    "jogging_in_place": lambda person, duration: GoRunning(person.jog, duration),
     "falling": lambda person, duration: person.fall,
     "falling_on_hands": lambda person, duration: person.fall_on_hands,
     "falling_off_seat": lambda person, duration: person.fall_off_seat,

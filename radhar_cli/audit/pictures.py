@@ -176,39 +176,16 @@ def picture_evidence(
     cures = _SIMULATED_CURES if is_simulated else _MEASURED_CURES
     strength = f"{_RELATIVE if is_decibel else ''}{cures['strength']}"
     margins = [
-        Evidence(
-            EvidencePart.MARGINS, "first columns", first, cure=cures["onset"], may_be_movement=True
-        ),
-        Evidence(
-            EvidencePart.MARGINS, "last columns", last, cure=cures["onset"], may_be_movement=True
-        ),
-        Evidence(
-            EvidencePart.MARGINS,
-            "rows far from bodies",
-            far,
-            cure=strength,
-        ),
-        Evidence(
-            EvidencePart.MARGINS, "levels: mean, spread", level, cure=strength, may_be_movement=True
-        ),
-        Evidence(
-            EvidencePart.MARGINS,
-            "size: compressed, file, pixels",
-            size,
-            cure=cures["size"],
-            may_be_movement=True,
-        ),
+        _margin("first columns", first, cures["onset"]),
+        _margin("last columns", last, cures["onset"]),
+        Evidence(EvidencePart.MARGINS, "rows far from bodies", far, cure=strength),
+        _margin("levels: mean, spread", level, strength),
+        _margin("size: compressed, file, pixels", size, cures["size"]),
     ]
     everything = np.concatenate([evidence.values for evidence in margins], axis=1)
     return [
         *margins,
-        Evidence(
-            EvidencePart.MARGINS,
-            "all margins together",
-            everything,
-            cure="as above",
-            may_be_movement=True,
-        ),
+        _margin("all margins together", everything, "as above"),
         Evidence(EvidencePart.NOISE, "noise: its level", noise, cure=strength),
         Evidence(
             EvidencePart.NOISE,
@@ -218,6 +195,11 @@ def picture_evidence(
             leaves_out_missing=True,
         ),
     ]
+
+
+def _margin(name: str, values: Float, cure: str) -> Evidence:
+    """Evidence of a margin in which the movement itself may be seen."""
+    return Evidence(EvidencePart.MARGINS, name, values, cure=cure, may_be_movement=True)
 
 
 _RELATIVE = "levels are relative to each image's peak; "

@@ -10,6 +10,7 @@ configs/human/older.yaml do around falls, from their side.
 
 import argparse
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -28,7 +29,8 @@ OVERRIDES = (
     "motion.walking.lane_m={per_activity: {default: 0, S8: 3}}",
     "on_invalid=keep",
 )
-CELL, VIEW, PIXELS_PER_METRE = 150, 120, 52
+Size: TypeAlias = tuple[int, int, int]  # width and height of a view, px; pixels a metre
+SIZE: Size = (150, 120, 52)
 FRAMES_PER_SECOND, FRAMES = 10, 13
 # Movements, and the direction of the fall.
 FALLS = (
@@ -45,19 +47,20 @@ FALLS = (
 COLOURS = {"right": (200, 60, 60), "left": (60, 60, 200)}
 
 
-def stick_figure(p: Float, hips: Float, name: str) -> Image.Image:
+def stick_figure(p: Float, hips: Float, name: str, size: Size = SIZE) -> Image.Image:
     """Joints [3, 13] and hip joints [3, 2] in m, x ahead: from the side, and from ahead below."""
-    picture = Image.new("RGB", (CELL, 2 * VIEW), "white")
+    width, height, pixels_per_metre = size
+    picture = Image.new("RGB", (width, 2 * height), "white")
     draw = ImageDraw.Draw(picture)
     centre = p.mean(axis=1)
     for view, (axis, sign) in enumerate(((0, 1.0), (1, 1.0))):
-        floor = VIEW * (view + 1) - 8
+        floor = height * (view + 1) - 8
 
         def place(q: Float, axis: int = axis, sign: float = sign, floor: int = floor) -> Float:
-            across = CELL / 2 + sign * (q[axis] - centre[axis]) * PIXELS_PER_METRE
-            return np.stack([across, floor - q[2] * PIXELS_PER_METRE], axis=-1)
+            across = width / 2 + sign * (q[axis] - centre[axis]) * pixels_per_metre
+            return np.stack([across, floor - q[2] * pixels_per_metre], axis=-1)
 
-        draw.line([(0, floor), (CELL, floor)], fill=(190, 190, 190))
+        draw.line([(0, floor), (width, floor)], fill=(190, 190, 190))
         points, sockets = place(p), place(hips)
         for joint, parent in enumerate(PARENTS):
             if parent is None:
@@ -74,14 +77,15 @@ def stick_figure(p: Float, hips: Float, name: str) -> Image.Image:
     return picture
 
 
-def frames(motion: HumanMotion, times: Float, name: str) -> list[Image.Image]:
+def frames(motion: HumanMotion, times: Float, name: str, size: Size = SIZE) -> list[Image.Image]:
     """The figure at some times (s), x as it faces at first."""
     p, hips = motion.positions(times), motion.hip_joints(times)
     cos, sin = np.cos(motion.heading), np.sin(motion.heading)
     turn = np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1]])
     p, hips = (np.einsum("ab,bjm->ajm", turn, q) for q in (p, hips))
     return [
-        stick_figure(p[..., k], hips[..., k], f"{name}  {t:.1f} s") for k, t in enumerate(times)
+        stick_figure(p[..., k], hips[..., k], f"{name}  {t:.1f} s".strip(), size)
+        for k, t in enumerate(times)
     ]
 
 

@@ -167,6 +167,15 @@ class Person:
         return cast(TimingConfig[float], self.config.timing)
 
     @property
+    def place(self) -> tuple[float, float]:
+        """Range and cross-range (m) at which the person starts, or is at one instant."""
+        motion = self.motion
+        if motion.range_m is not None:
+            return motion.range_m, motion.cross_range_m or 0.0
+        aside = motion.cross_range_m
+        return motion.place.range_m, motion.place.cross_range_m if aside is None else aside
+
+    @property
     def prefix(self) -> str:
         """Prefix of the names of the person's random streams and keys."""
         return f"people.{self.number}." if self.number else ""
@@ -387,7 +396,8 @@ def _with_possible_overlap(config: Config, activity: Activity) -> Config:
     )
     largest = 0.0 if sideways else MAX_OVERLAP * getattr(timing, key)
     capped = {"timing.overlap_s": min(timing.overlap_s, largest)}
-    if key == "rise_duration_s" and timing.walk_start_s is not None:
+    starts = timing.rise_start_s, timing.walk_start_s
+    if key == "rise_duration_s" and None not in starts:
         earliest = timing.rise_start_s + timing.rise_duration_s - largest
         capped["timing.walk_start_s"] = max(timing.walk_start_s, earliest)
     return changed(config, capped)
@@ -508,8 +518,10 @@ def _fixed_and_drawn(same: ByIdentity, activity: Activity) -> tuple[Config, dict
     config = same.config.without_other_words().with_class_of(activity)
     drawn = dict[str, Any]()
 
-    def fix(key: str, number: Any) -> float:
+    def fix(key: str, number: Any) -> float | None:
         of_activity = for_activity(number, activity)
+        if of_activity is None:
+            return None
         if config.depends_on(activity, key) and not is_fixed(of_activity):
             drawn[key] = of_activity
         return nominal(of_activity)
@@ -542,7 +554,8 @@ def redrawn(config: Config, activity: Activity) -> Redrawn:
         return Redrawn.CHOICES
     if not drawn_again:
         return Redrawn.NOTHING
-    chosen = any(isinstance(one, Choice) for one in drawn_again)
+    lists = [one.choice for one in drawn_again if isinstance(one, Choice)]
+    chosen = any(isinstance(one, float) for choices in lists for one in choices)
     return Redrawn.CHOICES if chosen else Redrawn.NUMBERS
 
 

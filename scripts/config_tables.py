@@ -136,7 +136,7 @@ def _shown(value: Any) -> str:
         case Vary():
             return f"{as_text(value.vary[0])} +-{100 * value.vary[1]:g} %"
         case Choice():
-            return " or ".join(map(as_text, value.choice))
+            return " or ".join(map(_shown, value.choice))
         case tuple() | list():
             return f"[{', '.join(map(_shown, value))}]"
         case BaseModel():

@@ -39,7 +39,6 @@ PACKAGES = (
     "capture",
     "learning",
     "two_sample",
-    "audit",
     "tradeoff",
     "commands",
     "cli",
@@ -148,7 +147,7 @@ LIBRARIES: dict[str, set[str]] = {
     "yaml": {"config", "dataset", "commands"},
     "torch": {"learning"},
     "timm": {"learning"},
-    "sklearn": {"learning", "two_sample", "audit"},
+    "sklearn": {"learning", "two_sample"},
     "skimage": {"tradeoff"},
     "plotly": {"figures"},
 }

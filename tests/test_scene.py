@@ -175,7 +175,7 @@ def test_draws_follow_their_distribution() -> None:
         (
             "sitting_down",
             {"timing.seat_start_s"},
-            {"motion.sitting.seat_height", "timing.seat_start_s"},
+            {"motion.sitting.seat_height", "timing.onset"},
         ),
         ("walking_to_falling", {"timing.blend_s"}, {"timing.overlap_s"}),
     ],
@@ -184,7 +184,8 @@ def test_a_scene_holds_what_its_activity_uses(slug: str, paper: set[str], human:
     for model, some, others in (("paper", paper, human - paper), ("human", human, paper - human)):
         config = Config(motion={"model": model}, wall={})
         keys = set(scene_numbers(draw_scene(config, activity_named(slug), 0)))
-        assert some | {"motion.range_m", "motion.angle_deg", "wall.eps_r"} <= keys
+        place = "motion.range_m" if model == "paper" else "motion.place.range_m"
+        assert some | {place, "motion.angle_deg", "wall.eps_r"} <= keys
         assert not others & keys
         assert (
             ("motion.idle.fidget_hz" in keys) == ("subject.pulse_hz" in keys) == (model == "human")

@@ -70,7 +70,7 @@ def _paper_body(person: Person) -> PaperBody:
         activity=person.activity.slug,
         height=subject.height_m,
         weight=subject.weight_kg,
-        start=(motion.range_m, motion.cross_range_m),
+        start=person.place,
         angle=radians(motion.angle_deg),
         gait=PaperGait(
             frequency=motion.paper.gait_hz,

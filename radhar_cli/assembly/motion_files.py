@@ -1,10 +1,12 @@
 """Motion of a person whose class has motion files."""
 
 from collections import OrderedDict
+from dataclasses import replace
 from math import radians
 from pathlib import Path
 from typing import Any
 
+from radhar_cli.assembly.place import start_of
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import Clip, make_clip
@@ -43,11 +45,11 @@ def file_motion(person: Person) -> FileMotion:
     spare = end - begin - speed * seconds
     cycle = find_cycle(clip, begin, end) if files_config.past_end == "loop" and spare < 0 else None
     latest = cycle.period if cycle else max(0.0, spare)  # s after the beginning
-    return FileMotion(
+    motion = FileMotion(
         clip=clip,
         stature=person.subject.height_m,
         weight=person.subject.weight_kg,
-        start=(person.motion.range_m, person.motion.cross_range_m),
+        start=(0.0, 0.0),
         heading=radians(person.motion.angle_deg),
         seconds=seconds,
         begin=begin + numbers.start * latest,
@@ -56,6 +58,7 @@ def file_motion(person: Person) -> FileMotion:
         mirrored=numbers.mirror >= 0.5,
         cycle=cycle,
     )
+    return replace(motion, start=start_of(person, motion))
 
 
 def _cached_clip(files_config: FilesConfig, folder: Path, path: str, checksum: str) -> Clip:

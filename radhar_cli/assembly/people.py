@@ -4,16 +4,26 @@ Numbers come from the scene's config. What differs from one repetition, stride o
 comes from streams named by (seed, class, index) and in sizes of the config, 0 for none.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import ceil, inf, pi, radians
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
 from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.assembly.floor import draw_floor_movements, join_on_floor
 from radhar_cli.assembly.gaits import jogging_gait, running_gait
+from radhar_cli.assembly.onset import (
+    Bout,
+    bout_of,
+    bout_onset,
+    movement_onset,
+    rise_onset,
+    sequence_onset,
+    stop_onset,
+)
+from radhar_cli.assembly.place import start_of
 from radhar_cli.config.motion import (
     FallName,
     Falls,
@@ -77,6 +87,7 @@ STEP_LIFT = 0.06  # height of its foot, m
 # no step. People feel for the chair, and leave it.
 STEPS = {"sitting_down": (0.0, None), "standing_up": (None, 1.0), "grabbing": (0.8, 0.4)}
 RISING = ("sitting_to_walking", "falling_to_walking")
+STOPPING = ("walking_to_sitting", "walking_to_falling")
 SETTLING = 4  # number of fidgets around the end of such a movement
 # Gestures at a settling of size 1: channel, rad, whether after the movement's end or its beginning,
 # from when on and for how long, s. Who stands up rocks back first; what was picked up is looked at.
@@ -101,75 +112,123 @@ SHUFFLE_SIZES = Place(0.04, 0.03, radians(6))
 _SWAY_HZ = tuple(f * (0.9 + 0.2 * (k * GOLDEN % 1)) for k, f in enumerate(SWAY_HZ, 1))
 
 
+class _Plan(NamedTuple):
+    """What a person does, one movement after the other.
+
+    Attributes:
+        movements: movements in their order.
+        pauses: pause before each, s; those that are not given are 0.
+        begin: when the first begins, s.
+        onset: when that begins which the class is named by, s; None: with the first movement.
+    """
+
+    movements: tuple[Movement, ...]
+    pauses: tuple[float, ...] = ()
+    begin: float = 0.0
+    onset: float | None = None
+
+
 def human_motion(person: Person) -> HumanMotion:
-    """Motion of a person who does what the activity asks for."""
+    """Motion of a person who does what the activity asks for, where `motion` has them."""
     motion = person.motion
     physique = Physique(person.subject.height_m, weight=person.subject.weight_kg)
-    movements, pauses = _movements_and_pauses(person)
-    return HumanMotion(
+    plan = _plan(person, physique)
+    at_origin = HumanMotion(
         person=physique,
-        movements=movements,
-        start=(motion.range_m, motion.cross_range_m),
+        movements=plan.movements,
+        start=(0.0, 0.0),
         heading=radians(motion.angle_deg),
-        begin=_first_begin(person),
+        begin=plan.begin,
         horizon=person.seconds,
-        idle=_idle(person, physique, movements),
-        pauses=pauses,
+        idle=_idle(person, physique, plan),
+        pauses=plan.pauses,
+        onset=plan.begin if plan.onset is None else plan.onset,
     )
+    return at_origin.moved_to(start_of(person, at_origin))
 
 
-def _first_begin(person: Person) -> float:
-    """When the first movement begins, s; what repeats is under way at 0 s."""
-    timing, motion = person.timing, person.motion
-    starts: dict[str, float] = {
-        "grabbing": timing.grab_start_s,
-        "sitting_down": timing.seat_start_s,
-        "standing_up": timing.seat_start_s,
-        "sitting_to_walking": timing.rise_start_s,
-        "falling_to_walking": timing.rise_start_s,
-    }
+def _plan(person: Person, physique: Physique) -> _Plan:
+    """Plan what a person does, and when."""
+    slug = person.activity.slug
+    if slug in person.config.classes:
+        return _plan_sequence(person, physique)
+    if slug in STEPS:
+        return _plan_transition(person)
+    if slug in RISING:
+        return _plan_rise(person)
+    if slug in STOPPING:
+        return _plan_stop(person, physique)
+    return _plan_bout(person)
+
+
+def _plan_bout(person: Person) -> _Plan:
+    """Plan what lasts; what repeats and is under way at 0 s has its phase then."""
+    timing, motion, slug = person.timing, person.motion, person.activity.slug
+    bout = bout_of(person)
+    if slug == "stationary":
+        return _add_shuffles(person, _Plan((Stand(0.0),), onset=bout_onset(person)), 0.0)
+    if slug == "walking" and timing.walk_begin_s is not None:
+        bout = Bout(timing.walk_begin_s, inf, from_rest=True)
+    begin = bout.begin
     rates: dict[str, float] = {
         "punching": motion.striking.punch_hz,
         "kicking": motion.striking.kick_hz,
         "body_rotating": motion.rotating.rotation_hz,
     }
-    if timing.walk_begin_s is not None:
-        starts["walking"] = timing.walk_begin_s
-    slug = person.activity.slug
-    if slug in rates and (rate := rates[slug]):
-        phase: float = motion.repeating.cycle_phase % 1
-        return -phase / rate
-    return starts.get(slug, 0.0)
+    if not bout.from_rest and (rate := rates.get(slug)):
+        begin = -(motion.repeating.cycle_phase % 1) / rate
+    repertoire = _repertoire(person, None)
+    movement = repertoire.bout(slug, bout.end - begin, bout.from_rest)
+    onset = begin if bout.from_rest else bout_onset(person)
+    return _Plan((movement,), begin=begin, onset=onset)
 
 
-def _movements_and_pauses(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
-    """Movements of a person, and the pause before each, s."""
+def _plan_transition(person: Person) -> _Plan:
+    """Plan picking up, sitting down or standing up, with the steps before and after."""
     timing, slug = person.timing, person.activity.slug
-    if slug in person.config.classes:
-        return _sequence(person)
-    seconds = {
-        "sitting_down": timing.seat_duration_s,
-        "standing_up": timing.seat_duration_s,
-        "grabbing": timing.grab_duration_s,
-        "sitting_to_walking": timing.rise_duration_s,
-        "falling_to_walking": timing.rise_duration_s,
-        "walking_to_sitting": timing.sit_duration_s,
-        "walking_to_falling": timing.fall_duration_s,
-    }
-    duration = seconds.get(slug)
-    repertoire = _repertoire(person, None if duration is None else duration)
-    movements = repertoire.activity(person.activity.number)
-    if slug == "stationary":
-        return _add_shuffles(person, (Stand(0.0),), 0.0)
-    if slug in STEPS:
-        movements = _add_steps(person, movements)
-        rest_s = _time_of_rest(movements, _first_begin(person)) if slug == "grabbing" else inf
-        return _add_shuffles(person, movements, rest_s)
-    pause = -timing.overlap_s
-    if duration is not None and slug in RISING and timing.walk_start_s is not None:
-        risen = _first_begin(person) + duration
-        pause = timing.walk_start_s - risen
-    return movements, (0.0, pause) if len(movements) > 1 else ()
+    duration, start = timing.seat_duration_s, timing.seat_start_s
+    if slug == "grabbing":
+        duration, start = timing.grab_duration_s, timing.grab_start_s
+    movements = _repertoire(person, duration).activity(person.activity.number)
+    main = movements[0]
+    movements = _add_steps(person, movements)
+    if start is None:
+        before = _time_of_rest(movements[: movements.index(main)], 0.0)
+        onset = movement_onset(person, _time_of_rest((main,), 0.0))
+        plan = _Plan(movements, (), onset - before, onset)
+    else:
+        plan = _Plan(movements, (), start, start)
+    rest_s = _time_of_rest(movements, plan.begin) if slug == "grabbing" else inf
+    return _add_shuffles(person, plan, rest_s)
+
+
+def _plan_rise(person: Person) -> _Plan:
+    """Plan rising, and the walk after it."""
+    timing, duration = person.timing, person.timing.rise_duration_s
+    movements = _repertoire(person, duration).activity(person.activity.number)
+    begin = timing.rise_start_s
+    if begin is None:
+        begin = rise_onset(person, duration)
+    walk = begin + duration - timing.overlap_s
+    if timing.walk_start_s is not None:
+        walk = timing.walk_start_s
+    return _Plan(movements, (0.0, walk - (begin + duration)), begin, walk)
+
+
+def _plan_stop(person: Person, physique: Physique) -> _Plan:
+    """Plan a walk, and sitting down or falling after it."""
+    timing = person.timing
+    duration = timing.sit_duration_s
+    if person.activity.slug == "walking_to_falling":
+        duration = timing.fall_duration_s
+    begin, repertoire = 0.0, _repertoire(person, duration)
+    walk, second = repertoire.activity(person.activity.number)
+    onset = None
+    if timing.walk_stop_s is None:  # a walk that begins as long before
+        stopped = walk.part(physique, 0.0, person.seconds).end
+        onset = stop_onset(person, duration)
+        begin = onset + timing.overlap_s - stopped
+    return _Plan((walk, second), (0.0, -timing.overlap_s), begin, onset)
 
 
 def _add_steps(person: Person, movements: tuple[Movement, ...]) -> tuple[Movement, ...]:
@@ -195,24 +254,45 @@ def _time_of_rest(movements: Iterable[Movement], begin: float) -> float:
     return begin
 
 
-def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
-    """Movements of a class that is a sequence, and the pause before each, s."""
+def _plan_sequence(person: Person, physique: Physique) -> _Plan:
+    """Plan the movements of a class that is a sequence."""
     sequence = person.own_class
     assert isinstance(sequence, SequenceConfig)
-    movements, pauses = list[Movement](), list[float]()
-    for step in sequence.steps():
-        movements.append(_movement_of(person, step, movements))
-        pauses.append(step.pause)
-    return tuple(movements), tuple(pauses)
+    steps = tuple(sequence.steps())
+    if len(steps) == 1 and _duration_of(steps[0]) is None:
+        begin = bout_onset(person)
+        lasts = person.seconds if begin < 0 else inf
+        return _Plan(_movements_of(person, steps, lasts), (steps[0].pause,), begin)
+    plan = _Plan(_movements_of(person, steps), tuple(step.pause for step in steps))
+    from_zero = HumanMotion(
+        person=physique,
+        movements=plan.movements,
+        start=(0.0, 0.0),
+        heading=0.0,
+        begin=0.0,
+        horizon=person.seconds,
+        idle=_idle(person, physique, plan),
+        pauses=plan.pauses,
+    )
+    return plan._replace(begin=sequence_onset(person, steps, from_zero))
 
 
-def _movement_of(person: Person, step: SequenceStep, previous: list[Movement]) -> Movement:
-    """Movement of a step of a sequence, after the previous ones."""
-    usual = MOVEMENTS[step.name].seconds
-    duration = usual if step.duration is None else step.duration
-    repertoire = _repertoire(person, duration, step.place)
-    (movement,) = repertoire.sequence([step.name], [inf if duration is None else duration])
-    return join_on_floor(previous, movement)
+def _duration_of(step: SequenceStep) -> float | None:
+    """Duration of a step of a sequence, s; None for one that goes on."""
+    return MOVEMENTS[step.name].seconds if step.duration is None else step.duration
+
+
+def _movements_of(
+    person: Person, steps: Sequence[SequenceStep], going_on: float = inf
+) -> tuple[Movement, ...]:
+    """Movements of the steps of a sequence; what goes on does so for `going_on` s."""
+    movements = list[Movement]()
+    for step in steps:
+        duration = _duration_of(step)
+        repertoire = _repertoire(person, duration, step.place)
+        (movement,) = repertoire.sequence([step.name], [going_on if duration is None else duration])
+        movements.append(join_on_floor(movements, movement))
+    return tuple(movements)
 
 
 def _punch(striking: StrikingConfig[float], paces: Float, sizes: Float) -> Punch:
@@ -269,8 +349,7 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
     floor = draw_floor_movements(person, duration, rise)
     return Repertoire(
         gait=_gait(person, place),
-        walk=person.timing.walk_stop_s,
-        standing_first=person.timing.walk_begin_s is not None,
+        walk=person.seconds if person.timing.walk_stop_s is None else person.timing.walk_stop_s,
         punch=_punch(motion.striking, paces, sizes),
         kick=_kick(motion.striking, paces, sizes),
         grab=_grab(motion.grabbing, 2.5 if duration is None else duration, lags),
@@ -428,7 +507,7 @@ def _waves(
     return Waves.low_pass(deviation, tuple(phases % (2 * pi)), f) if deviation else Waves()
 
 
-def _idle(person: Person, physique: Physique, movements: tuple[Movement, ...]) -> Idle:
+def _idle(person: Person, physique: Physique, plan: _Plan) -> Idle:
     """Sway, breath and fidgets of a person."""
     subject = person.subject
     motion = person.motion
@@ -446,7 +525,7 @@ def _idle(person: Person, physique: Physique, movements: tuple[Movement, ...]) -
         pulse=pulse,
         pulse_phase=2 * pi * (pulse * idle_s % 1),
     )
-    return Idle(physique, sway, breath, (*_fidgets(person), *_settling_fidgets(person, movements)))
+    return Idle(physique, sway, breath, (*_fidgets(person), *_settling_fidgets(person, plan)))
 
 
 def _poisson_instants(person: Person, rate: float, name: str, start: float) -> list[float]:
@@ -467,12 +546,12 @@ def _fidgets(person: Person) -> Iterable[Fidget]:
         yield _draw_fidget(rng, motion.idle.fidget_size, start_s, (0.5, 1.8))
 
 
-def _settling_fidgets(person: Person, movements: tuple[Movement, ...]) -> Iterable[Fidget]:
+def _settling_fidgets(person: Person, plan: _Plan) -> Iterable[Fidget]:
     """Small movements around the end of S4 to S6."""
     motion, slug = person.motion, person.activity.slug
     if slug not in STEPS:
         return
-    begin = _first_begin(person)
+    begin, movements = plan.begin, plan.movements
     if size := motion.transitions.settle_size:
         rng = person.stream("motion.settle_size/fidgets")
         count = next(
@@ -496,14 +575,12 @@ def _draw_fidget(
     return Fidget(channel, float(target), start_s, float(rng.uniform(*lengths)))
 
 
-def _add_shuffles(
-    person: Person, movements: tuple[Movement, ...], rest_s: float
-) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
+def _add_shuffles(person: Person, plan: _Plan, rest_s: float) -> _Plan:
     """Put steps to other stances after movements that end standing at `rest_s`."""
     if rest_s == inf:
-        return movements, ()
+        return plan
     rng = person.stream("motion.shuffle_hz/places")
-    shuffles, pauses = [], []
+    shuffles, pauses = list[Movement](), list[float]()
     for start_s in _poisson_instants(
         person, person.motion.idle.shuffle_hz, "motion.shuffle_hz/times", rest_s
     ):
@@ -512,4 +589,5 @@ def _add_shuffles(
             shuffles.append(StepTo(SHUFFLE_S, place))
             pauses.append(start_s - rest_s)
             rest_s = start_s + SHUFFLE_S
-    return (*movements, *shuffles), (*[0.0] * len(movements), *pauses)
+    movements = (*plan.movements, *shuffles)
+    return plan._replace(movements=movements, pauses=(*[0.0] * len(plan.movements), *pauses))

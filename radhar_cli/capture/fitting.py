@@ -109,7 +109,8 @@ class Fit:
         if ranges.size:
             antennas = (nominal(defaults.tx_m[0]) + nominal(defaults.rx_m[0])) / 2
             low, high = (np.percentile(ranges, [5, 95]) + antennas).round(2).tolist()
-            document["motion"] = {"range_m": {"uniform": [low, high]} if high > low else low}
+            distance: Any = {"uniform": [low, high]} if high > low else low
+            document["motion"] = {"place": {"range_m": distance}}
         return document
 
 

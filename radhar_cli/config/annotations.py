@@ -153,6 +153,27 @@ class Unless:
 
 
 @dataclass(frozen=True)
+class ActsIfNull:
+    """The key acts only where another one is null, for some activities at least."""
+
+    key: str
+
+    def holds(self, value_at: ValueAt) -> bool:
+        """Whether the other key is null for an activity."""
+        value = value_at(self.key)
+        return value is None or "default" not in getattr(value, "per_activity", {"default": value})
+
+    def entry(self, value_at: ValueAt) -> str:
+        """The other key and its present value, as YAML."""
+        return entry(self.key, value_at(self.key))
+
+    @property
+    def right(self) -> str:
+        """What the other key would be, in words."""
+        return f"{self.key}: null"
+
+
+@dataclass(frozen=True)
 class OfRadar:
     """The key acts only with radars of some kinds."""
 
@@ -177,7 +198,7 @@ class OfRadar:
         return " or ".join((*words, *["radar.cfg"] * ("board" in self.kinds)))
 
 
-Condition: TypeAlias = ActsIf | ActsIfAny | Unless | OfRadar
+Condition: TypeAlias = ActsIf | ActsIfAny | ActsIfNull | Unless | OfRadar
 
 
 def entry(key: str, value: object) -> str:

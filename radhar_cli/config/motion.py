@@ -4,12 +4,12 @@ from typing import Annotated, Generic, Literal
 
 from pydantic import Field
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config.annotations import (
     ABOVE_ZERO,
     PERSONAL,
     UNSTEADY,
     ActsIf,
+    ActsIfNull,
     ByModel,
     Paper,
     People,
@@ -27,6 +27,7 @@ from radhar_cli.config.number import (
     normal,
     uniform,
     vary,
+    within,
 )
 from radhar_cli.config.section import B, ByActivity, Section, by_activity, default_draw, defaults_of
 
@@ -54,18 +55,8 @@ class Falls(Section):
         return tuple(sorted(self.choice, key=FALLS.index))
 
 
-# People face the radar, and in 6 s walk 8 m towards it: they start far enough away, all within its
-# half-band of 30 m. Classes of one's own may walk all the time.
-_NEARER = {a.slug: uniform(5, 8) if a.walks else uniform(2, 5) for a in ACTIVITIES}
-
-
-del _NEARER["walking"]
-
-
-_HUMAN_RANGE = by_activity(uniform(9.0, 12.0), **_NEARER)
-
-
-_FACING = uniform(150.0, 210.0)
+# Towards the radar as often as away from it, whatever people do; nominal ones face it.
+_HEADING = Choice(choice=(uniform(150.0, 210.0), uniform(-30.0, 30.0)))
 
 
 _GAIT = "S8 S9 S10 S11 S12"
@@ -376,6 +367,23 @@ class IdleConfig(Section, Generic[B]):
     """Time offset of sway, breathing, pulse and speed variation."""
 
 
+class PlaceConfig(Section, Generic[B]):
+    """Where people are at one instant of the recording, whatever they do.
+
+    Who walks is there on the way: the course goes through the place at an instant at which all of
+    it stays within what radar, wall and room allow, where there is one.
+    """
+
+    range_m: Annotated[B, ByActivity(COORDINATE)] = default_draw(uniform(2.0, 8.0))
+    """Range at which people are."""
+    cross_range_m: Annotated[B, ByActivity(COORDINATE), ActsIfNull("motion.cross_range_m")] = (
+        default_draw(uniform(-0.5, 0.5))
+    )
+    """Cross-range at which people are, positive to the left."""
+    instant: Annotated[B, ByActivity(within(0, 1))] = default_draw(uniform(0.0, 1.0))
+    """Which of the possible instants it is: 0 the earliest, 1 the latest."""
+
+
 class MotionConfig(Section, Generic[B]):
     """Where people stand, where they head and how they move, by movement and model of motion.
 
@@ -387,18 +395,21 @@ class MotionConfig(Section, Generic[B]):
     for motion files in every class (docs/guide/motion.md)."""
     folder: Annotated[str | None, Field(exclude=True, max_length=1000)] = None
     """Folder that paths of motion files are relative to; not part of a data set's identity."""
-    range_m: Annotated[
-        B,
-        ByActivity(COORDINATE, null=True),
-        ByModel(human=_HUMAN_RANGE, paper=uniform(1.0, 3.0), file=uniform(2.0, 4.0)),
-    ] = default_draw(None)
-    """Range at which people start: of the torso (paper), of the feet (human)."""
-    cross_range_m: Annotated[B, ByActivity(COORDINATE)] = default_draw(0.0)
-    """Cross-range at which people start, positive to the left."""
+    place: Annotated[PlaceConfig[B], ActsIfNull("motion.range_m")] = defaults_of(PlaceConfig)
+    range_m: Annotated[B, ByActivity(COORDINATE, null=True), ByModel(paper=uniform(1.0, 3.0))] = (
+        default_draw(None)
+    )
+    """Range at which people start: of the torso (paper), of the feet (human); null has people where
+    motion.place says."""
+    cross_range_m: Annotated[B, ByActivity(COORDINATE, null=True), ByModel(paper=0.0)] = (
+        default_draw(None)
+    )
+    """Cross-range at which people start, positive to the left; null is 0 where motion.range_m is
+    given, else motion.place."""
     angle_deg: Annotated[
         B,
         ByActivity(ANGLE, null=True),
-        ByModel(human=_FACING, paper=uniform(-30.0, 30.0), file=_FACING),
+        ByModel(human=_HEADING, paper=uniform(-30.0, 30.0), file=_HEADING),
     ] = default_draw(None)
     """Heading of people; 0 faces away from the radar, 180 faces it."""
     walking: WalkingConfig[B] = defaults_of(WalkingConfig)
@@ -423,10 +434,21 @@ class TimingConfig(Section, Generic[B]):
     What is null takes the value of the model.
     """
 
+    onset: Annotated[B, ByActivity(within(0, 1)), People("", 0, 1)] = default_draw(
+        uniform(0.0, 1.0)
+    )
+    """When people begin, before or during the recording: 0 is the earliest instant that leaves
+    enough of the movement to be seen, 1 the latest."""
+    visible: Annotated[B, ByActivity(within(0, 1)), People("", 0, 1)] = default_draw(0.75)
+    """Share of a movement that is seen at least; of the recording, for what lasts or is longer."""
     seat_start_s: Annotated[
-        B, ByActivity(NOT_NEGATIVE, SECONDS), People("S5 S6"), Paper("S5 S6")
-    ] = default_draw(0.5)
-    """When sitting down or standing up begins."""
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S5 S6"),
+        Paper("S5 S6"),
+        ByModel(paper=0.5),
+    ] = default_draw(None)
+    """When sitting down or standing up begins; null of people is by timing.onset."""
     seat_duration_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),
@@ -438,16 +460,22 @@ class TimingConfig(Section, Generic[B]):
         ),
     ] = default_draw(None)
     """Duration of sitting down or standing up."""
-    grab_start_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S4")] = default_draw(0.5)
-    """When picking up begins."""
+    grab_start_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS, null=True), People("S4")] = (
+        default_draw(None)
+    )
+    """When picking up begins; null is by timing.onset."""
     grab_duration_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S4", 1, 60)] = (
         default_draw(normal(2.5, 0.5, 1.6, 3.6))
     )
     """Duration of picking up, down and up together."""
     rise_start_s: Annotated[
-        B, ByActivity(NOT_NEGATIVE, SECONDS), People("S9 S11"), Paper("S9 S11")
-    ] = default_draw(0.5)
-    """When standing up or getting up before a walk begins."""
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S9 S11"),
+        Paper("S9 S11"),
+        ByModel(paper=0.5),
+    ] = default_draw(None)
+    """When standing up or getting up before a walk begins; null of people is by timing.onset."""
     rise_duration_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),
@@ -464,7 +492,7 @@ class TimingConfig(Section, Generic[B]):
     walk_begin_s: Annotated[
         B | None, ByActivity(NOT_NEGATIVE, SECONDS, null=True), People("S8", 0, 600)
     ] = default_draw(None)
-    """When the walk of S8 begins, after standing; null is a walk that is under way at 0 s."""
+    """When the walk of S8 begins, after standing; null is by timing.onset, before or after 0 s."""
     walk_start_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),
@@ -474,9 +502,14 @@ class TimingConfig(Section, Generic[B]):
     ] = default_draw(None)
     """When the walk after rising begins; null of people is when they have risen, less overlap_s."""
     walk_stop_s: Annotated[
-        B, ByActivity(NOT_NEGATIVE, SECONDS), People("S10 S12", 0.5, 600), Paper("S10 S12")
-    ] = default_draw(2.0)
-    """When the walk before sitting down or falling ends."""
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S10 S12", 0.5, 600),
+        Paper("S10 S12"),
+        ByModel(paper=2.0),
+    ] = default_draw(None)
+    """When the walk before sitting down or falling begins to end; null of people is by
+    timing.onset, which says when sitting down or falling begins."""
     sit_duration_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),

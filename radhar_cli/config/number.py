@@ -145,29 +145,6 @@ class Normal(Distribution):
         return min(max(mean + sd * z, low), high)
 
 
-class Choice(Distribution):
-    """``{choice: [a, b, c]}``: one of the values, equally likely."""
-
-    choice: tuple[Real, ...]
-
-    @model_validator(mode="after")
-    def _require_values(self) -> "Choice":
-        if not self.choice:  # Field(min_length=1) also complains where all values are wrong
-            raise value_error("should be {choice: [a, b, ...]} with 1 value or more")
-        return self
-
-    @property
-    def support(self) -> tuple[float, float]:
-        return min(self.choice), max(self.choice)
-
-    @property
-    def nominal(self) -> float:
-        return sorted(self.choice)[(len(self.choice) - 1) // 2]
-
-    def quantile(self, u: float) -> float:
-        return sorted(self.choice)[min(int(u * len(self.choice)), len(self.choice) - 1)]
-
-
 class Vary(Distribution):
     """``{vary: [nominal, fraction]}``: uniform within plus or minus a fraction of the nominal."""
 
@@ -187,6 +164,66 @@ class Vary(Distribution):
     @property
     def nominal(self) -> float:
         return self.vary[0]
+
+
+def _part_of_choice(value: Any) -> Any:
+    """Validate what a choice chooses from: a number, or another form of a distribution."""
+    if isinstance(value, Choice) or (isinstance(value, dict) and "choice" in value):
+        raise value_error("should choose from numbers and other distributions, not from a choice")
+    if isinstance(value, (dict, Distribution)):
+        return _number(value)
+    return _FIXED.validate_python(value)
+
+
+class _PartSchema:
+    """Pydantic schema of what a choice chooses from."""
+
+    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(_part_of_choice)
+
+    def __get_pydantic_json_schema__(
+        self, _: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        forms = [handler(kind.__pydantic_core_schema__) for kind in (Uniform, Normal, Vary)]
+        return {"anyOf": [{"type": "number"}, *forms]}
+
+
+class Choice(Distribution):
+    """``{choice: [a, b, c]}``: one of the values, equally likely.
+
+    Some of them, or all, may be distributions: ``{choice: [{uniform: [-30, 30]}, 180]}``. The
+    nominal value is then that of the first one.
+    """
+
+    choice: tuple[Annotated[float | Uniform | Normal | Vary, _PartSchema()], ...]
+
+    @model_validator(mode="after")
+    def _require_values(self) -> "Choice":
+        if not self.choice:  # Field(min_length=1) also complains where all values are wrong
+            raise value_error("should be {choice: [a, b, ...]} with 1 value or more")
+        return self
+
+    @property
+    def support(self) -> tuple[float, float]:
+        ends = [support(part) for part in self.choice]
+        return min(low for low, _ in ends), max(high for _, high in ends)
+
+    @property
+    def nominal(self) -> float:
+        if any(isinstance(part, Distribution) for part in self.choice):
+            return nominal(self.choice[0])
+        return nominal(self._ordered[(len(self.choice) - 1) // 2])
+
+    @property
+    def _ordered(self) -> tuple[float | Uniform | Normal | Vary, ...]:
+        """The values and distributions by their middle, whichever was written first."""
+        return tuple(sorted(self.choice, key=nominal))
+
+    def quantile(self, u: float) -> float:
+        """Value of the part in which u lies, at its place there; parts are ordered by middle."""
+        place = u * len(self.choice)
+        number = min(int(place), len(self.choice) - 1)
+        return quantile(self._ordered[number], min(place - number, 1.0))
 
 
 def uniform(low: float, high: float) -> Uniform:

@@ -111,7 +111,8 @@ class PersonConfig(Section):
     """Share of the scenes in which the person is there."""
     subject: SubjectConfig = defaults_of(SubjectConfig)
     motion: MotionConfig = defaults_of(MotionConfig)
-    """Motion of the person; its `cross_range_m` is -1.5 to 1.5 unless given."""
+    """Motion of the person; `cross_range_m` of it, or of its `place`, is -1.5 to 1.5 unless
+    given."""
     timing: TimingConfig = defaults_of(TimingConfig)
     classes: dict[str, ClassConfig] | None = None
     """Drawn numbers of a class of one's own, filled in for a scene."""

@@ -266,9 +266,12 @@ class Request(Section):
 
     def _filled_person(self, number: int) -> PersonConfig:
         filled, person = self.of_person(number).filled(), self.people[number - 1]
-        motion = filled.motion
-        if "cross_range_m" not in person.motion.model_fields_set:
-            motion = motion.model_copy(update={"cross_range_m": uniform(-1.5, 1.5)})
+        motion, aside = filled.motion, uniform(-1.5, 1.5)
+        if motion.range_m is not None and motion.cross_range_m is None:
+            motion = motion.model_copy(update={"cross_range_m": aside})
+        elif "cross_range_m" not in person.motion.place.model_fields_set:
+            place = motion.place.model_copy(update={"cross_range_m": aside})
+            motion = motion.model_copy(update={"place": place})
         changed = {"motion": motion, "timing": filled.timing, "activity": self._doing_of(number)}
         return person.model_copy(update=changed)
 
@@ -324,6 +327,8 @@ class Request(Section):
             return False
         if key.startswith("classes."):
             return key.startswith(f"classes.{activity.slug}.")
+        if key.startswith("motion.place.") and not self._has_place(activity, key):
+            return False
         uses = _uses().get(key)
         if uses is None or activity.motion is not None:
             return uses is None or key in activity.uses
@@ -331,6 +336,11 @@ class Request(Section):
         if names is None or self.files_of(activity) is not None:
             return False
         return not names or not names.isdisjoint((activity.label, *activity.movements))
+
+    def _has_place(self, activity: Activity, key: str) -> bool:
+        """Whether people who do this are where a key of `motion.place` says, not at a start."""
+        start = ["range_m"] + ["cross_range_m"] * key.endswith(".cross_range_m")
+        return all(for_activity(getattr(self.motion, name), activity) is None for name in start)
 
     def users_of(self, key: str) -> tuple[str, ...]:
         """Movements and activities that use the number of a dotted key under the model of motion.
@@ -451,8 +461,8 @@ def _missing_defaults(c: Request) -> dict[str, dict[str, Any]]:
                 numbers = {**usual.per_activity, **value.per_activity}
             elif usual is not None:
                 numbers = {DEFAULT: usual, **value.per_activity}
-            else:  # of no use to this model
-                numbers = {DEFAULT: next(iter(value.per_activity.values())), **value.per_activity}
+            else:  # the others have none
+                continue
             changed.setdefault(name, {})[key] = PerActivity(numbers)
     return changed
 

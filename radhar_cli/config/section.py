@@ -175,10 +175,10 @@ def by_activity(default: Number, **others: Number) -> PerActivity[Number]:
 
 
 def for_activity(value: Any, activity: Activity) -> Any:
-    """Return the number that holds for one activity."""
+    """Return the number that holds for one activity; None where it has none and no default."""
     if isinstance(value, PerActivity):
         numbers = value.per_activity
-        return numbers[activity.slug if activity.slug in numbers else DEFAULT]
+        return numbers.get(activity.slug, numbers.get(DEFAULT))
     return value
 
 

@@ -180,6 +180,7 @@ def of_board(cfg: str, folder: Path) -> str:
     position = "" if board.pose else ", position_m: [0, 0, 1]"
     range_step = SPEED_OF_LIGHT * board.adc_rate_hz / (2 * board.slope_hz)
     speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.slot_s * len(board.order))
+    nearest, farthest = min(1.5, range_step / 3), min(3.0, range_step / 1.5)
     antennas = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
     return f"""# {antennas}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
 # ranges to {range_step:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
@@ -187,7 +188,7 @@ radar: {{device: {device}, cfg: {json.dumps(path)}{position}}}
 samples_per_class: 20
 activities: [punching, kicking, grabbing, sitting_down, standing_up]
 duration_s: {max(3.0, 2 * board.period_s):g}
-motion: {{range_m: {{uniform: [{min(1.5, range_step / 3):.2g}, {min(3.0, range_step / 1.5):.2g}]}}}}
+motion: {{place: {{range_m: {{uniform: [{nearest:.2g}, {farthest:.2g}]}}}}}}
 body: {{scatterers: surfaces}}
 cloud: {{chain: {chain}}}  # board: as the firmware makes points; best: fewer, finer ones
 maps: [{maps}]

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from radhar_cli.assembly.motion import moving
 from radhar_cli.config.data_set import AnyConfig, MeasuredConfig
 from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.room import FacesConfig
@@ -42,6 +43,8 @@ PREFIXES |= {f"room.faces.{name}": name for name in FacesConfig.model_fields}
 LISTS = {"room.reflectors": "reflector", "receiver.tones": "tone", "wall.layers": "layer"}
 # Lists of places, whose axes are (left, up).
 PLACES = {"radar.array.tx": "array_tx", "radar.array.rx": "array_rx"}
+# When that begins which the class is named by: follows from timing.onset and what the person does.
+ONSET = Field("movement_onset_s", "movement_onset", "s", 1.0)
 # The one number of a scene that is measured, not drawn.
 ERROR = Field("error_db", "error_db", "dB", 1.0)
 
@@ -57,7 +60,8 @@ RECORDED = (
 def fields(config: AnyConfig) -> tuple[Field, ...]:
     """List every number that any scene of a config depends on, in the order of the schema.
 
-    Last comes the measured error of the direct engine, where it is at work.
+    Then comes when the movement begins, and last the measured error of the direct engine, where
+    there are such.
     """
     if isinstance(config, MeasuredConfig):
         return RECORDED
@@ -67,8 +71,9 @@ def fields(config: AnyConfig) -> tuple[Field, ...]:
     if "subject.weight_kg" not in keys:
         keys.insert(keys.index("subject.height_m") + 1, "subject.weight_kg")
     keys += keys_of_people(config)
+    onset = (ONSET,) if "timing.onset" in keys else ()
     measured = (ERROR,) if config.has_error else ()
-    return (*_make_names_unique([_field(key) for key in keys]), *measured)
+    return (*_make_names_unique([_field(key) for key in keys]), *onset, *measured)
 
 
 def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> Float:
@@ -79,13 +84,25 @@ def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> F
         columns: the fields.
         error_db: measured error of the direct engine, for the field ERROR.
     """
-    return np.array([error_db if f is ERROR else number_at(scene, f.key) for f in columns])
+    known = {ERROR.key: error_db}
+    if ONSET in columns:
+        known[ONSET.key] = movement_onset(scene)
+    return np.array([known[f.key] if f.key in known else number_at(scene, f.key) for f in columns])
+
+
+def movement_onset(scene: Scene) -> float:
+    """When that begins which a scene's class is named by, s; NaN where no model says so.
+
+    It is below 0 where the movement is under way as the recording begins.
+    """
+    onset = getattr(moving(scene.people[0]), "onset", None)
+    return nan if onset is None else float(onset)
 
 
 def _make_names_unique(columns: list[Field]) -> list[Field]:
     """Give longer names to columns whose names are taken or alike; return all columns."""
     for longer in (_name_with_section, lambda field: field.key):
-        counts = Counter([ERROR.name, *TAKEN, *(field.name for field in columns)])
+        counts = Counter([ERROR.name, ONSET.name, *TAKEN, *(field.name for field in columns)])
         columns = [
             field._replace(name=longer(field)) if counts[field.name] > 1 else field
             for field in columns

@@ -21,7 +21,7 @@ MAX_ATTEMPTS = 1000
 # Draws after which there are no more where none comes near, without and with lists to choose from.
 FAR_DRAWS, FAR_CHOICES = 50, 200
 TORSOS_APART_M = 0.5
-CROWDED = "their motion.range_m and motion.cross_range_m should leave room"
+CROWDED = "their motion.place, or motion.range_m and cross_range_m, should leave room"
 # Draws after which `is_hopeless` looks at them, by what is redrawn.
 DRAWS_OF = {Redrawn.NOTHING: 1, Redrawn.NUMBERS: FAR_DRAWS, Redrawn.CHOICES: FAR_CHOICES}
 
@@ -154,10 +154,14 @@ def _key_prefix(person: Person) -> str:
 
 def _describe_place(person: Person) -> str:
     """Describe where a person was drawn, as the end of a sentence."""
-    prefix = _key_prefix(person)
-    numbers = {key: getattr(person.motion, key) for key in ("range_m", "cross_range_m")}
-    keys = (f"{prefix}motion.{key} = {x:.4g}" for key, x in numbers.items() if x is not None)
-    return f", with {', '.join(keys)}"
+    section = f"{_key_prefix(person)}motion.{_place_section(person)}"
+    keys = zip(("range_m", "cross_range_m"), person.place, strict=True)
+    return f", with {', '.join(f'{section}{key} = {x:.4g}' for key, x in keys)}"
+
+
+def _place_section(person: Person) -> str:
+    """Section of `motion` that says where a person is, with a dot; "" for `motion` itself."""
+    return "place." if person.motion.range_m is None else ""
 
 
 def describe_crowd(number: int) -> str:
@@ -167,8 +171,8 @@ def describe_crowd(number: int) -> str:
 
 def _suggest_room(person: Person, check: SceneCheck) -> str:
     """Say what would give one of the people room to move."""
-    prefix = _key_prefix(person)
-    keys = f"{prefix}motion.range_m and {prefix}motion.cross_range_m"
+    prefix, section = _key_prefix(person), f"motion.{_place_section(person)}"
+    keys = f"{prefix}{section}range_m and {prefix}{section}cross_range_m"
     if not check.outside[1]:
         return f"{keys} should leave room"
     human = person.number or person.config.motion.model == "human"
@@ -185,12 +189,13 @@ def suggest_cure(person: Person, check: SceneCheck) -> str:
     if check.too_close and check.closest.joint.startswith("reflector "):
         return "room.reflectors should be elsewhere"
     is_board = isinstance(config.radar, BoardRadar)
+    range_key = f"motion.{_place_section(person)}range_m"
     if check.flags & Flags.HALF_BAND and is_board and not check.too_close:
-        return "a smaller motion.range_m stays in the range that the board's .cfg sees"
+        return f"a smaller {range_key} stays in the range that the board's .cfg sees"
     if config.on_invalid == "redraw" and check.flags & Flags.HALF_BAND and not check.too_close:
         impulse = isinstance(config.radar, ImpulseRadar)
         longer = "radar.profile_m that ends later" if impulse else "smaller radar.bandwidth_hz"
-        return f"a {longer} reaches farther, a smaller motion.range_m leaves room"
+        return f"a {longer} reaches farther, a smaller {range_key} leaves room"
     if config.on_invalid == "redraw":
-        return "motion.range_m and motion.angle_deg should leave people room"
+        return f"{range_key} and motion.angle_deg should leave people room"
     return "on_invalid: redraw draws such scenes again"

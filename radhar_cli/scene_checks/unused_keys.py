@@ -33,6 +33,8 @@ def unused_keys(config: Config) -> list[str]:
     without = {"recordings": "the scenes of a config; it needs radhar generate --recordings"}
     without |= dict(_of_nobody(config, config.chosen_activities, config.activities))
     without |= dict([*_of_other_maps(config), *_without_condition(config)])
+    if fixed or "range_limits_m" not in config.image.model_fields_set:
+        without.pop("image.range_limits_m", None)  # which follows from where people can be
     lines = _describe_unused(config, without, same)
     lines += _describe_idle_entries(config, config.chosen_activities, config.activities)
     for number, person in enumerate(config.people, 1):

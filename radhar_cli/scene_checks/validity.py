@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.assembly.motion import body_of, moving
+from radhar_cli.assembly.place import distance_ahead
 from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import box_of, reflectors_of, wall_of
 from radhar_cli.bodies.motion_paths import point_delay, through_wall_delay
@@ -27,7 +28,6 @@ from radhar_cli.scene_checks.sweep import sweep_shift
 
 MIN_DISTANCE_M = 0.05
 HEAD_M = 0.2  # from the highest joint to the top of the head
-LOOKS_AHEAD = 0.5  # least horizontal share of the boresight of a radar that has a behind
 REACH_M = 1.0  # distance of a segment's surface from its joints, at most
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 CHUNK = 65536
@@ -196,7 +196,7 @@ class _Findings:
             self.flags |= Flags.FLOOR
         if _meets_antenna(torso, p[2].max(axis=0), around.antennas):
             self.flags |= Flags.RADAR
-        self.torso_ahead.append(_distance_ahead(torso, around.antennas))
+        self.torso_ahead.append(distance_ahead(torso, around.antennas))
         if around.box is not None:
             self.outside = max(self.outside, around.box.farthest_outside(p))
         if around.wall is not None:
@@ -282,19 +282,6 @@ def _meets_antenna(torso: Float, top: Float, antennas: Antennas) -> bool:
         if (is_near & (top + HEAD_M > z)).any():
             return True
     return False
-
-
-def _distance_ahead(torso: Float, antennas: Antennas) -> Float:
-    """How far a torso [3, M] is before the hindmost antenna [M], m; 1 where a radar looks down.
-
-    Antennas without a pattern look along x.
-    """
-    forward = np.array(antennas.aim.axes[0] if antennas.aim else (1.0, 0.0, 0.0))[:2]
-    if np.hypot(*forward) < LOOKS_AHEAD:
-        return np.ones(torso.shape[1])
-    hindmost = min(forward @ np.array(place)[:2] for place in antennas.places)
-    ahead: Float = forward @ torso[:2] - hindmost
-    return ahead
 
 
 def _refine_nearest(

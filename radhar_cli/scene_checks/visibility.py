@@ -154,8 +154,8 @@ def _window_pulses(scene: Scene, w: Waveform) -> int:
 
 def _losses_db(scene: Scene) -> dict[str, float]:
     """What wall and beam take of a scene's echo, both ways, dB."""
-    antennas, motion = antennas_of(scene), scene.people[0].motion
-    p = np.array([motion.range_m or 0.0, motion.cross_range_m or 0.0, 1.0])[:, None, None]
+    antennas, person = antennas_of(scene), scene.people[0]
+    p = np.array([*person.place, 1.0])[:, None, None]
     left = antennas.field(p)
     pattern = 1.0 if left is None else float(left.max())
     return {"the wall": _wall_loss_db(scene), "the beam": -20 * log10(max(pattern, TINY))}
@@ -163,8 +163,8 @@ def _losses_db(scene: Scene) -> dict[str, float]:
 
 def _thermal_snr_db(scene: Scene) -> float:
     """SNR of a raw sample of 1 m^2 where people begin, in free space and thermal noise, dB."""
-    antennas, motion, w = antennas_of(scene), scene.people[0].motion, waveform_of(scene)
-    p = np.array([motion.range_m or 0.0, motion.cross_range_m or 0.0, 1.0])[:, None, None]
+    antennas, person, w = antennas_of(scene), scene.people[0], waveform_of(scene)
+    p = np.array([*person.place, 1.0])[:, None, None]
     legs = leg(p, antennas.tx), leg(p, antennas.rx)
     echo = amplitude(*legs, np.ones((1, 1)), antennas.gain, w.wavelength)
     sigma = noise_law_of(scene.config).sigma(0.0, w.sample_rate)

@@ -88,8 +88,8 @@ def _folding_warnings(config: Config) -> list[str]:
     farthest, reach = 0.0, 0.0
     for activity in config.chosen_activities:
         scene = nominal_scene(config, activity)
-        antennas, motion = antennas_of(scene), scene.people[0].motion
-        p = np.array([motion.range_m or 0.0, motion.cross_range_m or 0.0, 1.0])[:, None, None]
+        antennas, person = antennas_of(scene), scene.people[0]
+        p = np.array([*person.place, 1.0])[:, None, None]
         for tx, rx in ways_of(scene):
             both_legs = leg(tx.image(p), antennas.tx) + leg(rx.image(p), antennas.rx)
             farthest = max(farthest, float(both_legs[0, 0]) / 2)

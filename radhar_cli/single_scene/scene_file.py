@@ -117,6 +117,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
             "range_step_m": waveform.range_step,
             "half_band_range_m": waveform.half_band_range,
             "highest_speed_mps": waveform.highest_speed,
+            "movement_onset_s": getattr(simulation.motion, "onset", None),
         },
         "warnings": simulation.warnings,
         "entropy_bits": {name: power_map.entropy for name, power_map in simulation.maps.items()},

@@ -145,14 +145,14 @@ def test_people_step_to_the_chair_and_away_from_it(
     slug: str, before: float | None, after: float | None
 ) -> None:
     """Backwards before they sit down, ahead after they have stood up, around what they pick up."""
-    config = people({"step_m": 0.3, "shuffle_hz": 0.0, "angle_deg": 0})
+    config = people({"step_m": 0.3, "shuffle_hz": 0.0, "angle_deg": 0}, timing={"visible": 1})
     ways = set()
     for index in range(8):
         scene = draw_scene(config, activity_named(slug), index)
         motion = moving(scene)
         names = [name for _, name in motion.phases]
         assert names.count("stepping") == (2 if slug == "grabbing" else 1)
-        at = np.array([0.0, motion.parts[-1][0].begin, motion.parts[-1][0].end])
+        at = np.array([-9.0, motion.parts[-1][0].begin, motion.parts[-1][0].end])
         ankles = motion.positions(at)[:, ANKLES].mean(axis=1)
         ways |= {round(float(x), 9) for x in ankles[0, 1:] - ankles[0, 0]}
         assert np.abs(ankles[1] - ankles[1, 0]).max() < 0.13
@@ -175,7 +175,8 @@ def test_joints_lead_and_lag_out_of_step_and_no_movement_takes_longer() -> None:
     t, leads = np.arange(0, 6, 0.01), []
     for joint_lag in (0.0, 0.4):
         for index in range(4):
-            config = people(QUIET | {"joint_lag": joint_lag}, timing={"grab_duration_s": 2.0})
+            timing = {"grab_duration_s": 2.0, "grab_start_s": 0.5}
+            config = people(QUIET | {"joint_lag": joint_lag}, timing=timing)
             motion = moving(draw_scene(config, activity_named("grabbing"), index))
             part = motion.parts[0][0]
             course = dict(zip(part.course.channels, part.course(t), strict=True))
@@ -419,7 +420,7 @@ def test_a_sequence_is_a_class_of_its_own() -> None:
     names = [name for _, name in moving(scene).phases]
     assert names == ["standing", "walking", "sitting down", "seated", "standing up", "standing"]
     starts = [start for start, _ in moving(scene).phases]
-    assert starts[1] == 0.3
+    assert starts[1] - moving(scene).begin == pytest.approx(0.3)
     assert starts[4] - starts[3] == pytest.approx(paused)
     assert_a_body(moving(scene), np.arange(0, 6, 0.02))
 
@@ -556,14 +557,17 @@ def test_nominal_scenes_have_no_warnings(name: str) -> None:
 
 
 @pytest.mark.parametrize("wall", [None, {}])
-def test_people_face_the_radar_by_default_and_keep_clear_of_it(wall: object) -> None:
+def test_people_keep_clear_of_the_radar_and_face_it_half_of_the_time(wall: object) -> None:
     config = Config(wall=wall)
     for activity in config.chosen_activities:
         found = check_scene(nominal_scene(config, activity))
         assert found.flags & ~Flags.ALIASING == 0, activity.slug
         assert found.closest.distance > 1, activity.slug
-        angles = [draw_scene(config, activity, n).config.motion.angle_deg for n in range(20)]
-        assert all(150 <= angle <= 240 for angle in angles)
+        angles = [draw_scene(config, activity, n).config.motion.angle_deg for n in range(40)]
+        towards = [angle for angle in angles if 150 <= angle <= 210]
+        assert all(abs(angle) <= 30 for angle in angles if angle not in towards)
+        assert 8 < len(towards) < 32
+        assert nominal_scene(config, activity).config.motion.angle_deg == 180
     away = nominal_scene(Config(motion={"model": "paper"}), activity_named("walking"))
     assert (away.config.motion.angle_deg, away.config.motion.range_m) == (0, 2)
 

@@ -56,7 +56,7 @@ def test_everybody_is_drawn_for_themselves() -> None:
     assert [one.activity.slug for one in people] == ["walking", "punching", "punching"]
     assert len({one.subject.height_m for one in people}) == 3
     assert [one.motion.range_m for one in people[1:]] == [3, 3]
-    across = {one.motion.cross_range_m for one in people}
+    across = {one.place[1] for one in people}
     assert len(across) == 3
     assert max(map(abs, across)) <= 1.5
     assert len({motion_of(one).positions(np.ones(1)).tobytes() for one in people}) == 3

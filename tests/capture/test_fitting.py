@@ -58,7 +58,7 @@ def test_snr_range_and_floor_come_back(tmp_path: Path, snr_db: float) -> None:
     found = fit([recorded(tmp_path, f"snr_db={snr_db}", activity="walking")])
     assert found.document["snr_db"] == pytest.approx(snr_db, abs=2.0)
     assert abs(found.numbers()["noise_over_range_db"]) < 1, "white noise is the same everywhere"
-    low, high = found.document["motion"]["range_m"]["uniform"]
+    low, high = found.document["motion"]["place"]["range_m"]["uniform"]
     assert 2 < low < 4
     assert low + 2 < high < 9
     assert found.document.keys() == {"duration_s", "radar", "snr_db", "motion"}

@@ -102,7 +102,7 @@ class Ball:
 
 def swinging(person: Person) -> Ball:
     """A user-defined class: it reads what it needs off the numbers of the person."""
-    return Ball(person.motion.range_m)
+    return Ball(person.place[0])
 
 
 def test_a_motion_with_other_joints() -> None:
@@ -563,7 +563,7 @@ class Fan:
     torso = positions
 
 def fan(person):
-    return Fan(person.motion.range_m)
+    return Fan(person.place[0])
 
 add_activity("fan", fan)
 """

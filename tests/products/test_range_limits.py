@@ -66,7 +66,7 @@ def test_a_reflector_is_in_the_row_of_its_range():
 
 
 def test_people_have_an_axis_by_default_that_no_sample_decides():
-    assert config({}).image.range_limits_m == (0.0, 13.0)  # walkers start at up to 12 m
+    assert config({}).image.range_limits_m == (0.0, 12.0)  # 8 m, and a walk of 2 s
     chosen = config({}, motion={"range_m": {"uniform": [3, 4]}, "cross_range_m": 3.0})
     assert chosen.image.range_limits_m == (0.0, 6.0)
     other = {"activity": "walking", "motion": {"range_m": 20.0}}

@@ -453,7 +453,8 @@ def test_a_scatterer_at_an_antenna_stops_unless_redrawn(on_invalid: str) -> None
 def test_a_band_that_is_too_short_for_people_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """Walkers who start 9 to 12 m away, with a half-band of 7.5 m."""
     monkeypatch.setattr(drawing, "MAX_ATTEMPTS", 3)
-    config = Config(radar={"bandwidth_hz": 4e9})
+    motion = {"range_m": {"uniform": [9, 12]}}
+    config = Config(radar={"bandwidth_hz": 4e9}, motion=motion)
     with pytest.raises(SceneError, match=r"half-band, with .*; a smaller radar.bandwidth_hz"):
         draw_valid_scene(config, WALKING, 0)
 
@@ -551,9 +552,10 @@ def test_the_echo_needs_no_other_instants_than_the_check(monkeypatch, scatterers
     monkeypatch.setattr(HumanMotion, "_gather", noted)
     config = Config(body={"scatterers": scatterers}, processing={"gate_m": (0.5, 6)})
     scene, _ = draw_valid_scene(config, WALKING, 0)
-    (checked,) = asked
+    placing, checked = asked  # 24 steps of a course, in which walkers are laid through their place
+    assert placing.size == 25
     record(scene, ["echo", "torso_track"])
-    assert checked.size > 1000 > max(t.size for t in asked[1:])
+    assert checked.size > 1000 > max(t.size for t in asked[2:])
     # The grid is no coarser than what the motion needs, and ends with the recording.
     motion, shared = scene.people[0].held["motion"], True
     each = next(check_grids(motion, waveform_of(scene), shared)).pulses

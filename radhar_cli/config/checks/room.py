@@ -76,7 +76,8 @@ def _coordinates(c: Request, name: str) -> Iterator[tuple[str, Any, list[tuple[f
     """Find the coordinates of everybody under one name, `range_m` or `cross_range_m`.
 
     Yields:
-        (dotted key, value, [(least, most) of each activity]) of each person.
+        (dotted key, value, [(least, most) of each activity]) of each person: of where they start,
+        and of where they are at one instant (`motion.place`).
     """
     people = [("", c.motion, c.chosen_activities)]
     with suppress(ValueError):  # of an unknown activity, which is told by itself
@@ -84,9 +85,16 @@ def _coordinates(c: Request, name: str) -> Iterator[tuple[str, Any, list[tuple[f
             (f"people.{n}.", one.motion, c.activities_of(n + 1)) for n, one in enumerate(c.people)
         ]
     for prefix, motion, activities in people:
-        value = getattr(motion, name)
+        value, at_place = getattr(motion, name), getattr(motion.place, name)
         numbers = [for_activity(value, one) for one in activities]
         yield f"{prefix}motion.{name}", value, [support(one) for one in numbers if one is not None]
+        starts = [for_activity(motion.range_m, one) for one in activities]
+        placed = [
+            for_activity(at_place, one)
+            for one, *start in zip(activities, numbers, starts, strict=True)
+            if start == [None, None]
+        ]
+        yield f"{prefix}motion.place.{name}", at_place, [support(one) for one in placed]
 
 
 def room_problems(c: Request) -> Iterator[Problem]:

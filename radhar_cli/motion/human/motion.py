@@ -60,6 +60,9 @@ class HumanMotion:
     # time at rest before each movement, s; those that are not given are 0. Below 0 the movement
     # overlaps the one before: a walk and a movement on planted feet
     pauses: tuple[float, ...] = ()
+    # when that begins which the class is named by, s: a movement, or a bout of what lasts; of two
+    # movements the second
+    onset: float | None = None
 
     names = JOINTS
     parents = PARENTS
@@ -103,6 +106,16 @@ class HumanMotion:
                 break
             begin, place = part.end, _place_after(place, part.place)
         return tuple(parts)
+
+    def moved_to(self, start: tuple[float, float]) -> "HumanMotion":
+        """Return this motion from another start (x and y, m), with the parts that it has."""
+        ahead, left = (to - of for to, of in zip(start, self.start, strict=True))
+        moved = replace(self, start=start)
+        moved.__dict__["parts"] = tuple(
+            (part, place._replace(ahead=place.ahead + ahead, left=place.left + left))
+            for part, place in self.parts
+        )
+        return moved
 
     @property
     def breakpoints(self) -> tuple[float, ...]:

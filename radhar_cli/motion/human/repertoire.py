@@ -36,7 +36,6 @@ class Repertoire:
 
     gait: Gait  # gait of every walk
     walk: float = 2.0  # how long the walk of S10 and S12 lasts before its last steps, s
-    standing_first: bool = False  # whether who walks (S8) has stood before
     punch: Punch = field(default_factory=Punch)
     kick: Kick = field(default_factory=Kick)
     grab: Grab = field(default_factory=Grab)
@@ -78,13 +77,23 @@ class Repertoire:
             5: (self.sit_down,),
             6: (self.stand_up,),
             7: (replace(self.turn, duration=inf, from_rest=False),),
-            8: (Walk(self.gait, from_rest=self.standing_first),),
+            8: (Walk(self.gait, from_rest=False),),
             9: (self.stand_up, Walk(self.gait)),
             10: (stopping, self.sit_down),
             11: (self.get_up, Walk(self.gait)),
             12: (stopping, self.fall),
         }
         return movements[number]
+
+    def bout(self, name: str, duration: float, from_rest: bool) -> Movement:
+        """Punching, kicking, rotating or walking for `duration` s, steadily or from rest."""
+        bouts: dict[str, Walk | Punch | Kick | Turn] = {
+            "punching": self.punch,
+            "kicking": self.kick,
+            "body_rotating": self.turn,
+            "walking": Walk(self.gait),
+        }
+        return replace(bouts[name], duration=duration, from_rest=from_rest)
 
     def sequence(self, names: Sequence[str], durations: Sequence[float]) -> tuple[Movement, ...]:
         """Movements of `activity.MOVEMENTS` by name, one after the other, each from rest.

@@ -1,1 +1,0 @@
-"""How well the class of a sample can be told from what is not its movement."""

@@ -39,6 +39,7 @@ PACKAGES = (
     "capture",
     "learning",
     "two_sample",
+    "audit",
     "tradeoff",
     "commands",
     "cli",
@@ -147,7 +148,7 @@ LIBRARIES: dict[str, set[str]] = {
     "yaml": {"config", "dataset", "commands"},
     "torch": {"learning"},
     "timm": {"learning"},
-    "sklearn": {"learning", "two_sample"},
+    "sklearn": {"learning", "two_sample", "audit"},
     "skimage": {"tradeoff"},
     "plotly": {"figures"},
 }

@@ -135,6 +135,16 @@ def masks(path: Path) -> None:
     np.savez(path, images=images, label=np.array(["walking", "falling"] * 4))
 
 
+def recordings_table(path: Path) -> None:
+    """What is known of each image of a tree that another function makes."""
+    images = sorted(Path("measured").rglob("*.png"))
+    rows = [
+        f"{file.relative_to('measured')},{file.parent.name},P{n % 3}"
+        for n, file in enumerate(images)
+    ]
+    path.write_text("\n".join(["file,class,person", *rows]) + "\n")
+
+
 def few_samples(path: Path) -> None:
     document = yaml.safe_load(Path("configs/quickstart.yaml").read_text())
     path.write_text(yaml.safe_dump({**document, "samples_per_class": 3}))
@@ -149,6 +159,11 @@ def idle(path: Path) -> None:
 FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     "CONTRIBUTING.md": {
         f".venv/bin/{name}": idle for name in ("python", "ruff", "mypy", "pre-commit")
+    },
+    "audit.md": {
+        "datasets/quickstart": data_set,
+        "measured": lambda path: tree(path, FEW[:2]),
+        "recordings.csv": recordings_table,
     },
     "cluster.md": {"CONFIG": few_samples, "config.yaml": few_samples},
     "config.md": {"lab.yaml": few_samples},

@@ -56,3 +56,27 @@ def verify(
     )
     if outcome.unmade:
         tell(f"{outcome.unmade} samples use motion files; --motion FOLDER checks them, too")
+    tell(_leak_in_words(out))
+
+
+def _leak_in_words(out: Path) -> str:
+    """Say what tells the classes besides the movement, in a line, and which command says more."""
+    from radhar_cli.audit.cheap import most_telling_number
+    from radhar_cli.dataset.audited import audit_folder, read_audit
+    from radhar_cli.dataset.reading import open_dataset
+
+    command = f"radhar audit {out}"
+    stored = read_audit(out)
+    if stored is not None:
+        leaks = [line for line in stored.lines if line.cure]
+        count = f"{len(leaks)} of {len(stored.lines)} lines tell the class beyond chance"
+        return f"audited: {count}; see {audit_folder(out)}"
+    with open_dataset(out) as data:
+        number = most_telling_number(data)
+        simulated = data.config.recordings is None
+    if number is None:
+        none = "no scene number alone tells the class; " if simulated else ""
+        return f"{none}{command} says what else does, such as margins and noise of images"
+    share, chance = 100 * number.share, 100 * number.chance
+    key = number.key if " " not in number.key else "when it begins or ends"
+    return f"{key} alone tells the class in {share:.0f} % (chance {chance:.0f}): {command}"

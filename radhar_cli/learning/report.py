@@ -10,8 +10,10 @@ from typing import Any
 import torch
 
 from radhar_cli.code_identity.build_version import build_version
+from radhar_cli.dataset.audited import read_audit
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.errors import FolderError
+from radhar_cli.figures.class_shares import ShareBar, class_shares_png
 from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
 from radhar_cli.learning.evaluation import SPEEDS, measure_speed
 from radhar_cli.learning.filter_weights import filter_magnitudes, filter_table
@@ -76,6 +78,8 @@ def evaluate(
     _add_curves(report, open_runs, evaluation.accuracies)
     if options.filters:
         _show_filters(report, open_runs)
+    for data_name, path in named_data.items():
+        _add_audit(report, data_name, path, single=len(named_data) == 1)
     report.section("How they were trained")
     for run in open_runs:
         report.details(run.name, _training_as_json(run.metadata))
@@ -261,6 +265,35 @@ def _show_filters(report: Report, runs: Sequence[Run]) -> None:
     keys = list(next(iter(tables.values()))[0])
     filter_rows = ([name, *row.values()] for name, rows in tables.items() for row in rows)
     report.table("filters.csv", ["run", *keys], filter_rows)
+
+
+def _add_audit(report: Report, name: str, data: Path, single: bool) -> None:
+    """Add the figure of what tells the classes besides the movement, if data have been audited.
+
+    Args:
+        report: the report.
+        name: name of the data set.
+        data: its path.
+        single: whether it is the only one.
+    """
+    try:
+        stored = read_audit(data)
+    except FolderError as error:
+        report.line(f"warning: {error}")
+        return
+    if stored is None:
+        return
+    report.section(f"What else tells the classes{'' if single else f' of {name}'}")
+    bars = [ShareBar(*line[:6]) for line in stored.lines]
+    title = f"{name}: how often the class is told from what is not the movement"
+    leaks = "; ".join(f"{line.name}: {line.verdict}" for line in stored.lines if line.cure)
+    caption = (
+        f"What a small forest tells of the classes of {name} without the movement "
+        f"({stored.samples} samples, {stored.held_out}s held out; radhar audit): "
+        f"{leaks or 'nothing beyond chance'}."
+    )
+    stem = "" if single else f"_{name}"
+    report.figure(f"audit{stem}.png", caption, class_shares_png(bars, title))
 
 
 def _name_paths(paths: Sequence[Path]) -> dict[str, Path]:

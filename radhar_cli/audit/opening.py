@@ -1,0 +1,219 @@
+"""Whatever `train` and `eval` read, or a table, as what an audit looks at."""
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from radhar_cli.audit.clouds import cloud_evidence, has_clouds
+from radhar_cli.audit.evidence import Evidence
+from radhar_cli.audit.recordings import (
+    LABELS,
+    RECORDING,
+    SPLIT,
+    WHO,
+    RecordingTable,
+    match_table,
+    name_evidence,
+    read_table,
+    recording_of_window,
+    table_evidence,
+    window_evidence,
+)
+from radhar_cli.audit.scene_numbers import onsets_on_cue, scene_evidence
+from radhar_cli.config.data_set import Config, MeasuredConfig
+from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.errors import FolderError
+from radhar_cli.learning.images.folder import FilePixels, map_of_folder, open_tree
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet
+from radhar_cli.learning.images.opening import is_h5, is_tree, open_images
+from radhar_cli.learning.run_files import is_run
+from radhar_cli.numerics.arrays import Index, Levels
+
+
+@dataclass(frozen=True)
+class AuditedSet:
+    """A data set with everything from which its classes may be guessed, but for its images.
+
+    Attributes:
+        where: file or folder.
+        classes: name of each label.
+        label: [N].
+        names: [N] names of the samples.
+        evidence: evidence of all N samples.
+        images: images; None of a table alone.
+        split: [N] 0 train, 1 validation, 2 test; None where it is not split.
+        person: [N] who it is; None where nobody says.
+        recording: [N] recording that the sample was cut from; None where nobody says.
+        scene: [N] fingerprint of person and motion; None where nobody says.
+        on_cue: sentences on onsets that do not vary.
+        is_simulated: whether a config can be changed.
+        is_decibel: whether levels are known to be relative to the largest power of each image.
+    """
+
+    where: Path
+    classes: tuple[str, ...]
+    label: Index
+    names: Sequence[str]
+    evidence: tuple[Evidence, ...]
+    images: ImageSet | None = None
+    split: Levels | None = None
+    person: Sequence[object] | None = None
+    recording: Sequence[object] | None = None
+    scene: Sequence[object] | None = None
+    on_cue: tuple[str, ...] = ()
+    is_simulated: bool = False
+    is_decibel: bool = False
+
+    def __len__(self) -> int:
+        return len(self.label)
+
+    def file_of(self, row: int) -> Path | None:
+        """Image file of a row; None where images lie in one file."""
+        pixels = None if self.images is None else self.images.pixels
+        return pixels.files[row] if isinstance(pixels, FilePixels) else None
+
+
+def open_audited(path: Path, map_name: str | None, table: Path | None) -> AuditedSet:
+    """Open a data set, a tree of images, or a table, for an audit.
+
+    Args:
+        path: dataset.h5 or its folder, a tree of images, or a CSV file with a column `class`.
+        map_name: map whose images are looked at; None takes the first.
+        table: CSV file with what else is known of each sample; None for nothing.
+
+    Raises:
+        FolderError: a file cannot be used.
+    """
+    if path.suffix.lower() == ".csv" and path.is_file():
+        if table is not None:
+            raise FolderError(f"--table {table}: {path} is a table itself")
+        return _open_table(path)
+    if path.exists() and not is_run(path) and is_tree(path):
+        audited = _open_tree(path, map_name)
+    else:
+        audited = _open_h5(path, map_name)
+    return audited if table is None else _with_table(audited, read_table(table))
+
+
+def _open_table(path: Path) -> AuditedSet:
+    """Open a table alone, of which a column names the classes."""
+    table = read_table(path)
+    labels = table.first_of(LABELS)
+    if labels is None:
+        raise FolderError(
+            f"{path}: has the columns {', '.join(table.columns)}; one should be "
+            f"{' or '.join(LABELS)}"
+        )
+    classes = tuple(sorted(set(labels)))
+    audited = AuditedSet(
+        where=path,
+        classes=classes,
+        label=np.searchsorted(classes, labels),
+        names=[f"row {row}" for row in range(2, len(labels) + 2)],
+        evidence=(),
+    )
+    keys = {key: cells for key, cells in table.columns.items() if key not in ("file", "sample")}
+    return _with_columns(audited, replace(table, columns=keys))
+
+
+def _open_tree(path: Path, map_name: str | None) -> AuditedSet:
+    """Open class folders of images, of whatever sizes."""
+    images = open_tree(path, map_name, "gray", any_size=True)
+    assert isinstance(images.pixels, FilePixels)
+    samples = images.samples
+    return AuditedSet(
+        where=path,
+        classes=images.classes,
+        label=samples.label,
+        names=[str(file.relative_to(path)) for file in images.pixels.files],
+        evidence=tuple(name_evidence(images.pixels.files)),
+        images=images,
+        split=samples.split,
+        is_simulated=map_of_folder(path) is not None,
+    )
+
+
+def _open_h5(path: Path, map_name: str | None) -> AuditedSet:
+    """Open a dataset.h5, of scenes or of recordings."""
+    with ExitStack() as stack:
+        images = open_images(path, map_name, "gray")
+        assert is_h5(path)
+        data = stack.enter_context(open_dataset(path))
+        samples, config = images.samples, data.config
+        audited = AuditedSet(
+            where=path,
+            classes=images.classes,
+            label=samples.label,
+            names=samples.name.tolist(),
+            evidence=(*_numbers_of(data), *_clouds_of(data)),
+            images=images,
+            split=samples.split,
+            scene=None if samples.scene is None else samples.scene.tolist(),
+            on_cue=tuple(_sentences_on_cue(data, samples.label)),
+            is_simulated=isinstance(config, Config),
+            is_decibel=isinstance(config, Config) and config.image.kind == "decibel",
+        )
+        person = None if samples.person is None else samples.person.tolist()
+        if isinstance(config, MeasuredConfig):
+            recording = recording_of_window(config)
+            named = any(part.person is not None for part in config.recordings.parts)
+            return replace(
+                audited,
+                recording=recording,
+                person=person if named else None,
+                scene=None,
+            )
+        return replace(audited, person=person)
+
+
+def _numbers_of(data: Dataset) -> list[Evidence]:
+    if isinstance(data.config, MeasuredConfig):
+        return window_evidence(data.config)
+    return scene_evidence(data)
+
+
+def _clouds_of(data: Dataset) -> list[Evidence]:
+    return cloud_evidence(data, np.arange(len(data))) if has_clouds(data) else []
+
+
+def _sentences_on_cue(data: Dataset, label: Index) -> list[str]:
+    """Sentences on onsets that hardly vary, a sentence for each key."""
+    by_key = dict[str, list[str]]()
+    for name, key, mean, spread in onsets_on_cue(data, label):
+        by_key.setdefault(key, []).append(f"{name} {mean:.2f} s (sd {spread:.2f})")
+    return [f"{key} is on cue: {', '.join(classes)}" for key, classes in by_key.items()]
+
+
+def _with_table(audited: AuditedSet, table: RecordingTable) -> AuditedSet:
+    """Data set with the columns of a table, matched by file or sample."""
+    names = list(audited.names)
+    if audited.images is not None and audited.file_of(0) is None:
+        names = [str(name) for name in audited.images.samples.name]
+    return _with_columns(audited, match_table(table, names))
+
+
+def _with_columns(audited: AuditedSet, table: RecordingTable) -> AuditedSet:
+    """Data set with the columns of a table that has a row for each sample.
+
+    Raises:
+        FolderError: a split is none.
+    """
+    split = audited.split
+    if split is None and SPLIT in table.columns:
+        cells = [cell.lower() for cell in table.columns[SPLIT]]
+        for cell in cells:
+            if cell not in SPLIT_NAMES:
+                raise FolderError(
+                    f"{table.path}: {SPLIT} = {cell!r}: should be {', '.join(SPLIT_NAMES)}"
+                )
+        split = np.array([SPLIT_NAMES[cell] for cell in cells], np.uint8)
+    return replace(
+        audited,
+        evidence=(*audited.evidence, *table_evidence(table)),
+        person=table.first_of(WHO) or audited.person,
+        recording=table.first_of(RECORDING) or audited.recording,
+        split=split,
+    )

@@ -79,6 +79,7 @@ MOVEMENTS = {
     "kneeling": MovementInfo("kneeling", "kneeling", None),
     "kneeling_down": MovementInfo("standing", "kneeling", 3.0),
     "getting_on_fours": MovementInfo("standing", "on_fours", 3.0),
+    "crawling": MovementInfo("on_fours", "on_fours", None),
     "lying": MovementInfo("lying", "lying", None, also=(("in_bed", "in_bed"),)),
     "turning_over": MovementInfo("lying", "lying", 2.5, also=(("in_bed", "in_bed"),)),
     "lying_down": MovementInfo("standing", "in_bed", 5.0),

@@ -20,6 +20,7 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("sit", "sit_down"), ("sitting_down",)),
     **dict.fromkeys(("seated", "sitting_still"), ("sitting",)),
     **dict.fromkeys(("kneel", "on_knees"), ("kneeling",)),
+    **dict.fromkeys(("crawl", "creeping"), ("crawling",)),
     **dict.fromkeys(("sleeping", "sleep", "lying_still", "laying", "resting"), ("lying",)),
     **dict.fromkeys(("lie_down", "going_to_bed", "go_to_bed", "laying_down"), ("lying_down",)),
     **dict.fromkeys(
@@ -57,11 +58,7 @@ NEARBY: dict[str, tuple[str, ...]] = {
 # Movements that no model of ours makes, nor one that means the same.
 UNKNOWN = frozenset(
     {
-        *(
-            "crawling",
-            "crawl",
-            "creeping",
-        ),
+        *(),
         *("clapping", "clap", "dancing", "climbing"),
         *(
             "climbing_stairs",

@@ -5,8 +5,11 @@ from dataclasses import replace
 from math import radians
 from typing import NamedTuple
 
+import numpy as np
+
 from radhar_cli.activities.activity import first_states
 from radhar_cli.config.sequence import SequenceConfig
+from radhar_cli.motion.human.crawling import Crawl
 from radhar_cli.motion.human.falling_sideways import FallingSideways, RiseFromSide
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.kneeling import GetDown, Kneel, RiseFromKnees
@@ -19,12 +22,14 @@ from radhar_cli.scene import Person
 
 IN_BED = "in_bed"
 Lies = Lie | TurnOver | GoToBed
+MISSES = 397  # how many footholds of who crawls are drawn, before they come again
 SOMEBODY = Physique(1.7)  # states and rolls are the same of every stature
 
 
 class FloorMovements(NamedTuple):
     """Movements of a person on the floor and in bed."""
 
+    crawl: Crawl
     kneel: Kneel
     kneel_down: GetDown
     get_on_fours: GetDown
@@ -34,13 +39,16 @@ class FloorMovements(NamedTuple):
     leave_bed: LeaveBed
 
 
-def draw_floor_movements(person: Person, duration: float | None, rise: Rise) -> FloorMovements:
+def draw_floor_movements(
+    person: Person, duration: float | None, rise: Rise, place: int
+) -> FloorMovements:
     """How this person kneels, lies, and goes to bed.
 
     Args:
         person: Person of the scene.
         duration: Duration of a movement that has one, s; None for the usual one.
         rise: How the person stands up.
+        place: Place of the movement in its sequence, which names its random streams.
     """
     lying = person.motion.lying
     in_bed = Rest(radians(lying.roll_deg), lying.bed_height, lying.hands, bed=True)
@@ -49,6 +57,7 @@ def draw_floor_movements(person: Person, duration: float | None, rise: Rise) -> 
     times = {} if duration is None else {"duration": duration}
     head, kneel = radians(lying.head_deg), Kneel(person.motion.kneeling.sit_back)
     return FloorMovements(
+        _crawl(person, place),
         kneel,
         GetDown(kneel, **times),
         GetDown(None, **times),
@@ -56,6 +65,18 @@ def draw_floor_movements(person: Person, duration: float | None, rise: Rise) -> 
         TurnOver(rest, radians(lying.turn_deg), head=head, **times),
         GoToBed(in_bed, side, rise=rise, **times),
         LeaveBed(in_bed, side, rise=rise, **times),
+    )
+
+
+def _crawl(person: Person, place: int) -> Crawl:
+    """How this person crawls at some place in a sequence."""
+    crawling = person.motion.crawling
+    misses = person.stream(f"motion.crawling.variation/{place}").standard_normal(MISSES)
+    misses = crawling.variation * np.clip(misses, -1.6, 1.6)
+    return Crawl(
+        crawling.speed_mps,
+        stride=crawling.stride,
+        misses=tuple(misses.tolist()) if crawling.variation else (),
     )
 
 
@@ -74,8 +95,9 @@ def join_on_floor(before: Sequence[Movement], movement: Movement) -> Movement:
     if not before:
         return movement
     last = before[-1]
-    if isinstance(movement, GetUp) and isinstance(last, Kneel | GetDown):
-        kneel = last if isinstance(last, Kneel) else last.kneel
+    if isinstance(movement, GetUp) and isinstance(last, Kneel | GetDown | Crawl):
+        kneel = last.kneel if isinstance(last, GetDown) else last
+        kneel = kneel if isinstance(kneel, Kneel) else None
         return RiseFromKnees(kneel, movement.duration)
     if isinstance(last, Lies):
         return _after_lying(last, movement)

@@ -346,7 +346,7 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
     paces, sizes = _repetitions(person, ceil(3 * person.seconds) + 8, place)
     lags = _lags(person, place)
     sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
-    floor = draw_floor_movements(person, duration, rise)
+    floor = draw_floor_movements(person, duration, rise, place)
     return Repertoire(
         gait=_gait(person, place),
         walk=person.seconds if person.timing.walk_stop_s is None else person.timing.walk_stop_s,

@@ -337,6 +337,23 @@ class LyingConfig(Section, Generic[B]):
     """Place of the hands of who lies on the back: 0 is beside the body, 1 on the belly."""
 
 
+class CrawlingConfig(Section, Generic[B]):
+    """How people crawl on hands and knees."""
+
+    speed_mps: Annotated[B, ByActivity(NOT_NEGATIVE, SPEED), People("crawling", 0.2, 1.0)] = (
+        default_draw(normal(0.5, 0.12, 0.28, 0.9))
+    )
+    """Speed of crawling."""
+    stride: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("crawling", 0.8, 1.2)] = (
+        default_draw(normal(1.0, 0.07, 0.85, 1.15))
+    )
+    """Length of a crawling stride, relative to the usual one of the speed and stature."""
+    variation: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("crawling", 0, 0.05), UNSTEADY
+    ] = default_draw(uniform(0.0, 0.04))
+    """Standard deviation of where hands and knees are put down, relative to the stride."""
+
+
 class KneelingConfig(Section, Generic[B]):
     """How people kneel."""
 
@@ -424,6 +441,7 @@ class MotionConfig(Section, Generic[B]):
     transitions: TransitionsConfig[B] = defaults_of(TransitionsConfig)
     falling: FallingConfig[B] = defaults_of(FallingConfig)
     lying: LyingConfig[B] = defaults_of(LyingConfig)
+    crawling: CrawlingConfig[B] = defaults_of(CrawlingConfig)
     kneeling: KneelingConfig[B] = defaults_of(KneelingConfig)
     idle: IdleConfig[B] = defaults_of(IdleConfig)
 

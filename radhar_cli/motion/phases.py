@@ -30,6 +30,7 @@ PHASES = (
     "stumbling",
     "kneeling",
     "getting down",
+    "crawling",
     "lying down",
     "turning over",
 )

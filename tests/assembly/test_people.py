@@ -84,8 +84,8 @@ def at_the_limits(rng: np.random.Generator) -> Config:
     document |= {"subject": {}, "motion": {"model": "human"}, "timing": {}}
     for key, (low, high) in HUMAN_LIMITS.items():
         section, _, name = key.rpartition(".")
-        if section in ("motion.lying", "motion.kneeling", "motion.crawling"):
-            continue  # of which the twelve have no use (motion/human/test_floor.py)
+        if section.partition(".")[2] in ("lying", "kneeling", "crawling", "running"):
+            continue  # of which the twelve have no use
         if section and name != "walk_start_s":
             high = 4.0 if section == "timing" and high > 4 else high  # s, of a recording of 5 s
             at = rng.choice([low, high]) if rng.random() < 0.5 else rng.uniform(low, high)
@@ -524,7 +524,10 @@ def document(key: str, value: float) -> dict[str, Any]:
         "motion": {"model": "human"},
         "classes": {
             f"own_{name}": {"sequence": [name]}
-            for name in ("squatting", "tripping", "turning_over", "kneeling")
+            for name in (
+                *("squatting", "tripping", "turning_over", "kneeling", "crawling"),
+                *("running", "jogging_in_place"),
+            )
         },
     }
     if key == "motion.walking.lane_start":  # which acts on lanes alone

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, pi, radians
 
+from radhar_cli.motion.human.crawling import Crawl
 from radhar_cli.motion.human.exercises import EXERCISES, Exercise
 from radhar_cli.motion.human.falling import FallBackward, FallForward, OnFours
 from radhar_cli.motion.human.falling_from_seat import FallFromSeat
@@ -54,6 +55,7 @@ class Repertoire:
     get_up: GetUp = field(default_factory=GetUp)
     try_to_get_up: TryToGetUp = field(default_factory=TryToGetUp)
     turn_around: StepTo = AROUND
+    crawl: Crawl = field(default_factory=Crawl)
     kneel: Kneel = field(default_factory=Kneel)
     kneel_down: GetDown = field(default_factory=lambda: GetDown(Kneel()))
     get_on_fours: GetDown = field(default_factory=GetDown)
@@ -157,6 +159,7 @@ MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {
     "kneeling": lambda person, duration: replace(person.kneel, duration=duration),
     "kneeling_down": lambda person, duration: person.kneel_down,
     "getting_on_fours": lambda person, duration: person.get_on_fours,
+    "crawling": lambda person, duration: replace(person.crawl, duration=duration),
     "lying": lambda person, duration: replace(person.lie, duration=duration),
     "turning_over": lambda person, duration: person.turn_over,
     "lying_down": lambda person, duration: person.go_to_bed,

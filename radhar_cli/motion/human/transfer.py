@@ -328,6 +328,7 @@ def _lying_down(person: Physique, rest: Rest, side: float) -> list[Step]:
     roll = wrapped(rest.roll - side * LEFT_SIDE)
     if abs(roll) > pi - 1e-6:  # over the back
         roll = -side * pi
+    first = 0.52 - 0.16 * max(abs(roll) / (pi / 2) - 1, 0.0)  # who rolls farther begins earlier
     return [
         Step("trunk", 1.0, 0.0, 0.56),
         Step("pelvis", 1.0, 0.10, 0.50),
@@ -336,8 +337,8 @@ def _lying_down(person: Physique, rest: Rest, side: float) -> list[Step]:
         Step("arms_over", 1.0, 0.10, 0.35),
         Step("legs_over", 1.0, 0.55, 0.25),
         Step("x", -INWARDS * person.stature, 0.25, 0.55),
-        Step("trunk_roll", roll, 0.52, 0.42),
-        Step("pelvis_roll", roll, 0.58, 0.42),
+        Step("trunk_roll", roll, first, 0.94 - first),
+        Step("pelvis_roll", roll, first + 0.06, 0.94 - first),
     ]
 
 

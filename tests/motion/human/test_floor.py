@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from radhar_cli.activities.activity import MOVEMENTS, first_states, state_after
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
+from radhar_cli.motion.human.crawling import Crawl, Crawling
 from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
 from radhar_cli.motion.human.kneeling import Kneel
 from radhar_cli.motion.human.lying import Lie, Rest, TurnOver
@@ -124,6 +125,49 @@ def test_heights_of_who_kneels() -> None:
     assert back[head] < upright[head] - 0.25
 
 
+LIMBS = [JOINTS.index(f"{side}_{name}") for name in ("knee", "hand") for side in ("right", "left")]
+
+
+@given(
+    stature=STATURES,
+    speed=st.floats(0.2, 1.0),
+    stride=st.floats(0.8, 1.2),
+    misses=st.lists(st.floats(-0.08, 0.08), max_size=7).map(tuple),
+)
+@settings(max_examples=20, deadline=None)
+def test_knees_and_hands_of_crawlers_stay_where_they_are_put(
+    stature: float, speed: float, stride: float, misses: tuple[float, ...]
+) -> None:
+    motion = moving(Crawl(speed, 4.0, stride, misses), stature=stature)
+    crawling = motion.parts[0][0]
+    assert isinstance(crawling, Crawling)
+    t = np.linspace(0, crawling.end, 4001)
+    p = motion.positions(t)
+    assert p[2].min() > 0.02 * stature
+    way = p[0, TORSO, -1] - p[0, TORSO, 0]
+    assert way == pytest.approx(4.0 * speed, abs=1e-6)
+    steady = (t > 2 * crawling.period) & (t < 4.0)
+    limbs = np.diff(p[:, LIMBS][:, :, steady], axis=2) / t[1]
+    at_rest = np.abs(limbs).max(axis=0) < 2e-3
+    if steady.sum() * t[1] > 1.5 * crawling.period:
+        assert (at_rest.sum(axis=0) >= 1).all()  # never in the air
+        assert 0.35 < at_rest.mean() < 0.75
+    x = p[:, LIMBS]
+    assert np.ptp(x[1], axis=1)[2:].max() < 1e-9  # hands go straight ahead
+    links = np.linalg.norm(p[:, LIMBS[0]] - motion.hip_joints(t)[:, 0], axis=0)
+    np.testing.assert_allclose(links, Physique(stature).leg, atol=1e-9)
+
+
+def test_diagonal_limbs_swing_together() -> None:
+    motion = moving(Crawl(0.7, 9.0))
+    t = np.linspace(3, 8, 2001)
+    swinging = np.abs(np.diff(motion.positions(t)[0, LIMBS], axis=1)) > 1e-4
+    right_knee, left_knee, right_hand, left_hand = swinging
+    diagonal = (right_knee & left_hand).mean() + (left_knee & right_hand).mean()
+    same_side = (right_knee & right_hand).mean() + (left_knee & left_hand).mean()
+    assert diagonal > 2.5 * same_side
+
+
 def drawn(sequence: list[str], index: int, **motion: Any) -> HumanMotion:
     durations = [1.5 if MOVEMENTS[name].seconds is None else None for name in sequence]
     own = {"own": {"sequence": sequence, "durations_s": durations}}
@@ -146,7 +190,7 @@ SEQUENCES = [
     "sitting_down sitting standing_up",
     "kneeling getting_up walking",
     "walking kneeling_down kneeling getting_up",
-    "walking getting_on_fours getting_up",
+    "walking getting_on_fours crawling getting_up",
 ]
 
 

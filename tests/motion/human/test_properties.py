@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from radhar_cli.motion.human.crawling import Crawl
 from radhar_cli.motion.human.exercises import EXERCISES
 from radhar_cli.motion.human.falling import (
     ON_FLOOR,
@@ -25,7 +26,7 @@ from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
-from radhar_cli.motion.human.kneeling import Kneel
+from radhar_cli.motion.human.kneeling import GetDown, Kneel, RiseFromKnees
 from radhar_cli.motion.human.lane import Lane, position_along_lane
 from radhar_cli.motion.human.lying import Lie, Rest, TurnOver
 from radhar_cli.motion.human.minimum_jerk import Lags
@@ -149,6 +150,8 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
         ),
         "sits": (Sit(seat=Seat(recline=0.3)),),
         "kneels": (Kneel(1.0),),
+        "crawls": (Crawl(gait.speed / 2.8, misses=(0.05, -0.1, 0.0)),),
+        "down and up": (GetDown(), Crawl(0.5, 0.6), RiseFromKnees()),
         "lies": (Lie(Rest(0.4, 0.0, 1.0), head=0.7),),
         "turns over": (TurnOver(Rest()), TurnOver(Rest(pi / 2)), TurnOver(BELLY, -pi, 3.0)),
         "to bed and up": (

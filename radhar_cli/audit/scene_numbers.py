@@ -16,7 +16,7 @@ from radhar_cli.config.annotations import Paper, People, annotations
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.motion import TimingConfig
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.dataset.scene_fields import ERROR
+from radhar_cli.dataset.scene_fields import ERROR, ONSET
 from radhar_cli.numerics.arrays import Float, Index
 
 # Ends of the names of keys of `timing` that say when, not how long.
@@ -30,10 +30,17 @@ def is_instant(key: str) -> bool:
     return INSTANT.match(key) is not None
 
 
+def is_onset(key: str) -> bool:
+    """Whether a column says when the sample's own person begins."""
+    of_timing = is_instant(key) and key.rpartition(".")[2] in TimingConfig.model_fields
+    return of_timing or key == ONSET.key
+
+
 def is_of_movement(key: str) -> bool:
     """Whether the number of a dotted key is a part of the class's movement.
 
-    Numbers of other people in the scene (`people.0.motion...`) are none.
+    Numbers of other people in the scene (`people.0.motion...`) are none. The second at which the
+    movement begins follows from the onset, which is a number of its own, and from what people do.
     """
     if key.startswith("people.") or is_instant(key):
         return False
@@ -50,7 +57,7 @@ def audited_numbers(data: Dataset) -> dict[str, Float]:
     """
     numbers, instants = dict[str, Float](), dict[str, Float]()
     for field in data.fields:
-        if field.key == ERROR.key or is_of_movement(field.key):
+        if field.key in (ERROR.key, ONSET.key) or is_of_movement(field.key):
             continue
         values = data.scene[field.name][:] / field.factor
         if is_instant(field.key):
@@ -181,11 +188,7 @@ def _filled(single: Evidence) -> Float:
 
 def onsets_on_cue(data: Dataset, label: Index) -> Iterator[tuple[str, str, float, float]]:
     """Yield (class, keys, mean s, standard deviation s) of onsets that hardly vary in a class."""
-    seconds = {
-        field.key: data.scene[field.name][:]
-        for field in data.fields
-        if is_instant(field.key) and field.key.rpartition(".")[2] in TimingConfig.model_fields
-    }
+    seconds = {field.key: data.scene[field.name][:] for field in data.fields if is_onset(field.key)}
     for key, values in seconds.items():
         if not key.endswith("_s"):
             continue

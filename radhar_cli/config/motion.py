@@ -394,7 +394,7 @@ class PlaceConfig(Section, Generic[B]):
     range_m: Annotated[B, ByActivity(COORDINATE)] = default_draw(uniform(2.0, 8.0))
     """Range at which people are."""
     cross_range_m: Annotated[B, ByActivity(COORDINATE), ActsIfNull("motion.cross_range_m")] = (
-        default_draw(uniform(-0.5, 0.5))
+        default_draw(uniform(-1.0, 1.0))
     )
     """Cross-range at which people are, positive to the left."""
     instant: Annotated[B, ByActivity(within(0, 1))] = default_draw(uniform(0.0, 1.0))

@@ -267,9 +267,9 @@ class Request(Section):
     def _filled_person(self, number: int) -> PersonConfig:
         filled, person = self.of_person(number).filled(), self.people[number - 1]
         motion, aside = filled.motion, uniform(-1.5, 1.5)
-        if motion.range_m is not None and motion.cross_range_m is None:
+        if motion.cross_range_m is None and motion.range_m is not None:
             motion = motion.model_copy(update={"cross_range_m": aside})
-        elif "cross_range_m" not in person.motion.place.model_fields_set:
+        elif motion.cross_range_m is None and "cross_range_m" not in motion.place.model_fields_set:
             place = motion.place.model_copy(update={"cross_range_m": aside})
             motion = motion.model_copy(update={"place": place})
         changed = {"motion": motion, "timing": filled.timing, "activity": self._doing_of(number)}

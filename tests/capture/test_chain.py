@@ -130,6 +130,7 @@ def test_radars_without_chirps_are_recorded_too(
 def test_range_profiles_know_who_approaches(tmp_path: Path) -> None:
     """Real samples have no sign of the Doppler; the track has, by the phase along the range."""
     walk = ["motion={range_m: 5, angle_deg: 180}", "snr_db=40", "processing.gate_m=1"]
+    walk.append("timing.onset=0.5")
     config = config_of(tmp_path, "duration_s=1.5", *IMPULSE, *walk)
     scene = simulate(config, seed=3, raw=True)
     assert scene.beat is not None

@@ -49,9 +49,11 @@ def test_every_number_of_every_activity_has_one_column():
 
 def test_only_the_chosen_activities_and_parts_have_columns():
     keys = {field.key for field in fields(Config(activities=("S1",), snr_db=None))}
-    assert not any(key.startswith(("timing.", "wall.")) for key in keys)
+    assert not any(key.startswith("wall.") for key in keys)
+    of_timing = {key for key in keys if key.startswith("timing.")}
+    assert of_timing == {"timing.onset", "timing.visible"}
     assert {"snr_db", "motion.walking.speed_mps"}.isdisjoint(keys)
-    assert {"subject.weight_kg", "motion.range_m"} <= keys
+    assert {"subject.weight_kg", "motion.place.range_m", "movement_onset_s"} <= keys
 
 
 @pytest.mark.parametrize(
@@ -171,7 +173,8 @@ def test_names_that_two_keys_share_have_the_section_before_them():
 
 
 def test_a_class_called_grab_shares_no_name_with_the_grabbing_of_the_twelve():
-    named = keys_of(classes={"grab": ["a.bvh"]}, activities=["grabbing", "grab"])
+    timing = {"grab_start_s": 0.5}
+    named = keys_of(classes={"grab": ["a.bvh"]}, activities=["grabbing", "grab"], timing=timing)
     assert "grab_start" not in named
     assert named["timing_grab_start"] == "timing.grab_start_s"
     assert named["classes_grab_start"] == "classes.grab.start"

@@ -127,6 +127,20 @@ def test_classes_are_mapped_and_left_out_as_the_file_says(run_dir, tmp_path):
     assert found["left_out"] == {"hop": 2}
 
 
+def test_other_words_of_the_same_meaning_are_taken_and_said(run_dir, tmp_path):
+    root = tree(tmp_path / "t", ("Boxing", "kick", "walking", "strolling"), {"val": 2})
+    out = tmp_path / "report"
+    done = radhar("eval", run_dir, root, "-o", out)
+    assert done.exit_code == 0, done.output
+    assert "Boxing is taken for punching, kick is taken for kicking" in done.stderr
+    assert "strolling (2)" in done.stderr  # walking is there itself
+    assert {name: c["images"] for name, c in numbers(out)["classes"].items()} == {
+        "punching": 2,
+        "kicking": 2,
+        "walking": 2,
+    }
+
+
 def test_kept_rows_have_their_pixels_names_and_splits(tmp_path):
     images = open_images(split_tree(tmp_path / "t", 2, 1, classes=("a", "b", "c")), None, "rgb")
     left = images.renamed({"a": None, "c": "walking", "b": "punching"})

@@ -1,9 +1,11 @@
 """`--classes FILE`: maps the class names of other data sets to ours."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from radhar_cli.activities.activity import ACTIVITIES
+from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS
+from radhar_cli.activities.vocabulary import FROM_FILES, advice_on, meaning_of
 from radhar_cli.config.documents import read_document
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.images.image_set import ImageSet
@@ -52,28 +54,51 @@ def refuse_mistyped(names: Mapping[str, str | None], known: Sequence[str]) -> No
     Raises:
         ConfigError: one of our names is unknown.
     """
-    accepted = [*known, *(activity.slug for activity in ACTIVITIES if activity.slug not in known)]
+    slugs = (activity.slug for activity in ACTIVITIES)
+    accepted = list(dict.fromkeys((*known, *slugs, *MOVEMENTS)))
     for foreign, name in names.items():
         if name is not None and name not in accepted:
-            hint = did_you_mean(name, accepted, f"the model knows {', '.join(known)}")
+            hint = _hint(name, accepted, known)
             raise ConfigError(f"--classes: {foreign} = {name!r}: should be a class or null; {hint}")
 
 
 def keep_known_classes(images: ImageSet, known: Sequence[str]) -> ImageSet:
-    """Images of the classes that a model knows.
+    """Images of the classes that a model knows, by another word of the same meaning, too.
 
     Raises:
         FolderError: it knows none of them.
     """
+    images = _by_known_words(images, known)
     unknown = [name for name in images.classes if name not in known]
     if len(unknown) == len(images.classes):
-        hint = did_you_mean(unknown[0], known, f"the model knows {', '.join(known)}")
+        hint = _hint(unknown[0], known, known)
         others = f", as are the other {len(unknown) - 1}" if unknown[1:] else ""
         raise FolderError(
             f"{images.where}: class {unknown[0]!r} is unknown to the model{others}; {hint}; "
             "--classes FILE maps names"
         )
     return images.renamed(dict.fromkeys(unknown)) if unknown else images
+
+
+def _by_known_words(images: ImageSet, known: Sequence[str]) -> ImageSet:
+    """Images whose classes have the names of a model where these mean the same; a note says so."""
+    words = dict[str, str]()
+    for name in images.classes:
+        slug = None if name in known else meaning_of(name, known)
+        if slug is not None and slug not in (*images.classes, *words.values()):
+            words[name] = slug
+    if not words:
+        return images
+    pairs = ", ".join(f"{word} is taken for {slug}" for word, slug in words.items())
+    note = f"{images.where}: {pairs}; --classes FILE maps names otherwise"
+    return replace(images.renamed(words), notes=(*images.notes, note))
+
+
+def _hint(name: str, accepted: Sequence[str], known: Sequence[str]) -> str:
+    """Advise on a name of a class that is not accepted: by meaning, else what the model knows."""
+    listed = f"the model knows {', '.join(known)}"
+    advice = advice_on(name, accepted, listed)
+    return listed if advice == FROM_FILES else advice
 
 
 def left_out_message(images: ImageSet, names: Mapping[str, str | None]) -> str | None:

@@ -64,6 +64,7 @@ def config_of(name: str, start_m: float | None = None) -> Config:
             "duration_s": SECONDS,
             "radar": {"carrier_hz": 24e9, "bandwidth_hz": 5e8, "prf_hz": 2500},
             "motion": {"angle_deg": 180.0, "range_m": start_m},
+            "timing": {"onset": 0.5, "visible": 1.0},  # all of it, in the middle
             "image": {
                 "size_px": 2 * VIEW,
                 "dynamic_range_db": 40.0,

@@ -13,6 +13,7 @@ SHORT, SIMILAR_SHORT, SIMILAR = 5, 0.75, 0.8
 MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("picking_up", "pick_up", "picking", "picking_up_object"), ("grabbing",)),
     **dict.fromkeys(("picking_up_objects", "pick_up_object", "grasping", "grab"), ("grabbing",)),
+    **dict.fromkeys(("pick_up_an_object", "picking_up_things", "pick_up_things"), ("grabbing",)),
     **dict.fromkeys(("boxing", "box", "punch", "shadow_boxing"), ("punching",)),
     **dict.fromkeys(("kick", "front_kick"), ("kicking",)),
     **dict.fromkeys(("standing", "still", "standing_still", "stand"), ("stationary",)),
@@ -31,7 +32,7 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("stand_up_from_floor", "get_up", "rising_from_floor"), ("getting_up",)),
     **dict.fromkeys(("rotating", "twisting", "body_rotation"), ("body_rotating",)),
     **dict.fromkeys(("turn_around",), ("turning_around",)),
-    **dict.fromkeys(("walk", "strolling", "pacing"), ("walking",)),
+    **dict.fromkeys(("walk", "strolling", "pacing", "normal_walking"), ("walking",)),
     **dict.fromkeys(("fall", "fall_down", "falling_down", "collapsing"), ("falling",)),
     **dict.fromkeys(("squat", "squats"), ("squatting",)),
     **dict.fromkeys(("jump", "jumps"), ("jumping",)),
@@ -40,6 +41,8 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(
         ("running_in_place", "jog_in_place", "running_on_the_spot"), ("jogging_in_place",)
     ),
+    **dict.fromkeys(("raise_right_arm", "raising_right_hand"), ("raising_right_arm",)),
+    **dict.fromkeys(("raise_left_arm", "raising_left_hand"), ("raising_left_arm",)),
     **dict.fromkeys(("stumble",), ("stumbling",)),
     **dict.fromkeys(("empty", "empty_room", "no_one", "no_person", "absent"), ("nobody",)),
     **dict.fromkeys(("trip",), ("tripping",)),
@@ -47,6 +50,8 @@ MEANINGS: dict[str, tuple[str, ...]] = {
 # {word: our names that come near it}: suggested, but not taken for the same.
 NEARBY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("bending", "bending_down", "bend", "reaching", "lifting"), ("grabbing",)),
+    **dict.fromkeys(("bowing", "bow", "stooping"), ("grabbing",)),
+    **dict.fromkeys(("mark_time", "stepping_in_place"), ("jogging_in_place",)),
     **dict.fromkeys(("hitting", "striking"), ("punching",)),
     **dict.fromkeys(("turning", "turn"), ("body_rotating",)),
     **dict.fromkeys(("walking_towards", "walking_away", "marching"), ("walking",)),
@@ -58,7 +63,6 @@ NEARBY: dict[str, tuple[str, ...]] = {
 # Movements that no model of ours makes, nor one that means the same.
 UNKNOWN = frozenset(
     {
-        *(),
         *("clapping", "clap", "dancing", "climbing"),
         *(
             "climbing_stairs",

@@ -9,12 +9,12 @@ from typing import Any, Protocol, cast
 
 import numpy as np
 
-from radhar_cli.activities.activity import Activity
+from radhar_cli.activities.activity import STREAM, Activity
 from radhar_cli.config.annotations import Mark, of_kind
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.motion import EARLIER_KEYS, FALLS, Falls, MotionConfig, TimingConfig
-from radhar_cli.config.number import Choice, Number, is_fixed, nominal, quantile
+from radhar_cli.config.number import Choice, Number, is_fixed, nominal, quantile, uniform
 from radhar_cli.config.paths import at, changed, each_number
 from radhar_cli.config.people import PersonConfig, SubjectConfig
 from radhar_cli.config.radar import SceneRadar
@@ -22,6 +22,7 @@ from radhar_cli.config.receiver import ReceiverConfig
 from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.section import for_activity
 from radhar_cli.config.sequence import SequenceConfig
+from radhar_cli.config.stream import draw_stream
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.numerics.randomness import PERSON, SCENE, stream
 
@@ -44,7 +45,7 @@ PERSONAL, UNSTEADY = (
     tuple(key for key, key_mark in of_kind(Config, Mark) if key_mark is mark) for mark in Mark
 )
 # Redrawing a scene outside the model changes what the person does, not the radar or the person.
-REDRAWN = ("motion.", "timing.", "classes.")
+REDRAWN = ("motion.", "timing.", "classes.", "stream.")
 FALL = "motion.falling.direction"
 # What a walk may overlap, by at most MAX_OVERLAP of its duration, as low down no legs are long
 # enough for a step; falls to the side not at all, as their feet are not planted.
@@ -55,6 +56,7 @@ OVERLAPPED = {
     "walking_to_falling": "fall_duration_s",
 }
 MAX_OVERLAP = 0.3
+START_M = 0.6  # from the edge of a zone at which a stream begins, at least
 MAX_PLACES = 100  # drawn for a person who comes too near to others
 
 
@@ -354,7 +356,30 @@ def _draw_config(config: Config, activity: Activity, draw: Draw, subject: int | 
     if isinstance(sequence, SequenceConfig) and sequence.is_drawn and sequence.order is None:
         key = f"classes.{activity.slug}"
         fixed = changed(fixed, {f"{key}.order": sequence.draw_order(f"{key}.sequence", draw)})
+    if activity.slug == STREAM and STREAM not in config.classes:
+        fixed = _with_stream(fixed, config, draw)
     return _with_possible_overlap(fixed, activity)
+
+
+def _with_stream(fixed: Config, config: Config, draw: Draw) -> Config:
+    """Draw the bouts of a person's stream, and where it begins.
+
+    Args:
+        fixed: config of the scene.
+        config: config that it is drawn of.
+        draw: random choices, or the middle of everything.
+    """
+    assert config.stream is not None
+    zone = config.stream.zone.strips(1 + len(config.people))[0]
+    seconds = cast(float, fixed.duration_s)
+    drawn = draw_stream(config.stream, seconds, config.stream_activities, config.classes, draw)
+    places = {
+        "range_m": uniform(zone.range_m[0] + START_M, zone.range_m[1] - START_M),
+        "cross_range_m": uniform(zone.cross_range_m[0] + START_M, zone.cross_range_m[1] - START_M),
+        "angle_deg": uniform(-180.0, 180.0),
+    }
+    motion = {f"motion.{key}": draw.number(f"motion.{key}", law) for key, law in places.items()}
+    return changed(fixed, {"classes": {**fixed.classes, STREAM: drawn}, **motion})
 
 
 def draw_people(config: Config, draws: Sequence[Draw]) -> tuple[PersonConfig, ...]:
@@ -527,7 +552,9 @@ def _fixed_and_drawn(same: ByIdentity, activity: Activity) -> tuple[Config, dict
         return nominal(of_activity)
 
     sections = {key: each_number(at(config, key), key, fix) for key in SCENE_KEYS}
-    return changed(config, sections | {"activities": (activity.slug,)}), drawn
+    if activity.slug != STREAM:  # whose activities are the classes of its labels
+        sections["activities"] = (activity.slug,)
+    return changed(config, sections), drawn
 
 
 class Redrawn(Enum):
@@ -550,6 +577,7 @@ def redrawn(config: Config, activity: Activity) -> Redrawn:
     listed = files is not None and files.file is None and len(files.files) > 1
     sequence = config.classes.get(activity.slug)
     listed |= isinstance(sequence, SequenceConfig) and sequence.is_drawn and not sequence.order
+    listed |= activity.slug == STREAM and STREAM not in config.classes
     if listed or isinstance(config.motion.falling.direction, Falls):
         return Redrawn.CHOICES
     if not drawn_again:

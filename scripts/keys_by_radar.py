@@ -220,7 +220,7 @@ def leaves() -> list[str]:
         if get_origin(field.annotation) is tuple:
             inner = None
         whole = inner is None or getattr(inner, "REPEATS", False) or key == "recordings"
-        if not key.startswith("recordings.") and (whole or field.default is None):
+        if not key.startswith(("recordings.", "stream")) and (whole or field.default is None):
             found.append(key)
     return found
 
@@ -643,8 +643,8 @@ INTRODUCTION = (
     "in a config in which what it needs is there, as far as a radar has that: either what is",
     "made of a sample changes (effect), or the config is refused for that key, or with it as the",
     "remedy (refused), or a warning says that the key has no effect and why (warned). Keys of",
-    "`classes` and of motion files are not in the tables. [The keys](config.md) has what each",
-    "means.",
+    "`classes`, `stream` and of motion files are not in the tables. [The keys](config.md) has what",
+    "each means.",
 )
 OF_MOTION = (
     "What keys of people do to their positions and radar cross-sections, whatever the radar, by",

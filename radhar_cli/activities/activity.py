@@ -175,6 +175,7 @@ ACTIVITIES: tuple[Activity, ...] = (
     Activity(12, "walking_to_falling", ("walking", "falling")),
 )
 
+STREAM = "stream"  # class of recordings of several activities one after the other
 DEFAULT = "default"  # in `per_activity`: what holds for activities that it does not name
 
 

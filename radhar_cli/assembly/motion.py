@@ -3,6 +3,7 @@
 from dataclasses import fields
 from math import radians
 
+from radhar_cli.activities.activity import STREAM
 from radhar_cli.bodies.segment_paths import Body
 from radhar_cli.motion.paper.activities import PaperGait, Timing
 from radhar_cli.motion.paper.body import PaperBody
@@ -25,6 +26,10 @@ def motion_of(person: Person) -> Motion:
         return file_motion(person)
     if person.activity.is_nobody and person.motion.model != "human":
         return _who_would_stand_there(person)
+    if person.activity.slug == STREAM:
+        from radhar_cli.assembly.streams import stream_motion
+
+        return stream_motion(person)
     if person.motion.model == "human":
         from radhar_cli.assembly.people import human_motion  # slow to import
 

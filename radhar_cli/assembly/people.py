@@ -288,11 +288,18 @@ def _movements_of(
     """Movements of the steps of a sequence; what goes on does so for `going_on` s."""
     movements = list[Movement]()
     for step in steps:
-        duration = _duration_of(step)
-        repertoire = _repertoire(person, duration, step.place)
-        (movement,) = repertoire.sequence([step.name], [going_on if duration is None else duration])
-        movements.append(join_on_floor(movements, movement))
+        movements.append(movement_of(person, step, movements, going_on))
     return tuple(movements)
+
+
+def movement_of(
+    person: Person, step: SequenceStep, previous: Sequence[Movement], going_on: float = inf
+) -> Movement:
+    """Movement of a step of a sequence, after the previous ones; what goes on does so that long."""
+    duration = _duration_of(step)
+    repertoire = _repertoire(person, duration, step.place)
+    (movement,) = repertoire.sequence([step.name], [going_on if duration is None else duration])
+    return join_on_floor(previous, movement)
 
 
 def _punch(striking: StrikingConfig[float], paces: Float, sizes: Float) -> Punch:
@@ -505,6 +512,11 @@ def _waves(
     f = tuple(rates)
     phases = np.array(spread_phases(len(f), first)) + 2 * pi * np.array(f) * motion.idle.phase_s
     return Waves.low_pass(deviation, tuple(phases % (2 * pi)), f) if deviation else Waves()
+
+
+def idle_of_stream(person: Person, physique: Physique, movements: tuple[Movement, ...]) -> Idle:
+    """Sway, breath and fidgets of a person of a stream."""
+    return _idle(person, physique, _Plan(movements))
 
 
 def _idle(person: Person, physique: Physique, plan: _Plan) -> Idle:

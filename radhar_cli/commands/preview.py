@@ -34,6 +34,8 @@ def preview(
     from radhar_cli.dataset.contact_sheet import draw_contact_sheet
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.reading import open_dataset
+    from radhar_cli.dataset.stream_files import draw_streams
+    from radhar_cli.figures.page import DPI, write_figure
 
     if out is not None:
         refuse_to_replace(out, overwrite, "sheet.png")
@@ -41,6 +43,9 @@ def preview(
         name = data.map_name(map_)
         path = out or data.path.parent / f"preview_{name}.png"
         refuse_links(path.parent, path)
-        draw_contact_sheet(data, name, per_class, path)
+        if data.frame_label:
+            write_figure(draw_streams(data, name, per_class), path, DPI)
+        else:
+            draw_contact_sheet(data, name, per_class, path)
     report(file=path)
     tell(str(path))

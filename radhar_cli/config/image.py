@@ -13,7 +13,8 @@ from radhar_cli.errors import did_you_mean
 DEFAULT_COLOUR_MAP = "viridis"
 
 
-Pixels = Annotated[int, Field(ge=2, le=8192, strict=True)]
+MAX_SIDE_PX = 8192
+Pixels = Annotated[int, Field(ge=2, le=MAX_SIDE_PX, strict=True)]
 
 
 Cells = Annotated[int, Field(ge=0, le=4096, strict=True)]

@@ -13,6 +13,7 @@ from radhar_cli.config.annotations import (
     ByModel,
     Paper,
     People,
+    Unless,
 )
 from radhar_cli.config.number import (
     ANGLE,
@@ -59,6 +60,10 @@ class Falls(Section):
 _HEADING = Choice(choice=(uniform(150.0, 210.0), uniform(-30.0, 30.0)))
 
 
+ZONED = Unless("places_people", "stream, whose zone says where people are")
+NOT_OF_STREAMS = Unless("stream", "stream, which is cut anywhere")
+
+
 _GAIT = "S8 S9 S10 S11 S12"
 
 
@@ -95,7 +100,9 @@ class WalkingConfig(Section, Generic[B]):
     ] = default_draw(uniform(0.0, 0.06))
     """Standard deviation of a walker's speed over time, relative to the speed; that of the stride
     times is half as much, that of the step width a third, in metres."""
-    lane_m: Annotated[B, ByActivity(COORDINATE), People("walking", 0, 1000)] = default_draw(0.0)
+    lane_m: Annotated[B, ZONED, ByActivity(COORDINATE), People("walking", 0, 1000)] = default_draw(
+        0.0
+    )
     """Length of the lane after which walkers turn round, again and again; 0 is never."""
     lane_start: Annotated[
         B,
@@ -412,19 +419,20 @@ class MotionConfig(Section, Generic[B]):
     for motion files in every class (docs/guide/motion.md)."""
     folder: Annotated[str | None, Field(exclude=True, max_length=1000)] = None
     """Folder that paths of motion files are relative to; not part of a data set's identity."""
-    place: Annotated[PlaceConfig[B], ActsIfNull("motion.range_m")] = defaults_of(PlaceConfig)
-    range_m: Annotated[B, ByActivity(COORDINATE, null=True), ByModel(paper=uniform(1.0, 3.0))] = (
-        default_draw(None)
-    )
+    place: Annotated[PlaceConfig[B], ZONED, ActsIfNull("motion.range_m")] = defaults_of(PlaceConfig)
+    range_m: Annotated[
+        B, ZONED, ByActivity(COORDINATE, null=True), ByModel(paper=uniform(1.0, 3.0))
+    ] = default_draw(None)
     """Range at which people start: of the torso (paper), of the feet (human); null has people where
     motion.place says."""
-    cross_range_m: Annotated[B, ByActivity(COORDINATE, null=True), ByModel(paper=0.0)] = (
+    cross_range_m: Annotated[B, ZONED, ByActivity(COORDINATE, null=True), ByModel(paper=0.0)] = (
         default_draw(None)
     )
     """Cross-range at which people start, positive to the left; null is 0 where motion.range_m is
     given, else motion.place."""
     angle_deg: Annotated[
         B,
+        ZONED,
         ByActivity(ANGLE, null=True),
         ByModel(human=_HEADING, paper=uniform(-30.0, 30.0), file=_HEADING),
     ] = default_draw(None)
@@ -452,12 +460,14 @@ class TimingConfig(Section, Generic[B]):
     What is null takes the value of the model.
     """
 
-    onset: Annotated[B, ByActivity(within(0, 1)), People("", 0, 1)] = default_draw(
+    onset: Annotated[B, NOT_OF_STREAMS, ByActivity(within(0, 1)), People("", 0, 1)] = default_draw(
         uniform(0.0, 1.0)
     )
     """When people begin, before or during the recording: 0 is the earliest instant that leaves
     enough of the movement to be seen, 1 the latest."""
-    visible: Annotated[B, ByActivity(within(0, 1)), People("", 0, 1)] = default_draw(0.75)
+    visible: Annotated[B, NOT_OF_STREAMS, ByActivity(within(0, 1)), People("", 0, 1)] = (
+        default_draw(0.75)
+    )
     """Share of a movement that is seen at least; of the recording, for what lasts or is longer."""
     seat_start_s: Annotated[
         B,

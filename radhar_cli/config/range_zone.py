@@ -24,6 +24,10 @@ def range_zone(request: "Request") -> tuple[float, float]:
     It follows from what the config may draw, not from what a sample has drawn: an axis that
     followed a sample would tell where its person is, and so maybe what it does.
     """
+    if request.stream is not None:
+        zone = request.stream.zone
+        reach = hypot(max(map(abs, zone.range_m)), max(map(abs, zone.cross_range_m)))
+        return 0.0, float(ceil(reach + REACH_M))
     people = [(request.motion, request.chosen_activities)]
     with suppress(ValueError):  # of an unknown activity, which is told by itself
         people += [

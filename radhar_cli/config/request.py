@@ -1,6 +1,6 @@
 """All sections together: what a data set is asked for, not yet checked across sections."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache, cached_property, partial
@@ -14,10 +14,12 @@ from radhar_cli.activities.activity import (
     DEFAULT,
     EXERCISES,
     MOVEMENTS,
+    STREAM,
     TWELVE,
     Activity,
     activity_named,
 )
+from radhar_cli.activities.links import links_between
 from radhar_cli.activities.vocabulary import is_other_word
 from radhar_cli.config.acting import BOARD
 from radhar_cli.config.annotations import (
@@ -29,12 +31,14 @@ from radhar_cli.config.annotations import (
     OnlyMaps,
     Paper,
     People,
+    Unless,
     at,
     conditions,
     of_kind,
     section,
 )
 from radhar_cli.config.classes import (
+    ClassConfig,
     Classes,
     FilesConfig,
     class_activities,
@@ -55,6 +59,7 @@ from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.section import By, PerActivity, S, Section, defaults_of, for_activity
 from radhar_cli.config.sequence import SequenceConfig
+from radhar_cli.config.stream import TURN, StreamConfig
 from radhar_cli.errors import CaptureError
 
 Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
@@ -69,7 +74,9 @@ class Request(Section):
 
     seed: Seed = 1
     """Seed of everything that is drawn, 0 to 2^63 - 1."""
-    samples_per_class: By[Samples] = 300
+    samples_per_class: Annotated[
+        By[Samples], Unless("stream", "stream, which has a count of its own")
+    ] = 300
     """Number of samples of each class; it may differ: `{per_activity: {default: 300, walking:
     100}}`."""
     classes: Classes = {}
@@ -79,6 +86,9 @@ class Request(Section):
     """Classes of the data set: all is the twelve and those of `classes`; or a list of slugs, S1 to
     S12 and movements, [walking, S12, squatting]. A place in it, from 0, is a label of the data
     set."""
+    stream: StreamConfig | None = None
+    """Recordings in which people do one of `activities` after the other, with labels in time; null
+    is one activity a recording (docs/guide/streams.md)."""
     duration_s: Annotated[
         Positive | None,
         within(1e-9, 1e7, "s"),
@@ -152,10 +162,11 @@ class Request(Section):
     def stored(self) -> tuple[str, ...]:
         """Products that a data set holds as arrays: those of `output.products` and of boards."""
         frames = [name for name in self.maps if name in FRAME_MAPS]
+        segments = () if self.stream is None else ("segments",)
         ghosts = ("points_kind",) if self.room.faces is not None else ()
         points = (*OF_POINTS, *ghosts) if "points" in frames else ()
         people = OF_FRAMES if frames else ()
-        return tuple(dict.fromkeys((*frames, *points, *people, *self.output.products)))
+        return tuple(dict.fromkeys((*segments, *frames, *points, *people, *self.output.products)))
 
     @property
     def has_error(self) -> bool:
@@ -201,6 +212,7 @@ class Request(Section):
         if self.motion.model == "human" and self.image.range_limits_m is None:
             limits = {"range_limits_m": range_zone(self)}
             object.__setattr__(self, "image", _with_defaults(self.image, limits))
+        self._fill_width()
         return self
 
     def _name_classes(self) -> None:
@@ -209,7 +221,7 @@ class Request(Section):
         for own_class in self.classes.values():
             if isinstance(own_class, SequenceConfig):
                 words |= own_class.take_other_words()
-        chosen = self.chosen_activities
+        chosen = self.stream_activities
         pairs = [] if self.activities == "all" else [*zip(self.activities, chosen, strict=True)]
         for number, person in enumerate(self.people, 1):
             with suppress(ValueError):  # of names that are unknown, which checks report
@@ -243,6 +255,16 @@ class Request(Section):
         copy._other_words = {}
         return copy
 
+    def _fill_width(self) -> None:
+        """Give the images of a stream the width that its time step asks for."""
+        height, width = self.image.size_px
+        if self.stream is None or height != width or self.duration_s is None:
+            return
+        columns = self.stream.columns_of(nominal(self.duration_s))
+        object.__setattr__(
+            self, "image", _with_defaults(self.image, {"size_px": (height, columns)})
+        )
+
     def of_person(self, number: int) -> Self:
         """Config of one of `people`, 1 the first: with their numbers at the top level."""
         person = self.people[number - 1]
@@ -253,7 +275,11 @@ class Request(Section):
             "people": (),
         }
         classes = self.classes if person.classes is None else person.classes
-        return self.model_copy(update={**sections, "classes": classes})
+        stream = self.stream if STREAM in person.names else None
+        if stream is not None:
+            strip = stream.zone.strips(1 + len(self.people))[number]
+            stream = stream.model_copy(update={"zone": strip})
+        return self.model_copy(update={**sections, "classes": classes, "stream": stream})
 
     def activities_of(self, number: int) -> tuple[Activity, ...]:
         """What one of `people` may do.
@@ -266,10 +292,12 @@ class Request(Section):
 
     def _filled_person(self, number: int) -> PersonConfig:
         filled, person = self.of_person(number).filled(), self.people[number - 1]
-        motion, aside = filled.motion, uniform(-1.5, 1.5)
+        motion, aside, zoned = filled.motion, uniform(-1.5, 1.5), STREAM in person.names
         if motion.cross_range_m is None and motion.range_m is not None:
             motion = motion.model_copy(update={"cross_range_m": aside})
-        elif motion.cross_range_m is None and "cross_range_m" not in motion.place.model_fields_set:
+        elif not (
+            zoned or motion.cross_range_m or "cross_range_m" in motion.place.model_fields_set
+        ):
             place = motion.place.model_copy(update={"cross_range_m": aside})
             motion = motion.model_copy(update={"place": place})
         changed = {"motion": motion, "timing": filled.timing, "activity": self._doing_of(number)}
@@ -283,8 +311,25 @@ class Request(Section):
 
     def samples_of(self, activity: Activity) -> int:
         """How many samples of an activity there are."""
+        if self.stream is not None and activity.slug == STREAM:
+            return self.stream.count
         samples: int = for_activity(self.samples_per_class, activity)
         return samples
+
+    @property
+    def places_people(self) -> bool:
+        """Whether a stream that is still to be drawn says where people are."""
+        return self.stream is not None and STREAM not in self.classes
+
+    @property
+    def own_activities(self) -> dict[str, Activity]:
+        """{slug: activity} of the classes of one's own, and of streams."""
+        activities = class_activities({s: c for s, c in self.classes.items() if not _is_drawn(c)})
+        if self.stream is None:
+            return activities
+        number = 1 + max(a.number for a in (*ACTIVITIES, *activities.values()))
+        movements = _movements_of_stream(self.stream_activities)
+        return activities | {STREAM: Activity(number, STREAM, movements)}
 
     @property
     def every_class(self) -> tuple[Activity, ...]:
@@ -302,7 +347,7 @@ class Request(Section):
     @property
     def listed_classes(self) -> dict[str, Activity]:
         """{slug: activity} of the chosen ones, then the others of the twelve and of `classes`."""
-        known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
+        known = {a.slug: a for a in ACTIVITIES} | self.own_activities
         return {a.slug: a for a in self.chosen_activities} | known
 
     @property
@@ -311,8 +356,14 @@ class Request(Section):
 
         `activities: all` is S1 to S12, then those of `classes`; with `motion.model: file` only the
         latter. Those of `add_activity` have the numbers after these, which name random streams.
+        Of streams it is the one class of all recordings.
         """
-        classes = class_activities(self.classes)
+        return self.stream_activities if self.stream is None else (self.own_activities[STREAM],)
+
+    @property
+    def stream_activities(self) -> tuple[Activity, ...]:
+        """The activities that `activities` names, in its order: those of which streams consist."""
+        classes = class_activities({s: c for s, c in self.classes.items() if not _is_drawn(c)})
         if self.activities == "all":
             twelve = {} if self.motion.model == "file" else {a.slug: a for a in ACTIVITIES}
             return (*sorted((twelve | classes).values(), key=lambda a: a.number),)
@@ -369,6 +420,7 @@ class MeasuredRequest(Section):
 
     # What else data sets are asked for: here are no other people, no noise, no further products.
     people: ClassVar[tuple[PersonConfig, ...]] = ()
+    stream: ClassVar[None] = None
     snr_db: ClassVar[None] = None
     has_noise: ClassVar[bool] = False
     stored: ClassVar[tuple[str, ...]] = ()
@@ -420,6 +472,19 @@ def _require_each_once(names: Sequence[str], slugs: Sequence[str]) -> None:
             both = name if name == first[slug] else f"{first[slug]} and {name}"
             raise value_error(f"should name each class once: {both} is {slug} twice")
         first[slug] = name
+
+
+def _is_drawn(section: ClassConfig) -> bool:
+    """Whether a class is the drawn stream of a scene."""
+    return isinstance(section, SequenceConfig) and bool(section.labels)
+
+
+def _movements_of_stream(activities: Iterable[Activity]) -> tuple[str, ...]:
+    """Movements that a stream of these activities may have, links and turns included."""
+    movements = [name for activity in activities for name in activity.movements]
+    states = {s for name in movements for both in MOVEMENTS[name].states.items() for s in both}
+    ways = (links_between(a, b) or () for a in sorted(states) for b in sorted(states))
+    return tuple(dict.fromkeys((*movements, TURN, *(name for way in ways for name in way))))
 
 
 def _with_defaults(section: S, values: Mapping[str, Any], inner: str = "") -> S:

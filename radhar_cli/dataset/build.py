@@ -32,6 +32,7 @@ from radhar_cli.dataset.shards import (
     missing_rows,
 )
 from radhar_cli.dataset.split import split_rows, split_warnings
+from radhar_cli.dataset.stream_files import write_missing_segments
 from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.dataset.workers import parent_pid, run_tasks
 from radhar_cli.errors import FolderError, UnfinishedError
@@ -221,6 +222,7 @@ class Build:
         pngs = write_missing_pngs(
             self.config, self.folder, self.split, source, self.jobs, self.progress
         )
+        write_missing_segments(source, self.folder)
         write_card(source, self.folder)
         return pngs
 

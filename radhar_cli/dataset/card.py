@@ -15,6 +15,7 @@ from radhar_cli.dataset.image_tables import hub_configs
 from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
+from radhar_cli.dataset.stream_files import draw_streams
 
 SIDE, GAP, LINE = 160, 6, 16  # px
 SIZES = ("n<1K", "1K<n<10K", "10K<n<100K", "100K<n<1M", "1M<n<10M", "10M<n<100M", "n>100M")
@@ -62,6 +63,9 @@ BIBTEX = """\
 """
 
 
+GALLERY_STREAMS = 4
+
+
 def write_card(source: Path, folder: Path) -> None:
     """Write README.md and its picture into an output folder that lacks them.
 
@@ -93,7 +97,14 @@ def write_card(source: Path, folder: Path) -> None:
 
 
 def draw_gallery(data: Dataset, name: str) -> bytes:
-    """Draw map `name` of the first sample of each of the first 16 classes; return the PNG file."""
+    """Draw map `name` of the first sample of each of the first 16 classes; return the PNG file.
+
+    Of streams it is the first ones with their labels.
+    """
+    if name in data.frame_label:
+        from radhar_cli.figures.page import png_bytes  # Matplotlib is slow to import
+
+        return png_bytes(draw_streams(data, name, GALLERY_STREAMS))
     order, table = Rows.of(data.config), colour_table(data.config.image.colour_map)
     classes = list(order.classes())[:16]
     columns = min(len(classes), 4)

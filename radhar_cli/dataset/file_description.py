@@ -17,6 +17,8 @@ from radhar_cli.dataset.layout import SPLITS, TIME, Rows
 from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.processing.points import COLUMNS
+from radhar_cli.products.segments import SEGMENT_COLUMNS
+from radhar_cli.products.segments import label_names as stream_label_names
 
 BLOCK = 4096  # rows of a column read at once
 CFAR_TEXT = (
@@ -63,6 +65,8 @@ def describe_columns(file: h5py.File, config: AnyConfig) -> None:
         _describe_columns_of_map(file, config, name)
     if isinstance(config, Config):
         _describe_products(file, config)
+        if config.stream is not None:
+            _describe_stream(file, config)
 
 
 def _describe_map(file: h5py.File, config: AnyConfig, name: str) -> None:
@@ -116,6 +120,20 @@ def _describe_columns_of_map(file: h5py.File, config: AnyConfig, name: str) -> N
         labels = file[f"{layout.COLUMN_LABEL}/{name}"].attrs
         labels["names"] = label_names(config)
         labels["meaning"] = "number in names of what is under way at the middle of each column"
+
+
+def _describe_stream(file: h5py.File, config: Config) -> None:
+    """Write the attributes of the labels in time of streams."""
+    names = stream_label_names(config)
+    segments = file[f"products/{layout.SEGMENTS}"].attrs
+    segments["columns"], segments["names"] = SEGMENT_COLUMNS, names
+    segments["meaning"] = "label is a place in names; person 0 is the sample's main person"
+    for name in config.maps:
+        if (key := f"{layout.FRAME_LABEL}/{name}") in file:
+            file[key].attrs["names"] = names
+            file[key].attrs["axes"] = ["sample", "person", "column of the map"]
+            meaning = "place in names of what is under way at the middle of each column; -1 nobody"
+            file[key].attrs["meaning"] = meaning
 
 
 def _describe_products(file: h5py.File, config: Config) -> None:

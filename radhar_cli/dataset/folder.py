@@ -222,7 +222,7 @@ def _remove_old_build(folder: Path, new: dict[str, Any]) -> None:
         put_aside = unfinished_path(folder)
         put_aside.parent.mkdir(parents=True, exist_ok=True)
         (folder / layout.PNG).rename(put_aside)
-    for name in (layout.SCENES, layout.CONFIG, layout.CARD, layout.GALLERY):
+    for name in (layout.SCENES, layout.SEGMENTS_TABLE, layout.CONFIG, layout.CARD, layout.GALLERY):
         (folder / name).unlink(missing_ok=True)
     _remove_batches(folder)
     _write_identity(folder, new)

@@ -22,6 +22,7 @@ SCHEMA_VERSION = 3
 DATASET = "dataset.h5"
 CONFIG = "config.yaml"
 SCENES = "scenes.csv"
+SEGMENTS_TABLE = "segments.csv"  # of streams
 PNG = "png"
 CLASSES, METADATA = "classes.txt", "metadata.csv"  # beside the PNGs
 CARD = "README.md"
@@ -31,6 +32,8 @@ IDENTITY = "identity.json"
 BUILT = "built"  # marks the work folder of a data set, or of a part, that was whole once
 PARTS = "parts"
 COLUMN_LABEL = "column_label"
+FRAME_LABEL = "frame_label"  # of streams: what each person does at the time of each column
+SEGMENTS = "segments"  # the product of the same by start and stop
 # Of scenes with `people`: which classes anybody shows, and the class of each person.
 LABELS, PERSON_LABEL = "labels", "person_label"
 PNGS_A_FOLDER = 10_000
@@ -79,6 +82,11 @@ def small_datasets(config: AnyConfig) -> Parts:
             parts[f"largest_db/{name}"] = ("f8", ())
         if config.output.column_labels:
             parts[f"{COLUMN_LABEL}/{name}"] = ("u1", (config.image.size_px[1],))
+        if config.stream is not None and column_axis(name) == TIME:
+            parts[f"{FRAME_LABEL}/{name}"] = (
+                "<i2",
+                (1 + len(config.people), config.image.size_px[1]),
+            )
     return parts
 
 

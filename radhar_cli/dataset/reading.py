@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.config.data_set import AnyConfig, Config, MeasuredConfig
 from radhar_cli.config.reading import validated
+from radhar_cli.config.stream import frame_classes
 from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.folder import holds_samples, stored_identity
 from radhar_cli.dataset.identity import versions
@@ -49,6 +50,9 @@ class Dataset(Closing):
         products: {name: an array of each sample}, of `output.products`.
         column_label: {map name: uint8 [N, W]}, numbers in `column_labels.label_names`; empty where
             they were not asked for.
+        frame_label: {map name: int16 [N, person, W]} of streams, places in `frame_classes`, -1
+            nobody.
+        frame_classes: names of the labels in time of streams; empty of other data sets.
         class_slugs: `classes`, then what only `people` may do.
 
     Raises:
@@ -85,6 +89,9 @@ class Dataset(Closing):
         self.fields = scene_fields.fields(config)
         self.classes = tuple(activity.slug for activity in config.chosen_activities)
         self.class_slugs = [activity.slug for activity in config.every_class]
+        self.frame_classes: tuple[str, ...] = ()
+        if config.stream is not None:
+            self.frame_classes = frame_classes(config.stream_activities)
         names: tuple[str, ...] = config.maps
         self.large = {
             name: file.chunks(name, dtype, (count, *shape))
@@ -114,6 +121,9 @@ class Dataset(Closing):
         }
         labelled = names if config.output.column_labels else ()
         self.column_label = {name: small[f"{layout.COLUMN_LABEL}/{name}"] for name in labelled}
+        self.frame_label = {
+            name: small[key] for name in names if (key := f"{layout.FRAME_LABEL}/{name}") in small
+        }
         self.labels, self.person_label = (
             small[name][:] if config.people else None
             for name in (layout.LABELS, layout.PERSON_LABEL)

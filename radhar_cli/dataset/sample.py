@@ -10,7 +10,15 @@ from numpy.typing import NDArray
 
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.dataset.column_labels import label_columns, label_names
-from radhar_cli.dataset.layout import COLUMN_LABEL, LABELS, PERSON_LABEL
+from radhar_cli.dataset.layout import (
+    COLUMN_LABEL,
+    FRAME_LABEL,
+    LABELS,
+    PERSON_LABEL,
+    SEGMENTS,
+    TIME,
+    column_axis,
+)
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError
 from radhar_cli.numerics.arrays import Complex, Float, Levels
@@ -20,6 +28,7 @@ from radhar_cli.processing.power_map import MapImage
 from radhar_cli.products.fallback import EchoAccuracy, Fallback
 from radhar_cli.products.plan import Plan
 from radhar_cli.products.run import run
+from radhar_cli.products.segments import column_times, label_frames
 from radhar_cli.scene import Scene
 
 
@@ -37,7 +46,7 @@ class StoredSample(NamedTuple):
     slow_time: Complex | None = None
     # {name: array}, where they are stored (`output.products`)
     products: Mapping[str, NDArray[Any]] = MappingProxyType({})
-    # {name: values}: LABELS and PERSON_LABEL of scenes with `people`
+    # {name: values}: LABELS and PERSON_LABEL of scenes with `people`, FRAME_LABEL of streams
     labels: Mapping[str, NDArray[Any]] = MappingProxyType({})
 
     @property
@@ -110,7 +119,13 @@ def synthesise(scene: Scene, plan: Plan, config: Config) -> StoredSample:
         name: storable_array(recording[name], name, deepest) for name in scene.config.stored
     }
     return StoredSample(
-        images, error_db, fell_back, labels, slow_time, products, labels_of(scene, config)
+        images,
+        error_db,
+        fell_back,
+        labels,
+        slow_time,
+        products,
+        labels_of(scene, config) | frame_labels_of(images, products, config),
     )
 
 
@@ -146,6 +161,31 @@ def labels_of(scene: Scene, config: Config) -> dict[str, NDArray[Any]]:
     present[person[person >= 0]] = 1
     present[classes.index(scene.activity.slug)] = 1  # `nobody` is a label, too
     return {LABELS: present, PERSON_LABEL: person}
+
+
+def frame_labels_of(
+    images: Mapping[str, MapImage], products: Mapping[str, NDArray[Any]], config: Config
+) -> dict[str, NDArray[Any]]:
+    """Labels [person, width] of the columns of each map over time, by their names in dataset.h5.
+
+    Args:
+        images: {map name: image}.
+        products: stored products, the segments among them.
+        config: config of the data set.
+
+    Returns:
+        The labels; none where the config has no `stream`.
+    """
+    if config.stream is None:
+        return {}
+    people = 1 + len(config.people)
+    return {
+        f"{FRAME_LABEL}/{name}": label_frames(
+            products[SEGMENTS], people, column_times(image.extent, image.levels.shape[1])
+        ).astype(np.int16)
+        for name, image in images.items()
+        if column_axis(name) == TIME
+    }
 
 
 def storable_array(value: Any, name: str, dynamic_range_db: float) -> NDArray[Any]:

@@ -17,6 +17,7 @@ from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.products.knot_rate import KnotRate
 from radhar_cli.products.plan import Product
+from radhar_cli.products.segments import make_segments
 from radhar_cli.products.signal_power import make_snr_paths, needs_other_paths
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
@@ -32,6 +33,9 @@ def scene_products(config: Config) -> Iterator[Product]:
     yield Product("antennas", ("scene",), antennas_of, "positions and gains")
     yield Product("wall", ("scene",), wall_of, "the slab, or none")
     yield Product("motions", ("scene",), make_motions, "scatterers that move")
+    if config.stream is not None:
+        does = "what people do from when to when"
+        yield Product("segments", ("scene", "motions"), make_segments, does, is_array=True)
     room = ("room",) if config.room.reflectors else ()
     if room:
         yield Product("room", ("scene",), reflectors_of, "what stands in the room")

@@ -72,6 +72,7 @@ def _left_out(config: Config) -> Config:
     return Config.model_construct(
         motion=MotionConfig(model=config.motion.model),
         duration_s=config.duration_s,
+        stream=config.stream,
         radar=type(radar).model_construct(needed, **required),
         wall=wall,
     ).filled()

@@ -16,6 +16,7 @@ from radhar_cli.config.checks.room import (
     wall_problems,
 )
 from radhar_cli.config.checks.signal import processing_problems
+from radhar_cli.config.checks.streams import stream_problems
 from radhar_cli.config.maps import MAP_NAMES
 from radhar_cli.config.request import MeasuredRequest, Request
 from radhar_cli.config.section import Problem
@@ -44,6 +45,9 @@ def problems(c: Request) -> Iterator[Problem]:
     if not c.chosen_activities:
         yield Problem("classes", {}, "should have files of each class with motion.model: file")
         return
+    if mistakes := [*stream_problems(c)]:
+        yield from mistakes
+        return
     yield from unknown_activities(c)
     yield from radar_problems(c)
     yield from processing_problems(c)
@@ -63,6 +67,8 @@ def problems(c: Request) -> Iterator[Problem]:
     if split.subjects is not None and split.subjects > c.samples_of(fewest):
         of_class = "" if isinstance(c.samples_per_class, int) else f" of {fewest.slug}"
         limit = f"samples_per_class = {c.samples_of(fewest)}{of_class}"
+        if c.stream is not None:
+            limit = f"stream.count = {c.stream.count}"
         right = f"should be at most {limit}: every person performs every activity"
         yield Problem("split.subjects", split.subjects, right)
 

@@ -7,12 +7,12 @@ from radhar_cli.activities.activity import (
     DEFAULT,
     MOVEMENTS,
     NOBODY,
+    STREAM,
     TWELVE,
     activity_named,
     own_activities,
 )
 from radhar_cli.config.annotations import Limits, People, annotations, at, of_kind
-from radhar_cli.config.classes import class_activities
 from radhar_cli.config.number import MAX_NUMBER, support
 from radhar_cli.config.request import Request
 from radhar_cli.config.section import PerActivity, Problem, for_activity
@@ -43,9 +43,18 @@ def people_problems(c: Request) -> Iterator[Problem]:
         if files:
             yield Problem(f"{key}.activity", files[0], "should be a movement, not motion files")
             continue
-        slugs = tuple(a.slug for a in activities)
-        for problem in human_problems(c.of_person(number).model_copy(update={"activities": slugs})):
-            yield problem._replace(key=f"{key}.{problem.key}")
+        for config in _configs_of_person(c, number, [a.slug for a in activities]):
+            for problem in human_problems(config):
+                yield problem._replace(key=f"{key}.{problem.key}")
+
+
+def _configs_of_person(c: Request, number: int, slugs: list[str]) -> Iterator[Request]:
+    """Yield configs of one of `people`: of their streams, and of what else they do."""
+    config = c.of_person(number)
+    if STREAM in slugs:
+        yield config
+    if others := tuple(slug for slug in slugs if slug != STREAM):
+        yield config.model_copy(update={"activities": others, "stream": None})
 
 
 def class_problems(c: Request) -> Iterator[Problem]:
@@ -74,7 +83,7 @@ def class_problems(c: Request) -> Iterator[Problem]:
 
 def unknown_activities(c: Request) -> Iterator[Problem]:
     """Names under `per_activity` that are neither an activity nor a user-defined class."""
-    classes = class_activities(c.classes)
+    classes = c.own_activities
     activities = (*ACTIVITIES, *classes.values(), *own_activities())
     names = {DEFAULT, *MOVEMENTS, *(activity.slug for activity in activities)}
     keys = ["samples_per_class"]

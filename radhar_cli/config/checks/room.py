@@ -84,6 +84,9 @@ def _coordinates(c: Request, name: str) -> Iterator[tuple[str, Any, list[tuple[f
         people += [
             (f"people.{n}.", one.motion, c.activities_of(n + 1)) for n, one in enumerate(c.people)
         ]
+    if c.places_people and c.stream is not None:
+        yield f"stream.zone.{name}", list(zone := getattr(c.stream.zone, name)), [zone]
+        people = people[1:]
     for prefix, motion, activities in people:
         value, at_place = getattr(motion, name), getattr(motion.place, name)
         numbers = [for_activity(value, one) for one in activities]

@@ -104,7 +104,7 @@ class HumanMotion:
             parts.append((part, place))
             if part.end == inf:
                 break
-            begin, place = part.end, _place_after(place, part.place)
+            begin, place = part.end, place_after(place, part.place)
         return tuple(parts)
 
     def moved_to(self, start: tuple[float, float]) -> "HumanMotion":
@@ -230,7 +230,7 @@ def _join_overlapping(before: tuple[Part, Place], part: Part) -> tuple[tuple[Par
     )
 
 
-def _place_after(place: Place, end: Place) -> Place:
+def place_after(place: Place, end: Place) -> Place:
     """Place in the room where a part ends that begins at `place`; `end` is seen from there."""
     c, s = cos(place.turn), sin(place.turn)
     return Place(

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from radhar_cli.audit.clouds import cloud_evidence
 from radhar_cli.audit.duplicates import (
     Overlaps,
     Pairs,
@@ -26,6 +27,7 @@ from radhar_cli.audit.pictures import (
     thumbnail_of,
 )
 from radhar_cli.audit.recordings import numbered
+from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.processes.progress import Progress
@@ -57,6 +59,8 @@ class AuditLine:
         """What it means, in words."""
         if self.result is None:
             return "not tested: too few persons, recordings or samples of each class"
+        if self.result.high < self.result.chance:
+            return "at chance: every class has each value as often"
         if not self.is_leak:
             return "at chance"
         share, chance = self.result.share, self.result.chance
@@ -141,6 +145,7 @@ def audit(
         warnings.append(f"classes are guessed from {rows.size} of {len(data)} samples")
     group, held_out = _groups(data, rows, warnings)
     evidence = [replace(e, values=e.values[rows]) for e in data.evidence]
+    evidence += clouds_of(data, rows)
     scan = scan_pictures(data, rows, progress)
     if scan is not None:
         features = list(_read_pictures(data, rows, scan.far_bands(rows), progress))
@@ -152,6 +157,14 @@ def audit(
     overlaps = find_overlaps(data, scan)
     warnings += _left_out(data, rows, group)
     return Audit(data, rows, held_out, lines, overlaps, effort, tuple(warnings))
+
+
+def clouds_of(data: AuditedSet, rows: Index) -> list[Evidence]:
+    """Evidence of the clouds of some rows of a data set; none where it has no clouds."""
+    if not data.has_clouds:
+        return []
+    with open_dataset(data.where) as opened:
+        return cloud_evidence(opened, rows)
 
 
 def draw_rows(data: AuditedSet, max_samples: int, seed: int) -> Index:
@@ -175,7 +188,10 @@ def _groups(data: AuditedSet, rows: Index, warnings: list[str]) -> tuple[Index, 
         pairs = np.unique(np.stack([data.label[rows], group]), axis=1)[0]
         if np.count_nonzero(np.bincount(pairs) >= 2) >= 2:
             return group, kind
-        warnings.append(f"too few {kind}s do each class to hold some out: samples are held out")
+        warnings.append(
+            f"too few {kind}s have each class to hold some out: samples are held out, and what "
+            f"tells {kind}s apart tells their classes"
+        )
     return np.arange(rows.size), "sample"
 
 

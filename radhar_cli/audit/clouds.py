@@ -4,13 +4,10 @@ import numpy as np
 
 from radhar_cli.audit.evidence import Evidence, EvidencePart
 from radhar_cli.audit.scene_numbers import one_law
-from radhar_cli.config.annotations import annotations
-from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.learning.images.sequences import CLOUDS
 from radhar_cli.numerics.arrays import Float, Index
 
-PLACES = ("motion.place.range_m", "motion.range_m")  # keys of where people are
 FAR_M = 1.5  # from the middle of a cloud: points there are none of the body's
 
 
@@ -26,13 +23,12 @@ def cloud_evidence(data: Dataset, rows: Index) -> list[Evidence]:
         for row in rows.tolist()
     ]
     place, ends, counts, far = (np.stack(columns) for columns in zip(*clouds, strict=True))
-    place_key = next(key for key in PLACES if key in annotations(Config))
     return [
         Evidence(
             EvidencePart.CLOUDS,
             "where the cloud is",
             place,
-            cure=f"{place_key}: {one_law(place[:, 1])}, one law for all classes",
+            cure=f"motion.place.range_m: {one_law(place[:, 1])}, one law for all classes",
         ),
         Evidence(
             EvidencePart.CLOUDS,

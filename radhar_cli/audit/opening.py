@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.audit.clouds import cloud_evidence, has_clouds
+from radhar_cli.audit.clouds import has_clouds
 from radhar_cli.audit.evidence import Evidence
 from radhar_cli.audit.recordings import (
     LABELS,
@@ -49,6 +49,7 @@ class AuditedSet:
         recording: [N] recording that the sample was cut from; None where nobody says.
         scene: [N] fingerprint of person and motion; None where nobody says.
         on_cue: sentences on onsets that do not vary.
+        has_clouds: whether the dataset.h5 holds point clouds.
         is_simulated: whether a config can be changed.
         is_decibel: whether levels are known to be relative to the largest power of each image.
     """
@@ -64,6 +65,7 @@ class AuditedSet:
     recording: Sequence[object] | None = None
     scene: Sequence[object] | None = None
     on_cue: tuple[str, ...] = ()
+    has_clouds: bool = False
     is_simulated: bool = False
     is_decibel: bool = False
 
@@ -148,11 +150,12 @@ def _open_h5(path: Path, map_name: str | None) -> AuditedSet:
             classes=images.classes,
             label=samples.label,
             names=samples.name.tolist(),
-            evidence=(*_numbers_of(data), *_clouds_of(data)),
+            evidence=tuple(_numbers_of(data)),
             images=images,
             split=samples.split,
             scene=None if samples.scene is None else samples.scene.tolist(),
             on_cue=tuple(_sentences_on_cue(data, samples.label)),
+            has_clouds=has_clouds(data),
             is_simulated=isinstance(config, Config),
             is_decibel=isinstance(config, Config) and config.image.kind == "decibel",
         )
@@ -173,10 +176,6 @@ def _numbers_of(data: Dataset) -> list[Evidence]:
     if isinstance(data.config, MeasuredConfig):
         return window_evidence(data.config)
     return scene_evidence(data)
-
-
-def _clouds_of(data: Dataset) -> list[Evidence]:
-    return cloud_evidence(data, np.arange(len(data))) if has_clouds(data) else []
 
 
 def _sentences_on_cue(data: Dataset, label: Index) -> list[str]:

@@ -14,13 +14,12 @@ import numpy as np
 from radhar_cli.audit.evidence import Evidence, EvidencePart
 from radhar_cli.config.annotations import Paper, People, annotations
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.motion import TimingConfig
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.scene_fields import ERROR, ONSET
 from radhar_cli.numerics.arrays import Float, Index
 
-# Ends of the names of keys of `timing` that say when, not how long.
-INSTANT = re.compile(r"timing\.(\w+_(start|begin|stop)_s|onset)$")
+# Names of keys of `timing` that say when, not how long; and when the movement began of each sample.
+INSTANT = re.compile(r"timing\.(\w+_(start|begin|stop)_s|onset)$|movement_onset_s$")
 ON_CUE_S = 0.25  # standard deviation of an onset below which it is the same in all samples
 FEW_VALUES = 6  # that are written as a choice
 
@@ -30,17 +29,10 @@ def is_instant(key: str) -> bool:
     return INSTANT.match(key) is not None
 
 
-def is_onset(key: str) -> bool:
-    """Whether a column says when the sample's own person begins."""
-    of_timing = is_instant(key) and key.rpartition(".")[2] in TimingConfig.model_fields
-    return of_timing or key == ONSET.key
-
-
 def is_of_movement(key: str) -> bool:
     """Whether the number of a dotted key is a part of the class's movement.
 
-    Numbers of other people in the scene (`people.0.motion...`) are none. The second at which the
-    movement begins follows from the onset, which is a number of its own, and from what people do.
+    Numbers of other people in the scene (`people.0.motion...`) are none.
     """
     if key.startswith("people.") or is_instant(key):
         return False
@@ -57,7 +49,7 @@ def audited_numbers(data: Dataset) -> dict[str, Float]:
     """
     numbers, instants = dict[str, Float](), dict[str, Float]()
     for field in data.fields:
-        if field.key in (ERROR.key, ONSET.key) or is_of_movement(field.key):
+        if field.key == ERROR.key or is_of_movement(field.key):
             continue
         values = data.scene[field.name][:] / field.factor
         if is_instant(field.key):
@@ -81,14 +73,15 @@ def varies(values: Float) -> bool:
 
 
 def _onsets(instants: Mapping[str, Float]) -> dict[str, Float]:
-    """Earliest instant of each sample, under the keys of all instants, beside a share of `onset`.
+    """What was drawn for the onset, and when each sample's movement begins.
 
-    It is kept where it does not vary, too: then every movement begins on cue.
+    Where the data set does not say when, it is the earliest of the instants that were drawn, under
+    the keys of all of them.
     """
-    share = {key: values for key, values in instants.items() if key.endswith(".onset")}
-    seconds = {key: values for key, values in instants.items() if key not in share}
-    onsets = {key: values for key, values in share.items() if varies(values)}
-    if seconds:
+    known = (ONSET.key, "timing.onset")
+    onsets = {key: instants[key] for key in known if key in instants and varies(instants[key])}
+    seconds = {key: values for key, values in instants.items() if key not in known}
+    if seconds and ONSET.key not in instants:
         table = np.stack([*seconds.values()])
         earliest = np.min(np.where(np.isnan(table), np.inf, table), axis=0)
         onsets[" ".join(seconds)] = np.where(np.isfinite(earliest), earliest, np.nan)
@@ -96,13 +89,18 @@ def _onsets(instants: Mapping[str, Float]) -> dict[str, Float]:
 
 
 def scene_evidence(data: Dataset) -> list[Evidence]:
-    """Evidence of each scene number that is not the movement, and of all of them together."""
-    singles = [
-        _evidence_of(key, values) for key, values in audited_numbers(data).items() if varies(values)
-    ]
+    """Evidence of each scene number that is not the movement, and of all of them together.
+
+    When a movement begins, in seconds, is not among the latter where its share is: both together
+    tell how long the movement takes.
+    """
+    has_place = isinstance(data.config, Config) and data.config.motion.model != "paper"
+    numbers = audited_numbers(data).items()
+    singles = [_evidence_of(key, values, has_place) for key, values in numbers if varies(values)]
     if len(singles) < 2:
         return singles
-    table = np.column_stack([_filled(single) for single in singles if not single.tells_who])
+    drawn = [single for single in singles if not single.tells_who and single.key != ONSET.key]
+    table = np.column_stack([_filled(single) for single in drawn])
     together = Evidence(
         EvidencePart.NUMBERS,
         f"all {table.shape[1]} numbers together",
@@ -112,8 +110,8 @@ def scene_evidence(data: Dataset) -> list[Evidence]:
     return [*singles, together]
 
 
-def _evidence_of(key: str, values: Float) -> Evidence:
-    """Evidence of one number."""
+def _evidence_of(key: str, values: Float, has_place: bool) -> Evidence:
+    """Evidence of one number, whose config may say where people are at an instant."""
     if key == "subject":
         return Evidence(
             EvidencePart.NUMBERS,
@@ -129,32 +127,36 @@ def _evidence_of(key: str, values: Float) -> Evidence:
         _words(key),
         values[:, None],
         key,
-        cure_of(key, values),
+        cure_of(key, values, has_place),
+        may_be_movement=key == ONSET.key,  # how long it takes bounds when it begins
         leaves_out_missing=not is_other,
     )
 
 
 def _words(key: str) -> str:
     """A key as tables name it: instants, which stand for several, by what they are."""
-    return "when it begins or ends (timing)" if " " in key else key
+    if key == ONSET.key:
+        return "when the movement begins (s)"
+    return "when it begins or ends (timing)" if key.startswith("timing.") and " " in key else key
 
 
-def cure_of(key: str, values: Float) -> str:
+def cure_of(key: str, values: Float, has_place: bool) -> str:
     """What to write into a config, so that a number is drawn alike for all classes.
 
     Args:
         key: dotted key, or several, with spaces between.
         values: [N] what was drawn, all classes together.
+        has_place: whether the model of motion knows motion.place.
     """
-    known = annotations(Config)
     law, keys = one_law(values), key.split()
-    if key == "motion.range_m" and "motion.place.range_m" in known:
-        keys = ["motion.place.range_m"]
-    if is_instant(keys[0]) and not key.endswith(".onset"):
-        if "timing.onset" in known:
-            return "leave " + ", ".join(keys) + " null and write timing.onset: {uniform: [0, 1]}"
-        law = _law_of_instants(values)
-    return "; ".join(f"{name}: {law}" for name in keys)
+    if has_place and key in ("motion.range_m", "motion.cross_range_m"):
+        place = key.replace("motion.", "motion.place.")
+        return f"leave {key} null, and write {place}: {law}"
+    if is_instant(keys[0]):
+        drawn = [name for name in keys if name not in ("timing.onset", ONSET.key)]
+        null = f"leave {', '.join(drawn)} null, and write " if drawn else ""
+        return f"{null}timing.onset: {{uniform: [0, 1]}}"
+    return f"{keys[0]}: {law}"
 
 
 def one_law(values: Float) -> str:
@@ -163,13 +165,6 @@ def one_law(values: Float) -> str:
     if known.size <= FEW_VALUES:
         return f"{{choice: [{', '.join(f'{value:.4g}' for value in known)}]}}"
     return f"{{uniform: [{known[0]:.3g}, {known[-1]:.3g}]}}"
-
-
-def _law_of_instants(values: Float) -> str:
-    """A law of instants that differ by at least a second."""
-    known = values[np.isfinite(values)]
-    low, high = float(known.min()), float(known.max())
-    return f"{{uniform: [{min(low, 0.2):.3g}, {max(high, low + 2):.3g}]}}"
 
 
 def _filled(single: Evidence) -> Float:
@@ -188,12 +183,12 @@ def _filled(single: Evidence) -> Float:
 
 def onsets_on_cue(data: Dataset, label: Index) -> Iterator[tuple[str, str, float, float]]:
     """Yield (class, keys, mean s, standard deviation s) of onsets that hardly vary in a class."""
-    seconds = {field.key: data.scene[field.name][:] for field in data.fields if is_onset(field.key)}
-    for key, values in seconds.items():
-        if not key.endswith("_s"):
+    for field in data.fields:
+        if not is_instant(field.key) or not field.key.endswith("_s"):
             continue
+        values = data.scene[field.name][:]
         for number, name in enumerate(data.classes):
             known = values[label == number]
             known = known[np.isfinite(known)]
             if known.size >= 2 and known.std() < ON_CUE_S:
-                yield name, key, float(known.mean()), float(known.std())
+                yield name, field.key, float(known.mean()), float(known.std())

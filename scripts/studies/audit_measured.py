@@ -4,7 +4,7 @@
 
 MEASURED holds glasgow_masks.npz (masks, label, classes), mars/subject*.npz and radhar_points/*.npz
 (points by frame) and mmrgait_maps.npz (view_*); what is missing is left out. Each becomes a tree of
-images, OUT/<set>/images, and a table of what is known beside them, OUT/<set>/table.csv; clouds
+images, OUT/<set>/<set>, and a table of what is known beside them, OUT/<set>/table.csv; clouds
 become Doppler-time histograms, and numbers of their windows in the table. The audits are
 OUT/<set>/audit; OUT/audits.md tabulates what tells the classes.
 """
@@ -147,9 +147,9 @@ def convert(samples: list[Sample], folder: Path) -> None:
     for sample in samples:
         number = numbers[sample.label] = numbers.get(sample.label, -1) + 1
         path = Path(sample.label, f"{number:04d}.png")
-        (folder / "images" / sample.label).mkdir(parents=True, exist_ok=True)
+        (folder / folder.name / sample.label).mkdir(parents=True, exist_ok=True)
         levels = np.clip(np.rint(sample.levels), 0, 255).astype(np.uint8)
-        Image.fromarray(levels).save(folder / "images" / path)
+        Image.fromarray(levels).save(folder / folder.name / path)
         rows.append({"file": path.as_posix(), **sample.known})
     with (folder / "table.csv").open("w", newline="") as file:
         writer = csv.DictWriter(file, list(rows[0]))
@@ -192,7 +192,7 @@ def main() -> None:
             continue
         convert(samples, folder)
         table, effort = folder / "table.csv", QUICK if given.quick else Effort()
-        result = audit(folder / "images", NO_PROGRESS, table=table, effort=effort)
+        result = audit(folder / name, NO_PROGRESS, table=table, effort=effort)
         write_audit(result, folder / "audit")
         texts.append(tabulate(name, result))
         print(texts[-1])

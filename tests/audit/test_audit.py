@@ -134,7 +134,7 @@ def test_one_person_alone_cannot_be_held_out(tmp_path):
     rows = [f"{label},me,{n + 50 * (label == 'b')}" for n in range(20) for label in "ab"]
     result = audited(write(tmp_path / "t.csv", "class,person,order", rows))
     assert result.held_out == "sample"
-    assert any("too few persons" in warning for warning in result.warnings)
+    assert any("too few persons have each class" in warning for warning in result.warnings)
     assert line(result, "order").is_leak
 
 

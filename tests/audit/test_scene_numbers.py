@@ -48,6 +48,12 @@ def test_instants_are_keys_of_timing():
 def test_what_to_write_instead():
     assert one_law(np.array([1.0, 2.0, np.nan])) == "{choice: [1, 2]}"
     assert one_law(np.arange(30.0)) == "{uniform: [0, 29]}"
-    assert cure_of("snr_db", np.array([10.0, 30.0])) == "snr_db: {choice: [10, 30]}"
-    assert "{uniform: [2, 12]}" in cure_of("motion.range_m", np.linspace(2, 12, 50))
-    assert "timing." in cure_of("timing.seat_start_s timing.walk_stop_s", np.array([0.5, 2.0]))
+    assert cure_of("snr_db", np.array([10.0, 30.0]), True) == "snr_db: {choice: [10, 30]}"
+    ranges = np.linspace(2, 12, 50)
+    assert cure_of("motion.range_m", ranges, False) == "motion.range_m: {uniform: [2, 12]}"
+    place = "leave motion.range_m null, and write motion.place.range_m: {uniform: [2, 12]}"
+    assert cure_of("motion.range_m", ranges, True) == place
+    cure = cure_of("timing.seat_start_s timing.walk_stop_s", np.array([0.5, 2.0]), True)
+    assert cure.startswith("leave timing.seat_start_s, timing.walk_stop_s null, and write")
+    assert cure.endswith("timing.onset: {uniform: [0, 1]}")
+    assert cure_of("movement_onset_s", ranges, True) == "timing.onset: {uniform: [0, 1]}"

@@ -49,6 +49,12 @@ EXERCISES = (
         )
     ),
 )
+# Movements of the arms alone, by the state of rest in which they are made.
+GESTURES_BY_STATE = {
+    "standing": ("drinking", "writing", "waving", "clapping"),
+    "seated": ("drinking_seated", "writing_seated"),
+}
+GESTURES = tuple(name for names in GESTURES_BY_STATE.values() for name in names)
 # The class of recordings in which nobody is. Its radar sees the room alone; who would stand there
 # says how strong the noise of an `snr_db` is, and which ranges a gate follows.
 NOBODY = "nobody"
@@ -85,6 +91,11 @@ MOVEMENTS = {
     "lying_down": MovementInfo("standing", "in_bed", 5.0),
     "getting_up_from_bed": MovementInfo("in_bed", "standing", 4.5),
     **{name: MovementInfo("standing", "standing", None) for name in EXERCISES},
+    **{
+        name: MovementInfo(state, state, None)
+        for state, names in GESTURES_BY_STATE.items()
+        for name in names
+    },
     NOBODY: MovementInfo("nowhere", "nowhere", None, "stationary"),
 }
 

@@ -44,6 +44,11 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("raise_right_arm", "raising_right_hand"), ("raising_right_arm",)),
     **dict.fromkeys(("raise_left_arm", "raising_left_hand"), ("raising_left_arm",)),
     **dict.fromkeys(("stumble",), ("stumbling",)),
+    **dict.fromkeys(("drink", "drinking_water", "drinking_standing"), ("drinking",)),
+    **dict.fromkeys(("write", "writing_on_board"), ("writing",)),
+    **dict.fromkeys(("writing_at_table",), ("writing_seated",)),
+    **dict.fromkeys(("wave", "hand_waving", "waving_hand"), ("waving",)),
+    **dict.fromkeys(("clap", "clapping_hands", "hand_clapping", "applauding"), ("clapping",)),
     **dict.fromkeys(("empty", "empty_room", "no_one", "no_person", "absent"), ("nobody",)),
     **dict.fromkeys(("trip",), ("tripping",)),
 }
@@ -58,18 +63,18 @@ NEARBY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("hopping", "hop", "leaping"), ("jumping",)),
     **dict.fromkeys(("jack", "jacks"), ("jumping_jacks",)),
     **dict.fromkeys(("lunge", "lunges", "lunging"), ("right_lunge",)),
-    **dict.fromkeys(("waving", "wave", "hand_waving", "raise_arm"), ("raising_right_arm",)),
+    **dict.fromkeys(("raise_arm",), ("raising_right_arm",)),
+    **dict.fromkeys(("eating", "sipping"), ("drinking",)),
+    **dict.fromkeys(("drawing",), ("writing_seated",)),
 }
 # Movements that no model of ours makes, nor one that means the same.
 UNKNOWN = frozenset(
     {
-        *("clapping", "clap", "dancing", "climbing"),
+        *("dancing", "climbing"),
         *(
             "climbing_stairs",
             "stairs",
             "cycling",
-            "drinking",
-            "eating",
             "throwing",
             "pushing",
             "pulling",
@@ -86,7 +91,7 @@ UNKNOWN = frozenset(
         ),
         # of another meaning than the name of ours whose letters they nearly have
         *("pinching", "picking_nose", "licking", "talking", "falling_asleep", "sitting_up"),
-        *("failing", "filling"),
+        *("failing", "filling", "weaving"),
     }
 )
 FROM_FILES = "no model moves like this; motion files can (docs/guide/motion_files.md)"

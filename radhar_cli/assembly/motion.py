@@ -65,7 +65,7 @@ def _who_would_stand_there(person: Person) -> Motion:
     from radhar_cli.motion.human.standing import Stand
 
     motion, physique = person.motion, Physique(person.subject.height_m)
-    start, heading = (motion.range_m, motion.cross_range_m), radians(motion.angle_deg)
+    start, heading = person.place, radians(motion.angle_deg)
     return HumanMotion(physique, (Stand(),), start, heading, 0.0, person.seconds, Idle(physique))
 
 

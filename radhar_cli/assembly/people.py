@@ -14,6 +14,7 @@ import numpy as np
 from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.assembly.floor import draw_floor_movements, join_on_floor
 from radhar_cli.assembly.gaits import jogging_gait, running_gait
+from radhar_cli.assembly.gestures import draw_gestures
 from radhar_cli.assembly.onset import (
     Bout,
     bout_of,
@@ -79,6 +80,7 @@ Fall = FallForward | FallBackward | FallSideways
 M = TypeVar("M", bound="DataclassInstance")  # a movement with a duration
 
 RAGGED_HZ = (0.1, 0.25, 0.4)
+MOST_HZ = 5.0  # repetitions per second: claps
 MIN_STRIDE_S = 0.5  # no stride is shorter
 SHUFFLE_S = 0.9  # duration of a shuffle
 STEP_S = 0.7  # duration of a step towards or from a seat, without that of its length
@@ -350,7 +352,7 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
         lap=motion.sitting.hands_on_lap,
     )
     rise = Rise(lean=radians(motion.sitting.lean_deg))
-    paces, sizes = _repetitions(person, ceil(3 * person.seconds) + 8, place)
+    paces, sizes = _repetitions(person, ceil(MOST_HZ * person.seconds) + 8, place)
     lags = _lags(person, place)
     sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
     floor = draw_floor_movements(person, duration, rise, place)
@@ -380,6 +382,7 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
         try_to_get_up=_with_duration(duration, TryToGetUp()),
         turn_around=_with_duration(duration, AROUND),
         **floor._asdict(),
+        **draw_gestures(person, seat, paces, sizes, place)._asdict(),
         exercise_period=motion.exercises.period,
         exercise_paces=_nonzero_tuple(paces),
         exercise_sizes=_nonzero_tuple(motion.exercises.size * np.minimum(sizes, 1.05)),

@@ -10,7 +10,7 @@ from math import ceil, inf, sqrt
 
 import numpy as np
 
-from radhar_cli.activities.activity import EXERCISES, NOBODY
+from radhar_cli.activities.activity import EXERCISES, GESTURES, NOBODY
 from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import box_of, wall_of
 from radhar_cli.motion.protocol import Motion
@@ -33,6 +33,7 @@ IN_PLACE = frozenset(
         "kneeling",
         NOBODY,
         *EXERCISES,
+        *GESTURES,
     )
 )
 INSTANTS = 25  # at which people may be at their place

@@ -4,6 +4,7 @@ from typing import Annotated, Generic, Literal
 
 from pydantic import Field
 
+from radhar_cli.activities.activity import GESTURES
 from radhar_cli.config.annotations import (
     ABOVE_ZERO,
     PERSONAL,
@@ -41,7 +42,10 @@ FALLS: tuple[FallName, ...] = FallName.__args__  # type: ignore[attr-defined]
 RUNS = "running jogging_in_place"
 
 
-SEATS = "sitting sitting_down standing_up falling_off_seat falling_on_rising"
+SEATS = (
+    "sitting sitting_down standing_up falling_off_seat falling_on_rising drinking_seated "
+    "writing_seated"
+)
 LYING = "lying turning_over lying_down getting_up_from_bed"
 
 
@@ -214,6 +218,56 @@ class ExercisesConfig(Section, Generic[B]):
     """Extent of the movements of an exercise, relative to the usual one."""
 
 
+WRITING = "writing writing_seated"
+
+
+DRINKING = "drinking drinking_seated"
+
+
+ALL_GESTURES = " ".join(GESTURES)
+
+
+class GesturesConfig(Section, Generic[B]):
+    """How arms are moved: drinking, writing, waving, clapping."""
+
+    left_handed: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People(ALL_GESTURES, 0, 1), PERSONAL
+    ] = default_draw(Choice(choice=(0,) * 9 + (1,)))
+    """Hand that is used: 1 is the left one, 0 the right one."""
+    drink_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People(DRINKING, 3, 60)] = (
+        default_draw(normal(5.9, 0.9, 4.2, 8.5))
+    )
+    """Duration of a drink, from raising the hand to lowering it; the next one follows."""
+    cup_held: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("drinking", 0, 1)] = (
+        default_draw(Choice(choice=(0, 1)))
+    )
+    """Place of the cup between drinks of who stands: 1 holds it ahead, 0 lets the arm hang."""
+    strokes_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People(WRITING, 1, 6)] = (
+        default_draw(normal(4.0, 0.8, 2.5, 5.5))
+    )
+    """Strokes up and down of handwriting per second; at a board there are 0.7 of that."""
+    waving_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("waving", 0.5, 2.5)] = (
+        default_draw(normal(1.5, 0.3, 0.9, 2.2))
+    )
+    """Swings of a waving forearm, to both sides, per second."""
+    raise_deg: Annotated[B, ByActivity(ANGLE), People("waving", 30, 100)] = default_draw(
+        normal(60.0, 12.0, 38.0, 85.0)
+    )
+    """Angle of a waving upper arm ahead of the vertical."""
+    both_hands: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("waving", 0, 1)] = (
+        default_draw(Choice(choice=(0, 0, 0, 1)))
+    )
+    """Whether both arms wave: 1 for both, 0 for one."""
+    clapping_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("clapping", 1, 5)] = (
+        default_draw(normal(3.0, 0.6, 1.8, 4.5))
+    )
+    """Claps per second."""
+    size: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People(f"{WRITING} waving clapping", 0.4, 1.3)
+    ] = default_draw(uniform(0.6, 1.15))
+    """Extent of waves, claps and letters, relative to the usual one."""
+
+
 class RepeatingConfig(Section, Generic[B]):
     """How what is done again and again differs from one time to the next."""
 
@@ -224,14 +278,14 @@ class RepeatingConfig(Section, Generic[B]):
     tempo_jitter: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, RATIO),
-        People("punching kicking body_rotating exercises", 0, 0.2),
+        People(f"punching kicking body_rotating exercises {ALL_GESTURES}", 0, 0.2),
         UNSTEADY,
     ] = default_draw(uniform(0.0, 0.1))
     """Relative standard deviation of the time from one punch, kick or turn to the next."""
     size_jitter: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, RATIO),
-        People("punching kicking body_rotating exercises", 0, 0.15),
+        People(f"punching kicking body_rotating exercises {ALL_GESTURES}", 0, 0.15),
         UNSTEADY,
     ] = default_draw(uniform(0.0, 0.1))
     """Relative standard deviation of the size from one punch, kick or turn to the next."""
@@ -443,6 +497,7 @@ class MotionConfig(Section, Generic[B]):
     rotating: RotatingConfig[B] = defaults_of(RotatingConfig)
     striking: StrikingConfig[B] = defaults_of(StrikingConfig)
     exercises: ExercisesConfig[B] = defaults_of(ExercisesConfig)
+    gestures: GesturesConfig[B] = defaults_of(GesturesConfig)
     repeating: RepeatingConfig[B] = defaults_of(RepeatingConfig)
     grabbing: GrabbingConfig[B] = defaults_of(GrabbingConfig)
     sitting: SittingConfig[B] = defaults_of(SittingConfig)

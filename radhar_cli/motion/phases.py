@@ -33,6 +33,10 @@ PHASES = (
     "crawling",
     "lying down",
     "turning over",
+    "drinking",
+    "writing",
+    "waving",
+    "clapping",
 )
 
 

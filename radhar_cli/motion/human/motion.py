@@ -11,6 +11,7 @@ import numpy as np
 
 from radhar_cli.motion import skeleton
 from radhar_cli.motion.human.exercises import Exercise
+from radhar_cli.motion.human.gesturing import Clap, Drink, Wave, Write
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.lying import Lying
@@ -75,12 +76,9 @@ class HumanMotion:
 
     @property
     def highest_frequency(self) -> float:
-        """Frequency that the fastest movement counts as, Hz: highest for kicks, exercises, runs."""
-        return (
-            4.0
-            if any(isinstance(movement, Kick | Exercise | GoRunning) for movement in self.movements)
-            else 3.0
-        )
+        """Frequency that the fastest movement counts as, Hz: highest for kicks, runs and hands."""
+        fast = Kick | Exercise | GoRunning | Drink | Write | Wave | Clap
+        return 4.0 if any(isinstance(movement, fast) for movement in self.movements) else 3.0
 
     @cached_property
     def parts(self) -> tuple[tuple[Part, Place], ...]:

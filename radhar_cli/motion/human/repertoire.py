@@ -9,6 +9,7 @@ from radhar_cli.motion.human.exercises import EXERCISES, Exercise
 from radhar_cli.motion.human.falling import FallBackward, FallForward, OnFours
 from radhar_cli.motion.human.falling_from_seat import FallFromSeat
 from radhar_cli.motion.human.falling_sideways import FallSideways
+from radhar_cli.motion.human.gesturing import AT_TABLE, Clap, Drink, Wave, Write
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.kicking import Kick
@@ -18,7 +19,7 @@ from radhar_cli.motion.human.motion import Movement
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.running import GoRunning, RunningGait
-from radhar_cli.motion.human.sitting import Sit, SitDown, StandUp
+from radhar_cli.motion.human.sitting import Seat, Sit, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
 from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.transfer import GoToBed, LeaveBed
@@ -63,6 +64,12 @@ class Repertoire:
     turn_over: TurnOver = field(default_factory=TurnOver)
     go_to_bed: GoToBed = field(default_factory=GoToBed)
     leave_bed: LeaveBed = field(default_factory=LeaveBed)
+    drink: Drink = field(default_factory=Drink)
+    drink_seated: Drink = field(default_factory=lambda: Drink(seat=Seat()))
+    write: Write = field(default_factory=Write)
+    write_seated: Write = AT_TABLE
+    wave: Wave = field(default_factory=Wave)
+    clap: Clap = field(default_factory=Clap)
     # period of every exercise over the usual one; time and size of each repetition over the usual
     exercise_period: float = 1.0
     exercise_paces: tuple[float, ...] = ()
@@ -164,6 +171,12 @@ MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {
     "turning_over": lambda person, duration: person.turn_over,
     "lying_down": lambda person, duration: person.go_to_bed,
     "getting_up_from_bed": lambda person, duration: person.leave_bed,
+    "drinking": lambda person, duration: replace(person.drink, duration=duration),
+    "drinking_seated": lambda person, duration: replace(person.drink_seated, duration=duration),
+    "writing": lambda person, duration: replace(person.write, duration=duration),
+    "writing_seated": lambda person, duration: replace(person.write_seated, duration=duration),
+    "waving": lambda person, duration: replace(person.wave, duration=duration),
+    "clapping": lambda person, duration: replace(person.clap, duration=duration),
     **{
         name: lambda person, duration, name=name: person.exercise(name, duration)  # type: ignore[misc]
         for name in EXERCISES

@@ -13,7 +13,15 @@ from radhar_cli.activities.activity import STREAM, Activity
 from radhar_cli.config.annotations import Mark, of_kind
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import AnyConfig, Config
-from radhar_cli.config.motion import EARLIER_KEYS, FALLS, Falls, MotionConfig, TimingConfig
+from radhar_cli.config.motion import (
+    EARLIER_KEYS,
+    FALLS,
+    RUNNING_SPEED,
+    WALKING_SPEED,
+    Falls,
+    MotionConfig,
+    TimingConfig,
+)
 from radhar_cli.config.number import Choice, Number, is_fixed, nominal, quantile, uniform
 from radhar_cli.config.paths import at, changed, each_number
 from radhar_cli.config.people import PersonConfig, SubjectConfig
@@ -23,6 +31,7 @@ from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.section import for_activity
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import draw_stream
+from radhar_cli.motion.human.physique import froude_scale
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.numerics.randomness import PERSON, SCENE, stream
 
@@ -57,6 +66,11 @@ OVERLAPPED = {
 }
 MAX_OVERLAP = 0.3
 START_M = 0.6  # from the edge of a zone at which a stream begins, at least
+# Speeds that follow the stature, as a config does not say how fast people are.
+USUAL_SPEEDS = {
+    "motion.walking.speed_mps": WALKING_SPEED,
+    "motion.running.speed_mps": RUNNING_SPEED,
+}
 MAX_PLACES = 100  # drawn for a person who comes too near to others
 
 
@@ -593,7 +607,13 @@ def _fix_numbers(config: Config, activity: Activity, draw: Draw) -> Config:
     values = {key: draw.number(key, number) for key, number in drawn.items()}
     if isinstance(draw, NominalDraw):
         values |= dict.fromkeys(UNSTEADY, 0.0)
+    height: Any = values.get("subject.height_m", fixed.subject.height_m)
     if fixed.subject.weight_kg is None:
-        height: Any = values.get("subject.height_m", fixed.subject.height_m)
         values["subject.weight_kg"] = default_weight(height)
+    if config.motion.model == "human":
+        for key, usual in USUAL_SPEEDS.items():
+            if for_activity(at(config, key), activity) == usual:
+                values[key] = froude_scale(height) * (
+                    values[key] if key in values else at(fixed, key)
+                )
     return changed(fixed, values)

@@ -51,6 +51,10 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("clap", "clapping_hands", "hand_clapping", "applauding"), ("clapping",)),
     **dict.fromkeys(("empty", "empty_room", "no_one", "no_person", "absent"), ("nobody",)),
     **dict.fromkeys(("trip",), ("tripping",)),
+    **dict.fromkeys(("limp", "antalgic_gait", "hobbling"), ("limping",)),
+    **dict.fromkeys(("walking_with_cane", "walking_with_crutch"), ("walking_with_stick",)),
+    **dict.fromkeys(("walking_with_rollator", "walking_with_frame"), ("walking_with_walker",)),
+    **dict.fromkeys(("carry", "carrying_box", "carrying_bag"), ("carrying",)),
 }
 # {word: our names that come near it}: suggested, but not taken for the same.
 NEARBY: dict[str, tuple[str, ...]] = {
@@ -80,7 +84,6 @@ UNKNOWN = frozenset(
             "pulling",
         ),
         *(
-            "limping",
             "gesture",
             "gestures",
             "swimming",

@@ -1,13 +1,23 @@
 """How a person of a scene runs, limps, walks with an aid or carries something."""
 
+from dataclasses import replace
 from math import ceil, radians
 
 import numpy as np
 
+from radhar_cli.motion.human.other_gaits import (
+    carrying,
+    limping,
+    walking_with_stick,
+    walking_with_walker,
+)
 from radhar_cli.motion.human.running import RunningGait
+from radhar_cli.motion.human.walking import Gait
 from radhar_cli.scene import Person
 
 SHORTEST_STEP_S = 0.2
+SLOWEST = 0.15  # speed of a walk, m/s
+OTHER_HAND = 0.8  # share of people who hold a stick in the hand of the other side
 
 
 def running_gait(person: Person, place: int) -> RunningGait:
@@ -18,6 +28,35 @@ def running_gait(person: Person, place: int) -> RunningGait:
 def jogging_gait(person: Person, place: int) -> RunningGait:
     """Gait of jogging on the spot at some place in a sequence."""
     return _running_gait(person, 0.0, place, radians(person.motion.running.knee_deg))
+
+
+def other_gaits(person: Person, gait: Gait, place: int) -> dict[str, Gait]:
+    """Gaits of a walk at some place in a sequence that differ from the person's usual one."""
+    motion = person.motion
+    limp, aids, load = motion.limping, motion.aids, motion.carrying
+    painful, hand, bag = person.stream(f"motion.limping/sides/{place}").random(3)
+    limper = limping(
+        _slowed(gait, limp.pace),
+        limp.asymmetry,
+        1.0 if painful < 0.5 else -1.0,
+        radians(limp.lean_deg),
+    )
+    with_stick = replace(limper, speed=_slowed(gait, aids.stick_pace).speed)
+    return {
+        "limping": limper,
+        "walking_with_stick": walking_with_stick(with_stick, bool(hand < OTHER_HAND)),
+        "walking_with_walker": walking_with_walker(
+            _slowed(gait, aids.walker_pace), aids.rollator > 0.5, radians(aids.walker_pitch_deg)
+        ),
+        "carrying": carrying(
+            _slowed(gait, load.pace), (int(bag < 0.5) if load.bag > 0.5 else None)
+        ),
+    }
+
+
+def _slowed(gait: Gait, pace: float) -> Gait:
+    """Gait of so many times the speed, as long as that is a walk at all."""
+    return replace(gait, speed=max(pace * gait.speed, min(SLOWEST, gait.speed)))
 
 
 def _running_gait(

@@ -13,7 +13,7 @@ import numpy as np
 
 from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.assembly.floor import draw_floor_movements, join_on_floor
-from radhar_cli.assembly.gaits import jogging_gait, running_gait
+from radhar_cli.assembly.gaits import jogging_gait, other_gaits, running_gait
 from radhar_cli.assembly.gestures import draw_gestures
 from radhar_cli.assembly.onset import (
     Bout,
@@ -356,8 +356,10 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
     lags = _lags(person, place)
     sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
     floor = draw_floor_movements(person, duration, rise, place)
+    gait = _gait(person, place)
     return Repertoire(
-        gait=_gait(person, place),
+        gait=gait,
+        other_gaits=other_gaits(person, gait, place),
         walk=person.seconds if person.timing.walk_stop_s is None else person.timing.walk_stop_s,
         punch=_punch(motion.striking, paces, sizes),
         kick=_kick(motion.striking, paces, sizes),

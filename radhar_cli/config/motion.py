@@ -39,7 +39,14 @@ FallName = Literal["forward", "backward", "sideways"]
 FALLS: tuple[FallName, ...] = FallName.__args__  # type: ignore[attr-defined]
 
 
+WALKING_SPEED = normal(1.3, 0.18, 0.7, 2.0)
+RUNNING_SPEED = normal(3.3, 0.7, 2.5, 6.0)
+
+
 RUNS = "running jogging_in_place"
+
+
+LIMPS = "limping walking_with_stick"
 
 
 SEATS = (
@@ -80,9 +87,10 @@ class WalkingConfig(Section, Generic[B]):
         People("walking", 0.3, 2.8),
         Paper(_GAIT),
         PERSONAL,
-        ByModel(human=normal(1.3, 0.18, 0.7, 2.0), paper=1.5),
+        ByModel(human=WALKING_SPEED, paper=1.5),
     ] = default_draw(None)
-    """Walking speed."""
+    """Walking speed. The default is that of people of 1.7 m; of others at the same Froude
+    number."""
     period_scale: Annotated[
         B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0.85, 1.05), PERSONAL
     ] = default_draw(normal(0.95, 0.04, 0.85, 1.05))
@@ -126,8 +134,9 @@ class RunningConfig(Section, Generic[B]):
 
     speed_mps: Annotated[
         B, ByActivity(NOT_NEGATIVE, SPEED), People("running", 1.0, 7.0), PERSONAL
-    ] = default_draw(normal(3.3, 0.7, 2.5, 6.0))
-    """Speed of a run."""
+    ] = default_draw(RUNNING_SPEED)
+    """Speed of a run. The default is that of people of 1.7 m; of others at the same Froude
+    number."""
     cadence: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0.85, 1.15), PERSONAL] = (
         default_draw(normal(1.0, 0.05, 0.9, 1.1))
     )
@@ -152,6 +161,57 @@ class RunningConfig(Section, Generic[B]):
         default_draw(uniform(0.0, 0.03))
     )
     """Relative standard deviation of the time and of the speed of a runner's steps."""
+
+
+class LimpingConfig(Section, Generic[B]):
+    """How people limp, to spare a leg whose side is drawn; a stick goes with it."""
+
+    pace: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("limping", 0.3, 1), PERSONAL] = (
+        default_draw(normal(0.72, 0.08, 0.5, 0.95))
+    )
+    """Speed of a limper, relative to motion.walking.speed_mps."""
+    asymmetry: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(LIMPS, 0, 0.25), PERSONAL] = (
+        default_draw(uniform(0.05, 0.2))
+    )
+    """Share by which the painful leg stands shorter on the floor, and the other one longer."""
+    lean_deg: Annotated[B, ByActivity(ANGLE), People(LIMPS, 0, 15), PERSONAL] = default_draw(
+        uniform(1.0, 8.0)
+    )
+    """Lean of a limper's trunk over the painful leg."""
+
+
+class AidsConfig(Section, Generic[B]):
+    """How people walk with a stick or a walker, which itself does not scatter."""
+
+    stick_pace: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("walking_with_stick", 0.3, 1), PERSONAL
+    ] = default_draw(normal(0.62, 0.1, 0.4, 0.9))
+    """Speed with a stick, relative to motion.walking.speed_mps."""
+    walker_pace: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("walking_with_walker", 0.2, 1), PERSONAL
+    ] = default_draw(normal(0.45, 0.08, 0.25, 0.7))
+    """Speed with a walker, relative to motion.walking.speed_mps."""
+    walker_pitch_deg: Annotated[
+        B, ByActivity(ANGLE), People("walking_with_walker", 0, 35), PERSONAL
+    ] = default_draw(normal(16.0, 5.0, 5.0, 28.0))
+    """Forward pitch of the trunk behind a walker."""
+    rollator: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("walking_with_walker", 0, 1), PERSONAL
+    ] = default_draw(Choice(choice=(0, 1)))
+    """What the walker is: 1 is a rollator, 0 a frame that is lifted once a stride."""
+
+
+class CarryingConfig(Section, Generic[B]):
+    """How people carry something, which itself does not scatter."""
+
+    pace: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("carrying", 0.4, 1)] = default_draw(
+        normal(0.9, 0.06, 0.7, 1.0)
+    )
+    """Speed with a load, relative to motion.walking.speed_mps."""
+    bag: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("carrying", 0, 1)] = default_draw(
+        Choice(choice=(0, 1))
+    )
+    """What is carried: 0 is a box in both hands before the trunk, 1 a bag in one hand."""
 
 
 class PaperGaitConfig(Section, Generic[B]):
@@ -493,6 +553,9 @@ class MotionConfig(Section, Generic[B]):
     """Heading of people; 0 faces away from the radar, 180 faces it."""
     walking: WalkingConfig[B] = defaults_of(WalkingConfig)
     running: RunningConfig[B] = defaults_of(RunningConfig)
+    limping: LimpingConfig[B] = defaults_of(LimpingConfig)
+    aids: AidsConfig[B] = defaults_of(AidsConfig)
+    carrying: CarryingConfig[B] = defaults_of(CarryingConfig)
     paper: PaperGaitConfig[B] = defaults_of(PaperGaitConfig)
     rotating: RotatingConfig[B] = defaults_of(RotatingConfig)
     striking: StrikingConfig[B] = defaults_of(StrikingConfig)

@@ -31,14 +31,15 @@ from radhar_cli.config.section import Filled, Flag, N, Section, default_draw, de
 class SubjectConfig(Section, Generic[N]):
     """The person: body; of the human model also sway, breathing (chest) and pulse (heart)."""
 
-    height_m: Annotated[N, POSITIVE, within(0.1, 10, "m"), Limits(1.5, 2.1), PERSONAL] = (
+    height_m: Annotated[N, POSITIVE, within(0.1, 10, "m"), Limits(1.0, 2.1), PERSONAL] = (
         default_draw(uniform(1.5, 1.9))
     )
-    """Stature of the person."""
+    """Stature of the person; who is smaller than 1.5 m counts as a child in proportions, weight
+    and gait."""
     weight_kg: Annotated[Filled[N], POSITIVE, within(1e-3, 1e6, "kg"), PERSONAL] = default_draw(
         None
     )
-    """Body mass of the person; null is 26 kg/m^2 times the height squared."""
+    """Body mass of the person; null is 26 kg/m^2 times the height squared, and less of children."""
     sway_ahead_m: Annotated[N, NOT_NEGATIVE, METRES, People("", 0, 0.01), PERSONAL] = default_draw(
         uniform(0.002, 0.006)
     )

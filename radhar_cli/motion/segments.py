@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.motion.skeleton import default_weight
+from radhar_cli.motion.skeleton import BODY_MASS_INDEX
 from radhar_cli.numerics.arrays import Float
 
 REFERENCE_STATURE = 1.75
@@ -135,7 +135,7 @@ def thickness(stature: float, weight: float) -> float:
         stature: m.
         weight: kg.
     """
-    return stature / REFERENCE_STATURE * sqrt(weight / default_weight(stature))
+    return stature / REFERENCE_STATURE * sqrt(weight / BODY_MASS_INDEX) / stature
 
 
 class SegmentPositions(NamedTuple):

@@ -10,6 +10,7 @@ from radhar_cli.numerics.arrays import Float
 REFERENCE_HEIGHT = 1.8
 REFERENCE_WEIGHT = 84.24
 BODY_MASS_INDEX = 26.0
+CHILDREN = (1.1, 1.35, 1.5), (15.5, 17.0, BODY_MASS_INDEX)  # statures, m, and kg/m^2
 
 
 class Joint(NamedTuple):
@@ -44,8 +45,12 @@ PARENTS: tuple[int | None, ...] = tuple(
 
 
 def default_weight(height: float) -> float:
-    """Weight (kg) of a person of this height (m) when none is given: 26 kg/m^2."""
-    return BODY_MASS_INDEX * height**2
+    """Weight (kg) of a person of this height (m) when none is given: 26 kg/m^2 of grown-ups.
+
+    Who is smaller than 1.5 m counts as a child, of 15.5 kg/m^2 at 1.1 m and 17 at 1.35 m, medians
+    of the WHO's growth reference (de Onis et al., Bull. World Health Organ. 85 (2007) 660).
+    """
+    return float(np.interp(height, *CHILDREN)) * height**2
 
 
 def links(height: float) -> Float:

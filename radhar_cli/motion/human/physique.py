@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, exp, log, radians
+from math import acos, exp, log, radians, sqrt
 
 from radhar_cli.motion.skeleton import JOINTS, links
+
+GROWN_UP = 1.5  # stature from which on people count as grown up, m
+SHORTER_LEGS = 0.08  # loss of leg length of a child of 1.0 m beside a grown-up, over that
 
 
 @dataclass(frozen=True)
@@ -12,7 +15,9 @@ class Physique:
     """A body with the paper's links; heights and widths are fractions of the stature.
 
     Ankle height: Winter, Biomechanics and Motor Control, after Drillis and Contini. Hip width: CMU
-    motion capture, subject 02.
+    motion capture, subject 02. Who is smaller than 1.5 m counts as a child, with shorter legs and a
+    longer trunk: sitting height is 56 % of the stature at 1.0 m, 52 % of grown-ups' (Snyder et al.,
+    Anthropometry of Infants, Children, and Youths, UM-HSRI-77-17, 1977); linear between them.
     """
 
     stature: float  # m
@@ -35,9 +40,31 @@ class Physique:
         return dict(zip(JOINTS, links(self.stature).tolist(), strict=True))
 
     @property
+    def childlike(self) -> float:
+        """Share of the way from a grown-up's proportions to those of a child of 1.0 m."""
+        return min(max((GROWN_UP - self.stature) / (GROWN_UP - 1.0), 0.0), 1.0)
+
+    @property
+    def smallness(self) -> float:
+        """Stature over that of the smallest grown-up, 1 of grown-ups."""
+        return min(self.stature / GROWN_UP, 1.0)
+
+    @property
+    def quickness(self) -> float:
+        """Times and speeds of a child over those of the smallest grown-up: sqrt of `smallness`."""
+        return sqrt(self.smallness)
+
+    @property
+    def _longer_trunk(self) -> float:
+        """Factor of the trunk that keeps the stature where legs are shorter."""
+        legs, trunk = 2 * self._links["right_knee"][2], self._links["hip"][2]
+        lost = SHORTER_LEGS * self.childlike * legs
+        return 1 + lost / (trunk - self._links["head"][2])
+
+    @property
     def leg(self) -> float:
         """Length of the thigh, and of the shank, m."""
-        return -self._links["right_knee"][2]
+        return -self._links["right_knee"][2] * (1 - SHORTER_LEGS * self.childlike)
 
     @property
     def arm(self) -> float:
@@ -47,12 +74,12 @@ class Physique:
     @property
     def trunk(self) -> float:
         """Distance from hip to torso, m."""
-        return -self._links["hip"][2]
+        return -self._links["hip"][2] * self._longer_trunk
 
     @property
     def neck(self) -> float:
         """Distance from torso to head, m."""
-        return self._links["head"][2]
+        return self._links["head"][2] * self._longer_trunk
 
     @property
     def shoulder(self) -> float:
@@ -97,3 +124,13 @@ class Physique:
     def rest_lean(self) -> float:
         """Angle of shank and thigh from the vertical at rest, rad."""
         return acos((self.rest_height - self.ankle) / (2 * self.leg))
+
+
+def froude_scale(stature: float, reference: float = 1.7) -> float:
+    """Speed of a person over that of one of a `reference` stature at the same Froude number.
+
+    v^2/(g l) is alike where people of legs l move alike (Alexander, Physiol. Rev. 69 (1989) 1199):
+    children of 4 and 7 years walk at 0.9 to 1.0 and 1.1 m/s (Sutherland et al., J. Bone Joint Surg.
+    62-A (1980) 336).
+    """
+    return sqrt(Physique(stature).leg / Physique(reference).leg)

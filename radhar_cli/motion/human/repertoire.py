@@ -1,6 +1,6 @@
 """What a person can do: the twelve activities S1 to S12, and sequences of any of them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, pi, radians
 
@@ -16,6 +16,7 @@ from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.kneeling import GetDown, Kneel
 from radhar_cli.motion.human.lying import Lie, TurnOver
 from radhar_cli.motion.human.motion import Movement
+from radhar_cli.motion.human.other_gaits import OTHER_GAITS, usual_gaits
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.running import GoRunning, RunningGait
@@ -46,6 +47,7 @@ class Repertoire:
     turn: Turn = field(default_factory=Turn)
     run: RunningGait = RUNNING
     jog: RunningGait = ON_THE_SPOT
+    other_gaits: Mapping[str, Gait] = field(default_factory=usual_gaits)
     # in which direction people fall, and how
     fall: FallForward | FallBackward | FallSideways = field(default_factory=FallForward)
     fall_on_hands: FallForward | FallBackward | FallSideways = ON_HANDS
@@ -159,6 +161,10 @@ MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {
     "falling_on_rising": lambda person, duration: person.fall_on_rising,
     "stumbling": lambda person, duration: person.stumble,
     "tripping": lambda person, duration: Walk(replace(person.gait, trip=person.trip), duration),
+    **{
+        name: lambda person, duration, name=name: Walk(person.other_gaits[name], duration)  # type: ignore[misc]
+        for name in OTHER_GAITS
+    },
     "getting_up": lambda person, duration: person.get_up,
     "trying_to_get_up": lambda person, duration: person.try_to_get_up,
     "turning_around": lambda person, duration: person.turn_around,

@@ -12,6 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.motion.human import boulic_thalmann as curves
+from radhar_cli.motion.human.aids import (
+    Aid,
+    Load,
+    elbow_directions,
+    hands_of_aid,
+    limited_to_reach,
+)
+from radhar_cli.motion.human.arms import arm_directions_to_hands, hanging_hands
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
 from radhar_cli.motion.human.lane import (
@@ -33,12 +41,15 @@ from radhar_cli.motion.human.planted import (
     resting_channels,
     scale_steps,
 )
-from radhar_cli.motion.human.pose import Pose, axes, turned
+from radhar_cli.motion.human.pose import Axes, Pose, axes, shoulder_points, turned
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 from radhar_cli.numerics.arrays import Float
 
 START_PHASE = 0.5  # of the stride: the right foot goes first
 EARLIEST_SWING = 0.3
+MAX_LIMP = 0.25
+STANCE = 0.62  # share of a stride that a foot is on the floor, of which a limp takes its share
+SHORTER_STEP = 0.3  # how much later than half a stride a limper's other foot is stepped over
 # The hip is fastest here, in double support, for a short time, and slow for longer (CMU motion
 # capture, subject 02: 0.88 to 1.14 times the walking speed at 1.2 m/s).
 SURGE_PHASE, SHARPNESS = 0.04, 0.08
@@ -80,10 +91,19 @@ class Gait:
     lane: Lane | None = None  # where the walker turns round; None for never
     # angle by which the trunk goes ahead where the walker trips half way and catches the fall, rad
     trip: float = 0.0
+    # share by which the painful leg stands shorter and the other one longer, its side (-1: right),
+    # and the angle by which the trunk leans over it while it stands, rad
+    limp: float = 0.0
+    limp_side: float = -1.0
+    limp_lean: float = 0.0
+    held: Load | Aid | None = None  # what the hands hold, from where the walk begins to its end
+    name: str = "walking"  # name of its phase
 
     def __post_init__(self) -> None:
         if not self.speed > 0:
             raise ValueError(f"who walks has a speed above 0 m/s, not {self.speed:g} m/s")
+        if not 0 <= self.limp <= MAX_LIMP:
+            raise ValueError(f"a limp is from 0 to {MAX_LIMP}, not {self.limp:g}")
 
 
 @dataclass(frozen=True)
@@ -158,13 +178,18 @@ class Walking:
 
     @cached_property
     def relative_speed(self) -> float:
-        """Relative speed Rv = v/h, 1/s."""
-        return self.gait.speed / self.person.tallest
+        """Relative speed Rv = v/h, 1/s; of children as of grown-ups at their Froude number."""
+        return self.gait.speed / self.person.tallest * self.person.quickness
 
     @cached_property
     def stride(self) -> float:
         """Duration of a stride, s."""
-        return curves.cycle_duration(self.relative_speed) * self.gait.period_scale
+        return self._usual_stride * self.gait.period_scale
+
+    @property
+    def _usual_stride(self) -> float:
+        """Duration of a usual stride, s; children's are as short as their legs (Froude)."""
+        return curves.cycle_duration(self.relative_speed) * self.person.quickness
 
     @cached_property
     def ramp(self) -> float:
@@ -328,7 +353,8 @@ class Walking:
     def end(self) -> float:
         if not self.stops:
             return inf
-        last_touch_down = max(float(track.falls.down[-1]) for track in self._foot_tracks)
+        tracks = (*self._foot_tracks, self._aid_track)
+        last_touch_down = max(float(track.falls.down[-1]) for track in tracks if track is not None)
         return max(last_touch_down, self.stop + self.ramp)
 
     @cached_property
@@ -345,7 +371,7 @@ class Walking:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        walking = [Phase(self.begin, "walking")]
+        walking = [Phase(self.begin, self.gait.name)]
         if self.gait.trip:
             walking.append(Phase(self._trip_start, "stumbling"))
             walking.append(Phase(self._trip_start + 1.2 * self.stride, "walking"))
@@ -354,7 +380,8 @@ class Walking:
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Instants (s) of the feet's events, and both ends of ramps, strides and half turns."""
-        ends = [track.breakpoints for track in self._foot_tracks]
+        tracks = (*self._foot_tracks, self._aid_track)
+        ends = [track.breakpoints for track in tracks if track is not None]
         if self.from_rest:
             ends.append(np.array([self.begin, self.begin + self.start]))
         if self.stops:
@@ -381,7 +408,7 @@ class Walking:
                 self.person,
                 self._footfalls(times_of_foot.reshape(4, -1), side),
                 gait.roll,
-                gait.lift,
+                gait.lift * self.person.smallness,
                 gait.lag,
             )
             for times_of_foot, side in zip(times_of_both, (-1.0, 1.0), strict=True)
@@ -399,18 +426,40 @@ class Walking:
             the last column ends the last swing.
         """
         gait, margin = self.gait, 2 * self.stride
-        first = EARLIEST_SWING if self.from_rest else self._phase_at(self.begin - margin)
+        later, longer, below = self._limp_of(delay)
+        delay += later
+        earliest = min(EARLIEST_SWING, gait.heel_off + longer - 0.02)
+        first = earliest if self.from_rest else self._phase_at(self.begin - margin)
         until = self.stop + self.ramp if self.stops else max(self.horizon, self.begin) + margin
         last = self._phase_at(until)
-        heel_off = delay + gait.heel_off
+        heel_off = delay + gait.heel_off + longer
         k = np.arange(np.ceil(first - heel_off), np.ceil(last - heel_off) + 1)
         off = k + heel_off
-        toe_off_phase = np.clip(curves.support(self.stride / gait.period_scale), 0.58, 0.66)
-        toe = k + delay + toe_off_phase
+        of_grown_ups = self._usual_stride / self.person.quickness
+        toe_off_phase = np.clip(curves.support(of_grown_ups), 0.58, 0.66)
+        toe = k + delay + toe_off_phase + longer
         if self.from_rest:
             off = np.maximum(off, START_PHASE)
             toe = np.maximum(toe, off + 0.12)
-        return np.array([off, toe, k + delay + 1 + gait.touch_down, k + delay + gait.below])
+        above = k + delay + gait.below + below
+        return np.array([off, toe, k + delay + 1 + gait.touch_down, above])
+
+    def _limp_of(self, delay: float) -> tuple[float, float, float]:
+        """How a limp changes the stride of a foot, fractions of a stride.
+
+        Args:
+            delay: How much later the foot's stride is than the right one's without a limp.
+
+        Returns:
+            How much later it touches down, how much longer it stands, and how much later the body
+            is above its foothold.
+        """
+        shift = STANCE * self.gait.limp
+        is_painful = (delay > 0) == (self.gait.limp_side > 0)
+        later = (shift if is_painful else -shift) if delay else 0.0
+        if is_painful:
+            return later, -shift, -shift / 2
+        return later, shift, shift / 2 - SHORTER_STEP * shift
 
     def _footfalls(self, times: Float, side: float) -> Footfalls:
         """Swings of one foot (side -1 or 1) whose events happen at `times` [4, N + 1] (s)."""
@@ -420,7 +469,8 @@ class Walking:
         resting_width = side * self.person.hip
         distances = self.path(above)
         half_widths = np.full(above.size, usual_width)
-        widths = side * np.array(gait.widths[: half_widths.size])
+        smallness = self.person.smallness
+        widths = side * smallness * np.array(gait.widths[: half_widths.size])
         half_widths[: widths.size] += widths
         if self.from_rest:
             distances[0], half_widths[0] = 0.0, resting_width
@@ -461,7 +511,7 @@ class Walking:
         return np.array(
             [
                 surge,
-                curves.harmonic(1, -gait.sidewards, 0.03 + 1 / 4),
+                curves.harmonic(1, -gait.sidewards * self.person.smallness, 0.03 + 1 / 4),
                 curves.pelvis_yaw(rv),
                 curves.pelvis_roll(rv),
                 -curves.thorax_yaw(rv),
@@ -501,7 +551,7 @@ class Walking:
             pelvis_roll=roll,
             pitch=self.gait.trunk_pitch * g,
             twist=twist,
-            lean=nothing,
+            lean=self._limping_lean(u) * g if self.gait.limp else nothing,
             shoulders=np.array(arms[:2]),
             elbows=np.array(arms[2:]) + self.person.elbow,
             hands=(nothing, nothing, nothing),
@@ -539,6 +589,88 @@ class Walking:
         ankles[1] -= y
         return ankles if heading is None else turned(ankles, -heading)
 
+    def _limping_lean(self, u: Float) -> Float:
+        """Lean of a limper's trunk to the left (rad) at phases u [M]: over the painful leg."""
+        delay = 0.5 if self.gait.limp_side > 0 else 0.0
+        later, longer, _ = self._limp_of(delay)
+        middle = delay + later + (STANCE + longer) / 2
+        lean: Float = self.gait.limp_side * self.gait.limp_lean * np.cos(2 * pi * (u - middle))
+        return lean
+
+    @cached_property
+    def _aid_track(self) -> FootTrack | None:
+        """Course of what is set on the floor ahead, None where nothing is."""
+        aid = self.gait.held
+        if not isinstance(aid, Aid) or aid.down is None:
+            return None
+        first = START_PHASE if self.from_rest else self._phase_at(self.begin - 2 * self.stride)
+        until = self.stop + self.ramp if self.stops else max(self.horizon, self.begin)
+        last = self._phase_at(until + (0.0 if self.stops else 2 * self.stride))
+        lifted = aid.down + aid.up
+        k = np.arange(np.ceil(first - lifted), max(np.ceil(last - lifted), 1.0) + 1)
+        off = k + lifted
+        phases = np.array([off, off + 0.02, k + 1 + aid.down, k + aid.down + aid.up / 2])
+        times: Float = self._times_of_phases(phases.ravel()).reshape(4, -1)
+        off, toe, down, above = times
+        distances = self.path(above)
+        if self.from_rest:
+            distances[0] = 0.0
+        if self.stops:
+            distances[-1] = self._total_distance
+        x, y, turn = self._position_at(distances)
+        heading: Float = np.zeros(x.size) if turn is None else turn
+        ahead = aid.ahead * self.person.stature
+        places = np.array([x + ahead * np.cos(heading), y + ahead * np.sin(heading)])
+        size = np.ones(off.size - 1)
+        falls = Footfalls(
+            off[:-1], toe[:-1], down[:-1], places[:, :-1], places[:, 1:], heading[:-1], size
+        )
+        return FootTrack(self.person, falls, 0.0, aid.lift * self.person.stature, 0.0)
+
+    def _held_place(self, t: Float, x: Float, y: Float, heading: Float | None) -> Float | None:
+        """Place [3, M] (m) of what is set on the floor, seen by the walker at x, y and heading."""
+        if self._aid_track is None:
+            return None
+        place = self._aid_track(t)
+        place[0] -= x
+        place[1] -= y
+        place[2] -= self.person.ankle
+        return place if heading is None else turned(place, -heading)
+
+    def _arms_that_hold(
+        self,
+        trunk: Axes,
+        shoulders: Float,
+        flexion: tuple[Float, Float],
+        place: Float | None,
+        hip_ahead: Float,
+        g: Float,
+    ) -> tuple[Float, Float]:
+        """Unit vectors of upper arms and forearms [3, 2, M] of which some hold something.
+
+        Args:
+            trunk: Axes of the trunk.
+            shoulders: Right and left shoulder [3, 2, M], m.
+            flexion: Flexion of shoulders and elbows of arms that swing, each [2, M], rad.
+            place: Where an aid is on the floor [3, M], m.
+            hip_ahead: Distance of the hip ahead [M], m.
+            g: Share of the walk [M]: at rest the arms hang.
+        """
+        held, body = self.gait.held, self.person
+        assert held is not None
+        hands, poles = hanging_hands(body, *flexion)
+        if isinstance(held, Load):
+            targets: Float = held.hands(body) + 0 * hands
+        else:
+            frame = np.array([trunk.ahead, trunk.left, trunk.up])
+            aim = hands_of_aid(held, body, place, hip_ahead)
+            targets = limited_to_reach(body, np.einsum("axm,xim->aim", frame, aim - shoulders))
+        sides = list(held.sides)
+        elbows = elbow_directions(held)[:, sides, None]
+        hands[:, sides] += g * (targets[:, sides] - hands[:, sides])
+        poles[:, sides] += g * (elbows - poles[:, sides])
+        return arm_directions_to_hands(trunk, hands, poles, body.arm)
+
     def _trip_pitch(self, t: Float, g: Float) -> Float | float:
         """Angle (rad) by which a trip pitches the trunk ahead at times t [M] (s), 0 without one."""
         if not self.gait.trip or self._jitter is None:
@@ -569,7 +701,12 @@ class Walking:
         upset = self._trip_pitch(t, g)
         trunk = axes(channels.pitch + upset, channels.twist, channels.lean)
         flexion = channels.shoulders + 1.5 * upset, channels.elbows + 1.5 * upset
-        upper, fore = arms_of_posture(body, hip, trunk, flexion, *channels.hands)
+        if self.gait.held is None:
+            upper, fore = arms_of_posture(body, hip, trunk, flexion, *channels.hands)
+        else:
+            shoulders = shoulder_points(body, hip, trunk)
+            place = self._held_place(t, x, y, heading)
+            upper, fore = self._arms_that_hold(trunk, shoulders, flexion, place, hip[0], g)
         joints = hip[:, None] + joint_offsets
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         pose = Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)

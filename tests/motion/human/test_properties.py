@@ -50,7 +50,7 @@ BREATHING = 1e-4  # m, links that touch the torso: (4.25 mm)^2/(2 x 0.25 m) = 0.
 PLANTED = 1e-4  # m
 HORIZON = 6.0
 
-STATURES = st.floats(1.5, 2.0)
+STATURES = st.floats(1.0, 2.1)
 SPEEDS = st.floats(0.3, 2.8)
 PHASES = st.lists(st.floats(0, 6.3), min_size=8, max_size=8).map(tuple)
 FIDGETING = st.lists(
@@ -178,6 +178,7 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
     }
 
 
+SIDES = ("right", "left")
 ACTIVITIES = tuple(walks_of(Gait(1.2)))
 
 
@@ -201,11 +202,21 @@ def recording(motion: HumanMotion, rate: float) -> np.ndarray:
     return np.arange(-0.1, max(HORIZON, last) + 0.2, 1 / rate)
 
 
+def links_of(person: Physique) -> np.ndarray:
+    """Links [13, 3] of a person: a child's legs are shorter and the trunk is longer."""
+    link = links(person.stature)
+    legs = [JOINTS.index(f"{side}_{part}") for side in SIDES for part in ("knee", "ankle")]
+    link[legs] *= person.leg / np.linalg.norm(link[legs[0]])
+    trunk = [JOINTS.index(name) for name in ("head", "hip")]
+    link[trunk] *= person.trunk / np.linalg.norm(link[trunk[0]])
+    return link
+
+
 def link_errors(motion: HumanMotion, t: np.ndarray) -> dict[str, float]:
     """Largest deviation of each link from its length; thighs from the hip joints."""
     p, hips = motion.positions(t), motion.hip_joints(t)
     errors = {}
-    for joint, (parent, link) in enumerate(zip(PARENTS, links(motion.person.stature), strict=True)):
+    for joint, (parent, link) in enumerate(zip(PARENTS, links_of(motion.person), strict=True)):
         if parent is None:
             continue
         start = hips[:, KNEES.index(joint)] if joint in KNEES else p[:, parent]

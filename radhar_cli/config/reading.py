@@ -371,8 +371,8 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
     if elsewhere := _why_of_another(places[0], str(names[-1])):
         return elsewhere
     known = [name for one in places for name in one.model_fields]
-    if deeper := _key_of_group(str(names[-1]), places[0]):
-        return f"is an unknown key; did you mean {deeper!r}?"
+    if deeper := _keys_of_groups(str(names[-1]), places[0]):
+        return f"is an unknown key; did you mean {' or '.join(map(repr, deeper))}?"
     with_unit = [key for key in known if unit_of(key) and key.rpartition("_")[0] == names[-1]]
     if with_unit:
         return f"is an unknown key; did you mean {with_unit[0]!r}?"
@@ -403,19 +403,17 @@ def _section_around(
     return place
 
 
-def _key_of_group(name: str, section: type[BaseModel]) -> str | None:
-    """Find a key like a name in the groups of a section, as "walking.speed_mps"; None without."""
-    groups = {group: sections(field) for group, field in section.model_fields.items()}
-    leaves = {
-        leaf: f"{group}.{leaf}"
-        for group, kinds in groups.items()
-        for kind in kinds
-        for leaf in kind.model_fields
-    }
+def _keys_of_groups(name: str, section: type[BaseModel]) -> list[str]:
+    """Find the keys most like a name in the groups of a section, as "walking.speed_mps"."""
+    leaves: dict[str, list[str]] = {}
+    for group, field in section.model_fields.items():
+        for kind in sections(field):
+            for leaf in kind.model_fields:
+                leaves.setdefault(leaf, []).append(f"{group}.{leaf}")
     if difflib.get_close_matches(name, section.model_fields, n=1, cutoff=0.6):
-        return None
+        return []
     near = difflib.get_close_matches(name, leaves, n=1, cutoff=0.75)
-    return leaves[near[0]] if near else None
+    return leaves[near[0]] if near else []
 
 
 def _why_of_another(kind: type[BaseModel], key: str) -> str | None:

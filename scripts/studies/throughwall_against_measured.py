@@ -44,19 +44,19 @@ def simulated(scene: dict[str, Any], seed: int) -> Float:
     """A signed range-time image [256, 256] from -1 to 1, near the radar first."""
     radar = {"carrier_hz": 0.7e9, "bandwidth_hz": 1.6e9, "prf_hz": 128, "waveform": "impulse"}
     place = {"tx_m": [0.2, -0.1, 1.3], "rx_m": [0.2, 0.1, 1.3]}
+    shown_m = [NEAREST_M, NEAREST_M + REACH_M]
     document = {
         "seed": seed,
         "duration_s": SECONDS,
         "activities": ["walking"],
-        "radar": radar
-        | place
-        | {"profile_m": [NEAREST_M, NEAREST_M + REACH_M], "profile_samples": SIZE},
+        "radar": radar | place | {"profile_m": shown_m, "profile_samples": SIZE},
         "motion": {"range_m": {"uniform": [1.6, 2.0]}, "angle_deg": 0},
+        "timing": {"visible": 1},
         "body": {"scatterers": "segments"},
         "processing": {"clutter": "mean", "range_gain_power": 2},
         "snr_db": 40,
         "maps": ["rtm"],
-        "image": {"kind": "signed", "size_px": SIZE},
+        "image": {"kind": "signed", "size_px": SIZE, "range_limits_m": shown_m},
     }
     config = Config.model_validate(document | scene)
     drawn = draw_scene(config, activity_named("walking"), 0)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, Activity, activity_named
+from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, NOBODY, Activity, activity_named
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.dataset.scene_fields import movement_onset
@@ -16,7 +16,7 @@ from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO, links
 from radhar_cli.scene import Scene, draw_scene, nominal_scene
 
 SLUGS = [activity.slug for activity in ACTIVITIES]
-SEQUENCES = {f"only_{name}": {"sequence": [name]} for name in MOVEMENTS} | {
+SEQUENCES = {f"only_{name}": {"sequence": [name]} for name in MOVEMENTS if name != NOBODY} | {
     "comes_home": {
         "sequence": ["walking", "sitting_down", "standing_up", "walking"],
         "durations_s": [{"uniform": [1, 4]}, None, None, None],

@@ -91,9 +91,9 @@ def test_the_snr_refers_to_the_straight_paths() -> None:
 
 def test_a_ghost_trails_in_range_at_another_doppler() -> None:
     """By way of metal behind and back: farther than the person, and receding as they approach."""
-    room = {"box_m": BOX, "faces": {"back": "metal"}, "order": 2}
+    room, far = {"box_m": BOX, "faces": {"back": "metal"}, "order": 2}, {"range_limits_m": [0, 16]}
     shown = [
-        record(nominal_scene(config(snr_db=None, room=one), WALKING), ["rtm", "stft"])
+        record(nominal_scene(config(snr_db=None, room=one, image=far), WALKING), ["rtm", "stft"])
         for one in ({}, room)
     ]
     power = [one["rtm"].power[one["rtm"].rows.values > 6.2].sum() for one in shown]

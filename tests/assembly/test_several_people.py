@@ -38,7 +38,8 @@ def config(*people: Mapping[str, Any], **more: Any) -> Config:
 
 
 def own(scene: Scene) -> dict[str, Any]:
-    return {**resolved(scene.config), "people": []}
+    """Numbers of a scene's first person; the range that images show is everybody's."""
+    return {**resolved(scene.config), "people": [], "image": None}
 
 
 def test_another_person_changes_nobody_else() -> None:

@@ -60,7 +60,8 @@ def test_snr_range_and_floor_come_back(tmp_path: Path, snr_db: float) -> None:
     assert abs(found.numbers()["noise_over_range_db"]) < 1, "white noise is the same everywhere"
     low, high = found.document["motion"]["place"]["range_m"]["uniform"]
     assert 2 < low < 4
-    assert low + 2 < high < 9
+    seen = 2 if snr_db > 0 else 1  # the walker fades as they go away
+    assert low + seen < high < 9
     assert found.document.keys() == {"duration_s", "radar", "snr_db", "motion"}
 
 

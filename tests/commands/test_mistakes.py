@@ -21,7 +21,7 @@ MISTAKES = {
     f"{GENERATE} --jobs 0": "--jobs 0: should be greater than or equal to 1",
     f"{GENERATE} -j two": "--jobs two: should be a valid integer",
     f"{GENERATE} --set radar.prf_hz=-5": "radar.prf_hz = -5: should be above 0",
-    f"{GENERATE} --set motion.sped_mps=1": "did you mean 'walking.speed_mps'",
+    f"{GENERATE} --set motion.sped_mps=1": "'walking.speed_mps'",
     f"{GENERATE} --set activities=[wlaking]": "did you mean 'walking'",
     f"{GENERATE} --set image.colour_map=viridus": "'viridis'",
     "eval run data --repeats": "--repeats",

@@ -308,9 +308,9 @@ BROKEN = [
         "should name one activity or more, or `default`",
     ),
     Broken(
-        "motion:\n  paper: {gait_hz: {per_activity: {default: 1, jogging: 2}}}",
-        "2: motion.paper.gait_hz.per_activity.jogging = 2.0",
-        "'jogging' is not an activity; no model moves like this; motion files can",
+        "motion:\n  paper: {gait_hz: {per_activity: {default: 1, skipping: 2}}}",
+        "2: motion.paper.gait_hz.per_activity.skipping = 2.0",
+        "'skipping' is not an activity; no model moves like this; motion files can",
     ),
     Broken(
         "seed: 1\nsamples_per_class: {per_activity: {default: 3, sittng_down: 2}}",

@@ -38,6 +38,7 @@ MISTAKES = {
     "inspect small.yaml": "not an HDF5 file",
     "motion small.yaml -a walking -o x.fbx": "should end in .bvh",
     "motion small.yaml -a flying -o x.bvh": "is not an activity",
+    "motion small.yaml -a waking -o x.bvh": "--activity: 'waking' is not an activity; did you mean",
     "motion small.yaml -o x.bvh": "an activity is needed",
     "convert set -o tree --to parquet": "tree: already exists",
     "convert set -o x --to parket": "did you mean 'parquet'?",

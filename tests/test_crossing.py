@@ -51,7 +51,11 @@ FACTORS: dict[str, dict[str, Document]] = {
         "beam": {"radar": {**FMCW, "beam": {"pan_deg": 10}, "residual_video_phase": True}},
         "padded": {
             "radar": {**FMCW, "polarisation": "horizontal"},
-            "processing": {"range_fft_length": 64, "range_reference": "start"},
+            "processing": {
+                "range_fft_length": 64,
+                "range_reference": "start",
+                "range_window": "rectangular",
+            },
         },
         "sfcw": {"radar": {**BAND, "waveform": "sfcw", "steps": 20, "dwell_s": 2e-6}},
         "cw": {"radar": {"carrier_hz": 24e9, "prf_hz": 400, "waveform": "cw"}},

@@ -2,10 +2,12 @@
 
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.config.number import nominal, support
+from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.numerics.rounding import half_up
 from radhar_cli.processing import canceller
 from radhar_cli.processing.cfar import CellAveraging
 from radhar_cli.processing.frames import Frames
+from radhar_cli.radar.chirp_window import ChirpWindow
 
 
 def canceller_of(config: AnyConfig, prf: float) -> canceller.Canceller:
@@ -40,6 +42,12 @@ def cfar_of(config: AnyConfig) -> CellAveraging:
         floor_db=nominal(cfar.floor_db),
         wrap=cfar.edges == "wrap",
     )
+
+
+def chirp_window_of(processing: ProcessingConfig) -> ChirpWindow:
+    """Make the window before range compression."""
+    assert processing.range_window is not None  # filled in where the config was read
+    return ChirpWindow(processing.range_window, processing.range_sidelobes_db)
 
 
 def frames_of(config: AnyConfig, duration: float, prf: float, f0: float) -> Frames:

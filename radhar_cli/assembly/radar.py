@@ -8,6 +8,7 @@ from typing import TypeAlias, assert_never
 
 import numpy as np
 
+from radhar_cli.assembly.processing import chirp_window_of
 from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.config.radar import (
     BeamConfig,
@@ -18,6 +19,7 @@ from radhar_cli.config.radar import (
     SfcwRadar,
 )
 from radhar_cli.radar.board import DEVICES, Board
+from radhar_cli.radar.chirp_window import RECTANGULAR
 from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
@@ -67,15 +69,18 @@ def waveform_of(scene: Scene) -> Waveform:
     radar, processing = scene.radar, scene.config.processing
     kind: Callable[..., Waveform] = Waveform
     residual_video_phase, centred = False, processing.range_reference == "centre"
+    window = RECTANGULAR
     match radar:
         case BoardRadar():
-            return board_of(radar, scene.seconds).waveform
+            waveform = board_of(radar, scene.seconds).waveform
+            return replace(waveform, window=chirp_window_of(processing))
         case ImpulseRadar():
             kind = partial(Impulse, profile=radar.profile_m, samples=radar.profile_samples)
         case CwRadar():
             centred = False
         case FmcwRadar() | SfcwRadar():
             residual_video_phase = radar.residual_video_phase
+            window = chirp_window_of(processing)
         case _:
             assert_never(radar)
     return kind(
@@ -88,6 +93,7 @@ def waveform_of(scene: Scene) -> Waveform:
         fft_length=processing.range_fft_length,
         centred=centred,
         residual_video_phase=residual_video_phase,
+        window=window,
     )
 
 

@@ -10,7 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.assembly.processing import canceller_of, frames_of, fsst_frames_of
+from radhar_cli.assembly.processing import (
+    canceller_of,
+    chirp_window_of,
+    frames_of,
+    fsst_frames_of,
+)
 from radhar_cli.assembly.radar import board_of
 from radhar_cli.capture.content import Beat, RangeProfiles, Ranging, SlowTime
 from radhar_cli.capture.findings import LOST
@@ -202,6 +207,8 @@ def _range_signal(
     radar = fixed_radar(config)
     if isinstance(radar, BoardRadar):  # whose samples have no half band
         waveform = replace(board_of(radar).waveform, centred=centred)
+    if isinstance(content, Beat):
+        waveform = replace(waveform, window=chirp_window_of(processing))
     x = bins_of_part(part, content, waveform)
     is_real = isinstance(content, RangeProfiles) and part.recording.samples.parts == 1
     moving_bins = without_static(analytic(x) if is_real else x)

@@ -6,20 +6,23 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, field_validator, model_validator
 
 from radhar_cli.config.acting import (
+    CHIRPS,
     DENOISED,
     EVEN,
     FSSTS,
     NO_BOARD,
     RANGE_TIME,
+    SIGNAL_MAPS,
     SPECTRA,
     STFTS,
 )
-from radhar_cli.config.annotations import ActsIf
+from radhar_cli.config.annotations import ActsIf, ByModel
 from radhar_cli.config.number import value_error
 from radhar_cli.config.radar import MIN_WINDOW
 from radhar_cli.config.section import Flag, Section, defaults_of
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import half_up
+from radhar_cli.radar.chirp_window import WindowName
 
 
 class SavgolConfig(Section):
@@ -90,6 +93,20 @@ class ProcessingConfig(Section):
         Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None, NO_BOARD
     ] = None
     """Length of the range FFT, even, at least the samples of a chirp; null finds one."""
+    range_window: Annotated[
+        WindowName | None,
+        ByModel(human="hann", paper="rectangular", file="hann"),
+        CHIRPS,
+        SIGNAL_MAPS,
+    ] = None
+    """Window over the samples of a chirp, before range compression; its energy is that of none.
+    Frame maps and points of a board have windows of their own."""
+    range_sidelobes_db: Annotated[
+        float,
+        Field(ge=20, le=120, strict=True),
+        ActsIf("processing.range_window", "taylor", "chebyshev"),
+    ] = 60.0
+    """Sidelobes of taylor and chebyshev, dB below the peak."""
     range_gain_power: Annotated[float, Field(ge=0, le=8, strict=True), RANGE_TIME] = 0.0
     """Exponent p of the gain (R/largest R)^p of the rtm's range bins, after canceller and noise."""
     range_reference: Annotated[Literal["centre", "start"], NO_BOARD] = "centre"

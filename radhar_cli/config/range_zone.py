@@ -1,19 +1,17 @@
 """Where people can be, by what a config draws: the range axis that images have by default."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
-from math import ceil, hypot
+from math import ceil, cos, hypot, pi, radians
 from typing import TYPE_CHECKING, Any
 
 from radhar_cli.activities.activity import Activity
-from radhar_cli.config.annotations import ActsIfNull
+from radhar_cli.config.annotations import People, at, of_kind
 from radhar_cli.config.number import nominal, support
-from radhar_cli.config.section import PerActivity
+from radhar_cli.config.section import for_activity
 
 if TYPE_CHECKING:
-    from radhar_cli.config.motion import MotionConfig
     from radhar_cli.config.request import Request
-    from radhar_cli.config.section import B
 
 REACH_M = 1.0  # of a limb, and of what a person drifts and falls, beyond the feet
 
@@ -22,55 +20,60 @@ def range_zone(request: "Request") -> tuple[float, float]:
     """Ranges in which people can be: from 0 to the whole metre beyond the farthest of them.
 
     It follows from what the config may draw, not from what a sample has drawn: an axis that
-    followed a sample would tell where its person is, and so maybe what it does.
+    followed a sample would tell where its person is, and so maybe what it does. Who walks goes
+    as far as the usual speed takes them within the recording; those few who are faster leave the
+    image.
     """
     if request.stream is not None:
         zone = request.stream.zone
         reach = hypot(max(map(abs, zone.range_m)), max(map(abs, zone.cross_range_m)))
         return 0.0, float(ceil(reach + REACH_M))
-    people = [(request.motion, request.chosen_activities)]
-    with suppress(ValueError):  # of an unknown activity, which is told by itself
-        people += [
-            (one.motion, request.activities_of(number))
-            for number, one in enumerate(request.people, 1)
-        ]
-    longest = max(_ends(request.duration_s))
-    farthest = max(
-        _farthest(motion, longest * _speed(motion, activities)) for motion, activities in people
-    )
-    return 0.0, float(ceil(farthest + REACH_M))
+    ranges = [_farthest(request, activity) for activity in request.chosen_activities]
+    for number in range(1, len(request.people) + 1):
+        person = request.of_person(number)
+        with suppress(ValueError):  # of an unknown activity, which is told elsewhere
+            ranges += [_farthest(person, activity) for activity in request.activities_of(number)]
+    return 0.0, float(ceil(max(ranges, default=0.0) + REACH_M))
 
 
-def _farthest(motion: "MotionConfig[B]", course: float) -> float:
-    """Range of the farthest place at which a person may start, or be on a usual course, m.
-
-    Who is at a place (`motion.place`) at one instant may be as far away at another as they go.
-    """
-    starts = motion.range_m, motion.cross_range_m
-    reaches = [hypot(*(max(map(abs, _ends(number))) for number in starts))]
-    if ActsIfNull("range_m").holds(lambda key: getattr(motion, key)):
-        places = motion.place.range_m, motion.place.cross_range_m
-        reaches.append(hypot(*(max(map(abs, _ends(number))) for number in places)) + course)
-    return max(reaches)
+def _farthest(request: "Request", activity: Activity) -> float:
+    """Range of the farthest place that a person reaches by one activity, m."""
+    motion, ahead = request.motion, max(-_nearest_antenna(request), 0.0)
+    starts = for_activity(motion.range_m, activity) is not None
+    holder: Any = motion if starts else motion.place
+    along = max(_ends(for_activity(holder.range_m, activity)))
+    across = max(_ends(for_activity(holder.cross_range_m, activity)))
+    away = _share_away(request, activity) if starts else 1.0
+    return hypot(along + ahead, across) + away * _way(request, activity)
 
 
-def _speed(motion: "MotionConfig[B]", activities: Iterable[Activity]) -> float:
-    """Usual speed of those who go somewhere, m/s; 0 of who turns round or stays in place."""
-    movements = {name for activity in activities for name in activity.movements}
-    speeds = [0.0]
-    if movements & {"walking", "tripping"} and not max(_ends(motion.walking.lane_m)):
-        speeds += map(nominal, _forms(motion.walking.speed_mps))
-    if "running" in movements:
-        speeds += map(nominal, _forms(motion.running.speed_mps))
-    return max(speeds)
+def _nearest_antenna(request: "Request") -> float:
+    """Least range of an antenna of the radar, m."""
+    radar = request.radar
+    return min(support(getattr(radar, key)[0])[0] for key in radar.place_keys)
 
 
 def _ends(number: Any) -> Iterator[float]:
-    """Yield the smallest and the largest value of a number, whatever the activity."""
-    for form in _forms(number):
-        yield from (0.0, 0.0) if form is None else support(form)
+    """Yield the magnitudes of the smallest and the largest value of a number; 0 for null."""
+    yield from (0.0, 0.0) if number is None else map(abs, support(number))
 
 
-def _forms(number: Any) -> tuple[Any, ...]:
-    """Return what a number may be drawn from, by activity."""
-    return tuple(number.per_activity.values()) if isinstance(number, PerActivity) else (number,)
+def _share_away(request: "Request", activity: Activity) -> float:
+    """Largest share of a way that leads away from the radar, by what headings may be drawn."""
+    low, high = map(radians, support(for_activity(request.motion.angle_deg, activity)))
+    turns = ceil(low / (2 * pi)) * 2 * pi  # the first heading of 0 that is not below `low`
+    return 1.0 if turns <= high else max(cos(low), cos(high), 0.0)
+
+
+def _way(request: "Request", activity: Activity) -> float:
+    """Way that people go within a recording at their usual speed, at most their lane, m."""
+    seconds = support(request.duration_s)[1]
+    speeds = [
+        nominal(for_activity(at(request, key), activity))
+        for key, _ in of_kind(type(request), People)
+        if key.startswith("motion.") and key.endswith(".speed_mps")
+        if request.depends_on(activity, key)
+    ]
+    way = max(speeds, default=0.0) * seconds
+    lane = support(for_activity(request.motion.walking.lane_m, activity))
+    return way if lane[0] == 0 else min(way, lane[1])

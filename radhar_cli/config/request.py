@@ -182,7 +182,7 @@ class Request(Section):
         So do activities that a number by activity does not name.
         """
         self._name_classes()
-        changed = _missing_defaults(self)
+        changed, chosen_window = _missing_defaults(self), self.processing.range_window
         for key, default in of_kind(Request, ByModel):
             name, _, rest = key.rpartition(".")
             holder = at(self, name) if name else self
@@ -206,6 +206,9 @@ class Request(Section):
         if self.people:
             filled = tuple(self._filled_person(n) for n in range(1, len(self.people) + 1))
             object.__setattr__(self, "people", filled)
+        if self.processing.range_reference == "start" and not chosen_window:
+            none = {"range_window": "rectangular"}  # as its sum reads the ends of a chirp
+            object.__setattr__(self, "processing", _with_defaults(self.processing, none))
         if self.motion.model == "paper" and self.processing.window_s is None:
             window = {"window_s": PAPER_WINDOW * nominal(self.duration_s)}
             object.__setattr__(self, "processing", _with_defaults(self.processing, window))

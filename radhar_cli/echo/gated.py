@@ -1,7 +1,7 @@
 """Range bins in closed form, for a gate.
 
     y_k[m] = exp(-j pi k/N_FFT) sum_i A_i exp(-j 2 pi phi_i) D(k/N_FFT - u_i),
-    D(x) = sin(pi N x)/sin(pi x),  u = K tau/fs,  phi the phase of a path in mid-chirp,
+    D(x) = sum_n w[n] cos(2 pi x (n - (N - 1)/2)),  u = K tau/fs,  phi the phase in mid-chirp,
 
 of the bins referred to mid-chirp, sum_n exp(j 2 pi k (n - N/2)/N_FFT) s_b[n, m]. Over the ranges of
 a body D is a sum of few Chebyshev polynomials T_p, whose sums over the paths are made instead of
@@ -61,6 +61,27 @@ def kernel(u: Float, k: Index, samples: int, n_fft: int) -> Float:
         below[peak] = 1
     sines /= below
     return sines
+
+
+def windowed_kernel(u: Float, k: Index, weights: Float, n_fft: int) -> Float:
+    """D(k/N_FFT - u) of a window w, symmetric about the middle of its samples.
+
+    The cosine of a difference makes two matrix products of the sum over the samples.
+
+    Args:
+        u: Beat frequencies [P], cycles per sample.
+        k: Range bins [K].
+        weights: Window w[n] [N].
+        n_fft: Length of the transform.
+
+    Returns:
+        D [P, K].
+    """
+    n = np.arange(weights.size) - (weights.size - 1) / 2
+    beat, bins = 2 * np.pi * np.outer(u, n), 2 * np.pi / n_fft * np.outer(n, k)
+    d: Float = (np.cos(beat) * weights) @ np.cos(bins)
+    d += (np.sin(beat) * weights) @ np.sin(bins)
+    return d
 
 
 @dataclass(frozen=True)
@@ -196,7 +217,11 @@ def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[
     """Coefficients [P, K] of D(k/N_FFT - u) = sum_p c_p T_p((u - middle)/half), P at least 2."""
     double = real == np.float64
     count = ceil((np.pi * w.n_adc * half + MORE_NODES[double]) / 8) * 8
-    c = coefficients(lambda x: kernel(middle + half * x, k, w.n_adc, w.n_fft), count)
+    if w.window.is_rectangular:
+        c = coefficients(lambda x: kernel(middle + half * x, k, w.n_adc, w.n_fft), count)
+    else:
+        weights = w.window.weights(w.n_adc)
+        c = coefficients(lambda x: windowed_kernel(middle + half * x, k, weights, w.n_fft), count)
     significant = np.flatnonzero(np.abs(c).max(axis=1) > SMALLEST[double] * w.n_adc)
     return c[: max(2, int(significant.max(initial=0)) + 1)].astype(real)
 

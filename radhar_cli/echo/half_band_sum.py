@@ -1,7 +1,7 @@
 """The sum over the kept range bins, as a function of the beat frequency.
 
-G(u) = sum_n D[n] exp(-j 2 pi (n - n0) u),  D[n] = sum_k exp(+j 2 pi k (n - n0)/N_FFT), k over the
-kept bins, u = K tau/fs (docs/physics/engines.md). It depends on the radar alone. |G| has
+G(u) = sum_n D[n] exp(-j 2 pi (n - n0) u),  D[n] = w[n] sum_k exp(+j 2 pi k (n - n0)/N_FFT), k over
+the kept bins, u = K tau/fs (docs/physics/engines.md). It depends on the radar alone. |G| has
 period 1; G itself changes sign over a period where n0 is half-integer.
 """
 

@@ -106,7 +106,7 @@ class RangeBins(FastTime):
 
     @property
     def white(self) -> bool:
-        """Whether the transform is orthogonal, as it is unless it is padded."""
+        """Whether the transform is orthogonal: neither padded nor windowed."""
         return self.waveform.orthogonal
 
     @property
@@ -155,15 +155,19 @@ class ProfileSamples(RangeBins):
 
 @lru_cache(maxsize=4)
 def _colour(waveform: Waveform, first: int, stop: int) -> Complex:
-    """Factor R^H of W W^H = sum_n exp(j 2 pi (k - k')(n - n0)/N_FFT) for bins first .. stop - 1."""
+    """Factor R^H of W W^H for bins first .. stop - 1.
+
+    It is sum_n w[n]^2 exp(j 2 pi (k - k')(n - n0)/N_FFT).
+    """
     n = np.arange(waveform.n_adc) - waveform.n0
     w = np.exp(2j * np.pi * np.mod(np.outer(np.arange(first, stop), n) / waveform.n_fft, 1))
+    w *= waveform.window.weights(waveform.n_adc)
     return np.linalg.qr(w.conj().T).R.conj().T
 
 
 @lru_cache(maxsize=4)
 def weights(waveform: Waveform) -> Complex:
-    """Weights D[n] = sum_k exp(+j 2 pi k (n - n0)/N_FFT) [N_ADC], k over the kept bins."""
+    """Weights D[n] = w[n] sum_k exp(+j 2 pi k (n - n0)/N_FFT) [N_ADC], k over the kept bins."""
     n = np.arange(waveform.n_adc) - waveform.n0
     # A geometric series; its ratio is 1 where n - n0 = 0 mod N_FFT.
     angle = np.pi * n / waveform.n_fft
@@ -172,7 +176,9 @@ def weights(waveform: Waveform) -> Complex:
         series = np.exp(1j * (waveform.n_bins - 1) * angle) * (
             np.sin(waveform.n_bins * angle) / np.sin(angle)
         )
-    return np.where(is_pole, waveform.n_bins, series)
+    weighted: Complex = np.where(is_pole, waveform.n_bins, series)
+    weighted *= waveform.window.weights(waveform.n_adc)
+    return weighted
 
 
 def noise_gain(waveform: Waveform) -> float:

@@ -9,10 +9,11 @@ from radhar_cli.radar.waveform import Waveform
 
 
 def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None)) -> Complex:
-    """Range bins S[k, m] = sum_n s[n, m] exp(+j 2 pi k (n - n0)/N_FFT), k < N_FFT/2.
+    """Range bins S[k, m] = sum_n w[n] s[n, m] exp(+j 2 pi k (n - n0)/N_FFT), k < N_FFT/2.
 
-    The conjugate kernel puts a target at range bin k = R/range_step; n0 = N_ADC/2 refers the bins
-    to mid-chirp (docs/physics/model.md, "Where in the chirp the Doppler is read").
+    w is the window of the waveform. The conjugate kernel puts a target at range bin k =
+    R/range_step; n0 = N_ADC/2 refers the bins to mid-chirp (docs/physics/model.md, "Where in the
+    chirp the Doppler is read").
 
     Args:
         s: Beat matrix [N_ADC, M].
@@ -22,6 +23,8 @@ def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None))
     Returns:
         S [K, M] of those bins.
     """
+    if not waveform.window.is_rectangular:
+        s = s * waveform.window.weights(waveform.n_adc)[:, None].astype(s.real.dtype)
     ifft: Any = np.fft.ifft
     if s.dtype == np.complex64:  # which scipy transforms faster, but it is slow to import
         from scipy.fft import ifft

@@ -1,7 +1,7 @@
 """Products of a board: channels, cube, frame maps, points, skeletons, and Doppler maps' signals."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import inf
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.assembly.bodies import Link, make_path_sources, sum_of_paths
-from radhar_cli.assembly.processing import frames_of, fsst_frames_of
+from radhar_cli.assembly.processing import chirp_window_of, frames_of, fsst_frames_of
 from radhar_cli.assembly.radar import board_of, detection_of
 from radhar_cli.assembly.receiver import noise_stream
 from radhar_cli.bodies.motion_paths import point_delay
@@ -56,6 +56,7 @@ from radhar_cli.products.signal_power import (
     power_product,
 )
 from radhar_cli.radar.board import Board
+from radhar_cli.radar.chirp_window import RECTANGULAR, ChirpWindow
 from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.wall import Wall
 from radhar_cli.receiver.noise import WhiteNoise
@@ -186,12 +187,14 @@ def _signal_rows(config: Config) -> Iterator[Product]:
     """Rows of the signals that range-time and Doppler-time maps show, and of their windows."""
     yield Product("canceller", ("scene", "waveform"), make_canceller, "canceller of each frame")
     does = "range bins of every channel"
-    yield Product("board_bins", ("cube", "board"), compute_range_bins, does, is_array=True)
+    window = chirp_window_of(config.processing)
+    compress = partial(compute_range_bins, window=window)
+    yield Product("board_bins", ("cube", "board"), compress, does, is_array=True)
     does = "sum over range, uncancelled"
     yield Product("slow_time", ("board_bins",), sum_over_range, does, is_array=True)
     needs: tuple[str, ...] = ("cube", "board", "canceller")
     does = "its range bins after the canceller"
-    yield Product("range_signals", needs, compute_range_bins, does, is_array=True)
+    yield Product("range_signals", needs, compress, does, is_array=True)
     bins = ("range_signals",)
     yield Product("signal", bins, sum_over_range, "their coherent sum", is_array=True)
     choose = partial(choose_columns, width=config.image.size_px[1])
@@ -358,20 +361,26 @@ def starts_of(cloud: Cloud) -> Index:
     return cloud.start
 
 
-def compute_range_bins(cube: Complex, board: Board, canceller: Canceller = NO_CANCELLER) -> Signal:
+def compute_range_bins(
+    cube: Complex,
+    board: Board,
+    canceller: Canceller = NO_CANCELLER,
+    window: ChirpWindow = RECTANGULAR,
+) -> Signal:
     """Compute the range bins of every virtual channel, pulse by pulse.
 
     Args:
         cube: raw samples [frame, loop, virtual, sample].
         board: board of the cube.
         canceller: canceller of every channel.
+        window: window over the samples of a chirp.
 
     Returns:
         The bins [virtual, bin, pulse].
 
     Raw samples go through the canceller, not bins: nothing is left then of what stands still.
     """
-    w = board.waveform
+    w = replace(board.waveform, window=window)
     x = np.empty((board.channels, w.n_bins, board.frames * board.loops), cube.dtype)
     for v in range(board.channels):
         samples = cube[:, :, v].reshape(-1, board.samples).T * board.signs[v]

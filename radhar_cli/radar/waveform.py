@@ -8,6 +8,7 @@ import numpy as np
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT as SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import half_up
+from radhar_cli.radar.chirp_window import RECTANGULAR, ChirpWindow
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,7 @@ class Waveform:
     # whether range bins are referred to mid-chirp (n0 = N_ADC/2) or to its start
     centred: bool = True
     residual_video_phase: bool = False  # whether the term + pi K tau^2 is kept
+    window: ChirpWindow = RECTANGULAR  # over the samples of a chirp, before range compression
 
     @property
     def slope(self) -> float:
@@ -57,8 +59,8 @@ class Waveform:
 
     @property
     def orthogonal(self) -> bool:
-        """Whether range bins are orthogonal: those of a transform that is not padded."""
-        return self.n_fft == self.n_adc
+        """Whether range bins are orthogonal: neither padded nor windowed."""
+        return self.n_fft == self.n_adc and self.window.is_rectangular
 
     @property
     def n0(self) -> float:

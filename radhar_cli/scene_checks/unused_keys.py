@@ -19,6 +19,7 @@ from radhar_cli.config.annotations import (
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.motion import MotionConfig
 from radhar_cli.config.number import support
+from radhar_cli.config.range_zone import range_zone
 from radhar_cli.config.room import WallConfig
 from radhar_cli.config.section import PerActivity
 from radhar_cli.scene import FALL, numbers
@@ -69,13 +70,17 @@ def _left_out(config: Config) -> Config:
     }
     required = {name: getattr(radar, name) for name in needed}
     wall = config.wall and WallConfig.model_construct({"layers"}, layers=config.wall.layers)
-    return Config.model_construct(
+    usual = Config.model_construct(
         motion=MotionConfig(model=config.motion.model),
         duration_s=config.duration_s,
         stream=config.stream,
         radar=type(radar).model_construct(needed, **required),
         wall=wall,
     ).filled()
+    if config.motion.model != "human":
+        return usual
+    limits = {"range_limits_m": range_zone(config)}
+    return usual.model_copy(update={"image": usual.image.model_copy(update=limits)})
 
 
 def _without_condition(config: Config) -> Iterator[tuple[str, str]]:

@@ -4,8 +4,8 @@ A map gathers the echo of a scatterer in few cells, and spreads white noise over
 of the echo is in one cell, its SNR there is that of a raw sample times
 
     sum over range bins    |G|^2/sum |D|^2, 2 of half of the bins (`half_band_sum.py`)
-    gate of K bins         N_ADC/sqrt(K): powers are summed, whose noise fluctuates sqrt(K) less
-    range-time map         N_ADC
+    range-time map         N_ADC, less what the window over the chirp costs: (sum w)^2/sum w^2
+    gate of K bins         1/sqrt(K) of it: powers are summed, whose noise fluctuates sqrt(K) less
     window g of L pulses   (sum g)^2/sum g^2, 2 L/3 of Hann's; besides, of Doppler-time maps
     frames of a board      2/3 N_ADC, and 2/3 of the loops where Doppler bins stay apart
     V channels             V at most, whatever is made of them
@@ -106,7 +106,7 @@ def cell_gain_db(scene: Scene, name: str) -> float:
     w = waveform_of(scene)
     kind = MAP_KINDS.get(name)
     if kind == RTM:
-        over_range, window = 2.0 if isinstance(w, Impulse) else float(w.n_adc), 1.0
+        over_range, window = 2.0 if isinstance(w, Impulse) else w.window.gain(w.n_adc), 1.0
     elif kind is not None:
         over_range = _gate_gain(config, w) if _gated(config) else _sum_gain(w)
         window = HANN * _window_pulses(scene, w)
@@ -133,7 +133,8 @@ def _gate_gain(config: Config, w: Waveform) -> float:
     bins = max(float(wide) / w.range_step, 1.0)
     if isinstance(w, Impulse):
         return 2 * float((_pulse(w) ** 2).sum(axis=0).max()) / sqrt(bins)
-    return w.n_adc / sqrt(max(bins * w.n_adc / w.n_fft, 1.0))  # padding makes no more of them
+    # padding makes no more of them
+    return w.window.gain(w.n_adc) / sqrt(max(bins * w.n_adc / w.n_fft, 1.0))
 
 
 def _pulse(w: Impulse) -> Float:

@@ -248,6 +248,8 @@ CHANGES: dict[str, object] = {
     "processing.range_fft_length": 512,
     "processing.range_reference": "start",
     "processing.range_gain_power": 2.0,
+    "processing.range_window": "taylor",
+    "processing.range_sidelobes_db": 40.0,
     "processing.window_s": 0.3,
     "processing.overlap_fraction": 0.5,
     "processing.stft_fft_length": 4096,

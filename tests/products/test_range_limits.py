@@ -71,6 +71,16 @@ def test_people_have_an_axis_by_default_that_no_sample_decides():
     assert chosen.image.range_limits_m == (0.0, 6.0)
     other = {"activity": "walking", "motion": {"range_m": 20.0}}
     assert config({}, people=[other]).image.range_limits_m == (0.0, 22.0)
+    away = {"range_m": 5.0, "angle_deg": {"uniform": [-40, 170]}}
+    walks = config({}, motion=away, activities=["walking"])
+    assert walks.image.range_limits_m == (0.0, 9.0)  # 1.3 m/s for 2 s, and 1 m
+    stays = config({}, motion=away, activities=["punching"])
+    assert stays.image.range_limits_m == (0.0, 6.0)
+    lane = away | {"walking": {"lane_m": 0.5}}
+    assert config({}, motion=lane, activities=["walking"]).image.range_limits_m == (0.0, 7.0)
+    behind = RADAR | {"tx_m": [-2, 0, 1], "rx_m": [-2, 0, 1]}
+    further = config({}, motion=away, activities=["punching"], radar=behind)
+    assert further.image.range_limits_m == (0.0, 8.0)
     extents = {
         made(chosen, "image:rtm", activity=name)["image:rtm"].extent[2:]
         for name in ("walking", "punching", "falling_to_walking")

@@ -163,7 +163,8 @@ def test_each_processing_key_changes_its_map_alone():
     scene_slug = activity_named("walking")
 
     def maps(**processing):
-        config = Config.model_validate(base | {"processing": processing})
+        chosen = {"range_window": "rectangular"} | processing
+        config = Config.model_validate(base | {"processing": chosen})
         recording = record_scene(draw_scene(config, scene_slug, 0), names)
         return {name: recording[name].power for name in names}
 
@@ -173,6 +174,7 @@ def test_each_processing_key_changes_its_map_alone():
         ({"clutter": "none"}, {"rtm"} | doppler),
         ({"range_fft_length": 1000}, {"rtm"} | doppler),
         ({"range_reference": "start"}, doppler),
+        ({"range_window": "hann"}, {"rtm"} | doppler),
         ({"window_s": 0.3}, doppler),
         ({"overlap_fraction": 0.5}, doppler),
         ({"stft_fft_length": 200}, doppler - {"fsst"}),

@@ -50,6 +50,7 @@ def processing_problems(c: AnyRequest) -> Iterator[Problem]:
         yield from waveform_problems(c)
         yield from _clutter_problems(c)
     yield from _signal_problems(c)
+    yield from _range_window_problems(c)
     yield from _gate_problems(c)
     yield from _image_problems(c)
 
@@ -94,6 +95,18 @@ def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
     if padding is not None and padding > MAX_PADDING * max(window, MIN_WINDOW):
         right = f"should be null or at most {MAX_PADDING} times the window of {window} pulses"
         yield Problem("processing.stft_fft_length", padding, right)
+
+
+def _range_window_problems(c: AnyRequest) -> Iterator[Problem]:
+    """A window that leaves nothing of what the coherent sum over range reads."""
+    processing = c.processing
+    name, reads_ends = processing.range_window, processing.range_reference == "start"
+    if reads_ends and name not in (None, "rectangular") and processing.range_sum == "coherent":
+        right = (
+            "should be rectangular with processing.range_reference: start, whose sum over range "
+            "reads the ends of a chirp"
+        )
+        yield Problem("processing.range_window", name, right)
 
 
 def _clutter_problems(c: AnyRequest) -> Iterator[Problem]:

@@ -68,9 +68,9 @@ def test_a_reflector_is_in_the_row_of_its_range():
 def test_people_have_an_axis_by_default_that_no_sample_decides():
     assert config({}).image.range_limits_m == (0.0, 12.0)  # 8 m, and a walk of 2 s
     chosen = config({}, motion={"range_m": {"uniform": [3, 4]}, "cross_range_m": 3.0})
-    assert chosen.image.range_limits_m == (0.0, 6.0)
+    assert chosen.image.range_limits_m == (0.0, 9.0)  # towards or away, as anybody may
     other = {"activity": "walking", "motion": {"range_m": 20.0}}
-    assert config({}, people=[other]).image.range_limits_m == (0.0, 22.0)
+    assert config({}, people=[other]).image.range_limits_m == (0.0, 24.0)
     away = {"range_m": 5.0, "angle_deg": {"uniform": [-40, 170]}}
     walks = config({}, motion=away, activities=["walking"])
     assert walks.image.range_limits_m == (0.0, 9.0)  # 1.3 m/s for 2 s, and 1 m
@@ -85,7 +85,7 @@ def test_people_have_an_axis_by_default_that_no_sample_decides():
         made(chosen, "image:rtm", activity=name)["image:rtm"].extent[2:]
         for name in ("walking", "punching", "falling_to_walking")
     }
-    assert extents == {(0.0, 6.0)}
+    assert extents == {(0.0, 9.0)}
 
 
 def test_the_paper_has_the_whole_axis():

@@ -74,6 +74,6 @@ def _way(request: "Request", activity: Activity) -> float:
         if key.startswith("motion.") and key.endswith(".speed_mps")
         if request.depends_on(activity, key)
     ]
-    way = max(speeds, default=0.0) * seconds
+    distance = max(speeds, default=0.0) * seconds
     lane = support(for_activity(request.motion.walking.lane_m, activity))
-    return way if lane[0] == 0 else min(way, lane[1])
+    return distance if lane[0] == 0 else min(distance, lane[1])

@@ -18,7 +18,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias, get_args, get_origin
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
-from radhar_cli.activities.activity import MOVEMENTS
+from radhar_cli.activities.activity import MOVEMENTS, NOBODY
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.annotations import (
     ABOVE_ZERO,
@@ -367,7 +367,7 @@ def other_values(key: str, field: Any, now: Any) -> list[Any]:
         return [number + 1, max(number - 1, 1), 2 * number, number + 2, 3]
     if isinstance(number, float):
         near = [1.1 * number + 0.1, 0.8 * number, number - 0.3]
-        return [*near, 1.5 * number, 1.01 * number, number - 1]
+        return [*near, 1.5 * number, 1.01 * number, number - 1, number + 1]
     return [1, 2.0, 5.0, "x"]
 
 
@@ -579,6 +579,7 @@ def _movements(model: str) -> dict[str, Any]:
                 "sequence": [*([] if name in alone else first.get(one.before, [])), name]
             }
             for name, one in MOVEMENTS.items()
+            if name != NOBODY
         }
     return document
 

@@ -15,6 +15,9 @@ from radhar_cli.scene import Person
 
 # Rates of strokes up and across over the usual one, of no common measure; letters are no sines.
 STROKES_UP, STROKES_ACROSS = (0.53, 1.0, 1.27), (0.41, 0.79, 1.11)
+# Duration of a drink from a cup in the hand over that from one on a table: without reaching for the
+# cup and returning, medians of de los Reyes-Guzman et al. (2010).
+CUP_IN_HAND = 0.65
 ON_BOARD = 0.7  # rate of strokes at a board, where letters are larger, over that on paper
 
 
@@ -42,7 +45,7 @@ def draw_gestures(person: Person, seat: Seat, paces: Float, sizes: Float, place:
     config = person.motion.gestures
     left, each = config.left_handed >= 0.5, (tuple(paces.tolist()), tuple(sizes.tolist()))
     drink = Drink(
-        period=config.drink_s,
+        period=CUP_IN_HAND * config.drink_s,
         left=left,
         held=config.cup_held >= 0.5,
         paces=each[0],
@@ -65,7 +68,7 @@ def draw_gestures(person: Person, seat: Seat, paces: Float, sizes: Float, place:
     )
     return Gestures(
         drink,
-        replace(drink, seat=seat),
+        replace(drink, seat=seat, period=config.drink_s),
         write,
         replace(at_table, seat=seat),
         _wave(config, left, *each),

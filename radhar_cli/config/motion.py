@@ -295,9 +295,10 @@ class GesturesConfig(Section, Generic[B]):
     ] = default_draw(Choice(choice=(0,) * 9 + (1,)))
     """Hand that is used: 1 is the left one, 0 the right one."""
     drink_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People(DRINKING, 3, 60)] = (
-        default_draw(normal(5.9, 0.9, 4.2, 8.5))
+        default_draw(normal(5.9, 1.2, 3.5, 9.0))
     )
-    """Duration of a drink, from raising the hand to lowering it; the next one follows."""
+    """Duration of a drink at a table, from reaching for the cup to returning; the next one follows.
+    Who stands has the cup in the hand, and takes 0.65 of that."""
     cup_held: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("drinking", 0, 1)] = (
         default_draw(Choice(choice=(0, 1)))
     )

@@ -235,8 +235,8 @@ class Drink:
     # by how much the hand goes up, and towards the mouth, as the cup is tilted
     tilt: tuple[float, float] = (0.045, 0.03)
     # lean, back: pitch of the trunk towards the cup, and back as it is emptied, rad
-    lean: float = radians(4)
-    back: float = radians(6)
+    lean: float = radians(6)
+    back: float = radians(8)
     entry: float = 0.1  # time of rest before and after
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()

@@ -6,6 +6,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from helpers.bodies import links_of
 from helpers.movements import in_groups
 
 from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, NOBODY, activity_named
@@ -16,7 +17,8 @@ from radhar_cli.config.motion import EARLIER_KEYS, FALLS
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.human.motion import HumanMotion
-from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
+from radhar_cli.motion.human.physique import froude_scale
+from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.products.run import record
 from radhar_cli.scene import PERSONAL, UNSTEADY, Scene, draw_scene, nominal_scene, scene_numbers
 from radhar_cli.scene_checks.drawing import draw_valid_scene
@@ -59,7 +61,7 @@ def moving(scene: Scene) -> HumanMotion:
 def assert_a_body(motion: HumanMotion, t: np.ndarray) -> None:
     """Links keep their lengths, those at the torso up to its breath, and the floor holds."""
     p, hips = motion.positions(t), motion.hip_joints(t)
-    for joint, (parent, link) in enumerate(zip(PARENTS, links(motion.person.stature), strict=True)):
+    for joint, (parent, link) in enumerate(zip(PARENTS, links_of(motion.person), strict=True)):
         if parent is None:
             continue
         start = hips[:, KNEES.index(joint)] if joint in KNEES else p[:, parent]
@@ -84,7 +86,15 @@ def at_the_limits(rng: np.random.Generator) -> Config:
     document |= {"subject": {}, "motion": {"model": "human"}, "timing": {}}
     for key, (low, high) in HUMAN_LIMITS.items():
         section, _, name = key.rpartition(".")
-        if section.partition(".")[2] in ("lying", "kneeling", "crawling", "running"):
+        if section.partition(".")[2] in (
+            "lying",
+            "kneeling",
+            "crawling",
+            "running",
+            "limping",
+            "aids",
+            "carrying",
+        ):
             continue  # of which the twelve have no use
         if section and name != "walk_start_s":
             high = 4.0 if section == "timing" and high > 4 else high  # s, of a recording of 5 s
@@ -94,6 +104,9 @@ def at_the_limits(rng: np.random.Generator) -> Config:
             for part in group:
                 inner = inner.setdefault(part, {})
             inner[name] = float(at)
+    smallness = min(froude_scale(document["subject"]["height_m"], 1.5), 1.0)
+    walking = document["motion"]["walking"]  # no child walks at 2.8 m/s
+    walking["speed_mps"] = min(walking["speed_mps"], 2.8 * smallness)
     document["motion"] |= {
         "rotating": {"turn_deg": float(rng.uniform(-90, 90))},
         "falling": {"direction": str(rng.choice(["forward", "backward", "sideways"]))},
@@ -526,7 +539,8 @@ def document(key: str, value: float) -> dict[str, Any]:
             f"own_{name}": {"sequence": [name]}
             for name in (
                 *("squatting", "tripping", "turning_over", "kneeling", "crawling"),
-                *("running", "jogging_in_place"),
+                *("running", "jogging_in_place", "limping", "carrying"),
+                *("walking_with_stick", "walking_with_walker"),
             )
         },
     }

@@ -5,6 +5,7 @@ from math import inf, pi
 
 import numpy as np
 import pytest
+from helpers.bodies import links_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -40,7 +41,7 @@ from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.transfer import GoToBed, LeaveBed, LieStill, RiseFromRest, Settle
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
-from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
+from radhar_cli.motion.skeleton import JOINTS, PARENTS
 
 ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
 KNEES = [JOINTS.index("right_knee"), JOINTS.index("left_knee")]
@@ -178,7 +179,6 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
     }
 
 
-SIDES = ("right", "left")
 ACTIVITIES = tuple(walks_of(Gait(1.2)))
 
 
@@ -200,16 +200,6 @@ def moving(
 def recording(motion: HumanMotion, rate: float) -> np.ndarray:
     last = max((part.end for part, _ in motion.parts if part.end < inf), default=0.0)
     return np.arange(-0.1, max(HORIZON, last) + 0.2, 1 / rate)
-
-
-def links_of(person: Physique) -> np.ndarray:
-    """Links [13, 3] of a person: a child's legs are shorter and the trunk is longer."""
-    link = links(person.stature)
-    legs = [JOINTS.index(f"{side}_{part}") for side in SIDES for part in ("knee", "ankle")]
-    link[legs] *= person.leg / np.linalg.norm(link[legs[0]])
-    trunk = [JOINTS.index(name) for name in ("head", "hip")]
-    link[trunk] *= person.trunk / np.linalg.norm(link[trunk[0]])
-    return link
 
 
 def link_errors(motion: HumanMotion, t: np.ndarray) -> dict[str, float]:

@@ -37,6 +37,12 @@ PHASES = (
     "writing",
     "waving",
     "clapping",
+    "running",
+    "jogging in place",
+    "limping",
+    "walking with a stick",
+    "walking with a walker",
+    "carrying",
 )
 
 

@@ -108,12 +108,17 @@ class Audit:
         return [*self.overlaps.sentences, *self.data.on_cue]
 
     def lines_above(self, share: float, parts: Sequence[EvidencePart]) -> list[AuditLine]:
-        """Lines of some parts, from which the class is told more often than that."""
-        return [
+        """Lines of some parts, from which the class is told more often than that.
+
+        When a movement begins in seconds is not among them, as its length bounds that.
+        """
+        judged = [
             line
             for line in self.lines
-            if line.result is not None and line.evidence.part in parts and line.result.share > share
+            if line.evidence.part in parts
+            and not (line.evidence.part == EvidencePart.NUMBERS and line.evidence.may_be_movement)
         ]
+        return [line for line in judged if line.result is not None and line.result.share > share]
 
 
 def audit(

@@ -9,8 +9,15 @@ from typing import Any
 from radhar_cli.audit.audit import Audit, AuditLine
 from radhar_cli.audit.duplicates import Pairs
 from radhar_cli.audit.evidence import EvidencePart
-from radhar_cli.dataset.audited import AUDIT_FIGURE, AUDIT_KIND, AUDIT_NUMBERS, AUDIT_TABLE
+from radhar_cli.dataset.audited import (
+    AUDIT_FIGURE,
+    AUDIT_KIND,
+    AUDIT_NUMBERS,
+    AUDIT_TABLE,
+    audit_folder,
+)
 from radhar_cli.dataset.files import write_result
+from radhar_cli.dataset.layout import DATASET
 from radhar_cli.figures.class_shares import ShareBar, class_shares_png
 from radhar_cli.files.plain_json import plain
 from radhar_cli.learning.report_folder import csv_text
@@ -40,11 +47,11 @@ def write_audit(audit: Audit, folder: Path) -> list[Path]:
 
 def audit_numbers(audit: Audit) -> dict[str, Any]:
     """Plain numbers by their keys in audit.json."""
-    overlaps = audit.overlaps
-    images = audit.data.images
+    overlaps, images, beside = audit.overlaps, audit.data.images, audit_folder(audit.data.where)
     return {
         "kind": AUDIT_KIND,
         "data": str(audit.data.where),
+        "bytes": None if beside is None else (beside.parent / DATASET).stat().st_size,
         "map": None if images is None else images.map,
         "samples": audit.rows.size,
         "all_samples": len(audit.data),

@@ -148,12 +148,16 @@ def cure_of(key: str, values: Float, has_place: bool) -> str:
         values: [N] what was drawn, all classes together.
         has_place: whether the model of motion knows motion.place.
     """
+    if key == ONSET.key:
+        return (
+            "timing.onset: {uniform: [0, 1]}, and a smaller timing.visible; durations do the rest"
+        )
     law, keys = one_law(values), key.split()
     if has_place and key in ("motion.range_m", "motion.cross_range_m"):
         place = key.replace("motion.", "motion.place.")
         return f"leave {key} null, and write {place}: {law}"
     if is_instant(keys[0]):
-        drawn = [name for name in keys if name not in ("timing.onset", ONSET.key)]
+        drawn = [name for name in keys if name != "timing.onset"]
         null = f"leave {', '.join(drawn)} null, and write " if drawn else ""
         return f"{null}timing.onset: {{uniform: [0, 1]}}"
     return f"{keys[0]}: {law}"

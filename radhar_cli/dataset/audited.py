@@ -45,7 +45,7 @@ def audit_folder(data: Path) -> Path | None:
 
 
 def read_audit(data: Path) -> StoredAudit | None:
-    """Read the audit that lies beside a data set; None where there is none.
+    """Read the audit that lies beside a data set; None where there is none, or of another build.
 
     Raises:
         FolderError: the file is damaged.
@@ -58,6 +58,8 @@ def read_audit(data: Path) -> StoredAudit | None:
     try:
         if document["kind"] != AUDIT_KIND or len(document["lines"]) > MAX_LINES:
             raise ValueError("is no audit")
+        if document.get("bytes") not in (None, (folder.parent / DATASET).stat().st_size):
+            return None
         lines = tuple(_line(line) for line in document["lines"])
         sentences = tuple(_words(text) for text in document["sentences"][:MAX_LINES])
         held_out, classes = _words(document["held_out"]), len(document["classes"])

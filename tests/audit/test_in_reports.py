@@ -35,6 +35,13 @@ def test_the_report_has_the_figure(tmp_path):
     assert png.startswith(b"\x89PNG")
 
 
+def test_the_audit_of_an_earlier_build_is_not_shown(tmp_path):
+    report = Report({})
+    _add_audit(report, "mine", data_set(tmp_path, {**STORED, "bytes": 7}), single=True)
+    assert not report.figures
+    assert not report.lines
+
+
 def test_a_damaged_audit_is_a_warning(tmp_path):
     report = Report({})
     _add_audit(report, "mine", data_set(tmp_path, {"kind": "other"}), single=True)

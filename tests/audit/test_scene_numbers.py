@@ -56,4 +56,4 @@ def test_what_to_write_instead():
     cure = cure_of("timing.seat_start_s timing.walk_stop_s", np.array([0.5, 2.0]), True)
     assert cure.startswith("leave timing.seat_start_s, timing.walk_stop_s null, and write")
     assert cure.endswith("timing.onset: {uniform: [0, 1]}")
-    assert cure_of("movement_onset_s", ranges, True) == "timing.onset: {uniform: [0, 1]}"
+    assert "timing.visible" in cure_of("movement_onset_s", ranges, True)

@@ -27,7 +27,7 @@ from radhar_cli.numerics.arrays import Bool, Float, Index
 from radhar_cli.numerics.randomness import TRAINING, stream
 
 # Times the variance of independent tests: folds share the samples that their forests learn from.
-# Measured for the two-sample test (tests/two_sample) and for this one (tests/audit).
+# So much was measured for logistic regression (tests/two_sample); forests need less.
 SHARED = 1.7
 BOOTSTRAPS = 400
 BLOCK = 100  # of them, drawn at once

@@ -105,8 +105,9 @@ def at_the_limits(rng: np.random.Generator) -> Config:
                 inner = inner.setdefault(part, {})
             inner[name] = float(at)
     smallness = min(froude_scale(document["subject"]["height_m"], 1.5), 1.0)
-    walking = document["motion"]["walking"]  # no child walks at 2.8 m/s
-    walking["speed_mps"] = min(walking["speed_mps"], 2.8 * smallness)
+    # No child walks at 2.8 m/s, nor starts to within a moment, half risen.
+    walking = document["motion"]["walking"]
+    walking["speed_mps"] = min(walking["speed_mps"], 2.8 * smallness**2)
     document["motion"] |= {
         "rotating": {"turn_deg": float(rng.uniform(-90, 90))},
         "falling": {"direction": str(rng.choice(["forward", "backward", "sideways"]))},

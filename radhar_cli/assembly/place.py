@@ -87,6 +87,8 @@ def zone_of(scene: Scene) -> Zone:
         depth = wall.size[0]
         farthest -= depth * sqrt(wall.eps_r)  # waves take longer inside
         x = (wall.center[0] + depth / 2 + MARGIN_M, inf)
+    if scene.room.back_wall_m is not None:
+        x = x[0], scene.room.back_wall_m - MARGIN_M
     if box is not None:
         x = max(x[0], box.x[0] + MARGIN_M), box.x[1] - MARGIN_M
         y = box.y[0] + MARGIN_M, box.y[1] - MARGIN_M

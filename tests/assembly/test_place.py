@@ -116,3 +116,9 @@ def test_zone_lies_behind_the_wall_and_in_the_room() -> None:
     assert room.y[1] < 3
     scene, _ = draw_valid_scene(config, activity_named("walking"), 0)
     assert scene.attempt == 0
+    config = Config.model_validate({"room": {"back_wall_m": 9.5}})
+    for index in range(8):
+        scene = draw_scene(config, activity_named("walking"), index)
+        assert zone_of(scene).x[1] < 9.5
+        x = moving(scene.people[0]).positions(np.linspace(0, 6, 61))[0]
+        assert x.max() < 9.8  # a walk may be longer than the room is deep

@@ -252,8 +252,8 @@ class Drinking(Gesturing[Drink]):
     channels = ("raised", "lifted", "tilted")
     # From and to, shares of a repetition: the hand is raised to the cup, or lowered; goes to the
     # mouth; tilts the cup. Who stands takes the cup to the mouth on the way up.
-    TABLE = ((0.0, 0.17), (0.17, 0.33), (0.33, 0.42), (0.50, 0.57), (0.57, 0.80), (0.80, 1.0))
-    HANGING = ((0.0, 0.24), (0.04, 0.31), (0.30, 0.40), (0.49, 0.57), (0.56, 0.85), (0.62, 0.95))
+    TABLE = ((0.0, 0.17), (0.17, 0.33), (0.30, 0.44), (0.48, 0.61), (0.57, 0.80), (0.80, 1.0))
+    HANGING = ((0.0, 0.24), (0.04, 0.31), (0.26, 0.42), (0.46, 0.61), (0.56, 0.85), (0.62, 0.95))
 
     def steps(self) -> list[Step]:
         drink, steps = self.gesture, list[Step]()
@@ -395,7 +395,7 @@ class Clap:
     meet: Point = (0.30, 0.0, -0.09)  # where palms meet, from the shoulders; inwards counts not
     opening: float = 0.20  # way of a hand at one clap a second; it is shorter at more
     lead: float = 0.25  # by which the way of one hand is longer, and that of the other shorter
-    entry: float = 0.8
+    entry: float = 1.0
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
@@ -449,7 +449,7 @@ class Wave:
     forearm: float = radians(170)  # from hanging, ahead: 180 is upright
     swing: float = radians(60)  # from one side to the other
     bend: float = radians(9)  # flexion of the elbow that comes with a swing
-    entry: float = 0.8
+    entry: float = 1.1
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 

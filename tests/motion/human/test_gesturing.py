@@ -118,12 +118,12 @@ def test_palms_meet_and_do_not_pass(lead: float, period: float, size: float) -> 
     motion = HumanMotion(Physique(1.75), (gesture,), (0, 0), 0.0, 0.0, 6.0, Idle(Physique(1.75)))
     joints = joints_of(motion, 6.0)
     apart = np.sqrt(((joints["left_hand"] - joints["right_hand"]) ** 2).sum(axis=0))
-    claps = apart[int(1.2 / STEP) :]
+    claps = apart[int(1.4 / STEP) :]
     assert claps.min() == pytest.approx(0.03, abs=1e-3)  # half the thickness of two palms
     assert claps.max() > 0.03 + 0.2 * period * size
     assert (joints["left_hand"][1] > joints["right_hand"][1]).all()
     ahead = joints["right_hand"][0] - joints["torso"][0]
-    assert ahead[int(1.2 / STEP) :].min() > 0.2
+    assert ahead[int(1.4 / STEP) :].min() > 0.2
 
 
 def test_cups_reach_the_mouth_and_waves_the_height_of_the_head() -> None:
@@ -132,10 +132,10 @@ def test_cups_reach_the_mouth_and_waves_the_height_of_the_head() -> None:
     assert 0.15 < to_mouth.min() < 0.22
     assert np.abs(joints["left_hand"] - joints["left_hand"][:, :1]).max() < 0.1
     joints = joints_of(motion_of(Wave()))
-    above = (joints["right_hand"] - joints["right_shoulder"])[2][int(1.2 / STEP) :]
+    above = (joints["right_hand"] - joints["right_shoulder"])[2][int(1.4 / STEP) :]
     assert above.min() > 0
-    swings = np.diff(np.sign(np.diff(joints["right_hand"][1][int(1.2 / STEP) :])))
-    assert np.count_nonzero(swings) == pytest.approx(2 * 6.8 / 0.65, abs=3)
+    swings = np.diff(np.sign(np.diff(joints["right_hand"][1][int(1.4 / STEP) :])))
+    assert np.count_nonzero(swings) == pytest.approx(2 * 6.6 / 0.65, abs=3)
 
 
 def test_peak_speeds_of_drinking_are_those_of_measured_people() -> None:

@@ -32,15 +32,15 @@ def train(
         str | None,
         typer.Option(
             help="Network: for images smallnet, smallnet_bn, fftnet or any model of timm; for "
-            "sequences framenet or cloudnet."
+            "frames of streams tcn; for sequences framenet or cloudnet."
         ),
     ] = None,
     target: Annotated[
         str | None,
         typer.Option(
             help="What to learn: classes (the activity of the main person), labels (the activities "
-            "of everybody), count (the number of people), person (who it is) or skeleton (joints "
-            "in every frame)."
+            "of everybody), count (the number of people), person (who it is), frames (every column "
+            "of a stream) or skeleton (joints in every frame)."
         ),
     ] = None,
     init: Annotated[
@@ -63,6 +63,8 @@ def train(
       radhar train datasets/quickstart -o runs/quickstart
 
       radhar train datasets/boards -o runs/joints --model cloudnet --target skeleton
+
+      radhar train datasets/streams -o runs/frames --model tcn --target frames
 
       radhar train measured -o runs/tuned --init runs/simulated --resize --set learning_rate=1e-4
 

@@ -298,8 +298,8 @@ class Request(Section):
         motion, aside, zoned = filled.motion, uniform(-1.5, 1.5), STREAM in person.names
         if motion.cross_range_m is None and motion.range_m is not None:
             motion = motion.model_copy(update={"cross_range_m": aside})
-        elif not (
-            zoned or motion.cross_range_m or "cross_range_m" in motion.place.model_fields_set
+        elif motion.cross_range_m is None and not (
+            zoned or "cross_range_m" in motion.place.model_fields_set
         ):
             place = motion.place.model_copy(update={"cross_range_m": aside})
             motion = motion.model_copy(update={"place": place})

@@ -32,12 +32,14 @@ class TaskChoice:
 
     place: str  # "module:class" of a `tasks.task.Task`
     of_sequences: bool = False  # asks for a network of frames or clouds
+    networks: tuple[str, ...] = ()  # that it asks for; none for any
 
 
 NETWORKS = {
     "smallnet": NetworkChoice("radhar_cli.learning.models.smallnet:build"),
     "smallnet_bn": NetworkChoice("radhar_cli.learning.models.smallnet:build_with_batch_norm"),
     "fftnet": NetworkChoice("radhar_cli.learning.models.fftnet:build"),
+    "tcn": NetworkChoice("radhar_cli.learning.models.tcn:build"),
     "cloudnet": NetworkChoice("radhar_cli.learning.models.cloudnet:build", reads="clouds"),
     "framenet": NetworkChoice("radhar_cli.learning.models.framenet:build", reads="frames"),
 }
@@ -46,6 +48,7 @@ TASKS = {
     "labels": TaskChoice("radhar_cli.learning.tasks.labels:Labels"),
     "count": TaskChoice("radhar_cli.learning.tasks.count:Count"),
     "person": TaskChoice("radhar_cli.learning.tasks.person:Persons"),
+    "frames": TaskChoice("radhar_cli.learning.tasks.frames:FrameLabels", networks=("tcn",)),
     "skeleton": TaskChoice("radhar_cli.learning.tasks.skeleton:Skeleton", of_sequences=True),
 }
 

@@ -98,6 +98,17 @@ class AugmentConfig(Section):
     """Largest width of a blanked band, a fraction of that axis."""
 
 
+class WindowConfig(Section):
+    """Windows that streams are cut into, for training and for evaluation."""
+
+    length_s: Annotated[float, Field(gt=0, le=1e4, strict=True)] = 3.0
+    """Duration of a window."""
+    hop_s: Annotated[float, Field(gt=0, le=1e4, strict=True)] = 0.5
+    """Time from the start of a window to that of the next."""
+    label: Literal["majority", "centre"] = "majority"
+    """Class of a window: that of most of its columns, or of the one in its middle."""
+
+
 class TrainConfig(Section):
     """One training run; the defaults learn from some dozens of images a class as from thousands.
 
@@ -108,11 +119,14 @@ class TrainConfig(Section):
     """Network: smallnet, the paper's fftnet, any of timm's; of sequences framenet, cloudnet."""
     target: Target = "classes"
     """Target of learning. classes: the main person's class; labels: what anybody does; count: the
-    number of people; person: who it is; skeleton, of sequences: the joints in every frame."""
+    number of people; person: who it is; frames: the class of every column of a stream; skeleton, of
+    sequences: the joints in every frame."""
     map: str | None = None
     """Map that is learned from; null is the first one of the data set."""
     input: Literal["rgb", "gray"] = "rgb"
     """Channels of images: the three colours of the PNGs, or the levels alone."""
+    window: WindowConfig | None = None
+    """Windows that streams are cut into; null takes each as a whole (docs/guide/streams.md)."""
     frames: Annotated[Auto, _auto_or(1)] = "auto"
     """Frames of a sequence, the middle ones of a longer sample; auto is as many as the longest."""
     points: Annotated[Count, Field(le=4096)] = 64
@@ -185,6 +199,10 @@ class TrainConfig(Section):
             raise value_error("should have warmup_epochs of at most epochs")
         if TASKS[self.target].of_sequences and sequences_of(self.model) is None:
             networks = " or ".join(name for name in NETWORKS if sequences_of(name))
+            raise value_error(f"should have model: {networks} for target: {self.target}")
+        networks_of_task = TASKS[self.target].networks
+        if networks_of_task and self.model not in networks_of_task:
+            networks = " or ".join(networks_of_task)
             raise value_error(f"should have model: {networks} for target: {self.target}")
         if self.augment != AugmentConfig() and sequences_of(self.model) is not None:
             raise value_error("should have no augment, which is of images")

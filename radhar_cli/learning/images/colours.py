@@ -9,6 +9,7 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.learning.images.colour_maps import levels_behind
 from radhar_cli.learning.images.h5 import H5Pixels
 from radhar_cli.learning.images.image_set import ImageSet, Pixels, Resized
+from radhar_cli.learning.images.windows import WindowPixels
 from radhar_cli.numerics.arrays import Levels
 
 
@@ -31,6 +32,8 @@ class Recoloured:
 def _recolour_pixels(pixels: Pixels, drawn: str, colour_map: str) -> Pixels:
     if isinstance(pixels, H5Pixels):
         return replace(pixels, table=colour_table(colour_map))
+    if isinstance(pixels, WindowPixels):
+        return replace(pixels, pixels=_recolour_pixels(pixels.pixels, drawn, colour_map))
     if isinstance(pixels, Resized):  # later: a mean of two colours is no colour of the map
         return replace(pixels, pixels=_recolour_pixels(pixels.pixels, drawn, colour_map))
     return Recoloured(pixels, drawn, colour_map)

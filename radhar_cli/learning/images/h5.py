@@ -129,7 +129,9 @@ def _image_set(
         person=_persons(data),
         recording=_recordings(data),
         activities=_activities(data),
+        frame_labels=data.frame_label[name][:][:, 0] if name in data.frame_label else None,
     )
+    stream = data.config.stream
     return ImageSet(
         where=where,
         map=name,
@@ -137,6 +139,8 @@ def _image_set(
         samples=samples,
         size=size,
         pixels=pixels,
+        frame_classes=data.frame_classes,
+        column_s=None if stream is None else stream.column_s,
         snr_db=float(snr_db) if isinstance(snr_db, (int, float)) else None,
     )
 

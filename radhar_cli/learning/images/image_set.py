@@ -95,6 +95,8 @@ class ImageSet:
     kind: Kind = "rgb"
     channels: int = 3  # colours (1 of gray), columns of a cloud, or frames of a sequence of frames
     joints: tuple[str, ...] = ()  # names of what `pixels.joints` reads
+    frame_classes: tuple[str, ...] = ()  # names of the labels of columns, of streams
+    column_s: float | None = None  # time from one column to the next, of streams
     colours: str | None = None  # colour map of RGB pictures, where it is known
     notes: tuple[str, ...] = ()  # what was done to make the images fit, to be said
 

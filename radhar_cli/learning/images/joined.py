@@ -59,6 +59,8 @@ def _join_samples(sets: Sequence[ImageSet], classes: tuple[str, ...], source: In
     scenes = [
         objects([""] * len(table)) if table.scene is None else table.scene for table in tables
     ]
+    labels = [table.frame_labels for table in tables]
+    starts = [table.first_column for table in tables]
     has_several_people = any(table.activities is not None for table in tables)
     return SampleTable(
         label=np.concatenate([labels_for(images, classes) for images in sets]),
@@ -69,7 +71,15 @@ def _join_samples(sets: Sequence[ImageSet], classes: tuple[str, ...], source: In
         activities=np.concatenate([images.activities for images in sets])
         if has_several_people
         else None,
+        frame_labels=_join_columns(labels),
+        first_column=_join_columns(starts),
     )
+
+
+def _join_columns(columns: Sequence[Index | None]) -> Index | None:
+    """Columns of several tables one after the other; None where one lacks it."""
+    known = [column for column in columns if column is not None]
+    return np.concatenate(known) if len(known) == len(columns) else None
 
 
 def _refuse_unlike(sets: Sequence[ImageSet]) -> None:
@@ -92,6 +102,11 @@ def _refuse_unlike(sets: Sequence[ImageSet]) -> None:
             raise FolderError(
                 f"{other.where}: images are {other.shape}, those of {first.where} {first.shape}; "
                 f"should be of one size{cure}"
+            )
+        if other.frame_classes != first.frame_classes:
+            raise FolderError(
+                f"{other.where}: its columns have other labels than those of {first.where}: should "
+                "be streams of the same activities, or none"
             )
         if other.joints != first.joints:
             raise FolderError(

@@ -13,6 +13,7 @@ from radhar_cli.learning.choices import Kind, sequences_of
 from radhar_cli.learning.images.folder import FilePixels, open_tree
 from radhar_cli.learning.images.h5 import open_h5_images, open_h5_sequences
 from radhar_cli.learning.images.image_set import ImageSet, resized
+from radhar_cli.learning.images.windows import cut_windows
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.settings import TrainConfig
 
@@ -35,7 +36,8 @@ def open_inputs(
         FolderError: data that cannot be used.
     """
     if sequences_of(config.model) is None:
-        return open_images(path, map_name, config.input, resize)
+        images = open_images(path, map_name, config.input, resize)
+        return images if config.window is None else cut_windows(images, config.window)
     if resize is not None:
         raise FolderError(f"--resize: {config.model} reads {config.input_kind}, which have no size")
     if not is_h5(path):

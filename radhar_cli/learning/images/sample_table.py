@@ -25,6 +25,8 @@ class SampleTable:
     recording: Objects | None = None  # [N] text; None where each sample is a recording of its own
     # [N] tuples of the classes of all persons, the main person's first; None with one person each
     activities: Objects | None = None
+    frame_labels: Index | None = None  # [N, W] class of each column of streams, -1 unknown
+    first_column: Index | None = None  # [N] of a window in its recording
 
     def __len__(self) -> int:
         return len(self.label)

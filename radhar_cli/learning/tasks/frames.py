@@ -1,0 +1,98 @@
+"""What the main person does in every column of a stream (`target: frames`)."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import numpy as np
+from torch import Tensor
+from torch.nn.functional import cross_entropy
+
+from radhar_cli.errors import FolderError
+from radhar_cli.learning.batches import Targets
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.models.outputs import Outputs, OutputShape
+from radhar_cli.learning.tasks.task import Evaluation, Names, Task
+
+
+class FrameLabels(Task):
+    """The class at the time of each column, pauses and transitions included.
+
+    Columns without a label, -1, count neither for the loss nor the score.
+    """
+
+    score_name: ClassVar[str] = "frame accuracy"
+    score_key: ClassVar[str] = "val_frame_accuracy"
+    loss_name: ClassVar[str] = "label-smoothed cross-entropy"
+    finds: ClassVar[str] = "labels of frames"
+    main_number: ClassVar[str] = "frame_accuracy"
+
+    def relabel(self, images: ImageSet) -> ImageSet:
+        """Images whose classes are those of their columns."""
+        if images.samples.frame_labels is None:
+            raise FolderError(
+                f"{images.where}: has no labels in time: target: frames is of streams"
+            )
+        label = np.zeros(len(images), np.intp)
+        samples = replace(images.samples, label=label)
+        return replace(images, classes=images.frame_classes, samples=samples)
+
+    def match(self, images: ImageSet, known: Names, names: Mapping[str, str | None]) -> ImageSet:
+        """Images whose columns have the numbers of the classes that a network knows.
+
+        Columns of other classes, and of those that `names` leaves out, have none.
+        """
+        images = self.relabel(images)
+        places = {name: number for number, name in enumerate(known.classes)}
+        renamed = [names.get(name, name) for name in images.frame_classes]
+        numbers = np.array([places.get(name or "", -1) for name in renamed] + [-1])
+        assert images.samples.frame_labels is not None
+        labels = numbers[images.samples.frame_labels]
+        samples = replace(images.samples, frame_labels=labels)
+        return replace(images, classes=known.classes, frame_classes=known.classes, samples=samples)
+
+    def targets(self, images: ImageSet) -> Targets:
+        """Number of the class of each column of each row [N, W]."""
+        assert images.samples.frame_labels is not None
+        return images.samples.frame_labels.astype(np.int64)
+
+    def outputs(self, known: Names) -> Outputs:
+        """Logits of every column."""
+        return Outputs(len(self.names(known)), OutputShape.FRAMES)
+
+    def loss(self, outputs: Tensor, targets: Tensor) -> Tensor:
+        """Mean cross-entropy [B] of logits [B, W, classes] and class numbers [B, W], smoothed."""
+        is_known = targets >= 0
+        by_column = cross_entropy(
+            outputs.transpose(1, 2),
+            targets.clamp_min(0),
+            label_smoothing=self.settings.label_smoothing,
+            reduction="none",
+        )
+        mean: Tensor = (by_column * is_known).sum(1) / is_known.sum(1).clamp_min(1)
+        return mean
+
+    def score(self, outputs: Tensor, targets: Tensor) -> Tensor:
+        """Share of the columns whose likeliest class is right [B]."""
+        is_known = targets >= 0
+        is_right = (outputs.argmax(2) == targets) & is_known
+        share: Tensor = is_right.sum(1) / is_known.sum(1).clamp_min(1)
+        return share
+
+    def predict(self, outputs: Tensor) -> Tensor:
+        """Probabilities [B, W, classes] of logits."""
+        return outputs.softmax(2)
+
+    def report(self, evaluation: Evaluation) -> dict[str, Any]:
+        """Accuracy of frames, F1 of segments, edit score, and labels drawn under the maps."""
+        from radhar_cli.learning.tasks.frames_report import report_frames
+
+        return report_frames(evaluation)
+
+    def summarise(self, numbers: Mapping[str, Any]) -> str:
+        """Accuracy of frames, F1 of segments and edit score, in words."""
+        f1 = ", ".join(f"{100 * numbers[f'segment_f1_{k}']:.1f}" for k in (10, 25, 50))
+        return (
+            f"{100 * numbers['frame_accuracy']:.2f} % of {numbers['frames']} frames, segment F1 at "
+            f"IoU 0.10, 0.25, 0.50: {f1} %, edit score {100 * numbers['edit_score']:.1f} %"
+        )

@@ -1,0 +1,153 @@
+"""One network that labels frames, on streams: frames, segments, and labels under the maps.
+
+Windows of a stream are put together again: where they overlap, probabilities are averaged with
+weights that fall towards the ends of a window, where it knows one side alone.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from sklearn.metrics import confusion_matrix
+
+from radhar_cli.figures.evaluation import confusion_png
+from radhar_cli.figures.page import png_bytes
+from radhar_cli.figures.stream_page import AT_REST, LabelledMap, draw_labelled_maps
+from radhar_cli.learning.report_files import ResultPage
+from radhar_cli.learning.segment_metrics import LabelSpan, edit_score, f1_of_segments, spans_of
+from radhar_cli.learning.tasks.predictions import Predictions
+from radhar_cli.learning.tasks.task import Evaluation
+from radhar_cli.numerics.arrays import Index, Levels
+
+IOUS = (10, 25, 50)  # %
+DRAWN = 4  # streams of the figure
+
+
+@dataclass(frozen=True)
+class LabelledStream:
+    """A stream with true labels of its columns [W], -1 unknown, and those that were predicted."""
+
+    name: str
+    rows: list[int]  # places of its windows in the predictions
+    true: Index
+    predicted: Index
+
+
+def report_frames(evaluation: Evaluation) -> dict[str, Any]:
+    """Report the accuracy of frames, and F1 and edit score of segments without pauses and links.
+
+    Returns:
+        Plain numbers by their keys in report.json.
+    """
+    predictions, page = evaluation.predictions, evaluation.page
+    names, streams = predictions.names, join_windows(evaluation.predictions)
+    true, predicted = (
+        np.concatenate([getattr(s, end) for s in streams]) for end in ("true", "predicted")
+    )
+    is_known = true >= 0
+    true, predicted = true[is_known], predicted[is_known]
+    numbers = np.arange(len(names))
+    counts = confusion_matrix(true, predicted, labels=numbers)
+    accuracy = float(np.trace(counts) / max(1, counts.sum()))
+    title = f"{page.title}: {100 * accuracy:.2f} % of {true.size} frames"
+    caption = f"Confusion matrix of frames, {page.title}."
+    page.figure("confusion", caption, confusion_png(counts, names, title))
+    _draw_streams(page, predictions, streams)
+    pairs = [_segments(stream, names) for stream in streams]
+    by_class = _numbers_by_class(counts, names)
+    header = ("class", "precision", "recall", "f1", "frames")
+    table = [(name, *(values[key] for key in header[1:])) for name, values in by_class.items()]
+    page.table("frames", header, table, "Class by class, of frames")
+    occurring = [values["f1"] for values in by_class.values()]
+    return {
+        "images": int(predictions.rows.size),
+        "streams": len(streams),
+        "frames": int(true.size),
+        "frame_accuracy": accuracy,
+        "frame_macro_f1": float(np.mean(occurring)) if occurring else 0.0,
+        **{f"segment_f1_{k}": f1_of_segments(pairs, k / 100) for k in IOUS},
+        "edit_score": float(np.mean([edit_score(*pair) for pair in pairs])),
+        "segments": sum(len(pair[0]) for pair in pairs),
+        "found_segments": sum(len(pair[1]) for pair in pairs),
+        "classes": by_class,
+        "confusion": counts.tolist(),
+    }
+
+
+def join_windows(predictions: Predictions) -> list[LabelledStream]:
+    """Put the windows of each stream together."""
+    samples, rows = predictions.images.samples, predictions.rows
+    assert samples.frame_labels is not None
+    recordings = samples.name if samples.recording is None else samples.recording
+    first = np.zeros(len(samples), int) if samples.first_column is None else samples.first_column
+    width, classes = predictions.values.shape[1:]
+    weight = np.minimum(np.arange(width) + 1, width - np.arange(width))[:, None]
+    streams = []
+    for name in dict.fromkeys(recordings[rows].tolist()):
+        places = np.flatnonzero(recordings[rows] == name).tolist()
+        length = int(max(first[rows[place]] for place in places)) + width
+        sums, true = np.zeros((length, classes)), np.full(length, -1)
+        for place in places:
+            columns = slice(int(first[rows[place]]), int(first[rows[place]]) + width)
+            sums[columns] += weight * predictions.values[place]
+            true[columns] = samples.frame_labels[rows[place]]
+        streams.append(LabelledStream(str(name), places, true, sums.argmax(1)))
+    return streams
+
+
+def _segments(
+    stream: LabelledStream, names: tuple[str, ...]
+) -> tuple[list[LabelSpan], list[LabelSpan]]:
+    """Segments of a stream that are true, and predicted, without pauses and transitions."""
+    ignored = {-1, *(number for number, name in enumerate(names) if name in AT_REST)}
+    return spans_of(stream.true, ignored), spans_of(stream.predicted, ignored)
+
+
+def _numbers_by_class(counts: Index, names: tuple[str, ...]) -> dict[str, dict[str, float]]:
+    """Precision, recall and F1 of frames of each class that occurs, of counts [true, predicted]."""
+    numbers = {}
+    for number, name in enumerate(names):
+        right, true, predicted = (
+            int(counts[number, number]),
+            int(counts[number].sum()),
+            int(counts[:, number].sum()),
+        )
+        if true + predicted:
+            numbers[name] = {
+                "precision": right / max(1, predicted),
+                "recall": right / max(1, true),
+                "f1": 2 * right / (true + predicted),
+                "frames": true,
+            }
+    return numbers
+
+
+def _draw_streams(
+    page: ResultPage, predictions: Predictions, streams: list[LabelledStream]
+) -> None:
+    """Add the first streams with true labels and predicted ones below."""
+    images = predictions.images
+    maps = [
+        LabelledMap(
+            stream.name,
+            _pixels_of(predictions, stream),
+            (0.0, stream.true.size * (images.column_s or 1.0), 0.0, float(images.size[0])),
+            "pixel row",
+            {"true": stream.true, "found": stream.predicted},
+        )
+        for stream in streams[:DRAWN]
+    ]
+    figure = draw_labelled_maps(maps, predictions.names, images.colours or "viridis")
+    caption = f"True labels and those that were predicted, {page.title}."
+    page.figure("streams", caption, png_bytes(figure))
+
+
+def _pixels_of(predictions: Predictions, stream: LabelledStream) -> Levels:
+    """Pixels [H, W, 3], or [H, W] of gray ones, of a stream, from its windows."""
+    images, rows = predictions.images, predictions.rows
+    first = images.samples.first_column
+    pixels = np.zeros((images.size[0], stream.true.size, images.channels), np.uint8)
+    for place in stream.rows:
+        start = 0 if first is None else int(first[rows[place]])
+        pixels[:, start : start + images.size[1]] = images.pixels.read(int(rows[place]))
+    return pixels[..., 0] if images.channels == 1 else pixels

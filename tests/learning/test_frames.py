@@ -1,0 +1,106 @@
+"""Windows of streams, and networks that label their columns."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from radhar_cli.cli import program
+from radhar_cli.config import Config
+from radhar_cli.dataset.build import build
+from radhar_cli.errors import FolderError
+from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.images.windows import cut_windows
+from radhar_cli.learning.settings import WindowConfig
+from radhar_cli.processes.progress import NO_PROGRESS
+
+VALUES: dict[str, Any] = {
+    "activities": ("walking", "grabbing", "punching"),
+    "duration_s": 12.0,
+    "stream": {"count": 6, "bout_s": {"uniform": [1.5, 3]}, "pause_s": 0.5, "order": "rounds"},
+    "radar": {
+        "carrier_hz": 5.8e9,
+        "bandwidth_hz": 250e6,
+        "prf_hz": 400.0,
+        "chirp_s": 1e-3,
+        "adc_rate_hz": 2e5,
+    },
+    "processing": {"window_s": 0.25},
+    "image": {"size_px": 32},
+    "split": {"train": 0.5, "validation": 0.5},
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("frames") / "streams"
+    build(Config(**VALUES), path, 1, NO_PROGRESS)
+    return path
+
+
+def run(*words: object) -> str:
+    result = CliRunner().invoke(program(), [str(word) for word in words])
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def test_windows_are_pieces_of_streams_in_one_part_of_the_split(folder: Path) -> None:
+    images = open_images(folder, None, "gray")
+    windows = cut_windows(images, WindowConfig(length_s=3.0, hop_s=0.5))
+    assert windows.size == (32, 30)
+    assert len(windows) == 6 * 19
+    recordings = windows.samples.recording
+    assert recordings is not None
+    assert windows.samples.split is not None
+    for name in set(recordings.tolist()):
+        assert len(set(windows.samples.split[recordings == name].tolist())) == 1
+    assert (windows.pixels.read(20) == images.pixels.read(1)[:, 5:35]).all()
+
+
+@pytest.mark.parametrize("label", ["majority", "centre"])
+def test_a_window_has_the_class_of_its_columns(folder: Path, label: Any) -> None:
+    images = open_images(folder, None, "gray")
+    windows = cut_windows(images, WindowConfig(length_s=2.0, hop_s=1.0, label=label))
+    columns = windows.samples.frame_labels
+    assert columns is not None
+    for number, labels in zip(windows.samples.label, columns, strict=True):
+        known = labels[labels >= 0]
+        right = labels[10] if label == "centre" else np.bincount(known).argmax()
+        assert windows.classes[number] == images.frame_classes[right]
+
+
+def test_windows_are_of_streams_that_are_long_enough(folder: Path) -> None:
+    images = open_images(folder, None, "gray")
+    with pytest.raises(FolderError, match=r"should be from 0.1 to 12 s"):
+        cut_windows(images, WindowConfig(length_s=20.0))
+
+
+def test_columns_are_learned_and_reported(folder: Path, tmp_path: Path) -> None:
+    common = ("--set", "epochs=2", "--set", "workers=0", "--set", "input=gray")
+    window = ("--set", "window={length_s: 6, hop_s: 3}")
+    run("train", folder, "-o", tmp_path / "run", "--model", "tcn", "--target", "frames",
+        *common, *window)  # fmt: skip
+    output = run("eval", tmp_path / "run", folder, "-o", tmp_path / "report")
+    assert "segment F1 at IoU 0.10, 0.25, 0.50" in output
+    report = json.loads((tmp_path / "report/report.json").read_text())
+    numbers = report["runs"]["run"]["data"]["streams"]
+    assert numbers["streams"] == 3
+    assert numbers["frames"] == 3 * 120
+    assert 0 <= numbers["segment_f1_50"] <= numbers["segment_f1_10"] <= 1
+    assert (tmp_path / "report/streams.png").exists()
+
+
+def test_windows_are_learned_as_images_are(folder: Path, tmp_path: Path) -> None:
+    window = "window={length_s: 3, hop_s: 1}"
+    run("train", folder, "-o", tmp_path / "run", "--set", "epochs=1", "--set", window)
+    assert "run" in run("eval", tmp_path / "run", folder, "-o", tmp_path / "report")
+
+
+def test_frames_need_a_network_and_streams_of_their_own(folder: Path, tmp_path: Path) -> None:
+    result = CliRunner().invoke(
+        program(), ["train", str(folder), "-o", str(tmp_path / "run"), "--target", "frames"]
+    )
+    assert "should have model: tcn for target: frames" in str(result.exception)

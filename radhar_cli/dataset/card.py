@@ -1,7 +1,7 @@
 """The data card, README.md: a data set described for its readers."""
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +9,19 @@ import numpy as np
 import yaml
 from PIL import Image, ImageDraw, ImageFont
 
-from radhar_cli.config.data_set import MeasuredConfig
+from radhar_cli.config.data_set import Config, MeasuredConfig
+from radhar_cli.config.number import nominal
+from radhar_cli.config.radar import BoardRadar
+from radhar_cli.dataset.card_contents import (
+    describe_arrays,
+    describe_classes,
+    describe_people,
+    describe_streams,
+    table_of,
+)
 from radhar_cli.dataset.files import refuse_links, write_whole
 from radhar_cli.dataset.image_tables import hub_configs
-from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, column_axis, row_axis
+from radhar_cli.dataset.layout import CARD, GALLERY, Rows, column_axis, row_axis
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.stream_files import draw_streams
@@ -52,18 +61,32 @@ BIBTEX = """\
   author = {Gao, Weicheng},
   year = {2025},
   journal = {arXiv preprint arXiv:2509.06751},
-  doi = {10.48550/arXiv.2509.06751}
+  doi = {10.48550/arXiv.2509.06751},
+  url = {https://arxiv.org/abs/2509.06751}
 }
 
 @software{radhar,
   title = {radhar: labelled FMCW radar data sets for human activity recognition},
   author = {{The radhar authors}},
-  version = {VERSION}
+  year = {2026},
+  version = {VERSION},
+  note = {Python program, MIT licence}
 }
 """
 
 
 GALLERY_STREAMS = 4
+
+
+MORE = (describe_arrays, describe_people, describe_streams)
+# `radhar audit` replaces what stands between the marks.
+_TOLD_APART = """\
+<!-- radhar audit -->
+## Who is told apart by what
+
+Not audited yet: `radhar audit .` tells how well the class is guessed from place, onset, noise and
+other numbers that are not the movement, and writes it here.
+<!-- end of radhar audit -->"""
 
 
 def write_card(source: Path, folder: Path) -> None:
@@ -91,7 +114,7 @@ def write_card(source: Path, folder: Path) -> None:
         if data.config.output.png:
             more["configs"] = hub_configs(data.config, data.split)
             reading += _READING_PNGS.format(name)
-        picture = f"![{name}, one sample of each class]({GALLERY})"
+        picture = f"![{name}, one sample of each class]({GALLERY})\n\n{_describe_axes(data, name)}"
         text = compose_card(data, more, f"{picture}\n\n{reading}")
         write_whole(folder, folder / CARD, text.encode())
 
@@ -121,6 +144,24 @@ def draw_gallery(data: Dataset, name: str) -> bytes:
     return buffer.getvalue()
 
 
+def _describe_axes(data: Dataset, name: str) -> str:
+    """Say what the sides of an image of a map are, with units, and what its colours are."""
+    (rows, row_unit), (columns, column_unit) = row_axis(name), column_axis(name)
+    if (edges := data.extent(name)) is None:
+        sides = f"across: {columns} ({column_unit}); up: {rows} ({row_unit})"
+    else:
+        left, right, bottom, top = (f"{round(edge, 9):.4g}" for edge in edges)
+        sides = f"across: {columns}, {left} to {right} {column_unit}; "
+        sides += f"up: {rows}, {bottom} to {top} {row_unit}"
+    image, colours = data.config.image, ""
+    if image.kind == "decibel":
+        colours = (
+            f"; brightest: the largest power of the image, darkest: {image.dynamic_range_db:g}"
+        )
+        colours += " dB below it"
+    return f"`{name}`, {sides}{colours}."
+
+
 def compose_card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
     """Write the text of README.md.
 
@@ -130,7 +171,8 @@ def compose_card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
         reading: Markdown, how to read the files next to the card.
     """
     config, measured = data.config, isinstance(data.config, MeasuredConfig)
-    title = f"{'Measured' if measured else 'Simulated'} radar maps of human activities"
+    what = "point clouds and maps" if "points" in data.products else "maps"
+    title = f"{'Measured' if measured else 'Simulated'} radar {what} of human activities"
     front = {
         "license": config.output.license or "unknown",
         "pretty_name": title,
@@ -145,8 +187,10 @@ def compose_card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
         f"# {title}",
         _summary(data),
         reading,
-        _maps(data),
-        _classes(data),
+        f"## Maps\n\n{_maps(data)}",
+        f"## Classes\n\n{describe_classes(data)}",
+        *filter(None, (describe(data) for describe in MORE)),
+        _TOLD_APART,
         "## How it was made",
         _making(data),
         "## Known biases and limits",
@@ -158,12 +202,6 @@ def compose_card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _table(head: Sequence[str], lines: Sequence[Sequence[object]]) -> str:
-    """Write a table as Markdown."""
-    rows = [head, ["---"] * len(head), *lines]
-    return "\n".join(f"| {' | '.join(map(str, row))} |" for row in rows)
-
-
 def _summary(data: Dataset) -> str:
     """Say what the data set holds: samples, maps, where they come from, how they are split."""
     config, (height, width) = data.config, data.config.image.size_px
@@ -173,8 +211,11 @@ def _summary(data: Dataset) -> str:
         content = f"what a radar recorded of people, cut into windows of {window:g} s."
     else:
         whom = "several moving people" if config.people else "one moving person"
-        where = "through a wall" if config.wall is not None else "in free space"
-        view = f"what an FMCW radar sees of {whom} {where}"
+        room = config.room.faces is not None
+        where = (
+            "through a wall" if config.wall is not None else "in a room" if room else "in the open"
+        )
+        view = f"what {_radar_in_words(config)} sees of {whom} {where}"
         content = f"{view}, simulated from the movement to the map."
     split = "Samples are split one by one."
     if config.split.subjects is not None:
@@ -184,6 +225,17 @@ def _summary(data: Dataset) -> str:
         f"map{'s' * (maps > 1)} of each, {height} x {width} pixels: {content} {split}\n\n"
         "`scenes.csv` and /scene of dataset.h5 have the numbers that were drawn for each sample."
     )
+
+
+def _radar_in_words(config: Config) -> str:
+    """Name the radar of a config: its kind, carrier and bandwidth."""
+    radar, kind = config.radar, config.radar.kind
+    if isinstance(radar, BoardRadar):
+        return f"a TI {radar.device or 'board'} ({radar.carrier_hz / 1e9:.4g} GHz)"
+    carrier = f"{nominal(radar.carrier_hz) / 1e9:.4g} GHz"
+    band = "" if kind == "cw" else f" + {nominal(radar.bandwidth_hz) / 1e9:.3g} GHz"
+    name = {"fmcw": "an FMCW", "sfcw": "a stepped-frequency", "cw": "a CW"}.get(kind, "an impulse")
+    return f"{name} radar ({carrier}{band})"
 
 
 def _maps(data: Dataset) -> str:
@@ -202,25 +254,8 @@ def _maps(data: Dataset) -> str:
         if image.kind == "decibel"
         else "255 where the cell exceeds its CFAR threshold, else 0"
     )
-    table = _table(("map", "rows", "columns", "left, right, bottom, top"), lines)
+    table = table_of(("map", "rows", "columns", "left, right, bottom, top"), lines)
     return f"{table}\n\nA pixel is a grey level: {level}. What comes nearer has positive Doppler."
-
-
-def _classes(data: Dataset) -> str:
-    """Write the table of classes with their labels and the samples in each split."""
-    present, lines = data.present_splits, []
-    for label, (activity, rows) in enumerate(Rows.of(data.config).classes()):
-        counts = np.bincount(data.split[rows], minlength=len(SPLITS))
-        lines.append([label, f"`{activity.slug}`", *(counts[n] for n in present)])
-    note = ""
-    if data.labels is not None:
-        counts_of_slugs = zip(data.class_slugs, data.labels.sum(axis=0).tolist(), strict=True)
-        occurrences = ", ".join(f"`{slug}` {count}" for slug, count in counts_of_slugs if count)
-        note = (
-            "\n\nThe class is what the sample's main person does. Others are there too: column "
-            f"`labels` has what anybody does ({occurrences})."
-        )
-    return _table(["label", "class", *present.values()], lines) + note
 
 
 def _making(data: Dataset) -> str:

@@ -19,6 +19,16 @@ from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.verify import verify
 from radhar_cli.learning.images.opening import open_images
 
+PEOPLE = """
+radar: {carrier_hz: 24e9, bandwidth_hz: 1e9, prf_hz: 1000}
+activities: [punching]
+samples_per_class: 4
+duration_s: 1.5
+motion: {range_m: 3}
+people: [{activity: kicking, share: 0.5, motion: {range_m: 5}}]
+image: {size_px: 16}
+split: {train: 0.5, validation: 0.5}
+"""
 CHANGES = [
     "maps=[rtm, stft]",
     "image.size_px=[12, 16]",
@@ -45,7 +55,7 @@ def copy(whole: Path, tmp_path: Path) -> Path:
 
 def test_the_card_describes_the_data_set(whole: Path) -> None:
     text = (whole / "README.md").read_text()
-    assert "| 1 | `walking` | 1 | 1 | 1 |" in text
+    assert "| 1 | `walking` | walks | 1 | 1 | 1 |" in text
     assert "none of the 3 is in two of its parts" in text
     assert "a joint moves faster than the Doppler PRF/2" in text
     for library, version in versions().items():
@@ -130,3 +140,56 @@ def test_every_reader_finds_the_subfolders_of_large_classes(
         same = ours.samples.name.tolist().index(name)
         assert images.classes[images.samples.label[row]] == ours.classes[ours.samples.label[same]]
         assert np.array_equal(images.pixels.read(row), ours.pixels.read(same))
+
+
+def test_the_card_says_what_classes_mean_and_what_sides_of_images_are(whole: Path) -> None:
+    text = (whole / "README.md").read_text()
+    assert "| label | class | who |" in text
+    assert "| `walking` | walks |" in text
+    assert "| `walking_to_falling` | walks and falls |" in text
+    assert "`stft`, across: slow time, " in text
+    assert "brightest: the largest power of the image" in text
+    assert "an FMCW radar (" in text
+    assert "url = {https://arxiv.org/abs/2509.06751}" in text
+    assert "year = {2026}" in text
+
+
+def test_an_audit_takes_the_place_that_the_card_leaves_for_it(whole: Path) -> None:
+    from radhar_cli.audit.card import with_section
+
+    text = with_section((whole / "README.md").read_text(), "## Who is told apart by what\n\nX.")
+    assert text.count("## Who is told apart by what") == 1
+    assert "Not audited yet" not in text
+
+
+def test_the_card_of_a_board_counts_points_frames_and_skeletons(tmp_path: Path) -> None:
+    from helpers.boards import CFG, CLOUDS
+
+    (tmp_path / "board.cfg").write_text(CFG)
+    (tmp_path / "config.yaml").write_text(CLOUDS)
+    build(load_config(tmp_path / "config.yaml"), tmp_path / "set", 1, Listener())
+    text = (tmp_path / "set/README.md").read_text()
+    assert "point clouds and maps of human activities" in text
+    for name in ("points", "points_start", "points_person", "skeleton", "range_doppler"):
+        assert f"| `/products/{name}` |" in text
+    assert "points on average" in text
+    assert "never what it may see" in text
+
+
+def test_the_card_counts_people(tmp_path: Path) -> None:
+    path = tmp_path / "config.yaml"
+    path.write_text(PEOPLE)
+    build(load_config(path), tmp_path / "set", 1, Listener())
+    text = (tmp_path / "set/README.md").read_text()
+    assert "| people in the scene |" in text
+    assert "-1 of who is not there" in text
+
+
+def test_every_class_has_a_meaning_if_only_its_name() -> None:
+    from radhar_cli.activities.activity import ACTIVITIES, activity_named
+    from radhar_cli.activities.meanings import MEANINGS, meaning_of_class
+
+    assert all(meaning_of_class(activity) == MEANINGS[activity.slug] for activity in ACTIVITIES)
+    assert (
+        meaning_of_class(activity_named("left_side_lunge")) == "lunges to the left, again and again"
+    )

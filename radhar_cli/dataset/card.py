@@ -171,8 +171,8 @@ def compose_card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
         reading: Markdown, how to read the files next to the card.
     """
     config, measured = data.config, isinstance(data.config, MeasuredConfig)
-    what = "point clouds and maps" if "points" in data.products else "maps"
-    title = f"{'Measured' if measured else 'Simulated'} radar {what} of human activities"
+    content = "point clouds and maps" if "points" in data.products else "maps"
+    title = f"{'Measured' if measured else 'Simulated'} radar {content} of human activities"
     front = {
         "license": config.output.license or "unknown",
         "pretty_name": title,

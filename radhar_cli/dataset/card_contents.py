@@ -39,14 +39,14 @@ def describe_arrays(data: Dataset) -> str:
         return ""
     lines = []
     for name, array in data.products.items():
-        what = ROWS.get(name, "a row of the product")
+        meaning = ROWS.get(name, "a row of the product")
         if name in FRAME_MAPS and name != "points":
             (rows, row_unit), (columns, column_unit) = row_axis(name), column_axis(name)
-            what = f"a frame: levels [{rows} ({row_unit}), {columns} ({column_unit})]"
+            meaning = f"a frame: levels [{rows} ({row_unit}), {columns} ({column_unit})]"
         shape = " x ".join(map(str, array.shape[1:])) or "1"
         counts = array.counts
         each = f"{counts.min():,}" if counts.min() == counts.max() else _spread(counts)
-        lines.append([f"`/products/{name}`", f"{array.shape[0]:,}", each, shape, what])
+        lines.append([f"`/products/{name}`", f"{array.shape[0]:,}", each, shape, meaning])
     head = ("array", "rows in all", "of a sample", "shape of a row", "a row is")
     notes = ["Rows of sample i begin at `/products/<name>_count[:i].sum()`."]
     if {"points", "points_start"} <= data.products.keys():

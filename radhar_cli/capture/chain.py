@@ -199,14 +199,24 @@ def _refuse_ringing(part: RecordingPart, config: AnyConfig) -> None:
 def _range_signal(
     part: RecordingPart, content: Ranging, config: AnyConfig
 ) -> tuple[Signal, TorsoTrack | None]:
-    """Make the range bins of a part, and track the torso in them; None if nothing moves."""
+    """Make the range bins of a part, and track the torso in them; None if nothing moves.
+
+    Raises:
+        CaptureError: the recording is not of the config's board.
+    """
     processing = config.processing
     centred = processing.range_reference == "centre" or processing.range_sum == "gated"
     duration = part.segments.pulses / part.segments.prf
     waveform = content.waveform(duration, processing.range_fft_length, centred)
     radar = fixed_radar(config)
     if isinstance(radar, BoardRadar):  # whose samples have no half band
-        waveform = replace(board_of(radar).waveform, centred=centred)
+        board = board_of(radar)
+        if isinstance(content, Beat) and content.samples != board.samples:
+            raise CaptureError(
+                f"{part.recording.path}: samples = {content.samples}: should be {board.samples}, "
+                "as radar.cfg has it"
+            )
+        waveform = replace(board.waveform, centred=centred)
     if isinstance(content, Beat):
         waveform = replace(waveform, window=chirp_window_of(processing))
     x = bins_of_part(part, content, waveform)

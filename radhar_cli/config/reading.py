@@ -240,6 +240,13 @@ _WORDING = {
 }
 
 
+_FORM_OF_TWO = {
+    "uniform": "[low, high]",
+    "normal": "[mean, standard deviation]",
+    "vary": "[nominal, fraction]",
+}
+
+
 def _mistakes_alone(error: ValidationError, document: Any) -> list[Any]:
     """Pydantic's errors, without those that only follow from another one.
 
@@ -290,6 +297,10 @@ def _problems_of(kind: type[BaseModel], items: Iterable[Any], document: Any) -> 
         else:
             message = _WORDING.get(item["type"], item["msg"])
             radar = next((r for r in RADARS if f"<{r.kind}>" in item["loc"]), FmcwRadar)
+            if item["type"] == "missing" and names[-2:-1] and names[-2] in _FORM_OF_TWO:
+                form = f"should be {_FORM_OF_TWO[str(names[-2])]}"
+                yield Problem(key.removesuffix(f".{names[-1]}"), item["input"], form)
+                continue
             if item["type"] == "missing":
                 place = f" with {radar.named}" if names[:1] == ["radar"] else ""
                 yield Problem(key, _MISSING, f"{message}{place}")

@@ -206,7 +206,10 @@ class Request(Section):
         if self.people:
             filled = tuple(self._filled_person(n) for n in range(1, len(self.people) + 1))
             object.__setattr__(self, "people", filled)
-        if self.processing.range_reference == "start" and not chosen_window:
+        reads_ends = self.processing.range_reference == "start" and not isinstance(
+            self.radar, BoardRadar
+        )
+        if reads_ends and not chosen_window:
             none = {"range_window": "rectangular"}  # as its sum reads the ends of a chirp
             object.__setattr__(self, "processing", _with_defaults(self.processing, none))
         if self.motion.model == "paper" and self.processing.window_s is None:

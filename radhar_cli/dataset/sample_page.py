@@ -148,6 +148,9 @@ def _frames(data: Dataset, row: int, board: Board) -> Iterator[MapLevels]:
     for name, kind in FRAME_MAP_KINDS.items():
         if name in data.products:
             rows, columns = kind.rows.of(board), kind.columns.of(board)
+            limits = data.config.image.range_limits_m
+            if rows.name == "range" and limits is not None:
+                rows = rows.only(rows.cells_within(limits))
             grey = _product(data, row, name, (rows.values.size, columns.values.size))
             yield MapLevels(name, grey, scale, columns, rows, _times(board, len(grey)))
 

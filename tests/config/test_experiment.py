@@ -27,6 +27,7 @@ from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import BoxConfig, FacesConfig, LayerConfig, ReflectorConfig
 from radhar_cli.config.section import Section
 from radhar_cli.config.sequence import SequenceConfig
+from radhar_cli.config.stream import StreamConfig
 
 
 def test_the_defaults_of_the_paper_are_its_free_space_data_set() -> None:
@@ -135,7 +136,14 @@ OF_THE_PAPER = {
     f"motion.{name}"
     for name in ("speed_mps", "gait_hz", "thigh_deg", "calf_deg", "arm_deg", "turn_deg")
 }
+OF_OTHER_MOVEMENTS = tuple(
+    f"motion.{section}."
+    for section in (
+        *("running", "limping", "aids", "carrying", "crawling", "gestures", "kneeling", "lying"),
+    )
+)
 OF_PEOPLE_ALONE = (
+    *(key for key in _keys(WITH_WALL) if key.startswith(OF_OTHER_MOVEMENTS)),
     *(
         f"subject.{name}"
         for name in SubjectConfig.model_fields
@@ -293,6 +301,7 @@ CHANGES: dict[str, object] = {
     "output.slow_time": True,
     "output.products": ("torso_track",),
     "output.license": "cc-by-4.0",
+    "stream": StreamConfig(),
     "recordings": RecordingsConfig(window_s=2.0),
 }
 

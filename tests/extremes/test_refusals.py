@@ -68,7 +68,7 @@ def document(key: str, value: Any) -> dict[str, Any]:
         vector[int(last)] = value
         *names, last = names
         value = vector
-    made: dict[str, Any] = {"motion": {"model": "paper"}}
+    made: dict[str, Any] = {} if names[:1] == ["stream"] else {"motion": {"model": "paper"}}
     if names[:1] == ["radar"] and (*names, last)[1] not in FmcwRadar.model_fields:
         made["radar"] = {"cfg": CFG, "device": "IWR1443BOOST"}
     place = made
@@ -148,6 +148,7 @@ NULLABLE = (
     "snr_db",
     "subject.weight_kg",
     "timing.walk_begin_s",
+    "timing.grab_start_s",
     *OF_THE_MODEL,
     *FFTS,
 )

@@ -351,9 +351,10 @@ def test_persons_come_from_data_sets(tmp_path):
     assert radhar(*command, "-o", out, *(x for s in sets for x in ("--set", s))).returncode == 0
     ok(*command, "-o", plain, *(x for s in sets[:3] for x in ("--set", s)))
     images = open_images(out, None, "gray")
-    assert images.samples.person.tolist() == [*"01201"] * 2
+    of = [f"person {number} (seed 1)" for number in (0, 1, 2, 0, 1)]
+    assert images.samples.person.tolist() == of * 2
     walking = images.renamed({"punching": None})
-    assert walking.samples.person.tolist() == [*"01201"]
+    assert walking.samples.person.tolist() == of
     assert open_images(plain, None, "gray").samples.person is None
 
 

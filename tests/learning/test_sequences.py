@@ -215,7 +215,7 @@ def test_joints_are_found_nearer_than_by_a_person_who_stands_still(boards: Path)
     ("words", "message"),
     [
         (("--target", "skeleton"), "should have model: cloudnet or framenet"),
-        (("--target", "bones"), "'labels', 'count' or 'skeleton'"),
+        (("--target", "bones"), "'person', 'frames' or 'skeleton'"),
         (("--model", "framenet", "--map", "points"), "has no frames of 'points'"),
         (("--model", "cloudnet", "--set", "augment.noise=0.1"), "should have no augment"),
         (("--model", "cloudnett"), "did you mean 'cloudnet'?"),

@@ -7,6 +7,7 @@ import numpy as np
 
 from radhar_cli.motion.human.other_gaits import (
     carrying,
+    largest_limp,
     limping,
     walking_with_stick,
     walking_with_walker,
@@ -35,13 +36,15 @@ def other_gaits(person: Person, gait: Gait, place: int) -> dict[str, Gait]:
     motion = person.motion
     limp, aids, load = motion.limping, motion.aids, motion.carrying
     painful, hand, bag = person.stream(f"motion.limping/sides/{place}").random(3)
-    limper = limping(
-        _slowed(gait, limp.pace),
-        limp.asymmetry,
-        1.0 if painful < 0.5 else -1.0,
-        radians(limp.lean_deg),
+    limper, with_stick = (
+        limping(
+            slowed,
+            min(limp.asymmetry, largest_limp(slowed.speed, person.subject.height_m)),
+            1.0 if painful < 0.5 else -1.0,
+            radians(limp.lean_deg),
+        )
+        for slowed in (_slowed(gait, limp.pace), _slowed(gait, aids.stick_pace))
     )
-    with_stick = replace(limper, speed=_slowed(gait, aids.stick_pace).speed)
     return {
         "limping": limper,
         "walking_with_stick": walking_with_stick(with_stick, bool(hand < OTHER_HAND)),

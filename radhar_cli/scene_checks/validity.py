@@ -131,7 +131,8 @@ def check_person(scene: Scene, person: Person) -> SceneCheck:
     try:
         return _check_motion(Surroundings.of(scene, person), moving(person))
     except OutOfReachError as error:
-        keys = f"{person.prefix}motion.*, {person.prefix}timing.*"
+        sections = ("motion.*", "timing.*", "subject.height_m")
+        keys = ", ".join(f"{person.prefix}{section}" for section in sections)
         raise SceneError(f"{scene.name}: {error} ({keys})") from None
 
 

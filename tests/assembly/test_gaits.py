@@ -67,6 +67,22 @@ def test_the_ends_of_every_range(key: str) -> None:
             assert_limbs(moving(nominal_scene(config, activity_named(slug))))
 
 
+@pytest.mark.parametrize("slug", ["limping", "walking_with_stick"])
+@pytest.mark.parametrize("stature", [1.5, 2.1])
+def test_who_hurries_with_a_painful_leg_keeps_above_the_floor(slug: str, stature: float) -> None:
+    config = people(
+        slug,
+        subject__height_m=stature,
+        motion__walking__speed_mps=2.3,
+        motion__limping__pace=1.0,
+        motion__limping__asymmetry=0.25,
+        motion__aids__stick_pace=1.0,
+    )
+    motion = moving(nominal_scene(config, activity_named(slug)))
+    assert_limbs(motion)
+    assert motion.positions(T)[2].min() > 0.85 * motion.person.ankle
+
+
 def numbers_of(slug: str) -> dict[str, float]:
     """Numbers that scenes of a class depend on."""
     return scene_numbers(nominal_scene(people(slug), activity_named(slug)))

@@ -84,6 +84,11 @@ def test_rcs_grows_with_the_root_of_height_times_weight(height: float, weight: f
     np.testing.assert_allclose(cross_sections(height, weight), expected, rtol=ROUNDING)
 
 
-@pytest.mark.parametrize(("height", "weight"), [(1.8, 84.24), (1.5, 58.5), (1.0, 26.0)])
-def test_default_weight_is_26_kg_per_square_metre(height: float, weight: float) -> None:
+@pytest.mark.parametrize(
+    ("height", "weight"),
+    [(2.1, 114.66), (1.8, 84.24), (1.5, 58.5), (1.35, 17.0 * 1.35**2), (1.1, 18.755), (1.0, 15.5)],
+)
+def test_default_weight_is_26_kg_per_square_metre_of_grown_ups_and_less_of_children(
+    height: float, weight: float
+) -> None:
     assert default_weight(height) == pytest.approx(weight, rel=ROUNDING)

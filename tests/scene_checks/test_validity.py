@@ -166,6 +166,17 @@ def test_the_message_names_sample_joint_time_and_distance() -> None:
         assert part in message
 
 
+def test_who_is_too_small_for_a_walk_is_refused_by_name() -> None:
+    """A child of 1.0 m at 2.8 m/s: v^2/(g l) is 1.7, where people run."""
+    walk = {"speed_mps": 2.8, "period_scale": 1.05, "speed_variation": 0.06}
+    config = Config.model_validate(
+        {"activities": ["walking"], "subject": {"height_m": 1.0}, "motion": {"walking": walk}}
+    )
+    keys = r"\(motion\.\*, timing\.\*, subject\.height_m\)"
+    with pytest.raises(SceneError, match=rf"walking/0: a limb of 0\.460 m cannot reach .* {keys}"):
+        draw_valid_scene(config, WALKING, 0)
+
+
 @pytest.mark.parametrize(("above", "found"), [(0.0499, True), (0.0501, False)])
 def test_the_limit_is_5_cm(above: float, found: bool) -> None:
     config = with_antenna_at("S1", np.array([2.0, 0.0, 1.5 + above]))

@@ -1,10 +1,11 @@
 """Walks that differ: limping, with a stick, with a walker, with something in the hands."""
 
 from dataclasses import replace
-from math import radians
+from math import radians, sqrt
 
 from radhar_cli.motion.human.aids import Aid, Load
-from radhar_cli.motion.human.walking import STANCE, Gait
+from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.walking import MAX_LIMP, STANCE, Gait
 
 RIGHT, LEFT = 0, 1
 OTHER_GAITS = ("limping", "walking_with_stick", "walking_with_walker", "carrying")
@@ -15,6 +16,21 @@ ROLLATOR = Aid((RIGHT, LEFT), ahead=0.17, beside=0.15, height=0.53)
 FRAME = Aid((RIGHT, LEFT), ahead=0.20, beside=0.15, height=0.52, down=0.9, up=0.55)
 SHORT_STEPS = 0.85  # time of a stride behind a walker over that of others who are as slow
 LEAN_BACK = radians(4)  # of who carries a box
+# Speeds over sqrt(g l), l the length of the leg: up to which a leg is spared as much as can be, and
+# from which on it is not. Beyond, the foot of the leg would dip into the floor.
+SPARED, NOT_SPARED = 0.45, 0.70
+G = 9.81  # m/s^2
+
+
+def largest_limp(speed: float, stature: float) -> float:
+    """Share of its time on the floor by which a leg can be spared: less of who goes fast.
+
+    Args:
+        speed: m/s.
+        stature: m.
+    """
+    relative = speed / sqrt(G * 2 * Physique(stature).leg)
+    return MAX_LIMP * min(max((NOT_SPARED - relative) / (NOT_SPARED - SPARED), 0.0), 1.0)
 
 
 def limping(gait: Gait, share: float, side: float, lean: float) -> Gait:

@@ -14,6 +14,7 @@ from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.other_gaits import (
     OTHER_GAITS,
     carrying,
+    largest_limp,
     limping,
     usual_gaits,
     walking_with_stick,
@@ -151,7 +152,7 @@ def test_everybody_can(
     choice, turns = choices
     speed = min(speed, 1.0) if name == "walking_with_walker" else speed
     usual = Gait(speed * sqrt(stature / 1.75), lane=Lane(2.5, 1.0) if turns else None)
-    limp = limping(usual, share, side, radians(10))
+    limp = limping(usual, min(share, largest_limp(usual.speed, stature)), side, radians(10))
     gait = {
         "limping": limp,
         "walking_with_stick": walking_with_stick(limp, choice),
@@ -173,6 +174,13 @@ def test_everybody_can(
 def test_a_limp_has_bounds() -> None:
     with pytest.raises(ValueError, match=r"from 0 to 0\.25"):
         replace(Gait(1.0), limp=0.3)
+
+
+def test_who_goes_fast_limps_less() -> None:
+    assert largest_limp(1.3, 1.75) == 0.25
+    assert largest_limp(1.5, 1.75) == pytest.approx(0.19, abs=0.01)
+    assert largest_limp(1.3, 1.0) < 0.25
+    assert largest_limp(2.8, 2.1) == 0
 
 
 def test_usual_gaits_are_those_of_the_names() -> None:

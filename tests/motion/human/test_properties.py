@@ -1,12 +1,12 @@
 """Properties of every person and activity: stiff links, planted feet, a floor, no jumps."""
 
 from dataclasses import replace
-from math import inf, pi
+from math import inf, pi, sqrt
 
 import numpy as np
 import pytest
 from helpers.bodies import links_of
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.motion.human.crawling import Crawl
@@ -33,7 +33,7 @@ from radhar_cli.motion.human.lying import Lie, Rest, TurnOver
 from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
-from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.physique import GROWN_UP, Physique, froude_scale
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.sitting import Seat, Sit, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
@@ -182,6 +182,12 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
 ACTIVITIES = tuple(walks_of(Gait(1.2)))
 
 
+def walkable(gait: Gait, stature: float) -> Gait:
+    """Gait whose steps legs reach: where v^2/(g l) is above 1, people can but run."""
+    fastest = 0.9 * sqrt(9.81 * 2 * Physique(stature).leg)
+    return replace(gait, speed=min(gait.speed, fastest))
+
+
 def moving(
     what: str,
     stature: float = 1.75,
@@ -235,7 +241,8 @@ def test_links_are_stiff_and_nothing_is_below_the_floor(
     fidgets: tuple[Fidget, ...],
 ) -> None:
     sway = Sway(Waves.low_pass(0.005, ahead, SWAY_HZ), Waves.low_pass(0.003, aside, SWAY_HZ))
-    motion = moving(what, stature, gait, Idle(Physique(stature), sway, Breath(), fidgets))
+    idle = Idle(Physique(stature), sway, Breath(), fidgets)
+    motion = moving(what, stature, walkable(gait, stature), idle)
     assert_sound(motion, recording(motion, 60))
 
 
@@ -332,10 +339,8 @@ def test_a_breakpoint_that_is_not_named_is_found() -> None:
 def test_feet_of_walkers_stand_still_between_touch_down_and_heel_off(
     stature: float, gait: Gait, from_rest: bool, duration: float
 ) -> None:
-    person = Physique(stature)
-    motion = HumanMotion(
-        person, (Walk(gait, duration, from_rest),), (0.0, 0.0), 0.0, 0.0, 6.0, Idle(person)
-    )
+    person, walk = Physique(stature), Walk(walkable(gait, stature), duration, from_rest)
+    motion = HumanMotion(person, (walk,), (0.0, 0.0), 0.0, 0.0, 6.0, Idle(person))
     walking = motion.parts[0][0]
     assert_sound(motion, np.linspace(0, 6, 400))
     for ankle, track in zip(ANKLES, walking._foot_tracks, strict=True):
@@ -383,13 +388,22 @@ def test_walkers_slow_down_to_turn_round_on_planted_feet(stature: float, speed: 
 
 @given(stature=STATURES, speed=st.floats(0.8, 2.8))
 @settings(max_examples=30, deadline=None)
+@example(stature=1.0, speed=2.0)
+@example(stature=1.5, speed=2.1)
 def test_ankles_swing_at_three_times_the_walking_speed_and_never_run_back(
     stature: float, speed: float
 ) -> None:
+    """At speeds of grown-ups, and of children at the Froude numbers of those of 1.5 m.
+
+    Children's feet are long for their legs, and roll over more of a step, so that less is left for
+    the swing.
+    """
+    speed *= min(froude_scale(stature, GROWN_UP), 1.0)
     motion = moving("S8", stature, Gait(speed))
     dt = 1e-3
     v = np.diff(motion.positions(np.arange(0, 3, dt)), axis=2)[0] / dt
-    assert 2.7 < v[ANKLES].max() / speed < 3.5
+    slowest = 2.7 - 0.15 * motion.person.childlike
+    assert slowest < v[ANKLES].max() / speed < 3.5
     assert v[ANKLES].min() / speed > -0.1
     assert 0.85 < v[TORSO].min() / speed < v[TORSO].max() / speed < 1.15
 
@@ -457,7 +471,7 @@ def test_transitions_may_overlap(
     """A walk begins before the body is up, or a fall before the walk has come to rest."""
     person = Physique(stature)
     movements = tuple(
-        replace(movement, gait=gait) if isinstance(movement, Walk) else movement
+        replace(movement, gait=walkable(gait, stature)) if isinstance(movement, Walk) else movement
         for movement in OVERLAPPING[what]
     )
     idle = Idle(person, Sway(Waves.low_pass(0.005, ahead), Waves.low_pass(0.003, ahead)))

@@ -79,12 +79,28 @@ def test_steps_come_faster_with_speed_as_measured() -> None:
     assert 1 / step_times(3.0, 1.75)[0] == pytest.approx(2.75, rel=0.03)
 
 
-def test_other_statures_run_alike_at_equal_froude_numbers() -> None:
-    scale = sqrt(1.0 / 1.75)
-    large, small = running(3.0), running(3.0 * scale, 1.0)
+def heights_at_equal_froude_numbers(stature: float) -> tuple[np.ndarray, np.ndarray]:
+    """Heights [13, M] of all points, over the stature, of who is of 1.75 m and of another."""
+    scale = sqrt(stature / 1.75)
     t = np.arange(1.0, 2.0, 0.01)
-    p, q = large.positions(0.5 + t), small.positions(0.5 + scale * t)
-    np.testing.assert_allclose(q[2] * 1.75, p[2], atol=0.02)
+    usual = running(3.0).positions(0.5 + t)[2] / 1.75
+    other = running(3.0 * scale, stature).positions(0.5 + scale * t)[2] / stature
+    return usual, other
+
+
+@pytest.mark.parametrize("stature", [1.5, 2.1])
+def test_grown_ups_run_alike_at_equal_froude_numbers(stature: float) -> None:
+    usual, other = heights_at_equal_froude_numbers(stature)
+    np.testing.assert_allclose(other, usual, atol=1e-3)
+
+
+def test_children_run_alike_on_shorter_legs() -> None:
+    usual, other = heights_at_equal_froude_numbers(1.0)
+    child, scaled = Physique(1.0), 2 * Physique(1.75).leg / 1.75
+    assert (usual - other)[HIP].mean() == pytest.approx(scaled - 2 * child.leg, abs=0.005)
+    np.testing.assert_allclose(np.ptp(other[HIP]), np.ptp(usual[HIP]), atol=0.005)
+    np.testing.assert_allclose(other[FEET], usual[FEET], atol=0.03)
+    np.testing.assert_allclose(other[JOINTS.index("head")], usual[JOINTS.index("head")], atol=0.005)
 
 
 @pytest.mark.parametrize("speed", [0.0, 2.5, 6.0])

@@ -16,6 +16,7 @@ independent ones.
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -115,9 +116,11 @@ def changed(cloud: Cloud, rng: np.random.Generator) -> Cloud:
     return Cloud(frame, points)
 
 
-def simulated(out: Path, per_class: int, jobs: int) -> tuple[list[Cloud], list[int]]:
-    """Clouds and classes of a data set that is built in `out`."""
-    settings = (f"samples_per_class={per_class}", f"duration_s={FRAMES / RATE + 0.05}")
+def simulated(
+    out: Path, per_class: int, jobs: int, more: Sequence[str] = ()
+) -> tuple[list[Cloud], list[int]]:
+    """Clouds and classes of a data set that is built in `out`, with more settings of the config."""
+    settings = (f"samples_per_class={per_class}", f"duration_s={FRAMES / RATE + 0.05}", *more)
     run_radhar("generate", CONFIG, "-o", out.resolve(), "--jobs", jobs, *as_options(settings))
     clouds = []
     with open_dataset(out) as data:

@@ -44,13 +44,17 @@ CUES = (  # when things began
 EARLIER = (f"motion={{range_m: {STARTS}, cross_range_m: 0, angle_deg: {FACING}}}", f"timing={CUES}")
 TODAY = ("motion={}", "timing={}")
 DEFAULTS: dict[str, tuple[str, ...]] = {"earlier": EARLIER, "today": TODAY}
-# People anywhere in what both defaults use are within the gate.
-GATE = "processing.gate_m=[0.75, 14.0]"
-# The board sees 11 m, and the study takes points up to 2.9 m: both defaults get that place.
-NEAR = "{uniform: [1.2, 2.3]}"
+# People are within the gate and before the wall, wherever either default has them.
+ROOMY = ("processing.gate_m=[0.75, 15.0]", "room.back_wall_m=null")
+# The board sees 11 m, and the study takes points up to 2.9 m: both defaults get that place, and
+# lanes on which walkers stay there.
+NEAR, LANE = "{uniform: [1.2, 2.3]}", "walking: {lane_m: {uniform: [0.8, 1.4]}}"
 AT_THE_BOARD: dict[str, tuple[str, ...]] = {
-    "earlier": (f"motion={{range_m: {NEAR}, cross_range_m: 0, angle_deg: {FACING}}}", EARLIER[1]),
-    "today": (f"motion={{place: {{range_m: {NEAR}}}}}", TODAY[1]),
+    "earlier": (
+        f"motion={{range_m: {NEAR}, cross_range_m: 0, angle_deg: {FACING}, {LANE}}}",
+        EARLIER[1],
+    ),
+    "today": (f"motion={{place: {{range_m: {NEAR}}}, {LANE}}}", TODAY[1]),
 }
 
 
@@ -151,7 +155,12 @@ def simulated_masks(out: Path, per_class: int, jobs: int) -> dict[str, Path]:
         tree = trees[name] = out / "images" / name
         if (tree / "done").exists():
             continue
-        made = (*settings, GATE, f"samples_per_class={per_class}", f"activities={list_of_slugs()}")
+        made = (
+            *settings,
+            *ROOMY,
+            f"samples_per_class={per_class}",
+            f"activities={list_of_slugs()}",
+        )
         data_folder = make_data(sim_to_real.SIMULATED, out / "data" / name, made, jobs)
         with open_dataset(data_folder) as data:
             for row, label in enumerate(data.label):

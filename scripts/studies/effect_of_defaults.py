@@ -51,10 +51,11 @@ ROOMY = ("processing.gate_m=[0.75, 15.0]", "room.back_wall_m=null")
 NEAR, LANE = "{uniform: [1.2, 2.3]}", "walking: {lane_m: {uniform: [0.8, 1.4]}}"
 AT_THE_BOARD: dict[str, tuple[str, ...]] = {
     "earlier": (
+        "on_invalid=redraw",
         f"motion={{range_m: {NEAR}, cross_range_m: 0, angle_deg: {FACING}, {LANE}}}",
         EARLIER[1],
     ),
-    "today": (f"motion={{place: {{range_m: {NEAR}}}, {LANE}}}", TODAY[1]),
+    "today": ("on_invalid=redraw", f"motion={{place: {{range_m: {NEAR}}}, {LANE}}}", TODAY[1]),
 }
 
 

@@ -542,6 +542,7 @@ def document(key: str, value: float) -> dict[str, Any]:
                 *("squatting", "tripping", "turning_over", "kneeling", "crawling"),
                 *("running", "jogging_in_place", "limping", "carrying"),
                 *("walking_with_stick", "walking_with_walker"),
+                *("waving", "drinking", "clapping", "writing"),
             )
         },
     }

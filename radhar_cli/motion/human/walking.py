@@ -198,9 +198,10 @@ class Walking:
 
     @cached_property
     def start(self) -> float:
-        """Duration of gaining speed from rest, s."""
+        """Duration of gaining speed from rest, s; over by the end of a walk that is shorter."""
         start = self.gait.start
-        return self.ramp if start is None else start * self.stride
+        until_rest = self.stop - self.begin + self.ramp
+        return self.ramp if start is None else min(start * self.stride, until_rest)
 
     @property
     def stops(self) -> bool:

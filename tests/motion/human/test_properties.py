@@ -353,6 +353,25 @@ def test_feet_of_walkers_stand_still_between_touch_down_and_heel_off(
 
 
 @given(
+    stature=STATURES,
+    speed=SPEEDS,
+    start=st.sampled_from([0.4, 1.0, 2.0]),
+    duration=st.floats(0.2, 2),
+)
+@settings(max_examples=40, deadline=None)
+@example(stature=1.75, speed=1.3, start=2.0, duration=0.3)
+def test_who_stops_before_having_gained_speed_stays_above_the_floor(
+    stature: float, speed: float, start: float, duration: float
+) -> None:
+    person = Physique(stature)
+    walk = Walk(walkable(Gait(speed, start=start), stature), duration)
+    motion = HumanMotion(person, (walk,), (0.0, 0.0), 0.0, 0.0, 6.0, Idle(person))
+    p = motion.positions(np.arange(0, 6, 0.01))
+    assert p[2].min() > 0.7 * person.ankle
+    assert np.abs(np.diff(p, 2, axis=2)).max() / 0.01**2 < 250
+
+
+@given(
     begins=st.lists(st.floats(2.0, 5.0), max_size=4).map(np.cumsum),
     arc=st.floats(1.0, 1.9),
     side=st.sampled_from([-1.0, 1.0]),

@@ -1,6 +1,6 @@
 """What a class shows, in a line for people who see it for the first time."""
 
-from radhar_cli.activities.activity import MOVEMENTS, Activity
+from radhar_cli.activities.activity import MOVEMENTS, NOBODY, Activity
 
 MEANINGS = {
     "stationary": "stands still, with the sway and the breath of people",
@@ -66,7 +66,7 @@ def meaning_of_class(activity: Activity) -> str:
 
     A class of motion files, or one that somebody else has added, has none: "".
     """
-    if activity.slug in MEANINGS and not _is_other_class(activity):
+    if activity.slug in MEANINGS and (activity.slug == NOBODY or not _is_other_class(activity)):
         return MEANINGS[activity.slug]
     return ", then ".join(_meaning_of_movement(name) for name in activity.movements)
 

@@ -29,7 +29,7 @@ SMALLEST_TURN = radians(20)
 CHECK_S = 0.25  # time between instants at which the torso is looked at
 ARC = 1.3  # way ahead that a half turn takes, over its radius
 LEAST_STRAIGHT_M = 0.3
-SHORTER, SHORTENINGS = 0.6, 4  # factor of a bout that does not fit, and how often it is applied
+SHORTER, SHORTENINGS = 0.6, 6  # factor of a bout that does not fit, and how often it is applied
 LEAST_BOUT_S, LEAST_TURN_S = 1.0, 0.8
 
 
@@ -285,11 +285,9 @@ def _with_gait(movement: Movement, gait: Gait) -> Movement:
 
 
 def _shortened(movement: Movement) -> Movement:
-    """Movement that goes on for a shorter time, where its gait leads elsewhere."""
+    """Movement that goes on for a shorter time: a run, say, that would leave the zone."""
     duration = getattr(movement, "duration", None)
     if not isinstance(duration, float) or not LEAST_BOUT_S < SHORTER * duration < inf:
-        return movement
-    if not isinstance(getattr(movement, "gait", None), Gait):
         return movement
     shortened: Movement = replace(movement, duration=SHORTER * duration)  # type: ignore[type-var]
     return shortened

@@ -9,6 +9,7 @@ from radhar_cli.audit.held_out import SHARED
 from radhar_cli.audit.scene_numbers import audited_numbers, varies
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.reading import Dataset
+from radhar_cli.dataset.scene_fields import ONSET
 from radhar_cli.numerics.arrays import Float, Index
 
 BINS = 12  # of equally many samples
@@ -36,6 +37,8 @@ def most_telling_number(data: Dataset) -> NumberShare | None:
         return None
     label, best = data.label.astype(np.intp), None
     for key, values in audited_numbers(data).items():
+        if key == ONSET.key:  # follows from how long a movement takes; `radhar audit` lists it
+            continue
         known = np.isfinite(values)
         if not varies(values) or np.unique(label[known]).size < 2:
             continue

@@ -30,7 +30,7 @@ SIDE, GAP, LINE = 160, 6, 16  # px
 SIZES = ("n<1K", "1K<n<10K", "10K<n<100K", "100K<n<1M", "1M<n<10M", "10M<n<100M", "n>100M")
 
 _NOISE_TELLS = (
-    "noise alone tells `stationary` from most classes, as levels are relative to what the "
+    "noise alone tells {} from most classes, as levels are relative to what the "
     "canceller leaves of the echo; `processing.clutter: mean` keeps slow motion"
 )
 _SIMULATED = (
@@ -181,7 +181,7 @@ def compose_card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
         **more,
     }
     licence, version = config.output.license, data.file.text("radhar_version")
-    licence = licence or "not chosen; who publishes this puts it into the first lines of this file"
+    licence = licence or "not chosen (`output.license` of the config)"
     parts = [
         f"---\n{yaml.safe_dump(front, sort_keys=False, default_flow_style=None, width=100)}---",
         f"# {title}",
@@ -220,8 +220,12 @@ def _summary(data: Dataset) -> str:
     split = "Samples are split one by one."
     if config.split.subjects is not None:
         split = f"Split by person: none of the {config.split.subjects} is in two of its parts."
+    count = len(config.chosen_activities)
+    sets = f"{count} class{'es' * (count > 1)}"
+    if isinstance(config, Config) and config.stream is not None:
+        sets = f"{len(config.activities)} classes that follow each other, in streams"
     return (
-        f"{len(data):,} samples of {len(config.chosen_activities)} classes, {maps} "
+        f"{len(data):,} samples of {sets}, {maps} "
         f"map{'s' * (maps > 1)} of each, {height} x {width} pixels: {content} {split}\n\n"
         "`scenes.csv` and /scene of dataset.h5 have the numbers that were drawn for each sample."
     )
@@ -277,6 +281,7 @@ def _limits(data: Dataset) -> list[str]:
     config, notes = data.config, [str(warning["message"]) for warning in data.warnings]
     if isinstance(config, MeasuredConfig):
         return [*notes, "config.yaml names files and persons as the recordings' manifest does"]
+    stands = any(activity.slug == "stationary" for activity in config.chosen_activities)
     if config.has_noise and config.processing.clutter in ("difference", "highpass"):
-        notes.append(_NOISE_TELLS)
+        notes.append(_NOISE_TELLS.format("`stationary`" if stands else "who hardly moves"))
     return [*notes, _SIMULATED]

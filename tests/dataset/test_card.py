@@ -77,7 +77,7 @@ def test_the_card_describes_the_data_set(whole: Path) -> None:
 def test_the_card_says_what_noise_alone_tells(change: str, said: bool, tmp_path: Path) -> None:
     """Of a canceller that removes slow motion, where there is noise to be left."""
     build(config(tmp_path, change), tmp_path / "set", 1, Listener())
-    found = "noise alone tells `stationary`" in (tmp_path / "set/README.md").read_text()
+    found = "noise alone tells who hardly moves" in (tmp_path / "set/README.md").read_text()
     assert found == said
 
 

@@ -79,7 +79,7 @@ def small(document: dict[str, Any]) -> dict[str, Any]:
     if "recordings" in document:
         return {**document, "image": image}
     if "stream" in document:
-        few_streams = {"duration_s": 20, "stream": {**document["stream"], "count": 4}}
+        few_streams = {"duration_s": 20, "stream": {**document["stream"], "count": 10}}
         return {**document, **few_streams, "split": SMALL_DATA["split"], "image": image}
     few = {"activities": FEW} if document.get("activities", "all") == "all" else {}
     return {**document, **SMALL_DATA, **few, "image": image}

@@ -39,7 +39,7 @@ def test_of_a_clean_tree_nothing_tells(tmp_path):
     assert not leaks(result)
     for one in result.lines:
         if one.result is not None:
-            assert one.verdict == "at chance"
+            assert one.verdict.startswith("at chance")
             assert one.cure == ""
     assert not result.sentences
     assert result.held_out == "sample"

@@ -76,4 +76,4 @@ def test_what_was_not_added_is_refused_with_what_there_is(tmp_path: Path) -> Non
     data = split_tree(tmp_path / "tree")
     done = radhar("train", data, "-o", tmp_path / "run", "--target", "brightness")
     assert done.returncode == 2
-    assert "'classes', 'labels', 'count' or 'skeleton'" in done.stderr
+    assert "'person', 'frames' or 'skeleton'" in done.stderr

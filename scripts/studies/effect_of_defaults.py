@@ -135,7 +135,7 @@ def accuracy_on(run: Path, data: Path) -> float:
         told = report_of_radhar("eval", run, data, "--split", "all", "-o", folder, "--overwrite")
         cached.write_text(json.dumps(told))
     report = json.loads(cached.read_text())
-    return float(report["runs"][0]["accuracy"] if "runs" in report else report["accuracy"])
+    return float(report["accuracy"][run.name][data.name])
 
 
 def test_on_masks(out: Path, given: argparse.Namespace, seeds: range) -> list[str]:

@@ -125,7 +125,7 @@ def _map_panel(levels: Levels, colour_map: str) -> Image.Image:
         (f"{-HIGHEST_MPS:+g} m/s", (3, 2 * VIEW - 13)),
         (f"{SECONDS:g} s", (2 * VIEW - 22, 2 * VIEW - 13)),
     ):
-        draw.text(place, text, fill=(255, 255, 255))
+        draw.text(place, text, fill="white", stroke_width=1, stroke_fill="black")
     return picture
 
 

@@ -16,7 +16,8 @@ class MovementInfo(NamedTuple):
     """A movement of people: the states it begins and ends in, and its usual duration (s).
 
     `like` names another movement, whose numbers of the config it depends on, too; `also` has
-    further states in which it may begin, each with the state in which it then ends.
+    further states in which it may begin, each with the state in which it then ends; `in_place` says
+    whether it leaves the torso within half a metre of where it was.
     """
 
     before: str
@@ -24,6 +25,7 @@ class MovementInfo(NamedTuple):
     seconds: float | None  # usual duration, s; None for one that lasts as long as it is asked for
     like: str | None = None
     also: tuple[tuple[str, str], ...] = ()
+    in_place: bool = False
 
     @property
     def states(self) -> dict[str, str]:
@@ -60,13 +62,13 @@ GESTURES = tuple(name for names in GESTURES_BY_STATE.values() for name in names)
 NOBODY = "nobody"
 # What sequences are made of (`classes:`); each is a class by itself, too.
 MOVEMENTS = {
-    "stationary": MovementInfo("standing", "standing", None),
-    "punching": MovementInfo("standing", "standing", None),
-    "kicking": MovementInfo("standing", "standing", None),
-    "grabbing": MovementInfo("standing", "standing", 2.5),
-    "sitting_down": MovementInfo("standing", "seated", 2.0),
-    "standing_up": MovementInfo("seated", "standing", 1.8),
-    "body_rotating": MovementInfo("standing", "standing", None),
+    "stationary": MovementInfo("standing", "standing", None, in_place=True),
+    "punching": MovementInfo("standing", "standing", None, in_place=True),
+    "kicking": MovementInfo("standing", "standing", None, in_place=True),
+    "grabbing": MovementInfo("standing", "standing", 2.5, in_place=True),
+    "sitting_down": MovementInfo("standing", "seated", 2.0, in_place=True),
+    "standing_up": MovementInfo("seated", "standing", 1.8, in_place=True),
+    "body_rotating": MovementInfo("standing", "standing", None, in_place=True),
     "walking": MovementInfo("standing", "standing", None),
     "falling": MovementInfo("standing", "lying", 1.1),
     "falling_on_hands": MovementInfo("standing", "lying", 1.1, "falling"),
@@ -80,13 +82,13 @@ MOVEMENTS = {
     ),
     "turning_around": MovementInfo("standing", "standing", 1.8),
     "running": MovementInfo("standing", "standing", None),
-    "jogging_in_place": MovementInfo("standing", "standing", None),
+    "jogging_in_place": MovementInfo("standing", "standing", None, in_place=True),
     "limping": MovementInfo("standing", "standing", None, "walking"),
     "walking_with_stick": MovementInfo("standing", "standing", None, "walking"),
     "walking_with_walker": MovementInfo("standing", "standing", None, "walking"),
     "carrying": MovementInfo("standing", "standing", None, "walking"),
-    "sitting": MovementInfo("seated", "seated", None),
-    "kneeling": MovementInfo("kneeling", "kneeling", None),
+    "sitting": MovementInfo("seated", "seated", None, in_place=True),
+    "kneeling": MovementInfo("kneeling", "kneeling", None, in_place=True),
     "kneeling_down": MovementInfo("standing", "kneeling", 3.0),
     "getting_on_fours": MovementInfo("standing", "on_fours", 3.0),
     "crawling": MovementInfo("on_fours", "on_fours", None),
@@ -94,13 +96,13 @@ MOVEMENTS = {
     "turning_over": MovementInfo("lying", "lying", 2.5, also=(("in_bed", "in_bed"),)),
     "lying_down": MovementInfo("standing", "in_bed", 5.0),
     "getting_up_from_bed": MovementInfo("in_bed", "standing", 4.5),
-    **{name: MovementInfo("standing", "standing", None) for name in EXERCISES},
+    **{name: MovementInfo("standing", "standing", None, in_place=True) for name in EXERCISES},
     **{
-        name: MovementInfo(state, state, None)
+        name: MovementInfo(state, state, None, in_place=True)
         for state, names in GESTURES_BY_STATE.items()
         for name in names
     },
-    NOBODY: MovementInfo("nowhere", "nowhere", None, "stationary"),
+    NOBODY: MovementInfo("nowhere", "nowhere", None, "stationary", in_place=True),
 }
 
 
@@ -168,6 +170,11 @@ class Activity:
     def is_nobody(self) -> bool:
         """Whether nobody is in scenes of the class."""
         return NOBODY in self.movements
+
+    @property
+    def stays_in_place(self) -> bool:
+        """Whether all its movements, of which there are some, leave the torso in place."""
+        return bool(self.movements) and all(MOVEMENTS[name].in_place for name in self.movements)
 
     @property
     def walks(self) -> bool:

@@ -10,7 +10,6 @@ from math import ceil, inf, sqrt
 
 import numpy as np
 
-from radhar_cli.activities.activity import EXERCISES, GESTURES, NOBODY
 from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import box_of, wall_of
 from radhar_cli.motion.protocol import Motion
@@ -18,24 +17,6 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.scene import Person, Scene
 
-# Movements that leave the torso within half a metre of where it was.
-IN_PLACE = frozenset(
-    (
-        "stationary",
-        "punching",
-        "kicking",
-        "grabbing",
-        "sitting_down",
-        "standing_up",
-        "body_rotating",
-        "jogging_in_place",
-        "sitting",
-        "kneeling",
-        NOBODY,
-        *EXERCISES,
-        *GESTURES,
-    )
-)
 INSTANTS = 25  # at which people may be at their place
 COURSE_HZ = 4.0  # instants of a course that are looked at, in a second; INSTANTS at least
 NEAREST_M = 1.0  # of a torso and an antenna, along the boresight
@@ -117,8 +98,7 @@ def start_of(person: Person, motion: Motion) -> tuple[float, float]:
     """
     x, y = person.place
     starts = person.motion.range_m is not None
-    stays = IN_PLACE.issuperset(person.activity.movements) and person.activity.movements
-    if stays or (starts and getattr(motion, "begin", 0.0) >= 0):
+    if person.activity.stays_in_place or (starts and getattr(motion, "begin", 0.0) >= 0):
         return x, y
     if starts:
         ahead, left = motion.torso(np.zeros(1))[:2, 0, 0]

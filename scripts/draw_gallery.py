@@ -68,7 +68,7 @@ def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out
                 )
                 panel.tick_params(labelsize=7)
         if name == "rtm":
-            row[0].set_ylim(0, 11 if scenario.startswith("people") else 7.4)
+            row[0].set_ylim(0, 14 if scenario.startswith("people") else 7.4)
         row[0].set_ylabel(label, fontsize=8)
     for panel, activity in zip(axes[0], ACTIVITIES, strict=True):
         panel.set_title(f"{activity.label} {activity.slug.replace('_', ' ')}", fontsize=9)

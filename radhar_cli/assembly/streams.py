@@ -17,8 +17,8 @@ from radhar_cli.config.sequence import SequenceConfig, SequenceStep
 from radhar_cli.config.stream import LEAD_S, TRANSITION, TURN, ZoneConfig, label_of_pause
 from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
 from radhar_cli.motion.human.lane import Lane
-from radhar_cli.motion.human.motion import HumanMotion, Movement, place_after
-from radhar_cli.motion.human.part import STANDING, Place
+from radhar_cli.motion.human.motion import HumanMotion, Movement
+from radhar_cli.motion.human.part import STANDING, Place, kind_of_rest, place_after
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.repertoire import AROUND
 from radhar_cli.motion.human.walking import Gait
@@ -97,12 +97,16 @@ def segments_of(
     """
     parts = [part for part, _ in motion.parts]
     segments = [
-        LabelledSegment(-inf, parts[0].begin, label_of_pause(_rest(parts[0].before), classes))
+        LabelledSegment(
+            -inf, parts[0].begin, label_of_pause(kind_of_rest(parts[0].before), classes)
+        )
     ]
     ends = [part.begin for part in parts[1:]] + [inf]
     for part, label, end in zip(parts, motion.labels, ends, strict=False):
         segments.append(LabelledSegment(part.begin, part.end, label))
-        segments.append(LabelledSegment(part.end, end, label_of_pause(_rest(part.after), classes)))
+        segments.append(
+            LabelledSegment(part.end, end, label_of_pause(kind_of_rest(part.after), classes))
+        )
     joined = list[LabelledSegment]()
     for segment in segments:
         start, stop = max(0.0, segment.start), min(seconds, segment.stop)
@@ -113,11 +117,6 @@ def segments_of(
         else:
             joined.append(LabelledSegment(start, stop, segment.label))
     return joined
-
-
-def _rest(state: str) -> str:
-    """State of rest without how one lies: "lying prone" is lying."""
-    return state.partition(" ")[0]
 
 
 def zone_of(person: Person) -> ZoneConfig:

@@ -15,7 +15,16 @@ from radhar_cli.motion.human.gesturing import Clap, Drink, Wave, Write
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.lying import Lying
-from radhar_cli.motion.human.part import LYING, SEATED, STANDING, Part, Phase, Place
+from radhar_cli.motion.human.part import (
+    LYING,
+    SEATED,
+    STANDING,
+    Part,
+    Phase,
+    Place,
+    kind_of_rest,
+    place_after,
+)
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted
 from radhar_cli.motion.human.pose import Pose, feet
@@ -128,7 +137,7 @@ class HumanMotion:
         """Names of what is under way, and from when on; first the state before any movement."""
         parts = [part for part, _ in self.parts]
         ends = [part.begin for part in parts[1:]] + [inf]
-        state = parts[0].before.partition(" ")[0]  # "lying prone" is lying
+        state = kind_of_rest(parts[0].before)
         return (
             Phase(-inf, state if state in (STANDING, SEATED, LYING) else parts[0].phases[0].name),
             *(
@@ -225,14 +234,4 @@ def _join_overlapping(before: tuple[Part, Place], part: Part) -> tuple[tuple[Par
             return (replace(last, planted=(*last.planted, part)), place), part
     raise ValueError(
         "only a walk and a movement on planted feet overlap, by less than the first lasts"
-    )
-
-
-def place_after(place: Place, end: Place) -> Place:
-    """Place in the room where a part ends that begins at `place`; `end` is seen from there."""
-    c, s = cos(place.turn), sin(place.turn)
-    return Place(
-        place.ahead + c * end.ahead - s * end.left,
-        place.left + s * end.ahead + c * end.left,
-        place.turn + end.turn,
     )

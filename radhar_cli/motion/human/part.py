@@ -1,5 +1,6 @@
 """What an activity is made of: parts, each from one state of rest to the next."""
 
+from math import cos, sin
 from typing import NamedTuple, Protocol
 
 from radhar_cli.motion.human.idle import IdleState
@@ -23,6 +24,31 @@ class Place(NamedTuple):
     ahead: float = 0.0
     left: float = 0.0
     turn: float = 0.0
+
+
+HERE = Place()
+
+
+def place_after(place: Place, end: Place) -> Place:
+    """Place in the room where a part ends that begins at `place`; `end` is seen from there."""
+    c, s = cos(place.turn), sin(place.turn)
+    return Place(
+        place.ahead + c * end.ahead - s * end.left,
+        place.left + s * end.ahead + c * end.left,
+        place.turn + end.turn,
+    )
+
+
+def origin_seen_from(place: Place) -> Place:
+    """Place of the point from which `place` is seen, as it is seen from there."""
+    c, s = cos(place.turn), sin(place.turn)
+    x, y = -place.ahead, -place.left
+    return Place(c * x + s * y, c * y - s * x, -place.turn)
+
+
+def kind_of_rest(state: str) -> str:
+    """Kind of a state of rest, without how somebody lies: "lying prone" is lying."""
+    return state.partition(" ")[0]
 
 
 class Part(Protocol):

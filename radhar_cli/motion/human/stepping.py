@@ -13,7 +13,7 @@ import numpy as np
 from radhar_cli.motion.human.arms import arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.part import HERE, STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import scale_steps
@@ -22,7 +22,6 @@ from radhar_cli.motion.human.two_link import two_link
 from radhar_cli.numerics.arrays import Float
 
 RIGHT, LEFT = 0, 1
-HERE = Place()
 # Start and length, in shares of the duration, of the trunk's going ahead and coming back.
 UPSET = (0.05, 0.35), (0.45, 0.55)
 

@@ -37,7 +37,15 @@ from radhar_cli.motion.human.lying import (
     wrapped,
 )
 from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
-from radhar_cli.motion.human.part import STANDING, Part, Phase, Place
+from radhar_cli.motion.human.part import (
+    HERE,
+    STANDING,
+    Part,
+    Phase,
+    Place,
+    origin_seen_from,
+    place_after,
+)
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import scale_steps
 from radhar_cli.motion.human.pose import Axes, Pose, feet
@@ -52,7 +60,6 @@ SIT, STAND = 0.42, 0.40  # share of the duration in which people sit down on the
 OVERLAP = 0.05  # share of it that both have in common with lying down and sitting up
 ROLL = 2.0  # time in which who lies on the floor turns onto the belly before getting up, s
 LONG_AGO = -1e6  # when what a body has done before began, s
-HERE = Place()
 IN_FRONT = 0.4  # how far arms go in front of the body on the way, over their direction
 SHARES = ("trunk", "pelvis", "legs", "arms", "legs_over", "arms_over")
 
@@ -228,20 +235,6 @@ def _course(
     return Course.of(initial | dict.fromkeys(GESTURES, 0.0), steps)
 
 
-def _seen_from(place: Place, axes: Place) -> Place:
-    """A place, seen from others' axes."""
-    c, s = cos(axes.turn), sin(axes.turn)
-    x, y = place.ahead - axes.ahead, place.left - axes.left
-    return Place(c * x + s * y, c * y - s * x, place.turn - axes.turn)
-
-
-def _composed(axes: Place, place: Place) -> Place:
-    """Place that is seen from some axes, in the room of these."""
-    c, s = cos(axes.turn), sin(axes.turn)
-    x, y = c * place.ahead - s * place.left, s * place.ahead + c * place.left
-    return Place(axes.ahead + x, axes.left + y, axes.turn + place.turn)
-
-
 def bed_seat(rest: Rest) -> Seat:
     """How people sit on the edge of the bed in which they lie."""
     return Seat(height=rest.surface + FLESH)
@@ -297,8 +290,8 @@ class LeaveBed:
         course = _course(held, steps, lying=True, rolls=(roll, roll))
         course = replace(course, initial=course.initial + _column(course, "x", change["x"]))
         phases = (Phase(begin, "getting up"), Phase(end, "standing"))
-        origin = _seen_from(HERE, _place_in_bed(person, self.rest, self.side))
-        states, place = (self.rest.state, STANDING), _composed(origin, standing.place)
+        origin = origin_seen_from(_place_in_bed(person, self.rest, self.side))
+        states, place = (self.rest.state, STANDING), place_after(origin, standing.place)
         return Transfer(
             *(person, standing, held, self.rest, course, begin, end, phases),
             *(*states, place, origin),
@@ -375,7 +368,7 @@ class Settle:
         course = _course(held, scale_steps(steps, begin, self.duration))
         phases = (Phase(begin, "turning over"), Phase(end, "lying"))
         hip = _pose_at(person, fallen, begin).hip[:2, 0]
-        place = _composed(origin, Place(float(hip[0]), float(hip[1]), held.trunk[0] - pi))
+        place = place_after(origin, Place(float(hip[0]), float(hip[1]), held.trunk[0] - pi))
         states = fallen.after, rest.state
         return Transfer(
             person, fallen, held, rest, course, begin, end, phases, *states, place, origin
@@ -385,7 +378,7 @@ class Settle:
         """The fall's part, long over; how the body is held; and the fall's axes from its end."""
         fallen = self.fall.part(person, LONG_AGO, LONG_AGO)
         held = _held(_pose_at(person, fallen, 0.0))
-        return fallen, held, _seen_from(HERE, fallen.place)
+        return fallen, held, origin_seen_from(fallen.place)
 
 
 class Faller(Protocol):
@@ -437,7 +430,7 @@ class Fallen:
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """Pose of the body at times t [M] (s)."""
-        place = _seen_from(HERE, self.fall.place)
+        place = origin_seen_from(self.fall.place)
         pose = self.fall.pose(t, idle)
         return pose.at(np.array(place.ahead), np.array(place.left), np.array(place.turn))
 
@@ -468,9 +461,9 @@ class RiseFromRest:
         course = _course(held, steps, lying=True, rolls=(first, first))
         hip = prone.hip[:2, 0]
         lain = Place(float(hip[0]), float(hip[1]), held.trunk[0] - pi)
-        origin = _seen_from(HERE, lain)
+        origin = origin_seen_from(lain)
         phases = (Phase(begin, "getting up"), *rising.phases[-1:])
-        states, place = (self.rest.state, rising.after), _composed(origin, rising.place)
+        states, place = (self.rest.state, rising.after), place_after(origin, rising.place)
         return Transfer(
             *(person, rising, held, self.rest, course, begin, rising.end, phases),
             *(*states, place, origin),

@@ -14,6 +14,7 @@ Other statures have the same gait at equal Froude numbers v^2/(g H) (Alexander, 
 (1989) 1199). Starts, stops, and jogging on the spot are guesses.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isinf, pi, radians, sqrt
@@ -51,20 +52,19 @@ FIRST_S, LAST_S = 0.55, 0.6  # duration of the first push, and of coming to rest
 FIRST_FOOT = 0.4  # when the first foot leaves the floor, share of the first push
 LAST_LIFT = 0.03  # height added to the swing of that foot, over the stature
 LAST_SWING = 0.8  # when the other foot comes to stand, share of the time of coming to rest
+# Exponents (p, q) of `_bump`: how a swinging leg is folded in its middle, shortened after it has
+# left the floor, and bent before it lands.
+FOLD, RELEASE, BEND = (3, 4), (3, 8), (8, 3)
 FOLDED = 3 / 7  # when a swinging leg is shortest, share of the swing
-FOLD_SCALE = 7**7 / (3**3 * 4**4)
-BENT_SCALE = 11**11 / (8**8 * 3**3)
 LAG = radians(14)  # angle by which a folded leg is behind, at most
 CAUGHT = 0.45  # when the last fall is caught, share of the time of coming to rest
 LEVELLINGS = 4  # steps of the search for the height of the hip
 LONGEST = 0.993  # of a swinging leg, likewise
 RELEASED = 0.965  # length of a leg that has left the floor, over thigh and shank, unless it is more
-RELEASE_SCALE = 11**11 / (8**8 * 3**3)
 CLEARANCE = 0.012  # of the ankle above where it stands before it lands, over the stature
 FLAT = 0.14  # when a foot that lands has come to lie flat, share of the time on the floor
-SETTLING = (
-    0.4  # speed of the leg, seen from the hip, when the foot lands, over that when it is flat
-)
+# Speed of the leg, seen from the hip, when the foot lands, over that when it is flat.
+SETTLING = 0.4
 YAW, ROLL = radians(6), radians(4)  # of the pelvis, amplitude
 SIDEWARDS = 0.006  # of the hip to the foot on the floor, over the stature
 NOD, TWIST = radians(2), radians(11)  # of the trunk ahead and to the sides, amplitude
@@ -378,10 +378,8 @@ class Running:
             )
             if last:
                 stance = stance._replace(heel=inf, off=inf)
-                other, later = (
-                    1 - contact.foot,
-                    contact.down + LAST_SWING * (contact.off - contact.down),
-                )
+                other = 1 - contact.foot
+                later = contact.down + LAST_SWING * (contact.off - contact.down)
                 beside = stance._replace(down=later, y=SIDES[other, 0] * width)
                 stances[other].append(beside)
             stances[contact.foot].append(stance)
@@ -457,7 +455,9 @@ class Running:
         folded = 2 * self.person.leg * np.cos(knee / 2)
         air = down - settling[:, 0] - off
         release = self._release(curve, off, air)
-        fold = np.maximum(curve(off + FOLDED * air)[0] - folded - release * _released(FOLDED), 0.0)
+        fold = np.maximum(
+            curve(off + FOLDED * air)[0] - folded - release * _bump(FOLDED, RELEASE), 0.0
+        )
         free = np.maximum(start[:, 0, 0], end[:, 0, 0]) + 1e-3 * self.person.leg
         return curve, np.array([release, fold, self._bend(foot, curve, off, air, fold), free])
 
@@ -466,7 +466,7 @@ class Running:
         share = np.linspace(0.06, 0.3, 9)[:, None]
         length = curve((off + share * air).ravel())[0].reshape(9, -1)
         longest = np.maximum(RELEASED * 2 * self.person.leg, curve(off)[0] + 0.02 * self.person.leg)
-        release: Float = ((length - longest) / _released(share)).max(axis=0, initial=0.0)
+        release: Float = ((length - longest) / _bump(share, RELEASE)).max(axis=0, initial=0.0)
         return release
 
     def _bend(self, foot: int, curve: Quintics, off: Float, air: Float, fold: Float) -> Float:
@@ -484,10 +484,10 @@ class Running:
         length, direction = (row.reshape(26, -1) for row in curve(t)[:2])
         hip, offsets, _ = self._pelvis(t)
         joint = (hip[2] + offsets[2, foot]).reshape(26, -1)
-        cos = np.cos(direction - self._lag * _folded(share))
-        height = joint - (length - fold * _folded(share)) * cos
-        clear = self.person.ankle + CLEARANCE * self.person.stature * _bent(share)
-        bend: Float = ((clear - height) / (cos * _bent(share))).max(axis=0, initial=0.0)
+        cos = np.cos(direction - self._lag * _bump(share, FOLD))
+        height = joint - (length - fold * _bump(share, FOLD)) * cos
+        clear = self.person.ankle + CLEARANCE * self.person.stature * _bump(share, BEND)
+        bend: Float = ((clear - height) / (cos * _bump(share, BEND))).max(axis=0, initial=0.0)
         return bend
 
     @property
@@ -497,9 +497,7 @@ class Running:
 
     def _leg_and_derivatives(self, foot: int, number: Index, t: Float) -> Float:
         """Planted leg (`_leg`) with its velocity and acceleration [M, 3, 3]."""
-        earlier, now, later = (self._leg(foot, number, t + nudge) for nudge in (-NUDGE, 0.0, NUDGE))
-        speed, change = (later - earlier) / (2 * NUDGE), (later - 2 * now + earlier) / NUDGE**2
-        return np.stack([now, speed, change]).transpose(2, 0, 1)
+        return _knots_of(lambda nudge: self._leg(foot, number, t + nudge))
 
     def _leg(self, foot: int, number: Index, t: Float) -> Float:
         """Length (m), direction (rad) and place to the left (m) of a planted leg [3, M]."""
@@ -514,13 +512,9 @@ class Running:
         foot = 1 - self._contacts[-1].foot
         table = self._stance_table[foot]
         number, off, down = np.array([table.shape[1] - 2]), table[2, -2:-1], table[0, -1:]
-        earlier, now, later = (
-            self._planted(foot, number, off + nudge) for nudge in (-NUDGE, 0.0, NUDGE)
-        )
-        speed, change = (later - earlier) / (2 * NUDGE), (later - 2 * now + earlier) / NUDGE**2
+        start = _knots_of(lambda nudge: self._planted(foot, number, off + nudge))
         rest = np.zeros((1, 3, 3))
         rest[0, 0] = self._planted(foot, number + 1, down)[:, 0]
-        start = np.stack([now, speed, change]).transpose(2, 0, 1)
         return foot, Quintics(np.concatenate([off, down]), np.concatenate([start, rest]))
 
     def _ankles(self, t: Float, joints: Float) -> Float:
@@ -539,10 +533,10 @@ class Running:
                 share = (now - table[2, number]) / air[number]
                 length, direction, y = curve(now)
                 release, fold, bend, free = shorter[:, number]
-                length = length - release * _released(share) - fold * _folded(share)
-                length = length - bend * _bent(share)
+                length = length - release * _bump(share, RELEASE) - fold * _bump(share, FOLD)
+                length = length - bend * _bump(share, BEND)
                 length = _at_most(length, free, LONGEST * 2 * self.person.leg)
-                direction = direction - self._lag * _folded(share)
+                direction = direction - self._lag * _bump(share, FOLD)
                 joint = joints[:, foot, swinging]
                 ankles[:, foot, swinging] = np.array(
                     [
@@ -557,7 +551,7 @@ class Running:
             swinging = (t > off) & (t < down)
             ankles[:, foot, swinging] = curve(t[swinging])
             lift = LAST_LIFT * self.person.stature
-            ankles[2, foot, swinging] += lift * _folded((t[swinging] - off) / (down - off))
+            ankles[2, foot, swinging] += lift * _bump((t[swinging] - off) / (down - off), FOLD)
         return ankles
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
@@ -598,25 +592,19 @@ def _rolled(body: Physique, beta: Float) -> tuple[Float, Float]:
     return body.toes * (1 - cos) + body.ankle * sin, body.toes * sin + body.ankle * cos
 
 
-def _folded(share: Float) -> Float:
-    """How far a swinging leg is folded, 0 to 1, by the share of its swing [...]."""
-    share = share.clip(0.0, 1.0)
-    folded: Float = FOLD_SCALE * share**3 * (1 - share) ** 4
-    return folded
-
-
-def _released(share: Float | float) -> Float:
-    """How far a leg is folded that has left the floor, 0 to 1, by the share of its swing [...]."""
+def _bump(share: Float | float, exponents: tuple[int, int]) -> Float:
+    """Curve s^p (1 - s)^q over its maximum, 0 to 1, of the share s of a swing [...]."""
+    p, q = exponents
     share = np.clip(share, 0.0, 1.0)
-    released: Float = RELEASE_SCALE * share**3 * (1 - share) ** 8
-    return released
+    bump: Float = (p + q) ** (p + q) / (p**p * q**q) * share**p * (1 - share) ** q
+    return bump
 
 
-def _bent(share: Float) -> Float:
-    """How far a leg is bent that is about to land, 0 to 1, by the share of its swing [...]."""
-    share = share.clip(0.0, 1.0)
-    bent: Float = BENT_SCALE * share**8 * (1 - share) ** 3
-    return bent
+def _knots_of(curve: Callable[[float], Float]) -> Float:
+    """Value, velocity and acceleration [M, 3, C] at 0 s of a curve [C, M] over time (s)."""
+    earlier, now, later = (curve(nudge) for nudge in (-NUDGE, 0.0, NUDGE))
+    speed, change = (later - earlier) / (2 * NUDGE), (later - 2 * now + earlier) / NUDGE**2
+    return np.stack([now, speed, change]).transpose(2, 0, 1)
 
 
 def _at_most(length: Float, free: Float, longest: float) -> Float:

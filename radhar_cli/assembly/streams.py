@@ -15,7 +15,7 @@ from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.assembly.people import idle_of_stream, movement_of
 from radhar_cli.config.sequence import SequenceConfig, SequenceStep
 from radhar_cli.config.stream import LEAD_S, TRANSITION, TURN, ZoneConfig, label_of_pause
-from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
+from radhar_cli.motion.human.idle import NO_SWAY, Idle
 from radhar_cli.motion.human.lane import Lane
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import STANDING, Place, kind_of_rest, place_after
@@ -233,7 +233,7 @@ class _Planner:
             heading=place.turn,
             begin=time,
             horizon=self.person.seconds,
-            idle=Idle(self.physique, Sway(Waves(), Waves()), Breath()),
+            idle=Idle(self.physique, NO_SWAY),
             pauses=(0.0, *(step.pause for step in steps[1:])),
         )
         outside = self._outside(motion, time, end)

@@ -17,7 +17,7 @@ from math import ceil, inf, sqrt
 import numpy as np
 
 from radhar_cli.motion.human.arms import UPWARDS, arm_directions_to_hands
-from radhar_cli.motion.human.idle import Breath, Idle, IdleState, Sway, Waves
+from radhar_cli.motion.human.idle import IdleState, motionless
 from radhar_cli.motion.human.kneeling import CRAWLING
 from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk_integral
 from radhar_cli.motion.human.part import ON_FOURS, Phase, Place
@@ -115,9 +115,8 @@ class Crawling:
     @cached_property
     def rest(self) -> Pose:
         """Pose at rest, of a body that holds its breath [1]."""
-        still = Idle(self.person, Sway(Waves(), Waves()), Breath(chest=0.0, heart=0.0))
         course, t = Course.of(CRAWLING.posture(self.person), ()), np.zeros(1)
-        return Planted(self.person, course, 0.0, 0.0, ()).pose(t, still(t))
+        return Planted(self.person, course, 0.0, 0.0, ()).pose(t, motionless(self.person)(t))
 
     @cached_property
     def course(self) -> Course:

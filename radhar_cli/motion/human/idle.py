@@ -102,6 +102,9 @@ class Breath:
         return d
 
 
+NO_SWAY, NO_BREATH = Sway(Waves(), Waves()), Breath(chest=0.0, heart=0.0)
+
+
 class Fidget(NamedTuple):
     """A small movement at rest: a channel goes to `target` within `length_s` from `start_s` on.
 
@@ -225,3 +228,8 @@ class Idle:
     def __call__(self, t: Float) -> IdleState:
         """State of the body at times t [M] (s)."""
         return IdleState(self, t)
+
+
+def motionless(person: Physique) -> Idle:
+    """Movements of a body that neither sways nor breathes: none."""
+    return Idle(person, NO_SWAY, NO_BREATH)

@@ -16,7 +16,7 @@ import numpy as np
 
 from radhar_cli.motion.human.falling import PRONE
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
-from radhar_cli.motion.human.idle import Breath, Idle, IdleState, Sway, Waves
+from radhar_cli.motion.human.idle import IdleState, motionless
 from radhar_cli.motion.human.lying import (
     ARM,
     CLENCH,
@@ -212,9 +212,8 @@ def _angles(frame: Axes) -> tuple[float, float, float]:
 
 def _pose_at(person: Physique, part: Part, t: float) -> Pose:
     """Pose of a part at one time (s), of a body that holds its breath."""
-    still = Idle(person, Sway(Waves(), Waves()), Breath(chest=0.0, heart=0.0))
     when = np.array([t])
-    return part.pose(when, still(when))
+    return part.pose(when, motionless(person)(when))
 
 
 def _held(pose: Pose) -> Held:

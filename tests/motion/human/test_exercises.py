@@ -7,7 +7,7 @@ import pytest
 
 from radhar_cli.activities.activity import EXERCISES as NAMES
 from radhar_cli.motion.human.exercises import EXERCISES
-from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
+from radhar_cli.motion.human.idle import Idle, motionless
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.repertoire import Repertoire
@@ -15,7 +15,6 @@ from radhar_cli.motion.human.walking import Gait
 from radhar_cli.motion.skeleton import JOINTS
 
 G = 9.81
-SWAYLESS, STILL = Sway(Waves(), Waves()), Breath(chest=0.0, heart=0.0)
 FEET = [JOINTS.index(name) for name in ("right_ankle", "left_ankle")]
 HIP = JOINTS.index("hip")
 PLANTED = ["squatting", "raising_arms", "raising_arms_ahead", "raising_right_arm"]
@@ -24,7 +23,7 @@ PLANTED = ["squatting", "raising_arms", "raising_arms_ahead", "raising_right_arm
 def moving(name: str, stature: float = 1.75, **more: object) -> HumanMotion:
     person = Physique(stature)
     one = replace(EXERCISES[name], duration=6.0, **more)  # type: ignore[arg-type]
-    return HumanMotion(person, (one,), (3.0, 0.0), 0.0, 0.0, 9.0, Idle(person, SWAYLESS, STILL))
+    return HumanMotion(person, (one,), (3.0, 0.0), 0.0, 0.0, 9.0, motionless(person))
 
 
 def joint(motion: HumanMotion, name: str, t: np.ndarray) -> np.ndarray:

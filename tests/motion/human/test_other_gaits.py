@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
+from radhar_cli.motion.human.idle import motionless
 from radhar_cli.motion.human.lane import Lane
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.other_gaits import (
@@ -32,7 +32,7 @@ TORSO, HEAD, HIP = (JOINTS.index(name) for name in ("torso", "head", "hip"))
 
 def walking(gait: Gait, stature: float = 1.75, seconds: float = inf) -> HumanMotion:
     person = Physique(stature)
-    idle = Idle(person, Sway(Waves(), Waves()), Breath(chest=0.0, heart=0.0))
+    idle = motionless(person)
     walk = Walk(gait, seconds, from_rest=seconds < inf)
     return HumanMotion(person, (walk,), (0.0, 0.0), 0.0, 0.4, 8.0, idle)
 

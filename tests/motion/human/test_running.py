@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.motion.human.idle import Breath, Fidget, Idle, Sway, Waves, spread_phases
+from radhar_cli.motion.human.idle import Fidget, Idle, Sway, Waves, motionless, spread_phases
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.quintics import Quintics
@@ -17,7 +17,6 @@ from radhar_cli.motion.human.standing import Stand
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 
 G, DT = 9.81, 1e-3
-SWAYLESS, STILL = Sway(Waves(), Waves()), Breath(chest=0.0, heart=0.0)
 FEET = [JOINTS.index(name) for name in ("right_ankle", "left_ankle")]
 HIP = JOINTS.index("hip")
 SPEEDS = [2.5, 3.0, 4.0, 5.0, 6.0]
@@ -29,7 +28,7 @@ def running(
     person = Physique(stature)
     gait = RunningGait(speed, **more)  # type: ignore[arg-type]
     run = GoRunning(gait, seconds, from_rest=seconds < inf)
-    return HumanMotion(person, (run,), (0.0, 0.0), 0.0, 0.5, 6.0, Idle(person, SWAYLESS, STILL))
+    return HumanMotion(person, (run,), (0.0, 0.0), 0.0, 0.5, 6.0, motionless(person))
 
 
 def velocity(p: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ How long it takes differs with age and strength (Alexander et al., J. Rehabil. R
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import acos, atan2, cos, inf, pi, sin
 from typing import NamedTuple, Protocol
 
@@ -77,40 +78,45 @@ class CalmedIdle(IdleState):
 
     share: Float
 
+    @cached_property
+    def _uncalmed(self) -> IdleState:
+        """All of the body's own movements."""
+        return IdleState(self.idle, self.t)
+
     @property
     def lean(self) -> Float:
         """Lean ahead [M], rad."""
-        return self.share * IdleState(self.idle, self.t).lean
+        return self.share * self._uncalmed.lean
 
     @property
     def roll(self) -> Float:
         """Lean to the left [M], rad."""
-        return self.share * IdleState(self.idle, self.t).roll
+        return self.share * self._uncalmed.roll
 
     @property
     def legs_roll(self) -> Float:
         """Lean of the legs to the left [M], rad."""
-        return self.share * IdleState(self.idle, self.t).legs_roll
+        return self.share * self._uncalmed.legs_roll
 
     @property
     def pitch(self) -> Float:
         """Pitch of the trunk ahead [M], rad."""
-        return self.share * IdleState(self.idle, self.t).pitch
+        return self.share * self._uncalmed.pitch
 
     @property
     def yaw(self) -> Float:
         """Turn of the trunk to the left [M], rad."""
-        return self.share * super().yaw
+        return self.share * self._uncalmed.yaw
 
     @property
     def shoulders(self) -> Float:
         """Further flexion of the shoulders [2, M], rad."""
-        return self.share * super().shoulders
+        return self.share * self._uncalmed.shoulders
 
     @property
     def elbows(self) -> Float:
         """Further flexion of the elbows [2, M], rad."""
-        return self.share * super().elbows
+        return self.share * self._uncalmed.elbows
 
 
 @dataclass(frozen=True)
@@ -261,11 +267,19 @@ class GoToBed:
             Phase(lies, "lying down"),
             Phase(begin + self.duration, "lying"),
         )
-        place = _place_in_bed(person, self.rest, self.side)
-        end = begin + self.duration
-        course = _course(held, steps)
-        states = STANDING, self.rest.state
-        return Transfer(person, seated, held, self.rest, course, begin, end, phases, *states, place)
+        return Transfer(
+            person=person,
+            other=seated,
+            held=held,
+            rest=self.rest,
+            course=_course(held, steps),
+            begin=begin,
+            end=begin + self.duration,
+            phases=phases,
+            before=STANDING,
+            after=self.rest.state,
+            place=_place_in_bed(person, self.rest, self.side),
+        )
 
 
 @dataclass(frozen=True)
@@ -290,10 +304,19 @@ class LeaveBed:
         course = replace(course, initial=course.initial + _column(course, "x", change["x"]))
         phases = (Phase(begin, "getting up"), Phase(end, "standing"))
         origin = origin_seen_from(_place_in_bed(person, self.rest, self.side))
-        states, place = (self.rest.state, STANDING), place_after(origin, standing.place)
         return Transfer(
-            *(person, standing, held, self.rest, course, begin, end, phases),
-            *(*states, place, origin),
+            person=person,
+            other=standing,
+            held=held,
+            rest=self.rest,
+            course=course,
+            begin=begin,
+            end=end,
+            phases=phases,
+            before=self.rest.state,
+            after=STANDING,
+            place=place_after(origin, standing.place),
+            origin=origin,
         )
 
 
@@ -367,10 +390,20 @@ class Settle:
         course = _course(held, scale_steps(steps, begin, self.duration))
         phases = (Phase(begin, "turning over"), Phase(end, "lying"))
         hip = _pose_at(person, fallen, begin).hip[:2, 0]
-        place = place_after(origin, Place(float(hip[0]), float(hip[1]), held.trunk[0] - pi))
-        states = fallen.after, rest.state
+        under_hip = Place(float(hip[0]), float(hip[1]), held.trunk[0] - pi)
         return Transfer(
-            person, fallen, held, rest, course, begin, end, phases, *states, place, origin
+            person=person,
+            other=fallen,
+            held=held,
+            rest=rest,
+            course=course,
+            begin=begin,
+            end=end,
+            phases=phases,
+            before=fallen.after,
+            after=rest.state,
+            place=place_after(origin, under_hip),
+            origin=origin,
         )
 
     def _fallen(self, person: Physique) -> tuple[Part, Held, Place]:
@@ -462,8 +495,17 @@ class RiseFromRest:
         lain = Place(float(hip[0]), float(hip[1]), held.trunk[0] - pi)
         origin = origin_seen_from(lain)
         phases = (Phase(begin, "getting up"), *rising.phases[-1:])
-        states, place = (self.rest.state, rising.after), place_after(origin, rising.place)
         return Transfer(
-            *(person, rising, held, self.rest, course, begin, rising.end, phases),
-            *(*states, place, origin),
+            person=person,
+            other=rising,
+            held=held,
+            rest=self.rest,
+            course=course,
+            begin=begin,
+            end=rising.end,
+            phases=phases,
+            before=self.rest.state,
+            after=rising.after,
+            place=place_after(origin, rising.place),
+            origin=origin,
         )

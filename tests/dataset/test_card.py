@@ -193,3 +193,14 @@ def test_every_class_has_a_meaning_if_only_its_name() -> None:
     assert (
         meaning_of_class(activity_named("left_side_lunge")) == "lunges to the left, again and again"
     )
+
+
+def test_every_movement_has_a_meaning_of_the_posture_in_which_it_is_made() -> None:
+    from radhar_cli.activities.activity import GESTURES_BY_STATE, MOVEMENTS, activity_named
+    from radhar_cli.activities.meanings import meaning_of_class
+
+    meanings = {name: meaning_of_class(activity_named(name)) for name in MOVEMENTS}
+    assert not [name for name, meaning in meanings.items() if meaning == name.replace("_", " ")]
+    verbs = {"standing": "stands and ", "seated": "sits and "}
+    for state, names in GESTURES_BY_STATE.items():
+        assert all(meanings[name].startswith(verbs[state]) for name in names)

@@ -366,13 +366,26 @@ def _draw_config(config: Config, activity: Activity, draw: Draw, subject: int | 
     files = config.files_of(activity)
     if files is not None and files.file is None:
         fixed = _with_file(fixed, activity, draw, subject)
-    sequence = config.classes.get(activity.slug)
-    if isinstance(sequence, SequenceConfig) and sequence.is_drawn and sequence.order is None:
+    sequence = _sequence_to_draw(config, activity)
+    if sequence is not None:
         key = f"classes.{activity.slug}"
         fixed = changed(fixed, {f"{key}.order": sequence.draw_order(f"{key}.sequence", draw)})
-    if activity.slug == STREAM and STREAM not in config.classes:
+    if _draws_stream(config, activity):
         fixed = _with_stream(fixed, config, draw)
     return _with_possible_overlap(fixed, activity)
+
+
+def _sequence_to_draw(config: Config, activity: Activity) -> SequenceConfig | None:
+    """Sequence of an activity whose movements are still to be drawn."""
+    sequence = config.classes.get(activity.slug)
+    if isinstance(sequence, SequenceConfig) and sequence.is_drawn and sequence.order is None:
+        return sequence
+    return None
+
+
+def _draws_stream(config: Config, activity: Activity) -> bool:
+    """Whether the bouts of a stream are still to be drawn."""
+    return activity.slug == STREAM and STREAM not in config.classes
 
 
 def _with_stream(fixed: Config, config: Config, draw: Draw) -> Config:
@@ -589,9 +602,7 @@ def redrawn(config: Config, activity: Activity) -> Redrawn:
     drawn_again += personal if config.split.subjects is None else []
     files = config.files_of(activity)
     listed = files is not None and files.file is None and len(files.files) > 1
-    sequence = config.classes.get(activity.slug)
-    listed |= isinstance(sequence, SequenceConfig) and sequence.is_drawn and not sequence.order
-    listed |= activity.slug == STREAM and STREAM not in config.classes
+    listed |= _sequence_to_draw(config, activity) is not None or _draws_stream(config, activity)
     if listed or isinstance(config.motion.falling.direction, Falls):
         return Redrawn.CHOICES
     if not drawn_again:
@@ -613,7 +624,5 @@ def _fix_numbers(config: Config, activity: Activity, draw: Draw) -> Config:
     if config.motion.model == "human":
         for key, usual in USUAL_SPEEDS.items():
             if for_activity(at(config, key), activity) == usual:
-                values[key] = froude_scale(height) * (
-                    values[key] if key in values else at(fixed, key)
-                )
+                values[key] = froude_scale(height) * values.get(key, at(fixed, key))
     return changed(fixed, values)

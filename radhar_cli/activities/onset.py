@@ -35,7 +35,7 @@ class Onsets(NamedTuple):
     earliest: float
     latest: float
 
-    def at(self, share: float) -> float:
+    def at_share(self, share: float) -> float:
         """Onset at a share, 0 to 1, of the way from the earliest to the latest."""
         return self.earliest + share * (self.latest - self.earliest)
 

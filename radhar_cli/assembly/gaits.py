@@ -43,22 +43,22 @@ def other_gaits(person: Person, gait: Gait, place: int) -> dict[str, Gait]:
             1.0 if painful < 0.5 else -1.0,
             radians(limp.lean_deg),
         )
-        for slowed in (_slowed(gait, limp.pace), _slowed(gait, aids.stick_pace))
+        for slowed in (_slow_down(gait, limp.pace), _slow_down(gait, aids.stick_pace))
     )
     return {
         "limping": limper,
         "walking_with_stick": walking_with_stick(with_stick, bool(hand < OTHER_HAND)),
         "walking_with_walker": walking_with_walker(
-            _slowed(gait, aids.walker_pace), aids.rollator > 0.5, radians(aids.walker_pitch_deg)
+            _slow_down(gait, aids.walker_pace), aids.rollator > 0.5, radians(aids.walker_pitch_deg)
         ),
         "carrying": carrying(
-            _slowed(gait, load.pace), (int(bag < 0.5) if load.bag > 0.5 else None)
+            _slow_down(gait, load.pace), (int(bag < 0.5) if load.bag > 0.5 else None)
         ),
     }
 
 
-def _slowed(gait: Gait, pace: float) -> Gait:
-    """Gait of so many times the speed, as long as that is a walk at all."""
+def _slow_down(gait: Gait, pace: float) -> Gait:
+    """Multiply the speed of a gait by `pace`; the slowest walk is one of SLOWEST."""
     return replace(gait, speed=max(pace * gait.speed, min(SLOWEST, gait.speed)))
 
 

@@ -25,7 +25,7 @@ def motion_of(person: Person) -> Motion:
 
         return file_motion(person)
     if person.activity.is_nobody and person.motion.model != "human":
-        return _who_would_stand_there(person)
+        return _stand_still(person)
     if person.activity.slug == STREAM:
         from radhar_cli.assembly.streams import stream_motion
 
@@ -57,8 +57,8 @@ def body_of(person: Person, motion: Motion) -> Body:
     )
 
 
-def _who_would_stand_there(person: Person) -> Motion:
-    """Somebody who stands still where a person of an empty scene would begin."""
+def _stand_still(person: Person) -> Motion:
+    """Motion of a person who stands still: noise and gates of an empty scene refer to it."""
     from radhar_cli.motion.human.idle import Idle
     from radhar_cli.motion.human.motion import HumanMotion
     from radhar_cli.motion.human.physique import Physique

@@ -38,7 +38,7 @@ class Bout(NamedTuple):
 
 def onset_at(person: Person, limits: Onsets) -> float:
     """Onset (s) within some limits that `timing.onset` chooses."""
-    return limits.at(person.timing.onset)
+    return limits.at_share(person.timing.onset)
 
 
 def bout_onset(person: Person) -> float:

@@ -185,7 +185,7 @@ class _Planner:
         best: PlannedBout | None = None
         for shortening in range(SHORTENINGS):
             if shortening:
-                movements = [_shortened(movement) for movement in movements]
+                movements = [_shorten(movement) for movement in movements]
             for turn, side in self._options(steps[0], turns):
                 bout = self._try(tuple(movements), steps, situation, turn, side)
                 if best is None or bout.outside < best.outside:
@@ -283,8 +283,8 @@ def _with_gait(movement: Movement, gait: Gait) -> Movement:
     return walk
 
 
-def _shortened(movement: Movement) -> Movement:
-    """Movement that goes on for a shorter time: a run, say, that would leave the zone."""
+def _shorten(movement: Movement) -> Movement:
+    """Shorten a movement that may end earlier, such as a run that would leave the zone."""
     duration = getattr(movement, "duration", None)
     if not isinstance(duration, float) or not LEAST_BOUT_S < SHORTER * duration < inf:
         return movement

@@ -35,7 +35,7 @@ def overlap(begin: float, end: float, seconds: float) -> float:
 def test_every_onset_leaves_enough_of_the_movement(
     duration: float, seconds: float, visible: float, share: float
 ) -> None:
-    onset = limits_of_movement(duration, seconds, visible).at(share)
+    onset = limits_of_movement(duration, seconds, visible).at_share(share)
     seen = overlap(onset, onset + duration, seconds)
     assert seen >= visible * min(duration, seconds) - TINY
 
@@ -51,7 +51,7 @@ def test_no_other_onset_does(duration: float, seconds: float, visible: float) ->
 def test_a_bout_lies_about_the_recording_and_a_movement_anywhere_in_it() -> None:
     assert limits_of_movement(6.0, 6.0, 0.75) == Onsets(-1.5, 1.5)
     assert limits_of_movement(2.0, 6.0, 0.75) == Onsets(-0.5, 4.5)
-    assert limits_of_movement(6.0, 6.0, 1.0).at(0.3) == 0.0
+    assert limits_of_movement(6.0, 6.0, 1.0).at_share(0.3) == 0.0
 
 
 @given(st.floats(0.3, 3.0), RECORDINGS, SHARES, SHARES)
@@ -62,10 +62,10 @@ def test_of_two_parts_both_are_seen(
     needed = seconds_seen(duration, seconds, visible)
     rise, stop = (law(duration, seconds, visible) for law in (limits_of_rise, limits_of_stop))
     if needed + walked <= seconds:
-        risen = rise.at(share)
+        risen = rise.at_share(share)
         assert overlap(risen - duration, risen, seconds) >= needed - TINY
         assert seconds - risen >= walked - TINY
-        falls = stop.at(share)
+        falls = stop.at_share(share)
         assert overlap(falls, falls + duration, seconds) >= needed - TINY
         assert falls >= walked - TINY
     else:  # both miss by the same
@@ -87,7 +87,7 @@ def test_of_a_sequence_every_part_is_seen_or_a_share_of_the_whole(
         Stretch(float(end - duration), float(end), lasts)
         for end, (duration, lasts) in zip(ends, durations, strict=True)
     ]
-    onset = limits_of_sequence(parts, seconds, visible).at(share)
+    onset = limits_of_sequence(parts, seconds, visible).at_share(share)
     whole = overlap(onset, onset + float(ends[-1]), seconds)
     assert whole >= visible * min(float(ends[-1]), seconds) - 1e-6
     short = [(a, b) for a, b, lasts, _ in parts if not lasts]

@@ -52,7 +52,7 @@ class Aid:
     tilts: bool = False  # whether it tilts about its tip, as a stick does
 
 
-def limited_to_reach(body: Physique, hands: Float) -> Float:
+def limit_to_reach(body: Physique, hands: Float) -> Float:
     """Places of hands relative to their shoulders [3, 2, M] (m), drawn near where no arm reaches.
 
     The distance d becomes -ln(exp(-k d) + exp(-k d_max))/k.

@@ -159,8 +159,8 @@ def lying_limbs(hands: float, trunk_roll: Float, pelvis_roll: Float) -> Limbs:
     }
 
 
-def blended(first: Limbs, second: Limbs, legs: Float, arms: Float) -> Limbs:
-    """Limbs a share [..., M] of the way from some to others, of the legs and of the arms."""
+def blend_limbs(first: Limbs, second: Limbs, legs: Float, arms: Float) -> Limbs:
+    """Limbs a share [..., M] of the way from `first` to `second`, of the legs and of the arms."""
     return {
         name: first[name] + (legs if name in LEG else arms) * (second[name] - first[name])
         for name in first
@@ -351,7 +351,7 @@ def with_gestures(limbs: Limbs, gestures: Float, pelvis_roll: Float) -> Limbs:
     across = np.array([[1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])[..., None]  # to the left, to the right
     vectors = dict(zip((*LEG, *ARM), (*DRAWN, *REACH), strict=True))
     targets = {name: across * np.array(v)[:, None, None] for name, v in vectors.items()}
-    return blended(limbs, targets, knees, arms)
+    return blend_limbs(limbs, targets, knees, arms)
 
 
 @dataclass(frozen=True)
@@ -366,7 +366,7 @@ class TurnOver:
     @property
     def after(self) -> Rest:
         """How the person lies at the end."""
-        return replace(self.rest, roll=wrapped(self.rest.roll + self.by))
+        return replace(self.rest, roll=wrap_angle(self.rest.roll + self.by))
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Lying:
         course = Course.of(
@@ -390,6 +390,6 @@ class TurnOver:
         ]
 
 
-def wrapped(angle: float) -> float:
-    """Angle between -pi and pi, rad."""
+def wrap_angle(angle: float) -> float:
+    """Return the same angle between -pi and pi, rad."""
     return float(np.arctan2(sin(angle), cos(angle)))

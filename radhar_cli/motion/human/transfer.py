@@ -27,7 +27,7 @@ from radhar_cli.motion.human.lying import (
     Limbs,
     Rest,
     Surface,
-    blended,
+    blend_limbs,
     body_pose,
     hip_height,
     in_room,
@@ -35,7 +35,7 @@ from radhar_cli.motion.human.lying import (
     rolled_axes,
     trunk_lift,
     with_gestures,
-    wrapped,
+    wrap_angle,
 )
 from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
 from radhar_cli.motion.human.part import (
@@ -152,7 +152,7 @@ class Transfer:
         other = self.other.pose(t, CalmedIdle(idle.idle, t, share=1 - of["trunk"]))
         roll, pelvis_roll = of["trunk_roll"], of["pelvis_roll"]
         trunk, pelvis = self._axes(of, idle, other)
-        limbs = blended(
+        limbs = blend_limbs(
             _limbs_of(body, other, rolled_axes(*(np.full(1, a) for a in self.held.pelvis))),
             lying_limbs(self.rest.hands, roll, pelvis_roll),
             of["legs"],
@@ -181,7 +181,7 @@ class Transfer:
         roll = of["trunk_roll"] + of["trunk"] * FIDGET * idle.yaw
         turned = rolled_axes(yaw, pitch + of["trunk"] * (lift - pi / 2 - pitch), roll)
         pelvis = rolled_axes(
-            pelvis_yaw + of["pelvis"] * wrapped(yaw - pelvis_yaw),
+            pelvis_yaw + of["pelvis"] * wrap_angle(yaw - pelvis_yaw),
             pelvis_pitch + of["pelvis"] * (-pi / 2 - pelvis_pitch),
             of["pelvis_roll"],
         )
@@ -340,7 +340,7 @@ def _place_in_bed(person: Physique, rest: Rest, side: float) -> Place:
 
 def _lying_down(person: Physique, rest: Rest, side: float) -> list[Step]:
     """Steps from sitting on the edge of a bed to lying in it, in units of the duration."""
-    roll = wrapped(rest.roll - side * LEFT_SIDE)
+    roll = wrap_angle(rest.roll - side * LEFT_SIDE)
     if abs(roll) > pi - 1e-6:  # over the back
         roll = -side * pi
     first = 0.52 - 0.16 * max(abs(roll) / (pi / 2) - 1, 0.0)  # who rolls farther begins earlier
@@ -370,7 +370,7 @@ class Settle:
         """How the person lies at the end."""
         _, held, _ = self._fallen(person)
         roll = held.trunk[2] + self.by
-        return Rest(wrapped(pi / 2 * round(roll / (pi / 2))), 0.0, self.hands)
+        return Rest(wrap_angle(pi / 2 * round(roll / (pi / 2))), 0.0, self.hands)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Transfer:
         fallen, held, origin = self._fallen(person)
@@ -480,7 +480,7 @@ class RiseFromRest:
         rising = belly.part(person, begin + self.turning)
         prone = _pose_at(person, rising, begin)
         held = _held(prone)
-        roll = wrapped(self.rest.roll - held.trunk[2])
+        roll = wrap_angle(self.rest.roll - held.trunk[2])
         first = held.trunk[2] + roll
         steps = [
             *(Step(share, -1.0, 0.5, 0.5) for share in ("trunk", "pelvis")),

@@ -17,7 +17,7 @@ from radhar_cli.motion.human.aids import (
     Load,
     elbow_directions,
     hands_of_aid,
-    limited_to_reach,
+    limit_to_reach,
 )
 from radhar_cli.motion.human.arms import arm_directions_to_hands, hanging_hands
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
@@ -665,7 +665,7 @@ class Walking:
         else:
             frame = np.array([trunk.ahead, trunk.left, trunk.up])
             aim = hands_of_aid(held, body, place, hip_ahead)
-            targets = limited_to_reach(body, np.einsum("axm,xim->aim", frame, aim - shoulders))
+            targets = limit_to_reach(body, np.einsum("axm,xim->aim", frame, aim - shoulders))
         sides = list(held.sides)
         elbows = elbow_directions(held)[:, sides, None]
         hands[:, sides] += g * (targets[:, sides] - hands[:, sides])

@@ -31,7 +31,7 @@ from radhar_cli.radar.propagation import amplitude, leg
 from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.receiver.noise_law import Silent, Snr
-from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.scene import Person, Scene, nominal_scene
 
 # SNR of a cell with all of the echo, below which images are those of noise: people fill many cells,
 # so that each has less, although scatterers that meet in one may add in amplitude. In images of
@@ -41,6 +41,7 @@ LEAST_CELL_SNR_DB = -6.0
 HANN = 2 / 3  # (sum g)^2/sum g^2 of Hann's window, per sample
 TINY = 1e-300  # below which a factor counts as 0
 HIDES_DB = 3.0  # what a wall or beam takes at least to be named
+CHEST_M = 1.0  # height of the chest of somebody of usual stature, roughly, m
 
 
 def noise_alone(config: Config) -> list[str]:
@@ -153,10 +154,15 @@ def _window_pulses(scene: Scene, w: Waveform) -> int:
     return min(frames.length, board.loops)
 
 
+def chest_point(person: Person) -> Float:
+    """Point at CHEST_M above the place of a person [3, 1, 1], m, for estimates of their echo."""
+    return np.array([*person.place, CHEST_M])[:, None, None]
+
+
 def _losses_db(scene: Scene) -> dict[str, float]:
     """What wall and beam take of a scene's echo, both ways, dB."""
     antennas, person = antennas_of(scene), scene.people[0]
-    p = np.array([*person.place, 1.0])[:, None, None]
+    p = chest_point(person)
     left = antennas.field(p)
     pattern = 1.0 if left is None else float(left.max())
     return {"the wall": _wall_loss_db(scene), "the beam": -20 * log10(max(pattern, TINY))}
@@ -165,7 +171,7 @@ def _losses_db(scene: Scene) -> dict[str, float]:
 def _thermal_snr_db(scene: Scene) -> float:
     """SNR of a raw sample of 1 m^2 where people begin, in free space and thermal noise, dB."""
     antennas, person, w = antennas_of(scene), scene.people[0], waveform_of(scene)
-    p = np.array([*person.place, 1.0])[:, None, None]
+    p = chest_point(person)
     legs = leg(p, antennas.tx), leg(p, antennas.rx)
     echo = amplitude(*legs, np.ones((1, 1)), antennas.gain, w.wavelength)
     sigma = noise_law_of(scene.config).sigma(0.0, w.sample_rate)

@@ -3,8 +3,6 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import numpy as np
-
 from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import ways_of
 from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings, word_warnings
@@ -19,7 +17,7 @@ from radhar_cli.scene_checks.drawing import CROWDED, describe_crowd, find_crowde
 from radhar_cli.scene_checks.flags import Flags, describe_flag, describe_flags
 from radhar_cli.scene_checks.unused_keys import unused_keys
 from radhar_cli.scene_checks.validity import check_scene
-from radhar_cli.scene_checks.visibility import noise_alone
+from radhar_cli.scene_checks.visibility import chest_point, noise_alone
 
 MAX_COMMANDS = 20  # of a .cfg, in a warning
 
@@ -89,7 +87,7 @@ def _folding_warnings(config: Config) -> list[str]:
     for activity in config.chosen_activities:
         scene = nominal_scene(config, activity)
         antennas, person = antennas_of(scene), scene.people[0]
-        p = np.array([*person.place, 1.0])[:, None, None]
+        p = chest_point(person)
         for tx, rx in ways_of(scene):
             both_legs = leg(tx.image(p), antennas.tx) + leg(rx.image(p), antennas.rx)
             farthest = max(farthest, float(both_legs[0, 0]) / 2)

@@ -17,7 +17,7 @@ from radhar_cli.audit.duplicates import (
 )
 from radhar_cli.audit.evidence import Evidence, EvidencePart
 from radhar_cli.audit.held_out import ClassShare, Effort, class_share, holm
-from radhar_cli.audit.opening import AuditedSet, open_audited
+from radhar_cli.audit.opening import AuditedSet, open_for_audit
 from radhar_cli.audit.pictures import (
     PictureFeatures,
     band_contrast,
@@ -143,7 +143,7 @@ def audit(
         FolderError: a file cannot be used.
     """
     effort = effort or Effort()
-    data = open_audited(path, map_name, table)
+    data = open_for_audit(path, map_name, table)
     rows = draw_rows(data, max_samples, effort.seed)
     warnings = list[str]()
     if rows.size < len(data):

@@ -1,7 +1,6 @@
 """Whatever `train` and `eval` read, or a table, as what an audit looks at."""
 
 from collections.abc import Sequence
-from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -28,7 +27,7 @@ from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.folder import FilePixels, map_of_folder, open_tree
 from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet
-from radhar_cli.learning.images.opening import is_h5, is_tree, open_images
+from radhar_cli.learning.images.opening import is_tree, open_images
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.numerics.arrays import Index, Levels
 
@@ -78,7 +77,7 @@ class AuditedSet:
         return pixels.files[row] if isinstance(pixels, FilePixels) else None
 
 
-def open_audited(path: Path, map_name: str | None, table: Path | None) -> AuditedSet:
+def open_for_audit(path: Path, map_name: str | None, table: Path | None) -> AuditedSet:
     """Open a data set, a tree of images, or a table, for an audit.
 
     Args:
@@ -97,7 +96,9 @@ def open_audited(path: Path, map_name: str | None, table: Path | None) -> Audite
         audited = _open_tree(path, map_name)
     else:
         audited = _open_h5(path, map_name)
-    return audited if table is None else _with_table(audited, read_table(table))
+    if table is None:
+        return audited
+    return _with_columns(audited, match_table(read_table(table), audited.names))
 
 
 def _open_table(path: Path) -> AuditedSet:
@@ -140,12 +141,19 @@ def _open_tree(path: Path, map_name: str | None) -> AuditedSet:
 
 def _open_h5(path: Path, map_name: str | None) -> AuditedSet:
     """Open a dataset.h5, of scenes or of recordings."""
-    with ExitStack() as stack:
-        images = open_images(path, map_name, "gray")
-        assert is_h5(path)
-        data = stack.enter_context(open_dataset(path))
-        samples, config = images.samples, data.config
-        audited = AuditedSet(
+    images = open_images(path, map_name, "gray")
+    samples = images.samples
+    person, scene = (
+        None if column is None else column.tolist() for column in (samples.person, samples.scene)
+    )
+    recording: list[str] | None = None
+    with open_dataset(path) as data:
+        config = data.config
+        if isinstance(config, MeasuredConfig):
+            recording, scene = recording_of_window(config), None
+            if all(part.person is None for part in config.recordings.parts):
+                person = None
+        return AuditedSet(
             where=path,
             classes=images.classes,
             label=samples.label,
@@ -153,26 +161,18 @@ def _open_h5(path: Path, map_name: str | None) -> AuditedSet:
             evidence=tuple(_numbers_of(data)),
             images=images,
             split=samples.split,
-            scene=None if samples.scene is None else samples.scene.tolist(),
+            person=person,
+            recording=recording,
+            scene=scene,
             on_cue=tuple(_sentences_on_cue(data, samples.label)),
             has_clouds=has_clouds(data),
             is_simulated=isinstance(config, Config),
             is_decibel=isinstance(config, Config) and config.image.kind == "decibel",
         )
-        person = None if samples.person is None else samples.person.tolist()
-        if isinstance(config, MeasuredConfig):
-            recording = recording_of_window(config)
-            named = any(part.person is not None for part in config.recordings.parts)
-            return replace(
-                audited,
-                recording=recording,
-                person=person if named else None,
-                scene=None,
-            )
-        return replace(audited, person=person)
 
 
 def _numbers_of(data: Dataset) -> list[Evidence]:
+    """Evidence of the numbers that come with recordings, or of those drawn for scenes."""
     if isinstance(data.config, MeasuredConfig):
         return window_evidence(data.config)
     return scene_evidence(data)
@@ -186,19 +186,11 @@ def _sentences_on_cue(data: Dataset, label: Index) -> list[str]:
     return [f"{key} is on cue: {', '.join(classes)}" for key, classes in by_key.items()]
 
 
-def _with_table(audited: AuditedSet, table: RecordingTable) -> AuditedSet:
-    """Data set with the columns of a table, matched by file or sample."""
-    names = list(audited.names)
-    if audited.images is not None and audited.file_of(0) is None:
-        names = [str(name) for name in audited.images.samples.name]
-    return _with_columns(audited, match_table(table, names))
-
-
 def _with_columns(audited: AuditedSet, table: RecordingTable) -> AuditedSet:
     """Data set with the columns of a table that has a row for each sample.
 
     Raises:
-        FolderError: a split is none.
+        FolderError: the column `split` names a split that does not exist.
     """
     split = audited.split
     if split is None and SPLIT in table.columns:

@@ -31,6 +31,16 @@ class SampleTable:
     def __len__(self) -> int:
         return len(self.label)
 
+    @property
+    def recordings(self) -> Objects:
+        """Name of the recording of each row [N]; a row is its own where none is named."""
+        return self.name if self.recording is None else self.recording
+
+    @property
+    def first_columns(self) -> Index:
+        """First column of each row in its recording [N]; 0 of those that are no windows."""
+        return np.zeros(len(self), np.intp) if self.first_column is None else self.first_column
+
     def take(self, rows: Index) -> "SampleTable":
         """Take rows in the order given; a row may come twice."""
         columns: dict[str, Any] = {}

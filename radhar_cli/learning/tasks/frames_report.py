@@ -78,17 +78,16 @@ def join_windows(predictions: Predictions) -> list[LabelledStream]:
     """Put the windows of each stream together."""
     samples, rows = predictions.images.samples, predictions.rows
     assert samples.frame_labels is not None
-    recordings = samples.name if samples.recording is None else samples.recording
-    first = np.zeros(len(samples), int) if samples.first_column is None else samples.first_column
+    recordings, first = samples.recordings[rows], samples.first_columns[rows]
     width, classes = predictions.values.shape[1:]
     weight = np.minimum(np.arange(width) + 1, width - np.arange(width))[:, None]
     streams = []
-    for name in dict.fromkeys(recordings[rows].tolist()):
-        places = np.flatnonzero(recordings[rows] == name).tolist()
-        length = int(max(first[rows[place]] for place in places)) + width
+    for name in dict.fromkeys(recordings.tolist()):
+        places = np.flatnonzero(recordings == name).tolist()
+        length = int(first[places].max()) + width
         sums, true = np.zeros((length, classes)), np.full(length, -1)
         for place in places:
-            columns = slice(int(first[rows[place]]), int(first[rows[place]]) + width)
+            columns = slice(first[place], first[place] + width)
             sums[columns] += weight * predictions.values[place]
             true[columns] = samples.frame_labels[rows[place]]
         streams.append(LabelledStream(str(name), places, true, sums.argmax(1)))
@@ -145,9 +144,9 @@ def _draw_streams(
 def _pixels_of(predictions: Predictions, stream: LabelledStream) -> Levels:
     """Pixels [H, W, 3], or [H, W] of gray ones, of a stream, from its windows."""
     images, rows = predictions.images, predictions.rows
-    first = images.samples.first_column
+    first = images.samples.first_columns
     pixels = np.zeros((images.size[0], stream.true.size, images.channels), np.uint8)
     for place in stream.rows:
-        start = 0 if first is None else int(first[rows[place]])
+        start = first[rows[place]]
         pixels[:, start : start + images.size[1]] = images.pixels.read(int(rows[place]))
     return pixels[..., 0] if images.channels == 1 else pixels

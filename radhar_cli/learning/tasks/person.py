@@ -58,7 +58,7 @@ class Persons(Classifier):
 
     def check_training(self, images: ImageSet, path: str) -> None:
         """Make sure that there are two persons, with two recordings each."""
-        recording = recordings_of(images.samples)
+        recording = images.samples.recordings
         for number, name in enumerate(images.classes):
             if len(set(recording[images.samples.label == number])) < 2:
                 raise FolderError(
@@ -82,9 +82,11 @@ class Persons(Classifier):
     def summarise(self, numbers: Mapping[str, Any]) -> str:
         """Rank-1 accuracy with its interval beside chance, and the higher ranks, in words."""
         low, high = numbers["accuracy_95"]
-        higher = ", ".join(
-            f"rank-{rank} {100 * share:.1f} %" for rank, share in numbers["rank"].items()
-        ).removeprefix(f"rank-1 {100 * numbers['accuracy']:.1f} %")
+        higher = "".join(
+            f", rank-{rank} {100 * share:.1f} %"
+            for rank, share in numbers["rank"].items()
+            if rank != "1"
+        )
         return (
             f"rank-1 {100 * numbers['accuracy']:.2f} % ({100 * low:.2f} to {100 * high:.2f} %) of "
             f"{numbers['images']}, chance {100 * numbers['chance']:.1f} %{higher}"
@@ -133,11 +135,6 @@ def _persons_of(images: ImageSet) -> list[str]:
     return names
 
 
-def recordings_of(samples: SampleTable) -> Objects:
-    """Name of the recording of each row [N]; a row is its own where none is named."""
-    return samples.name if samples.recording is None else samples.recording
-
-
 def why_not_split_by_recording(samples: SampleTable, count: int) -> str | None:
     """Why persons cannot be learned with the split of a set, in words; None if they can.
 
@@ -151,7 +148,7 @@ def why_not_split_by_recording(samples: SampleTable, count: int) -> str | None:
     if trained.size < count:
         return f"learns from {trained.size} of {count} persons"
     parts = dict[str, int]()
-    for recording, part in zip(recordings_of(samples), samples.split.tolist(), strict=True):
+    for recording, part in zip(samples.recordings, samples.split.tolist(), strict=True):
         if parts.setdefault(recording, part) != part:
             return f"has windows of {recording} in two parts"
     return None
@@ -170,7 +167,7 @@ def split_by_recording(samples: SampleTable, activity: Objects) -> Levels:
     assert samples.split is not None
     shares = np.bincount(samples.split, minlength=3) / len(samples)
     split = np.full(len(samples), TRAIN, np.uint8)
-    recording = recordings_of(samples)
+    recording = samples.recordings
     for person in np.unique(samples.label):
         rows = np.flatnonzero(samples.label == person)
         places = dict(_places(recording[rows], activity[rows]))

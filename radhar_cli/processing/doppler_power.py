@@ -96,10 +96,10 @@ def compute_fsst_power(
         frames: windows.
         threshold: magnitude over the largest of the map below which coefficients are dropped.
         limits_mps: lowest and highest speed that is shown, m/s; None for all.
-        single: whether powers are float32.
+        single: whether coefficients are complex64.
     """
-    stft = Stft(signal, frames)
-    return _within_limits(stft, partial(fsst.power_blocks, stft, threshold, single), limits_mps)
+    stft = Stft(signal, frames, single=single)
+    return _within_limits(stft, partial(fsst.power_blocks, stft, threshold), limits_mps)
 
 
 def _within_limits(

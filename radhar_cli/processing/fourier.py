@@ -1,6 +1,6 @@
 """Fourier transforms of windowed frames, by FFTW where pyfftw is installed, by scipy otherwise."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache, partial
 from threading import Lock, get_ident
 from typing import Any
@@ -22,11 +22,26 @@ def fill_in_spectra(spectra: Float | Complex, frames: Complex, window: Float) ->
         frames: Frames x [frames, L].
         window: Window g [L].
     """
-    size, length, middle = spectra.shape[1], window.size, window.size // 2
+    for rows, spectrum in spectra_by_parts(frames, window, spectra.shape[1]):
+        if np.iscomplexobj(spectra):
+            spectra[rows] = spectrum
+        else:
+            np.abs(spectrum, out=spectra[rows])
+
+
+def spectra_by_parts(frames: Complex, window: Float, size: int) -> Iterator[tuple[slice, Complex]]:
+    """Yield X of a few frames at a time, and which: X may be overwritten, as the next one does.
+
+    Args:
+        frames: Frames x [frames, L].
+        window: Window g [L].
+        size: Number N of frequencies.
+    """
+    length, middle = window.size, window.size // 2
     g, by_fftw = window.astype(frames.real.dtype), installed("pyfftw") is not None
     rows = max(1, COEFFICIENTS // size) if by_fftw else len(frames)
     for start in range(0, len(frames), rows):
-        block, target = frames[start : start + rows], spectra[start : start + rows]
+        block = frames[start : start + rows]
         if by_fftw:
             planned_rows = min(-(-len(block) // 8) * 8, rows)  # for fewer plans
             framed, transform = _planned(planned_rows, size, length, frames.dtype, get_ident())
@@ -38,10 +53,7 @@ def fill_in_spectra(spectra: Float | Complex, frames: Complex, window: Float) ->
         # Sample L//2 comes first: that refers the phase to it.
         np.multiply(block[:, middle:], g[middle:], out=framed[: len(block), : length - middle])
         np.multiply(block[:, :middle], g[:middle], out=framed[: len(block), size - middle :])
-        if np.iscomplexobj(spectra):
-            target[:] = transform()[: len(block)]
-        else:
-            np.abs(transform()[: len(block)], out=target)
+        yield slice(start, start + len(block)), transform()[: len(block)]
 
 
 @lru_cache(maxsize=64)

@@ -2,11 +2,18 @@
 
 from collections.abc import Iterator
 from functools import lru_cache
+from math import sqrt
+from typing import Any
 
 import numpy as np
 
 from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.processing.fourier import COEFFICIENTS, spectra_by_parts
 from radhar_cli.processing.stft import Stft
+
+# Largest shift that has its digits, and integers that hold it, signed and not; 32 bits are quicker.
+_OF_SINGLE: tuple[float, Any, Any] = 2.0**24, np.int32, np.uint32
+_OF_DOUBLE: tuple[float, Any, Any] = 2.0**52, np.int64, np.uint64
 
 
 def synchrosqueeze(v: Complex, slope: Complex, least: float) -> Complex:
@@ -16,46 +23,53 @@ def synchrosqueeze(v: Complex, slope: Complex, least: float) -> Complex:
     sum_k T = L g[L//2] x[l hop + L//2] where nothing is dropped.
 
     Args:
-        v: Transform V [frames, L], which is overwritten.
-        slope: Transform V' with the slope of the window [frames, L].
+        v: Transform V [frames, L], complex64 or complex128, which is overwritten.
+        slope: Transform V' with the slope of the window [frames, L], which is overwritten.
         least: Magnitude below which coefficients are dropped, as are those whose square is 0.
 
     Returns:
         T [frames, L].
     """
-    frames, length = v.shape
-    power = v.real**2
-    power += v.imag**2
+    length = v.shape[1]
+    power = squared_magnitudes(v)
     dropped = power < max(least**2, float(np.finfo(power.dtype).tiny))
     power[dropped] = 1
-    turn = slope.conj()
-    turn *= v
-    k = turn.imag / power  # Im(-V'/V) = Im(V conj V')/|V|^2
+    np.conjugate(slope, out=slope)
+    slope *= v
+    k = slope.imag / power  # Im(-V'/V) = Im(V conj V')/|V|^2
     k *= length / (2 * np.pi)
     k += 0.5
     np.floor(k, out=k)
-    np.clip(k, -(2.0**52), 2.0**52, out=k)  # shifts beyond the digits of a double
-    target = k.astype(np.intp)
-    target += np.arange(length)
-    outside = target.view(np.uintp) >= length  # or less than 0
-    target[outside] %= length
-    target += length * np.arange(frames)[:, None]
+    farthest, integer, unsigned = _OF_SINGLE if v.dtype == np.complex64 else _OF_DOUBLE
+    np.clip(k, -farthest, farthest, out=k)
+    target = k.astype(integer)
+    target += np.arange(length, dtype=integer)
+    outside = np.flatnonzero(target.view(unsigned) >= length)  # or less than 0
+    target.ravel()[outside] %= length
+    target += np.arange(0, v.size, length, dtype=integer)[:, None]
     v[dropped] = 0
     squeezed = np.zeros(v.size, v.dtype)
     np.add.at(squeezed, target.ravel(), v.ravel())
     return squeezed.reshape(v.shape)
 
 
-def power_blocks(stft: Stft, threshold: float, single: bool = False) -> Iterator[Float]:
+def squared_magnitudes(z: Complex) -> Float:
+    """|z|^2 of complex numbers, of any shape."""
+    real: Any = z.real.dtype
+    squares = np.square(z.view(real))
+    power: Float = squares[..., ::2] + squares[..., 1::2]
+    return power
+
+
+def power_blocks(stft: Stft, threshold: float) -> Iterator[Float]:
     """Yield |T|^2, summed over the channels, of blocks of frames [frames, frequency].
 
-    Powers may be float32 (`single`); the coefficients are not, as one within float32's rounding of
-    the border between two bins would move its power to another pixel.
+    Of a transform in single precision powers are float32. One coefficient in 1e5 or fewer then lies
+    within rounding of the border between two bins, and goes to the other one.
 
     Args:
         stft: Transform of a signal of one row.
         threshold: Magnitude over the largest |V| of the map below which coefficients are dropped.
-        single: Whether powers are float32.
     """
     rows, frames = stft.signal.x[:, 0], stft.frames
 
@@ -64,11 +78,23 @@ def power_blocks(stft: Stft, threshold: float, single: bool = False) -> Iterator
         return [stft.transform(x, stft.blocks[number], frames.window) for x in rows]
 
     passes = map(coefficients, range(len(stft.blocks) if threshold else 0))
-    least = threshold * max((float(np.abs(v).max()) for block in passes for v in block), default=0)
+    largest = max((_largest_power(v) for block in passes for v in block), default=0.0)
+    least = threshold * sqrt(largest)
+    middle = stft.size // 2  # to where frequency 0 goes
     for number, block in enumerate(stft.blocks):
         each = coefficients(number)
-        total = np.zeros(each[0].shape, np.float32 if single else float)
+        total = np.zeros(each[0].shape, each[0].real.dtype)
         for x, v in zip(rows, each, strict=True):
-            t = synchrosqueeze(v, stft.transform(x, block, frames.window_slope), least)
-            total += t.real**2 + t.imag**2
-        yield np.fft.fftshift(total, axes=1)
+            slopes = spectra_by_parts(stft.segments(x, block), frames.window_slope, stft.size)
+            for part, slope in slopes:
+                power = squared_magnitudes(synchrosqueeze(v[part], slope, least))
+                total[part, middle:] += power[:, : stft.size - middle]
+                total[part, :middle] += power[:, stft.size - middle :]
+        yield total
+
+
+def _largest_power(v: Complex) -> float:
+    """Largest |V|^2 of a transform [frames, L], a few frames at a time."""
+    count = max(1, COEFFICIENTS // v.shape[1])
+    parts = (v[first : first + count] for first in range(0, len(v), count))
+    return max(float(squared_magnitudes(part).max()) for part in parts)

@@ -85,15 +85,25 @@ class Stft:
             window: Window g, or its slope [L].
             magnitudes: Whether |X| is made.
         """
+        segments = self.segments(row, frames)
+        dtype: Any = segments.real.dtype if magnitudes else segments.dtype
+        spectra = np.empty((len(segments), self.size), dtype)
+        fill_in_spectra(spectra, segments, window)
+        return spectra
+
+    def segments(self, row: Complex, frames: slice) -> Complex:
+        """Segments 2^-exponent x[l hop : l hop + L] of some frames [frames, L], not to be changed.
+
+        Args:
+            row: Samples [M].
+            frames: Consecutive frames.
+        """
         starts, length = self.starts[frames], self.frames.length
         dtype: Any = np.complex64 if self.single else np.complex128
         x = (row[starts[0] : starts[-1] + length] * 2.0**-self.exponent).astype(dtype)
         segments = np.lib.stride_tricks.sliding_window_view(x, length)
         gapless = starts[-1] - starts[0] == (starts.size - 1) * self.frames.hop
-        segments = segments[:: self.frames.hop] if gapless else segments[starts - starts[0]]
-        spectra = np.empty((len(segments), self.size), x.real.dtype if magnitudes else dtype)
-        fill_in_spectra(spectra, segments, window)
-        return spectra
+        return segments[:: self.frames.hop] if gapless else segments[starts - starts[0]]
 
     def power_blocks(self) -> Iterator[Float]:
         """Yield sum |X|^2 over channels and rows, or (sum |X|)^2, of blocks [frames, N].

@@ -42,7 +42,9 @@ def generate(
     dry_run: Annotated[
         bool,
         typer.Option(
-            "--dry-run", help="Print the plan, and an estimate of size and time; write nothing."
+            "--dry-run",
+            help="Print size and time that some samples tell, and where the time goes (at most "
+            "30 s); write nothing.",
         ),
     ] = False,
     shard: Annotated[

@@ -2,6 +2,8 @@
 
 import sys
 from collections import Counter
+from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +16,12 @@ from radhar_cli.processes import interrupts
 if TYPE_CHECKING:
     from radhar_cli.config.data_set import AnyConfig
     from radhar_cli.dataset.build import BuildOutcome
+    from radhar_cli.dataset.estimate import BuildPlan
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.learning.run_folder import Epoch
+
+
+SMALL = 0.5  # share of a stage, %, that has no line of its own in a plan
 
 
 class BarProgress(Closing):
@@ -144,7 +150,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
         jobs: number of processes; None for as many as pay.
     """
     from radhar_cli.config.data_set import MeasuredConfig
-    from radhar_cli.dataset.estimate import DRY_RUN_S, plan_build
+    from radhar_cli.dataset.estimate import CHECK_SHARE, DRY_RUN_S, AtLeast, Estimate, plan_build
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
     from radhar_cli.products.table import plan_images
@@ -168,24 +174,62 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
         checked=build_plan.checked,
         redrawn=build_plan.redrawn,
         warnings=warnings,
-        **vars(cost),
+        **dict.fromkeys(field.name for field in fields(Estimate)) | vars(cost),
     )
-    for product in products:
-        tell(f"stage       {product.name}: {product.does}")
+    shares = {} if isinstance(cost, AtLeast) else cost.shares
+    _tell_stages({product.name: product.does for product in products}, shares)
     tell(samples)
-    short = f", then {DRY_RUN_S:g} s were over" if build_plan.cut_short else ""
+    short = f", then {CHECK_SHARE * DRY_RUN_S:g} s were over" if build_plan.cut_short else ""
     checked = f"{build_plan.checked} of {len(rows)} checked"
     tell(f"scenes      {checked}: {build_plan.redrawn} drawn again{short}")
-    if cost.seconds is None or cost.hdf5_bytes is None or cost.png_bytes is None:
-        tell(f"on disk     not known: no sample was made within {build_plan.waited:.0f} s")
-        tell("time        not known")
-    else:
-        tell(f"on disk     dataset.h5 {_mib(cost.hdf5_bytes)}, png {_mib(cost.png_bytes)}")
-        timed = f", by {counted(cost.probes, 'sample')}" if build_plan.cut_short else ""
-        tell(f"time        about {cost.seconds:.1f} s with --jobs {build_plan.jobs}{timed}")
+    _tell_cost(build_plan)
     for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")
+
+
+def _tell_stages(products: Mapping[str, str], shares: Mapping[str, float]) -> None:
+    """Print the stages of a build, and the share of its processor time that each takes.
+
+    Args:
+        products: what each product of a sample is, by name.
+        shares: share of each stage, %; empty where no sample was timed.
+    """
+    from radhar_cli.dataset.estimate import STAGES
+
+    small = []
+    for stage in shares or products:
+        share, does = shares.get(stage, 0.0), STAGES.get(stage) or products[stage]
+        if shares and share < SMALL:
+            small.append(stage)
+            continue
+        tell(f"stage       {f'{share:3.0f} %  ' if shares else ''}{stage}: {does}")
+    if small:
+        tell(f"stage        <1 %  {', '.join(small)}")
+
+
+def _tell_cost(build_plan: "BuildPlan") -> None:
+    """Print bytes and time of a build, and what the time rests on."""
+    from radhar_cli.dataset.estimate import BUSY, AtLeast
+    from radhar_cli.dataset.workers import cores
+
+    cost, jobs = build_plan.cost, build_plan.jobs
+    low, high = cost.seconds_range
+    if isinstance(cost, AtLeast):
+        tell(f"on disk     not known: no sample was finished within {build_plan.waited:.0f} s")
+        tell(f"time        not known: more than {low:.0f} s with --jobs {jobs}")
+        return
+    tell(f"on disk     dataset.h5 {_mib(cost.hdf5_bytes)}, png {_mib(cost.png_bytes)}")
+    timed = counted(cost.probes, "sample")
+    tell(
+        f"time        about {cost.seconds:.1f} s with --jobs {jobs} ({low:.0f} to {high:.0f}), "
+        f"by {timed}"
+    )
+    if cost.core_share < BUSY and jobs <= cores():
+        tell(
+            f"            the machine is busy: a process had {100 * cost.core_share:.0f} % of a "
+            f"core; with nothing else running about {cost.seconds_alone:.1f} s"
+        )
 
 
 def _mib(count: int) -> str:

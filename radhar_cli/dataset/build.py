@@ -250,7 +250,7 @@ class Build:
         config = self.config
         missing = sum(stop - start for start, stop in gaps)
         self.progress.stage("samples", len(rows), len(rows) - missing)
-        size = batch_size or _batch_size(missing, self.jobs, row_bytes(config))
+        size = batch_size or choose_batch_size(missing, self.jobs, row_bytes(config))
         table = colour_table(config.image.colour_map) if self.png else None
         cuts = [(a, min(a + size, stop)) for start, stop in gaps for a in range(start, stop, size)]
 
@@ -281,8 +281,14 @@ class Build:
         return sound
 
 
-def _batch_size(samples: int, jobs: int, sample_bytes: int) -> int:
-    """Number of samples of a batch, for so many samples and processes."""
+def choose_batch_size(samples: int, jobs: int, sample_bytes: int) -> int:
+    """Choose the number of samples of a batch.
+
+    Args:
+        samples: number of samples to make.
+        jobs: number of processes.
+        sample_bytes: size of a sample.
+    """
     largest = min(max(BATCH, samples // (SHARE * jobs)), MAX_BATCH, BATCH_BYTES // sample_bytes)
     return max(1, min(largest, -(-samples // (4 * jobs))))
 

@@ -27,7 +27,7 @@ from radhar_cli.processing.image import levels
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.products.fallback import EchoAccuracy, Fallback
 from radhar_cli.products.plan import Plan
-from radhar_cli.products.run import run
+from radhar_cli.products.run import Results, run
 from radhar_cli.products.segments import column_times, label_frames
 from radhar_cli.scene import Scene
 
@@ -100,7 +100,20 @@ def synthesise(scene: Scene, plan: Plan, config: Config) -> StoredSample:
     Raises:
         SceneError: an engine misses its tolerance, or a product cannot be stored.
     """
-    recording = run(plan, {"scene": scene})
+    return store(run(plan, {"scene": scene}), scene, config)
+
+
+def store(recording: Results, scene: Scene, config: Config) -> StoredSample:
+    """Collect what a data set stores of a scene's products.
+
+    Args:
+        recording: products of the plan of a data set.
+        scene: the scene.
+        config: config of the data set, as of `synthesise`.
+
+    Raises:
+        SceneError: a product cannot be stored.
+    """
     images: dict[str, MapImage] = {name: recording[f"image:{name}"] for name in scene.config.maps}
     labels: dict[str, Levels] = {}
     if scene.config.output.column_labels:

@@ -5,21 +5,26 @@ import os
 import signal
 import warnings
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
 from contextvars import ContextVar
 from itertools import islice
 from multiprocessing import resource_tracker
+from time import monotonic
 from typing import Any, TypeVar
 
 from radhar_cli.activities.activity import Activity, know_activities, own_activities
 from radhar_cli.errors import MachineError, UnfinishedError
 from radhar_cli.extensions import know_products, own_products
+from radhar_cli.processes import interrupts
+from radhar_cli.processes.time_limit import time_limit
 from radhar_cli.processes.worker_process import end_with, prepare_process
 
 T = TypeVar("T")
 NO_PARENT = 0  # parent of workers on other machines, which end with their scheduler
 LOCAL = "local"
 TASKS_A_CORE = 2
+WAIT_S = 0.25  # for a result, before Ctrl-C is looked for
 # For workers of our own: dask measures itself 100 times a second, a fifth of a worker's time.
 QUIET = {
     "distributed.worker.profile.enabled": False,
@@ -80,6 +85,60 @@ def run_tasks(
             "a worker process was killed (by hand, or out of memory); what was finished is "
             "kept, and the same command resumes"
         ) from None
+
+
+def run_within(
+    function: Callable[..., T],
+    tasks: Iterable[tuple[Any, ...]],
+    jobs: int,
+    seconds: float,
+    receive: Callable[[T], None],
+) -> None:
+    """Run function(*task) for tasks with `jobs` processes on this machine, until the time is over.
+
+    What is under way then is given up. A task is taken from the iterable when a process is free.
+
+    Args:
+        function: function of a module, which other processes can import. With one job it does not
+            call HDF5, as of `time_limit`.
+        tasks: arguments of each call; they can be pickled.
+        jobs: number of processes; one runs the tasks here.
+        seconds: longest time, s.
+        receive: is given every result, in any order.
+
+    Raises:
+        UnfinishedError: a worker was killed.
+    """
+    if jobs == 1:
+        prepare_process()
+        with time_limit(seconds):
+            for task in tasks:
+                receive(function(*task))
+        return
+    from joblib.externals.loky import ProcessPoolExecutor
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
+
+    end, waiting, running = monotonic() + seconds, iter(tasks), set[Future[T]]()
+    below_parent = (os.getpid(), (own_activities(), own_products()), function)
+    pool = ProcessPoolExecutor(jobs)
+    try:
+        while True:
+            with _interrupts_blocked():
+                for task in islice(waiting, jobs - len(running)):
+                    running.add(pool.submit(_run_below_parent, *below_parent, *task))
+            remaining = end - monotonic()
+            if not running or remaining <= 0:
+                return
+            finished, running = wait(running, min(remaining, WAIT_S), FIRST_COMPLETED)
+            interrupts.check()
+            for future in finished:
+                receive(future.result())
+    except TerminatedWorkerError:
+        raise UnfinishedError(
+            "a worker process was killed (by hand, or out of memory); the same command tries again"
+        ) from None
+    finally:
+        pool.shutdown(kill_workers=True)
 
 
 def _run_with_extensions(

@@ -29,7 +29,7 @@ class EngineConfig(Section):
         float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True), _DIRECT, NO_IMPULSE
     ] = -80.0
     """Largest relative L2 error of the noiseless signal after the canceller, measured in every
-    scene."""
+    scene. What is looser than the default runs as it."""
     fallback: Annotated[Literal["refuse", "cube"], _DIRECT, NO_IMPULSE] = "refuse"
     """What to do with a scene in which `direct` misses the tolerance."""
     precision: Annotated[Literal["auto", "double"], _DIRECT] = "auto"

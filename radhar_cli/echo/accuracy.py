@@ -32,7 +32,7 @@ SINGLE_DB = -115.0  # error of the recurrence in float32
 CUBIC_DB = -140.0  # of a cubic phase over 20 pulses, which may err by -120 dB in a few places
 # Settings aim below the tolerance, and are taken if the stated error is below it by SPARE.
 MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 30.0, -220.0
-COARSEST_DB = -80.0  # tolerance above which farther knots save no time (docs/physics/engines.md)
+LOOSEST_DB = -80.0  # the default; what is looser runs as it (docs/physics/engines.md)
 PROBES = 96
 ROUGH = 0.4  # share of the probes that lie where interpolation is likely to err most
 DEVIATIONS = 2.0  # standard errors by which the stated error lies above the estimate
@@ -72,9 +72,14 @@ def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Set
     )
 
 
+def goal(tolerance_db: float) -> float:
+    """Error (dB) that sums are made for: a tolerance (dB), or the default where that is looser."""
+    return min(tolerance_db, LOOSEST_DB)
+
+
 def first_aim(tolerance_db: float) -> float:
     """Error (dB) for which settings are first chosen, below a tolerance (dB)."""
-    return max(min(tolerance_db, COARSEST_DB) - MARGIN_DB, MIN_AIM_DB)
+    return max(goal(tolerance_db) - MARGIN_DB, MIN_AIM_DB)
 
 
 class AccuracyError(ValueError):

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.echo.accuracy import GOLDEN, AccuracyError, Probes
+from radhar_cli.echo.accuracy import GOLDEN, AccuracyError, Probes, goal
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.chebyshev import coefficients
 from radhar_cli.echo.interpolation import lagrange_basis
@@ -81,21 +81,31 @@ def fast_cube(
     so that the sum over the paths is two products of matrices a frame, the larger one with real
     numbers. The number of terms q follows from the spread of x and the tolerance. Paths are asked
     for at NODES instants of a frame, some milliseconds, and are polynomials between them; some
-    chirps are compared with the exact sum. Unless the error is SPARE_DB below the tolerance, frames
-    are made again in double precision, from MORE_NODES instants and then from those of all loops.
+    chirps are compared with the exact sum. Unless the error is SPARE_DB below the tolerance, or
+    the default where that is tighter, frames are made again in double precision, from MORE_NODES
+    instants and then from those of all loops.
 
     Raises:
         AccuracyError: The tolerance is missed all the same.
     """
-    single = tolerance_db >= SINGLE_DB
-    best = inf
-    for count, precise in ((NODES, not single), (MORE_NODES, True), (board.loops, True)):
-        cube, power, roughness = _summed(channels, board, tolerance_db, count, precise)
+    attempts = _attempts(channels, board, goal(tolerance_db))
+    cube, power, error = min(attempts, key=lambda attempt: attempt[2])
+    if error > tolerance_db - SPARE_DB:
+        raise AccuracyError(error + SPARE_DB)
+    return cube, power, error
+
+
+def _attempts(
+    channels: Sequence[PathSource], board: Board, goal_db: float
+) -> Iterator[tuple[Complex, float, float]]:
+    """Samples, P_s and the measured error of ever finer settings, until one will do."""
+    precise = goal_db < SINGLE_DB
+    for count, double in ((NODES, precise), (MORE_NODES, True), (board.loops, True)):
+        cube, power, roughness = _summed(channels, board, goal_db, count, double)
         error = measured_db(cube, channels, board, roughness)
-        if not error > tolerance_db - SPARE_DB:  # NaN of a signal that is no number
-            return cube, power, error
-        best = min(best, error)
-    raise AccuracyError(best + SPARE_DB)
+        yield cube, power, error
+        if not error > goal_db - SPARE_DB:  # NaN of a signal that is no number
+            return
 
 
 def _summed(

@@ -5,7 +5,7 @@ from one another by multiplication, maybe in single precision, as the tolerance 
 docs/physics/engines.md). Paths that do not move are left out where the canceller removes them.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import frexp
@@ -22,6 +22,7 @@ from radhar_cli.echo.accuracy import (
     AccuracyError,
     Settings,
     first_aim,
+    goal,
     measured_db,
     settings,
 )
@@ -85,20 +86,29 @@ class DirectEcho:
         Raises:
             AccuracyError: The tolerance is below what float64 leaves of this signal.
         """
-        aim, best = first_aim(self.tolerance_db), 0.0
+        y, accuracy = min(self._attempts(), key=lambda attempt: attempt[1].error_db)
+        if accuracy.error_db > self.tolerance_db - SPARE_DB:
+            raise AccuracyError(min(accuracy.error_db, 0.0) + SPARE_DB)
+        return y, accuracy
+
+    def _attempts(self) -> Iterator[tuple[Complex, Accuracy]]:
+        """Signals of ever finer settings and their accuracies, until one will do.
+
+        It is within the tolerance or, where that is looser, the default.
+        """
+        goal_db, aim = goal(self.tolerance_db), first_aim(self.tolerance_db)
         chosen, motion = self._settings(aim), self._motion
         while True:
             chosen = chosen._replace(single=chosen.single and self._single_will_do(motion))
             unit = 2.0 ** frexp(motion.largest)[1]
             y = self._sum(chosen, motion, unit)
             error = self._error(y, motion, unit)
-            best = min(best, error)
-            if not error > self.tolerance_db - SPARE_DB:  # NaN of a signal that is no number
-                y *= unit
-                return y, Accuracy(motion.step, chosen.table_oversampling, chosen.single, error)
-            if aim == MIN_AIM_DB:
-                raise AccuracyError(best + SPARE_DB)
-            aim = max(aim - max(REFINE_DB, error - self.tolerance_db), MIN_AIM_DB)
+            y *= unit
+            yield y, Accuracy(motion.step, chosen.table_oversampling, chosen.single, error)
+            # NaN is that of a signal that is no number
+            if not error > goal_db - SPARE_DB or aim == MIN_AIM_DB:
+                return
+            aim = max(aim - max(REFINE_DB, error - goal_db), MIN_AIM_DB)
             chosen = self._settings(aim)._replace(single=False)
             motion = self._resolved(chosen.spacing)
 
@@ -143,7 +153,7 @@ class DirectEcho:
         amplitude = paths.amplitude[:, sampled] * summed[:, None]
         taps = enumerate(self.canceller.taps)
         left = sum(c * unit_phasor(k * turn, np.complex64) for k, c in taps)
-        rounding_db = SINGLE_ROUNDING_DB - (self.tolerance_db - SPARE_DB)
+        rounding_db = SINGLE_ROUNDING_DB - (goal(self.tolerance_db) - SPARE_DB)
         least = 10 ** (rounding_db / 10) * np.sum(amplitude**2)
         return bool(np.sum(np.abs(left * amplitude) ** 2) > least)
 

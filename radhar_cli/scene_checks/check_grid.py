@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.bodies.motion_paths import OfMotion
-from radhar_cli.echo.accuracy import first_aim, settings
+from radhar_cli.echo.accuracy import LOOSEST_DB, first_aim, settings
 from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.echo.interpolation import BEFORE
 from radhar_cli.echo.knots import CHUNK_KNOTS, knots_of, widest_step
@@ -17,7 +17,6 @@ from radhar_cli.radar.waveform import Waveform
 
 GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
-USUAL_DB = -80.0  # tolerance at whose knots a person alone is checked
 GRID_CHUNK = 16384
 
 
@@ -60,7 +59,7 @@ def check_grids(motion: Motion, waveform: Waveform, is_shared: bool) -> Iterator
             whatever the engine, so that the same scenes are drawn.
     """
     step = max(1, int(waveform.prf / max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)))
-    usual = settings(first_aim(USUAL_DB), waveform, motion.highest_frequency)
+    usual = settings(first_aim(LOOSEST_DB), waveform, motion.highest_frequency)
     knots = widest_step(waveform, usual.spacing.per_second)
     is_short = waveform.n_pulses <= CHUNK_KNOTS * knots
     if is_shared and GatedEcho.min_step <= knots <= step and is_short:

@@ -8,7 +8,7 @@ from radhar_cli.assembly.room import ways_of
 from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings, word_warnings
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar
-from radhar_cli.echo.accuracy import COARSEST_DB
+from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.errors import SceneError
 from radhar_cli.processing.map_kind import MAP_KINDS
 from radhar_cli.radar.propagation import leg
@@ -38,13 +38,13 @@ def config_warnings(config: Config) -> list[str]:
 
 
 def _loose_tolerance(config: Config) -> Iterator[str]:
-    """Say that a tolerance looser than the default saves next to no time."""
+    """Say that a tolerance looser than the default has its effect."""
     tolerance_db = config.engine.tolerance_db
     computed = config.engine.kind == "direct" and not isinstance(config.radar, ImpulseRadar)
-    if computed and tolerance_db > COARSEST_DB:
+    if computed and tolerance_db > LOOSEST_DB:
         yield (
-            f"engine.tolerance_db: {tolerance_db:g} saves less than a tenth of a sample's time: "
-            f"the default, {COARSEST_DB:g}, is as cheap"
+            f"engine.tolerance_db: {tolerance_db:g} is looser than the default and runs as "
+            f"{LOOSEST_DB:g}: a larger error would save less than a tenth of a sample's time"
         )
 
 

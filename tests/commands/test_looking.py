@@ -5,6 +5,7 @@ from pathlib import Path
 from shutil import copytree
 
 import h5py
+import numpy as np
 from helpers.command_line import ok, radhar
 from helpers.small import small_config
 
@@ -66,6 +67,26 @@ def test_simulate_says_how_accurate_it_is(tmp_path):
     )
     assert refused.returncode == 2
     assert "engine.tolerance_db = -5" in refused.stderr
+
+
+def test_a_tolerance_looser_than_the_default_is_said_to_run_as_it_once(tmp_path):
+    config, loose = small_config(tmp_path), ("--tolerance", "-40")
+    once = "engine.tolerance_db: -40 is looser than the default and runs as -80"
+    for number, command in enumerate(
+        (
+            ("simulate", config, "-a", "walking", "--no-figures", "--maps", "stft"),
+            ("generate", config, "--jobs", "1"),
+            ("generate", config, "--dry-run"),
+        )
+    ):
+        done = ok(*command, *loose, "-o", tmp_path / str(number))
+        assert done.stderr.count(once) + done.stdout.count(once) == 1, command
+    for scene in ("usual", "looser"):
+        more = loose * (scene == "looser")
+        ok(*("simulate", config, "-a", "walking", "--no-figures", "-o", tmp_path / scene), *more)
+    usual, looser = (h5py.File(tmp_path / scene / "scene.h5") for scene in ("usual", "looser"))
+    with usual, looser:
+        assert np.array_equal(usual["slow_time/raw"], looser["slow_time/raw"])
 
 
 def test_preview_and_inspect(small_set, tmp_path):

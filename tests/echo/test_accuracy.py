@@ -9,8 +9,10 @@ from helpers import reference as ref
 from radhar_cli.activities.activity import ACTIVITIES, Activity
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.data_set import Config
-from radhar_cli.echo.accuracy import AccuracyError, measured_db
+from radhar_cli.config.engine import EngineConfig
+from radhar_cli.echo.accuracy import LOOSEST_DB, AccuracyError, measured_db
 from radhar_cli.echo.direct import DirectEcho
+from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import ScattererSubset
 from radhar_cli.motion.skeleton import JOINTS
@@ -176,12 +178,11 @@ class TestRefusal:
 WALK = ref.Points(lambda t: (2 + 1.5 * t)[None])
 
 
+WALKED = Waveform(77e9, 4e9, 40e-6, 1e6, prf=5000.0, duration=0.5)
+
+
 def walk(tolerance_db: float, **more: float) -> DirectEcho:
-    return DirectEcho(
-        WALK,
-        Waveform(77e9, 4e9, 40e-6, 1e6, **{"prf": 5000.0, "duration": 0.5} | more),
-        tolerance_db,
-    )
+    return DirectEcho(WALK, replace(WALKED, **more), tolerance_db)
 
 
 def test_tighter_tolerances_never_take_less():
@@ -192,6 +193,38 @@ def test_tighter_tolerances_never_take_less():
     )
     assert found[0].single
     assert not found[-1].single
+
+
+@pytest.mark.parametrize("tolerance_db", [-6.0, -40.0, -79.9])
+def test_a_looser_tolerance_runs_as_the_default(tolerance_db):
+    """Of a fast walk, of one slow enough for double precision, and of range bins of a gate."""
+    slow = ref.Points(lambda t: (2 + 0.005 * t)[None])
+    for echo in (
+        walk(LOOSEST_DB),
+        replace(walk(LOOSEST_DB), source=slow),
+        GatedEcho(WALK, WALKED, LOOSEST_DB, bins=slice(5, 15)),
+    ):
+        usual, usual_accuracy = echo.rows()
+        loose, loose_accuracy = replace(echo, tolerance_db=tolerance_db).rows()
+        assert loose.tobytes() == usual.tobytes()
+        assert loose_accuracy == usual_accuracy
+
+
+def test_a_looser_tolerance_is_kept_where_the_default_cannot_be():
+    """10 nm/s: what a first difference leaves is near the rounding of a delay."""
+    creep = ref.Points(lambda t: (2 + 1e-8 * t)[None])
+    with pytest.raises(AccuracyError) as refusal:
+        replace(walk(LOOSEST_DB), source=creep).slow_time()
+    limit_db = refusal.value.limit_db
+    assert LOOSEST_DB < limit_db < -60
+    found = replace(walk(limit_db + 1), source=creep).slow_time()[1]
+    assert found.error_db < limit_db
+    with pytest.raises(AccuracyError):
+        replace(walk(limit_db - 1), source=creep).slow_time()
+
+
+def test_the_default_is_the_loosest():
+    assert EngineConfig().tolerance_db == LOOSEST_DB
 
 
 def test_slow_motion_is_computed_in_double_at_once():

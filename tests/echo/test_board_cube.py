@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.radar import BoardRadar
-from radhar_cli.echo.accuracy import AccuracyError
+from radhar_cli.echo.accuracy import LOOSEST_DB, AccuracyError
 from radhar_cli.echo.board_cube import SPARE_DB, exact_cube, fast_cube, mean_power, measured_db
 from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.arrays import Float
@@ -89,6 +89,15 @@ def test_the_fast_sum_keeps_its_tolerance_or_says_so(tolerance: float, speed: fl
     assert error <= tolerance
     assert measured == pytest.approx(error, abs=10) or measured < -180
     assert fast_power == pytest.approx(power, rel=1e-6)
+
+
+@pytest.mark.parametrize("tolerance", [-6.0, -60.0])
+def test_a_looser_tolerance_runs_as_the_default(tolerance: float) -> None:
+    sources = channels(MARS, P, V, A)
+    usual, _, usual_db = fast_cube(sources, MARS, LOOSEST_DB)
+    loose, _, loose_db = fast_cube(sources, MARS, tolerance)
+    assert loose.tobytes() == usual.tobytes()
+    assert loose_db == usual_db
 
 
 @given(

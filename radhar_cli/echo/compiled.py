@@ -29,7 +29,7 @@ from radhar_cli.numerics.arrays import Complex, Float, Index
 
 TERMS = 4  # coefficients of a cubic
 LANES = 16  # paths per SIMD batch; a remainder would be computed one by one
-MIN_TERMS = 2**19  # terms of a sum; with fewer, numba takes longer to load than some 300 sums save
+MIN_TERMS = 2**17  # terms of a sum; with fewer, numba takes longer to load than 300 sums save
 
 
 def pays(terms: int) -> bool:

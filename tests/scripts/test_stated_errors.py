@@ -37,4 +37,4 @@ def test_random_scenes() -> None:
     assert len(found) > 40
     for one in found:
         assert one.true_db < one.tolerance_db, one
-        assert one.true_db - one.stated.error_db < PROMISED_DB, one
+        assert one.true_db - one.stated_db < PROMISED_DB, one

@@ -1,0 +1,354 @@
+"""What a setting costs a network: accuracy of networks that learned from its images, by seed.
+
+A network learns from images of the setting and is tested on images of the config as it is, of other
+scenes: the price of cheap training data on good data. It is tested on images of the setting, too,
+where training and test are alike. Images of another size or with other axes are another question
+to the network, so that a setting that changes them is tested on its own images alone; so is one
+whose map or classes the config does not have.
+
+Seed i has the same scenes, the same split and the same first weights under every setting, so that
+differences from the default are paired. Data sets, networks and a record for each setting and seed
+lie in a folder, and a study that was stopped goes on from there. Settings that give the same images
+share the network.
+"""
+
+import hashlib
+import json
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from functools import cache, cached_property
+from pathlib import Path
+
+import numpy as np
+
+from radhar_cli.config import load_config
+from radhar_cli.config.data_set import Config
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.files import write_result
+from radhar_cli.dataset.identity import identity, identity_hash
+from radhar_cli.dataset.layout import DATASET, Rows
+from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.errors import RadharError
+from radhar_cli.extensions import know_products, own_products
+from radhar_cli.learning import run_files
+from radhar_cli.learning.evaluation import open_for_model, predict_classes
+from radhar_cli.learning.images.scan import content_hash
+from radhar_cli.learning.machine import choose_device
+from radhar_cli.learning.run_folder import Epoch, load_best
+from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.training import train
+from radhar_cli.learning.training_set import open_training_set
+from radhar_cli.processes.progress import Progress
+from radhar_cli.products.plan import Product
+from radhar_cli.tradeoff.intervals import Interval, mean_interval
+
+FEWEST_SEEDS = 2  # of which an interval can be made
+TEST_BATCH = 64
+Overrides = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """How much the networks of a study learn from; enough for two cores and some minutes."""
+
+    learned: int = 50  # images a class, a fifth of which validate; fewer where the config has fewer
+    tested: int = 25  # images a class, of each test
+    epochs: int = 20
+
+
+@dataclass(frozen=True)
+class SeedAccuracy:
+    """Accuracies of one network, 0 to 1."""
+
+    on_default: float | None  # on images of the config as it is; None where they are not alike
+    on_own: float  # on images of the setting
+    count: int  # images of each test
+
+
+@dataclass(frozen=True)
+class SettingAccuracy:
+    """Accuracies of the networks of one setting, seed by seed."""
+
+    by_seed: tuple[float, ...]  # of what `tested_on` names, 0 to 1
+    own_by_seed: tuple[float, ...]  # on images of the setting
+    tested_on: str  # default: images of the config as it is; own: of the setting
+    count: int  # images of a test
+
+    @cached_property
+    def interval(self) -> Interval:
+        """Mean over the seeds, with its interval."""
+        return mean_interval(self.by_seed)
+
+    @property
+    def mean(self) -> float:
+        """Mean over the seeds."""
+        return self.interval.mean
+
+    @property
+    def low(self) -> float:
+        """Lower end of the interval of 95 % of the mean."""
+        return self.interval.low
+
+    @property
+    def high(self) -> float:
+        """Upper end of the interval of 95 % of the mean."""
+        return self.interval.high
+
+
+class _Quiet:
+    """Progress of a part: silent, but its work can be interrupted."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+
+    def say(self, message: str) -> None:
+        """Nobody reads it."""
+
+    def stage(self, name: str, total: int, done: int, unit: str | None = None) -> None:
+        """Nobody sees it."""
+
+    def advance(self, count: int) -> None:
+        """Give the user's interrupt its turn."""
+        self._progress.advance(0)
+
+    def epoch(self, number: int, epochs: int, steps: int) -> None:
+        """Nobody sees it."""
+
+    def step(self, loss: float, accuracy: float) -> None:
+        """Give the user's interrupt its turn."""
+        self._progress.advance(0)
+
+    def epoch_done(self, row: Epoch, best: bool) -> None:
+        """Nobody sees it."""
+
+
+@contextmanager
+def products_added(products: Iterable[Product]) -> Iterator[None]:
+    """Have the table of products hold further ones, as `add_product` does, within the block."""
+    before = own_products()
+    know_products((*before, *products))
+    try:
+        yield
+    finally:
+        know_products(before)
+
+
+@dataclass(frozen=True)
+class AccuracyStudy:
+    """Networks of the settings of one config, in a folder."""
+
+    path: Path  # config file
+    overrides: Overrides  # of every setting; those of a setting come after them
+    folder: Path
+    progress: Progress
+    sizes: Sizes = Sizes()
+    # in place of those of the table, in images of a setting; not in those of the config as it is
+    products: tuple[Product, ...] = ()
+
+    def config(self, setting: Overrides = ()) -> Config:
+        """Config under a setting.
+
+        Raises:
+            ConfigError: the setting does not fit it.
+        """
+        return load_config(self.path, (*self.overrides, *setting))
+
+    def why_not(self, setting: Overrides) -> str | None:
+        """Why no network of classes can learn from a setting, in a few words; None if one can."""
+        config = self.config(setting)
+        if config.stream is not None:
+            return "streams have no single class"
+        if not config.maps:
+            return "no map is made"
+        if len(Rows.of(config).activities) < 2:
+            return "there is a single class"
+        return None
+
+    def measure_seed(self, setting: Overrides, number: int) -> SeedAccuracy:
+        """Accuracies of the network of a setting and a seed, made here or found in the folder.
+
+        Args:
+            setting: overrides of the setting.
+            number: seed, from 1.
+
+        Raises:
+            RadharError: the data set cannot be made, or the network cannot be trained.
+        """
+        parts = self._parts(setting, number)
+        settings = self._train_config(number)
+        names = {name: part.folder.name for name, part in parts.items()}
+        text = json.dumps([names, settings.model_dump_json()])
+        record = self.folder / "records" / f"{_digest(text)}.json"
+        if record.exists():
+            return SeedAccuracy(**json.loads(record.read_text())["accuracy"])
+        for part in parts.values():
+            part.build(self.progress)
+        run = self._train(parts.pop("learned").folder, settings)
+        shares = {name: measure_share(run, part.folder) for name, part in parts.items()}
+        accuracy = SeedAccuracy(shares.get("default"), shares["own"], len(parts["own"]))
+        about = {"setting": list(setting), "seed": number, "run": run.name, "parts": names}
+        data = json.dumps({**about, "accuracy": asdict(accuracy)}, indent=2) + "\n"
+        write_result(self.folder, record, data.encode())
+        return accuracy
+
+    def _parts(self, setting: Overrides, number: int) -> dict[str, "Part"]:
+        """Data sets of a seed: learned from, and tested on, by name."""
+        parts = {
+            "learned": self._part(setting, number, False, self.products),
+            "own": self._part(setting, number, True, self.products),
+        }
+        if self._is_alike(setting):
+            (name,) = parts["learned"].config.maps
+            parts["default"] = self._part((f"maps=[{name}]",), number, True)
+        return parts
+
+    def _part(
+        self, setting: Overrides, number: int, tested: bool, products: tuple[Product, ...] = ()
+    ) -> "Part":
+        """Data set of a seed under a setting: of the first map, without PNGs."""
+        config = self.config(setting)
+        count = min(self.sizes.learned, max(Rows.of(config).counts))
+        if tested:
+            count = min(self.sizes.tested, count)
+        further = (
+            f"maps=[{config.maps[0]}]",
+            f"samples_per_class={count}",
+            f"seed={config.seed + 2 * (number - 1) + tested}",
+            "output.png=false",
+            "split={train: 0.8, validation: 0.2}",
+        )
+        return Part(self.folder / "data", self.config((*setting, *further)), products)
+
+    def _train_config(self, number: int) -> TrainConfig:
+        epochs = self.sizes.epochs
+        return TrainConfig(seed=number, epochs=epochs, warmup_epochs=min(1.0, epochs / 2))
+
+    def _train(self, data: Path, settings: TrainConfig) -> Path:
+        """Train a network on a data set, or find one that learned from the same images."""
+        images = open_training_set(settings, data)
+        content = content_hash(images, np.arange(len(images)))
+        run = self.folder / "runs" / _digest(f"{content} {settings.model_dump_json()}")
+        if not (run / run_files.METRICS).exists():
+            train(settings, images, run, _Quiet(self.progress))
+        return run
+
+    def _is_alike(self, setting: Overrides) -> bool:
+        """Whether images of a setting have the map, size, classes and axes of the config's.
+
+        Axes are alike where none of their ends differs by more than a pixel.
+        """
+        default, config = self.config(), self.config(setting)
+        name = config.maps[0]
+        if name not in default.maps or config.image.size_px != default.image.size_px:
+            return False
+        if Rows.of(config).activities != Rows.of(default).activities:
+            return False
+        parts = (
+            self._part(setting, 1, True, self.products),
+            self._part((f"maps=[{name}]",), 1, True),
+        )
+        for part in parts:
+            part.build(self.progress)
+        compared, ends = (_axis_ends(part.folder, name) for part in parts)
+        (left, right, low, high), (height, width) = ends, default.image.size_px
+        pixel = np.array([(right - left) / width] * 2 + [(high - low) / height] * 2)
+        return bool((np.abs(np.subtract(compared, ends)) <= np.abs(pixel)).all())
+
+
+class Part:
+    """Data set of a study, in a folder that its identity names."""
+
+    def __init__(self, folder: Path, config: Config, products: tuple[Product, ...]) -> None:
+        self.config = config
+        self._products = products
+        with products_added(products):
+            self.folder = folder / identity_hash(identity(config))[:24]
+
+    def __len__(self) -> int:
+        return len(Rows.of(self.config))
+
+    def build(self, progress: Progress) -> None:
+        """Make the data set, unless it is there."""
+        if not (self.folder / DATASET).exists():
+            with products_added(self._products):
+                build(self.config, self.folder, 1, _Quiet(progress))
+
+
+@cache
+def _axis_ends(folder: Path, name: str) -> tuple[float, ...]:
+    """Ends of the axes of a map: medians over the samples of a data set."""
+    with open_dataset(folder) as data:
+        return tuple(np.median(data.extents(name), axis=0).tolist())
+
+
+def measure_share(run: Path, data: Path) -> float:
+    """Share of the images of a data set whose class the network of a run finds."""
+    metadata, model = load_best(run)
+    device = choose_device("auto")
+    images = open_for_model(metadata, data, None)
+    rows = np.arange(len(images))
+    predictions = predict_classes(model.to(device), metadata, images, rows, device, TEST_BATCH)
+    return float((predictions.predicted == predictions.truth).mean())
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:24]
+
+
+def measure_accuracy(
+    path: Path,
+    overrides: Overrides,
+    setting: Overrides,
+    seeds: int,
+    folder: Path,
+    progress: Progress,
+    deadline: float | None = None,
+) -> SettingAccuracy | None:
+    """Accuracy of networks that learned from a setting; what is in the folder is not made again.
+
+    Args:
+        path: config file.
+        overrides: overrides of every setting, those of the command line.
+        setting: overrides of the setting, which come after them; none for the config as it is.
+        seeds: number of networks.
+        folder: folder of the data sets, networks and records of all settings.
+        progress: receives the networks done, and why there is no accuracy.
+        deadline: time by `time.monotonic` at which no further network is begun; None is never.
+
+    Returns:
+        The accuracies; None where nothing can be learned, or there was no time for two networks.
+
+    Raises:
+        ConfigError: the setting does not fit the config.
+    """
+    study = AccuracyStudy(path, overrides, folder, progress)
+    name = " ".join(setting) or "the config as it is"
+    why = study.why_not(setting)
+    results: list[SeedAccuracy] = []
+    if why is None:
+        progress.stage(f"accuracy, {name}", seeds, 0, "network")
+        for number in range(1, seeds + 1):
+            if deadline is not None and time.monotonic() >= deadline:
+                break
+            try:
+                results.append(study.measure_seed(setting, number))
+            except RadharError as error:
+                why = str(error)
+                break
+            progress.advance(1)
+        if len(results) < min(seeds, FEWEST_SEEDS):
+            why = why or f"the time was over after {len(results)} networks"
+    if why is not None:
+        progress.say(f"no accuracy of {name}: {why}")
+        return None
+    return setting_accuracy(results)
+
+
+def setting_accuracy(results: Sequence[SeedAccuracy]) -> SettingAccuracy:
+    """Put the accuracies of the seeds of a setting together."""
+    own_by_seed = tuple(result.on_own for result in results)
+    by_seed = tuple(result.on_default for result in results if result.on_default is not None)
+    tested_on = "default" if by_seed else "own"
+    return SettingAccuracy(by_seed or own_by_seed, own_by_seed, tested_on, results[0].count)

@@ -58,6 +58,9 @@ class Sizes:
     epochs: int = 20
 
 
+SIZES = Sizes()  # of `measure_accuracy`
+
+
 @dataclass(frozen=True)
 class SeedAccuracy:
     """Accuracies of one network, 0 to 1."""
@@ -323,7 +326,7 @@ def measure_accuracy(
     Raises:
         ConfigError: the setting does not fit the config.
     """
-    study = AccuracyStudy(path, overrides, folder, progress)
+    study = AccuracyStudy(path, overrides, folder, progress, SIZES)
     name = " ".join(setting) or "the config as it is"
     why = study.why_not(setting)
     results: list[SeedAccuracy] = []

@@ -196,7 +196,7 @@ class AccuracyStudy:
         write_result(self.folder, record, data.encode())
         return accuracy
 
-    def _parts(self, setting: Overrides, number: int) -> dict[str, "Part"]:
+    def _parts(self, setting: Overrides, number: int) -> dict[str, "StudyData"]:
         """Data sets of a seed: learned from, and tested on, by name."""
         parts = {
             "learned": self._part(setting, number, False, self.products),
@@ -209,7 +209,7 @@ class AccuracyStudy:
 
     def _part(
         self, setting: Overrides, number: int, tested: bool, products: tuple[Product, ...] = ()
-    ) -> "Part":
+    ) -> "StudyData":
         """Data set of a seed under a setting: of the first map, without PNGs."""
         config = self.config(setting)
         count = min(self.sizes.learned, max(Rows.of(config).counts))
@@ -222,7 +222,7 @@ class AccuracyStudy:
             "output.png=false",
             "split={train: 0.8, validation: 0.2}",
         )
-        return Part(self.folder / "data", self.config((*setting, *further)), products)
+        return StudyData(self.folder / "data", self.config((*setting, *further)), products)
 
     def _train_config(self, number: int) -> TrainConfig:
         epochs = self.sizes.epochs
@@ -260,7 +260,7 @@ class AccuracyStudy:
         return bool((np.abs(np.subtract(compared, ends)) <= np.abs(pixel)).all())
 
 
-class Part:
+class StudyData:
     """Data set of a study, in a folder that its identity names."""
 
     def __init__(self, folder: Path, config: Config, products: tuple[Product, ...]) -> None:

@@ -66,6 +66,7 @@ site: $(DEV) ## Build the documentation into build/site
 bench: $(DEV) ## Measure speed and memory (about fifteen minutes, on a quiet machine)
 	$(BIN)/python scripts/bench_generate.py
 	$(BIN)/python scripts/bench_train.py
+	$(BIN)/python scripts/bench_peers.py
 
 .PHONY: clean
 clean: ## Remove the environment, caches and the demo data set

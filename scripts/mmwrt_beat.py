@@ -11,8 +11,6 @@ from collections.abc import Callable
 from time import process_time
 
 import numpy as np
-from mmWrt.Raytracing import rt_points
-from mmWrt.Scene import Antenna, Medium, Radar, Receiver, Scatterer, Transmitter
 
 
 def coordinate(start: np.ndarray, speed: np.ndarray, prf: float) -> Callable[..., np.ndarray]:
@@ -27,6 +25,9 @@ def coordinate(start: np.ndarray, speed: np.ndarray, prf: float) -> Callable[...
 
 
 def main(given_path: str, made_path: str) -> None:
+    from mmWrt.Raytracing import rt_points
+    from mmWrt.Scene import Antenna, Medium, Radar, Receiver, Scatterer, Transmitter
+
     given = np.load(given_path)
     fc, slope, chirp, rate, prf, c = map(float, given["radar"])
     count = int(given["count"])

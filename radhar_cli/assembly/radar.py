@@ -54,6 +54,7 @@ def board_of(radar: BoardRadar[float], seconds: float = 0.0) -> Board:
         half_wavelength=radar.half_wavelength_m,
         gain=10 ** (radar.antenna_gain_dbi / 10),
         backoff_db=header.profile.backoff_db,
+        bpm=header.bpm,
     )
 
 

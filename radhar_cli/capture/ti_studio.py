@@ -134,8 +134,7 @@ def read_studio(path: Path) -> tuple[FrameHeader, LvdsFormat]:
             device.first, device.last, device.loops, device.frames, device.period_ms, place
         ),
         device.receivers,
-        Sampling(device.output),
-        12 + 2 * device.bits,
+        (Sampling(device.output), 12 + 2 * device.bits),
     )
     stream = LvdsFormat(device.lanes.bit_count(), device.interleave == 0, device.swap == 1)
     return header, stream

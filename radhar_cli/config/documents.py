@@ -16,6 +16,7 @@ Document: TypeAlias = dict[str, Any]
 Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
 
 BASE = "base"
+FILE_OF_CFG = "radar.cfg:"  # key, which none is, of the name that messages have for a .cfg
 SUFFIXES = (".yaml", ".yml", ".json")
 RADARS = {path.stem: path for path in sorted(Path(__file__).with_name("radars").glob("*.cfg"))}
 SHIPPED = Path(__file__).with_name("presets")  # in a clone a link to configs/, in a wheel its files
@@ -57,6 +58,7 @@ def read_document(path: Path) -> tuple[Document, Places]:
                 places[key] = places.pop(other, str(path))
     radar = document.get("radar")
     if isinstance(radar, dict) and "cfg" in radar:
+        places[FILE_OF_CFG] = name_of_cfg(radar["cfg"])
         radar["cfg"] = cfg_text(radar["cfg"], path.parent, places.get("radar.cfg", str(path)))
     return document, places
 
@@ -82,6 +84,12 @@ def cfg_text(value: Any, folder: Path, where: str) -> Any:
             f"{where}: radar.cfg = {json.dumps(value)}: should be the path of a TI .cfg "
             f"({reason}), or one of {', '.join(RADARS)}"
         ) from None
+
+
+def name_of_cfg(value: Any) -> str:
+    """Name the .cfg that a value of `radar.cfg` stands for: a path as it is written, or the key."""
+    is_path = isinstance(value, str) and "\n" not in value.strip()
+    return value if is_path and value.lower() not in RADARS else "radar.cfg"
 
 
 def read_on_bases(path: Path | None, overrides: Mapping[str, Any]) -> tuple[Document, Places]:

@@ -14,7 +14,15 @@ from pydantic.fields import FieldInfo
 from radhar_cli.config.annotations import range_of, sections
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import Config, ConfigOfRecordings
-from radhar_cli.config.documents import BASE, OTHER_NAMES, Places, cfg_text, read_on_bases
+from radhar_cli.config.documents import (
+    BASE,
+    FILE_OF_CFG,
+    OTHER_NAMES,
+    Places,
+    cfg_text,
+    name_of_cfg,
+    read_on_bases,
+)
 from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.motion_files import resolve_files
 from radhar_cli.config.number import FORMS
@@ -168,6 +176,8 @@ def _load(
             continue
         _apply(document, override)
         places = {k: v for k, v in places.items() if not _within(k, override.key)}
+        if override.key == "radar.cfg":
+            places[FILE_OF_CFG] = name_of_cfg(parse_yaml(override.text, override.option)[0])
         options[override.key] = override.option
     where = str(path) if path else ", ".join(dict.fromkeys(options.values())) or "the defaults"
     return validated(kind, document, where, places, options), places, options
@@ -194,11 +204,18 @@ def validated(
         items = _mistakes_alone(error, document)
         mistakes = dict.fromkeys(
             _locate(where, problem.key, places, options) + _value_and_advice(problem)
+            if not _is_of_cfg(problem)
+            else places.get(FILE_OF_CFG, "radar.cfg") + problem.right.removeprefix("radar.cfg")
             for problem in islice(_problems_of(kind, items, document), MAX_MISTAKES)
         )
         more = len(items) - MAX_MISTAKES
         messages = [*mistakes, f"{where}: and {more} more"] if more > 0 else [*mistakes]
         raise ConfigError("\n".join(messages)) from None
+
+
+def _is_of_cfg(problem: Problem) -> bool:
+    """Whether a mistake is one of a line of a .cfg, and not of the config."""
+    return not problem.key and problem.right.startswith("radar.cfg:")
 
 
 def with_overrides(document: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:

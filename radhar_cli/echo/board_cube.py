@@ -7,6 +7,7 @@ chirp begins.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from math import ceil, inf, pi
 from typing import Any
 
@@ -16,7 +17,7 @@ from radhar_cli.echo.accuracy import GOLDEN, AccuracyError, Probes, goal
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.chebyshev import coefficients
 from radhar_cli.echo.interpolation import lagrange_basis
-from radhar_cli.echo.paths import PathSource
+from radhar_cli.echo.paths import Paths, PathSource, Through
 from radhar_cli.echo.phase_recurrence import nodes
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.phasor import unit_phasor
@@ -35,6 +36,68 @@ CUBE_ROOTS = 12.5, 5.0
 # Least turn, rad; and by how many times the largest change within a frame the polynomials reach
 # beyond the turns, as derivatives grow towards the ends.
 LEAST_TURN, MARGIN = 1e-9, 5
+
+
+@dataclass(frozen=True)
+class SumOfTwo:
+    """Paths of a chirp in which two transmitters send.
+
+    Attributes:
+        one: Paths of the first.
+        other: Paths of the second, as many.
+        factors: Factors of the two fields: 1; -1 of a transmitter that is turned by 180 degrees, or
+            fed so; 0 of one that does not send.
+    """
+
+    one: PathSource
+    other: PathSource
+    factors: tuple[float, float]
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which a path is not smooth, in order."""
+        return self.one.breakpoints
+
+    @property
+    def highest_frequency(self) -> float:
+        """Fundamental of the fastest motion, Hz."""
+        return self.one.highest_frequency
+
+    @property
+    def smooth(self) -> bool:
+        """Whether paths are smooth between the breakpoints."""
+        return self.one.smooth and self.other.smooth
+
+    def __call__(self, t: Float) -> Paths:
+        """Return the paths at times t [M] (s), those of the first transmitter first."""
+        one = self.one(t)
+        other = self.other(t) if self.factors[1] else one
+        fields = self.factors[0] * one.amplitude, self.factors[1] * other.amplitude
+        return Paths(
+            np.concatenate([one.delay, other.delay]),
+            np.concatenate(fields),
+            Through.joined([one.through, other.through]),
+        )
+
+
+def combine_transmitters(channels: Sequence[PathSource], board: Board) -> list[PathSource]:
+    """Make the paths of the chirps as sent from those of every single transmitter.
+
+    Args:
+        channels: Paths of each pair of transmitter and receiver, in the order of `board.pairs`.
+        board: The board; where its transmitters take turns, the paths are returned as they are.
+
+    Returns:
+        The paths of each virtual channel of the cube, as many paths in each.
+    """
+    if board.bpm is None:
+        return list(channels)
+    combined: list[PathSource] = [SumOfTwo(channel, channel, (1.0, 0.0)) for channel in channels]
+    a, b = board.signs_of_two
+    for lower, higher in zip(board.sums.tolist(), board.differences.tolist(), strict=True):
+        combined[lower] = SumOfTwo(channels[lower], channels[higher], (a, b))
+        combined[higher] = SumOfTwo(channels[lower], channels[higher], (a, -b))
+    return combined
 
 
 def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, float]:

@@ -76,6 +76,8 @@ def without_mean(cube: Complex) -> Complex:
 def doppler_spectrum(x: Complex, board: Board, window: Float) -> Complex:
     """Doppler spectrum [frame, Doppler, virtual, range]: 0 first, approaching positive.
 
+    Two transmitters that send together are told apart.
+
     Args:
         x: Range spectrum [frame, loop, virtual, range].
         board: The board.
@@ -84,7 +86,28 @@ def doppler_spectrum(x: Complex, board: Board, window: Float) -> Complex:
     import scipy.fft  # slow to import
 
     weights = (window / window.sum()).astype(x.real.dtype)[:, None, None]
-    return scipy.fft.fft(x * weights, board.n_doppler, axis=1)
+    return separate_transmitters(scipy.fft.fft(x * weights, board.n_doppler, axis=1), board)
+
+
+def separate_transmitters(x: Complex, board: Board) -> Complex:
+    """Tell two transmitters that send together apart: half the sum and half the difference.
+
+    The block of the difference is first turned back by the Doppler of the time between the blocks.
+
+    Args:
+        x: Spectrum of the chirps as sent [.., Doppler, virtual, range]; it is overwritten.
+        board: The board.
+    """
+    if board.bpm is None:
+        return x
+    turns = (board.bpm[1] - board.bpm[0]) / len(board.order)
+    turned = np.exp(-2j * np.pi * turns * np.fft.fftfreq(board.n_doppler))[:, None, None]
+    both = x[..., board.sums, :]
+    one = x[..., board.differences, :] * turned.astype(x.dtype)
+    a, b = board.signs_of_two
+    x[..., board.sums, :] = (both + one) * (a / 2)
+    x[..., board.differences, :] = (both - one) * (b / 2)
+    return x
 
 
 def without_turns(x: Complex, board: Board) -> Complex:

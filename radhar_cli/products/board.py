@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from math import inf
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
-from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power
+from radhar_cli.echo.board_cube import combine_transmitters, exact_cube, fast_cube, mean_power
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion, cache_motion
@@ -225,6 +225,8 @@ def make_channels(
 ) -> list[PathSource]:
     """Make the paths of every virtual channel; all are of the same motions, evaluated once.
 
+    Of two transmitters that send together a channel has the paths of both.
+
     Args:
         scene: what is simulated.
         motions: motions of its people, or of parts of one.
@@ -238,7 +240,8 @@ def make_channels(
     cached_motions = tuple(map(cache_motion, motions))
     first = board.antennas(*board.pairs[0])
     links = [Link(board.antennas(k, r), wall, board.path_waveform, first) for k, r in board.pairs]
-    return [sum_of_paths(make_path_sources(scene, cached_motions, link, room)) for link in links]
+    sources = [sum_of_paths(make_path_sources(scene, cached_motions, link, room)) for link in links]
+    return combine_transmitters(sources, board)
 
 
 def make_snr_channels(
@@ -253,10 +256,11 @@ def make_snr_channels(
         wall: wall that the paths cross, or None.
     """
     motion, first = (cache_motion(motions[0]),), board.antennas(*board.pairs[0])
-    return [
+    sources = [
         make_snr_paths(scene, motion, board.antennas(k, r), wall, board.path_waveform, first)
         for k, r in board.pairs
     ]
+    return combine_transmitters(sources, board)
 
 
 def compute_fast_echo(
@@ -297,8 +301,32 @@ def receive_cube(echo: BoardEcho, noise: WhiteNoise, board: Board, scene: Scene)
     cube: Complex = echo.cube
     factors = draw_channel_errors(scene, board.channels)
     if factors is not None:
-        cube = np.multiply(cube, factors[:, None], dtype=cube.dtype, casting="same_kind")
+        cube = apply_channel_errors(cube, factors, board)
     return noise.added_to(cube, "cube") if noise.sigma > 0 else cube
+
+
+def apply_channel_errors(cube: Complex, factors: Complex, board: Board) -> Complex:
+    """Multiply the channels of a cube by factors.
+
+    Of two transmitters that send together the errors act on sum and difference as if nothing moved
+    between their two chirps.
+
+    Args:
+        cube: raw samples [frame, loop, virtual, sample].
+        factors: factor of each pair of transmitter and receiver [virtual].
+        board: board of the cube.
+    """
+    own, other = factors.copy(), np.zeros_like(factors)
+    if board.bpm is not None:
+        lower, higher = factors[board.sums], factors[board.differences]
+        own[board.sums] = own[board.differences] = (lower + higher) / 2
+        other[board.sums] = other[board.differences] = (lower - higher) / 2
+    changed = np.multiply(cube, own[:, None], dtype=cube.dtype, casting="same_kind")
+    if board.bpm is not None:
+        mixed = cube * other[:, None].astype(cube.dtype)
+        changed[:, :, board.sums] += mixed[:, :, board.differences]
+        changed[:, :, board.differences] += mixed[:, :, board.sums]
+    return changed
 
 
 def draw_channel_errors(scene: Scene, channels: int) -> Complex | None:
@@ -378,12 +406,15 @@ def compute_range_bins(
     Returns:
         The bins [virtual, bin, pulse].
 
-    Raw samples go through the canceller, not bins: nothing is left then of what stands still.
+    Raw samples go through the canceller, not bins: nothing is left then of what stands still. Sum
+    and difference of two transmitters that send together have the power of the two.
     """
+    scale = board.signs.copy()
+    scale[[*board.sums, *board.differences]] *= sqrt(0.5)
     w = replace(board.waveform, window=window)
     x = np.empty((board.channels, w.n_bins, board.frames * board.loops), cube.dtype)
     for v in range(board.channels):
-        samples = cube[:, :, v].reshape(-1, board.samples).T * board.signs[v]
+        samples = cube[:, :, v].reshape(-1, board.samples).T * scale[v]
         s = Signal(samples[None], board.pulses, w.f0).cancelled(canceller).x[0]
         x[v] = range_compression(s, w)
     return Signal(x, board.pulses, w.f0, w.range_axis(), range_step=w.range_step)

@@ -14,7 +14,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from radhar_cli.numerics.arrays import Float
+from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.pulse_times import PulseTimes
@@ -32,12 +32,16 @@ class Array:
         rx: Places of the receivers.
         rx_sign: +1, or -1 for a receiver that is fed the other way round.
         half_power_deg: Half-power half-widths (azimuth, elevation) of an element, one way.
+        tx_sign: As `rx_sign`, of the transmitters; () for +1 of all.
+        unit_m: Unit of the places, m; None for half a wavelength at the middle of the band.
     """
 
     tx: Places
     rx: Places
     rx_sign: tuple[float, ...]
     half_power_deg: tuple[float, float]
+    tx_sign: tuple[float, ...] = ()
+    unit_m: float | None = None
 
 
 @dataclass(frozen=True)
@@ -145,6 +149,8 @@ class Board:
         half_wavelength: Unit of the elements' places, m; None is c/(2 f_c).
         gain: Linear gain of each antenna.
         backoff_db: By how much the power of each transmitter of the device is lower; () for none.
+        bpm: Places in the loop of the chirps in which two transmitters send together, the second
+            one turned by 180 degrees in the latter: those of `order` there; None for none.
     """
 
     array: Array
@@ -166,6 +172,7 @@ class Board:
     half_wavelength: float | None = None
     gain: float = 1.0
     backoff_db: tuple[float, ...] = ()
+    bpm: tuple[int, int] | None = None
 
     @property
     def centre(self) -> float:
@@ -210,7 +217,8 @@ class Board:
     @property
     def unit(self) -> float:
         """Length of the unit of the elements' places, half a wavelength, m."""
-        return self.half_wavelength or SPEED_OF_LIGHT / (2 * self.centre)
+        given = self.half_wavelength or self.array.unit_m
+        return given or SPEED_OF_LIGHT / (2 * self.centre)
 
     def element(self, place: tuple[float, float]) -> tuple[float, float, float]:
         """Position (m) in the scene of an element at a place (left, up) in half wavelengths."""
@@ -239,13 +247,53 @@ class Board:
 
     @cached_property
     def turns(self) -> Float:
-        """Delay of the virtual elements [V] within a loop, in loops."""
-        return np.array([k for k, _ in self.pairs]) / len(self.order)
+        """Delay of the virtual elements [V] within a loop, in loops.
+
+        Of two transmitters that send together both have that of the earlier block.
+        """
+        places = list(range(len(self.order)))
+        if self.bpm is not None:
+            places[self.bpm[1]] = self.bpm[0]
+        return np.array([places[k] for k, _ in self.pairs]) / len(self.order)
+
+    @cached_property
+    def sums(self) -> Index:
+        """Channels [receiver] of the chirp that has the sum of two transmitters."""
+        return self._channels_at(0)
+
+    @cached_property
+    def differences(self) -> Index:
+        """Channels [receiver] of the chirp that has the difference of two transmitters."""
+        return self._channels_at(1)
+
+    def _channels_at(self, which: int) -> Index:
+        """Channels of one of the two chirps of `bpm`; none without it."""
+        place = None if self.bpm is None else self.bpm[which]
+        return np.array([v for v, (k, _) in enumerate(self.pairs) if k == place], np.intp)
 
     @cached_property
     def signs(self) -> Float:
-        """Signs of the virtual elements' feeds [V]."""
-        return np.array([self.array.rx_sign[r] for _, r in self.pairs])
+        """Signs of the feeds of the chirps [V].
+
+        Where two transmitters send together it is that of the receiver alone.
+        """
+        return np.array([self._sign_of(k) * self.array.rx_sign[r] for k, r in self.pairs])
+
+    def _sign_of(self, k: int) -> float:
+        """Sign of the transmitter at place k of the loop, 1 where another sends with it."""
+        is_alone = self.bpm is None or k not in self.bpm
+        return self._tx_sign(self.order[k]) if is_alone else 1.0
+
+    def _tx_sign(self, transmitter: int) -> float:
+        return self.array.tx_sign[transmitter] if self.array.tx_sign else 1.0
+
+    @property
+    def signs_of_two(self) -> tuple[float, float]:
+        """Signs of the feeds of the two transmitters that send together; 1 where none do."""
+        lower, higher = self.bpm or (0, 0)
+        has_two = self.bpm is not None
+        signs = self._tx_sign(self.order[lower]), self._tx_sign(self.order[higher])
+        return signs if has_two else (1.0, 1.0)
 
     def chirp_times(self, frames: slice = slice(None)) -> Float:
         """Times (s) at which chirps begin [frame, loop, place in the loop].

@@ -5,14 +5,23 @@ ADC starts later than the ramp: carrier = start frequency + slope times that. Ma
 that repeat within a loop are further loops, as the firmware counts them (`mmwdemo_rfparser.c`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import lru_cache
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import Detection
-from radhar_cli.radar.ti_commands import COUNT, CfgLine, Effect, Family, find_family, split_lines
+from radhar_cli.radar.ti_commands import (
+    ALL_SUBFRAMES,
+    COUNT,
+    SUBFRAME,
+    CfgLine,
+    Effect,
+    Family,
+    find_family,
+    split_lines,
+)
 from radhar_cli.radar.ti_detection import read_detection
 
 MAX_CFG = 2**16  # characters
@@ -126,6 +135,21 @@ class FrameTiming:
 
 
 @dataclass(frozen=True)
+class ChirpPair:
+    """Two chirps in which the same two transmitters send, the second one turned in the later.
+
+    Attributes:
+        first: Index of the chirp that has their sum (chirp0Idx).
+        second: Index of the chirp that has their difference (chirp1Idx).
+        place: Line or key that messages name.
+    """
+
+    first: int
+    second: int
+    place: str
+
+
+@dataclass(frozen=True)
 class FrameHeader:
     """What a TI radar sends, and the samples that it takes: all that a raw capture tells.
 
@@ -138,6 +162,8 @@ class FrameHeader:
         receivers: Numbers of the receivers that are on, from 0 on.
         sampling: Kind of the samples.
         adc_bits: Number of bits of a sample.
+        bpm: Places in the loop of the chirps that have the sum and the difference of two
+            transmitters; None where transmitters take turns.
     """
 
     profile: ChirpProfile
@@ -148,6 +174,7 @@ class FrameHeader:
     receivers: tuple[int, ...]
     sampling: Sampling
     adc_bits: int
+    bpm: tuple[int, int] | None
 
     @property
     def start_hz(self) -> float:
@@ -227,8 +254,15 @@ class BoardHeader(FrameHeader):
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Numbers of the transmitters in their order within a loop, from 0 on."""
-        return tuple(mask.bit_length() - 1 for mask in self.masks)
+        """Numbers of the transmitters in their order within a loop, from 0 on.
+
+        Of two that send together the lower takes the place of their sum.
+        """
+        order = [mask.bit_length() - 1 for mask in self.masks]
+        if self.bpm is not None:
+            lower, higher = transmitters_of(self.masks[self.bpm[0]])
+            order[self.bpm[0]], order[self.bpm[1]] = lower, higher
+        return tuple(order)
 
     @property
     def frames_apart(self) -> bool:
@@ -290,8 +324,8 @@ def frame_header(
     chirps: Sequence[ChirpRange],
     timing: FrameTiming,
     receiver_mask: int,
-    sampling: Sampling,
-    adc_bits: int,
+    samples: tuple[Sampling, int],
+    pair: ChirpPair | None = None,
 ) -> FrameHeader:
     """Make a header of what a file states.
 
@@ -300,8 +334,8 @@ def frame_header(
         chirps: Chirps; of those with the same index the last holds.
         timing: Chirps of a frame and time between frames.
         receiver_mask: Receivers that are on, bit n for receiver n.
-        sampling: Kind of the samples.
-        adc_bits: Number of bits of a sample.
+        samples: Kind of the samples, and number of bits of each.
+        pair: Chirps in which two transmitters send together; None for none.
 
     Raises:
         CaptureError: The statements do not fit together; names the first and what would be right.
@@ -317,7 +351,9 @@ def frame_header(
             f"{profile.slot_s * 1e6:g} us"
         )
     masks = [chirp.mask for chirp in loop]
-    turns = count_turns(masks)
+    bpm = None if pair is None else _places_of(pair, loop, timing)
+    roles = [bpm.index(place) if bpm and place in bpm else None for place in range(len(masks))]
+    turns = count_turns(list(zip(masks, roles, strict=True)))
     return FrameHeader(
         profile=profile,
         masks=tuple(masks[:turns]),
@@ -325,12 +361,18 @@ def frame_header(
         frames=timing.frames,
         period_s=timing.period_ms * 1e-3,
         receivers=tuple(n for n in range(4) if receiver_mask >> n & 1),
-        sampling=sampling,
-        adc_bits=adc_bits,
+        sampling=samples[0],
+        adc_bits=samples[1],
+        bpm=bpm,
     )
 
 
-def count_turns(masks: Sequence[int]) -> int:
+def transmitters_of(mask: int) -> tuple[int, ...]:
+    """Numbers of the transmitters of a mask, from 0 on."""
+    return tuple(n for n in range(mask.bit_length()) if mask >> n & 1)
+
+
+def count_turns(masks: Sequence[Hashable]) -> int:
     """Count the chirps after which a sequence of transmitters repeats."""
     count = len(masks)
     return next(
@@ -355,6 +397,24 @@ def _chirps_of_loop(chirps: Sequence[ChirpRange], timing: FrameTiming) -> list[C
             f"chirps that are all defined (chirpCfg), at most {MAX_CHIRPS}"
         )
     return loop
+
+
+def _places_of(pair: ChirpPair, loop: Sequence[ChirpRange], timing: FrameTiming) -> tuple[int, int]:
+    """Find the places in the loop of the chirps in which two transmitters send together."""
+    first, second = pair.first - timing.first, pair.second - timing.first
+    for name, place in (("chirp0Idx", first), ("chirp1Idx", second)):
+        if not 0 <= place < len(loop):
+            raise CaptureError(
+                f"{pair.place} {name} = {place + timing.first}: should be a chirp of the frame, "
+                f"{timing.first} to {timing.last}"
+            )
+    masks = loop[first].mask, loop[second].mask
+    if first == second or masks[0] != masks[1] or masks[0].bit_count() != 2:
+        raise CaptureError(
+            f"{pair.place} chirp0Idx chirp1Idx = {pair.first} {pair.second}: should be two chirps "
+            f"of the same two transmitters (chirpCfg txEnable = {masks[0]} and {masks[1]})"
+        )
+    return first, second
 
 
 def _single_profile(
@@ -412,13 +472,14 @@ def _read_frames(lines: _Lines) -> FrameHeader:
     for line in lines.with_effect(Effect.SIGNAL):
         _ = line.numbers  # lines that do not hold must be right, too
     adc_numbers = adc.numbers
+    bits = 12 + 2 * int(adc_numbers["numADCBits"])
     header = frame_header(
         dict(map(_read_profile, profiles)),
         [_read_chirp(line) for line in chirps],
         _read_frame(frame),
         int(receivers.numbers["rxChannelEn"]),
-        Sampling(int(adc_numbers["adcOutputFmt"])),
-        12 + 2 * int(adc_numbers["numADCBits"]),
+        (Sampling(int(adc_numbers["adcOutputFmt"])), bits),
+        _read_pair(lines.lines),
     )
     samples = frame.numbers.get("numAdcSamples", header.samples)
     if samples != header.samples:
@@ -468,6 +529,18 @@ def _read_frame(line: CfgLine) -> FrameTiming:
     )
 
 
+def _read_pair(lines: Sequence[CfgLine]) -> ChirpPair | None:
+    """Read the last of lines bpmCfg; None where it is not enabled."""
+    pair = None
+    for line in lines:
+        if line.name == "bpmCfg" and line.numbers[SUBFRAME.name] in (ALL_SUBFRAMES, 0):
+            numbers = line.numbers
+            first, second = int(numbers["chirp0Idx"]), int(numbers["chirp1Idx"])
+            place = f"{line.place}: {line.name}"
+            pair = ChirpPair(first, second, place) if numbers["enabled"] else None
+    return pair
+
+
 def _read_pose(lines: Sequence[CfgLine]) -> BoardPose | None:
     """Read the last of lines sensorPosition, whose angles are to the right and down."""
     if not lines:
@@ -491,19 +564,40 @@ def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
     if not header.receivers:
         raise channels.refusal("rxChannelEn", channels.words[0], "1 to 15: a receiver that is on")
     transmitters = int(channels.numbers.get("txChannelEn", COUNT))
+    shared = None if header.bpm is None else header.masks[header.bpm[0]]
     for line in lines.all("chirpCfg", ""):
         mask = _read_chirp(line).mask
-        if mask in header.masks and mask.bit_count() != 1:
-            right = "a mask of one transmitter: they take turns, chirp by chirp"
+        if mask in header.masks and mask.bit_count() != 1 and mask != shared:
+            right = (
+                "one transmitter a chirp (the TDM demo's profile), or two in two chirps with "
+                "bpmCfg enabled: DDMA is not simulated"
+            )
             raise line.refusal("txEnable", mask, right)
         if mask in header.masks and mask & ~transmitters:
             right = f"of transmitters that are on (channelCfg txChannelEn = {transmitters})"
             raise line.refusal("txEnable", mask, right)
-    if len(set(header.masks)) < len(header.masks):
+    if header.bpm is not None:
+        _require_known_pair(header, [line for line in lines.lines if line.name == "bpmCfg"][-1])
+    elif len(set(header.masks)) < len(header.masks):
         raise lines.all("chirpCfg", "")[-1].refusal(
             "txEnable",
             " ".join(map(str, header.masks[:8])) + " ..." * (len(header.masks) > 8),
             "each transmitter once, and again in the same order",
+        )
+
+
+def _require_known_pair(header: FrameHeader, line: CfgLine) -> None:
+    """Raise CaptureError for a loop that no firmware decodes."""
+    masks, bpm = header.masks, header.bpm
+    assert bpm is not None
+    between = [mask for place, mask in enumerate(masks) if place not in bpm]
+    is_known = len(masks) == 2 or (len(masks) == 3 and set(bpm) == {0, 2})
+    if not is_known or any(mask & masks[bpm[0]] for mask in between):
+        raise line.refusal(
+            "chirp0Idx chirp1Idx",
+            f"{line.numbers['chirp0Idx']:g} {line.numbers['chirp1Idx']:g}",
+            "the two chirps of a loop, or the first and the last of three with another "
+            "transmitter between them",
         )
 
 

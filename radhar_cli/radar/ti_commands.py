@@ -360,6 +360,12 @@ _SIGNAL = (
         ),
         Family.MCU_PLUS,
     ),
+    Command(
+        "bpmCfg",
+        Effect.SIGNAL,
+        (*_flags("enabled"), *_wholes("chirp0Idx", "chirp1Idx", high=511)),
+        subframe=Subframe.OPTIONAL,
+    ),
 )
 _CFAR = (
     *_flags("procDirection"),
@@ -451,12 +457,6 @@ _POSE = (
     ),
 )
 _SAID = (
-    Command(
-        "bpmCfg",
-        Effect.SAID,
-        _wholes("enabled", "chirp0Idx", "chirp1Idx"),
-        subframe=Subframe.OPTIONAL,
-    ),
     Command("extendedMaxVelocity", Effect.SAID, _wholes("enabled"), subframe=Subframe.OPTIONAL),
     Command(
         "nearFieldCfg",

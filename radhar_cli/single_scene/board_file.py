@@ -41,6 +41,8 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
             file["cube"] = in_single(product)
             file["cube"].attrs["axes"] = ["frame", "loop", "virtual", "sample"]
             file["cube"].attrs["meaning"] = "raw samples for unit transmit power"
+            if board.bpm is not None:
+                file["cube"].attrs["bpm"] = board.bpm
         elif name == "points_kind":
             file[name] = product
             file[name].attrs["kinds"] = kinds_of(config)

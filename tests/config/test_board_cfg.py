@@ -78,10 +78,12 @@ def test_a_started_config_has_the_likely_device(lines: str, device: str, tmp_pat
 
 
 def test_commands_without_effect_are_named_in_a_line() -> None:
-    lines = "quantumCfg 1\nwarpCfg 2\nbpmCfg -1 1 0 1\nextendedMaxVelocity -1 1\ntrackingCfg 1\n"
+    lines = (
+        "quantumCfg 1\nwarpCfg 2\nnearFieldCfg -1 1 0 9\nextendedMaxVelocity -1 1\ntrackingCfg 1\n"
+    )
     said = [line for line in config_warnings(board(CFG + lines)) if "radar.cfg" in line]
     assert said == [
         "radar.cfg: quantumCfg, warpCfg are not known and have no effect",
-        "radar.cfg: bpmCfg, extendedMaxVelocity: what is set there is not simulated",
+        "radar.cfg: nearFieldCfg, extendedMaxVelocity: what is set there is not simulated",
     ]
     assert not [line for line in config_warnings(board(CFG)) if "radar.cfg" in line]

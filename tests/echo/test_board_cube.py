@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from helpers.boards import CFG, MARS, Straight, channels
+from helpers.known import A, P, V
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -20,7 +21,6 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
 
-P, V, A = [(2, 0.3, -0.1), (1.5, -0.4, 0.6)], [(-1, 0.2, 0), (0.5, 0, 0.3)], [1, 0.5]
 # Of a program of other authors; [frame, loop, virtual, sample].
 KNOWN = {
     (0, 0, 0, 0): -2.338012084294e-01 + 3.160266437939e-01j,

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.echo.board_cube import exact_cube
+from radhar_cli.echo.board_cube import combine_transmitters, exact_cube
 from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.radar.board import DEVICES, Board
@@ -76,7 +76,8 @@ def cube_of(
     """Samples of scatterers of amplitude 1, and their board."""
     board = replace(board, **{"frames": 1, **changes})
     squares = (np.array(p, float).reshape(-1, 3) ** 2).sum(axis=1)
-    cube, power = exact_cube(channels(board, p, v, squares), board)
+    sources = combine_transmitters(channels(board, p, v, squares), board)
+    cube, power = exact_cube(sources, board)
     if snr_db is not None:
         noise = circular_gaussian(np.random.default_rng(seed), cube.shape)
         cube = cube + noise * np.sqrt(power / 10 ** (snr_db / 10))

@@ -103,7 +103,6 @@ def test_lines_that_nobody_knows_are_named() -> None:
     [
         ("extendedMaxVelocity -1 0", "extendedMaxVelocity -1 1"),
         ("extendedMaxVelocity 0", "extendedMaxVelocity 1"),
-        ("bpmCfg -1 0 0 1", "bpmCfg -1 1 0 1"),
         ("nearFieldCfg -1 0 0 0", "nearFieldCfg -1 1 0 0"),
         ("calibDcRangeSig -1 0 -5 8 256", "calibDcRangeSig -1 1 -5 8 256"),
         ("measureRangeBiasAndRxChanPhase 0 1.5 0.2", "measureRangeBiasAndRxChanPhase 1 1.5 0.2"),
@@ -148,7 +147,7 @@ WRONG = [
     (
         "chirpCfg 1 1 0 0 0 0 0 4",
         "chirpCfg 1 1 0 0 0 0 0 5",
-        "txEnable = 5: should be a mask of one",
+        "txEnable = 5: should be one transmitter a chirp (the TDM demo's profile)",
     ),
     ("chirpCfg 2 2 0 0 0 0 0 2", "chirpCfg 2 2 0 0 0 0 0 4", "= 1 4 4: should be each transmitter"),
     (
@@ -179,6 +178,12 @@ WRONG = [
     ),
     ("frameCfg 0 2 32 0 100 1 0", "", "frameCfg is missing; a line that would do: frameCfg 0 0"),
     ("frameCfg 0 2 32 0 100 1 0", "advFrameCfg 2 0 0 1 0", "9: advFrameCfg: advanced frames"),
+    (
+        "clutterRemoval 1",
+        "bpmCfg -1 1 0 2",
+        "chirp0Idx chirp1Idx = 0 2: should be two chirps of the",
+    ),
+    ("clutterRemoval 1", "bpmCfg -1 1 0 3", "13: bpmCfg chirp1Idx = 3: should be a chirp of the"),
     ("channelCfg 15 7 0", "channelCfg 0 7 0", "2: channelCfg rxChannelEn = 0: should be 1 to 15"),
     ("channelCfg 15 7 0", "channelCfg 15 7 1", "cascading = 1: should be 0"),
     ("channelCfg 15 7 0", "channelCfg 15 3 0", "7: chirpCfg txEnable = 4: should be of transmit"),
@@ -251,6 +256,50 @@ def test_masks_that_repeat_are_further_loops() -> None:
     in_turn = in_turn.replace("2 2 0 0 0 0 0 2", "2 2 0 0 0 0 0 1")
     board = parse_ti_cfg(in_turn)
     assert (board.order, board.loops) == ((0, 2), 64)
+
+
+PAIR = """
+channelCfg 15 7 0
+adcCfg 2 1
+bpmCfg -1 1 0 2
+profileCfg 0 60.75 30 25 59.1 0 0 54.71 1 96 2950 2 1 36
+chirpCfg 0 0 0 0 0 0 0 5
+chirpCfg 1 1 0 0 0 0 0 2
+chirpCfg 2 2 0 0 0 0 0 5
+frameCfg 0 2 48 0 55 1 0
+"""
+
+
+def test_two_transmitters_may_send_together() -> None:
+    """The lower of them takes the place of the chirp that has their sum."""
+    header = parse_ti_cfg(PAIR)
+    assert (header.masks, header.order, header.bpm) == ((5, 2, 5), (0, 1, 2), (0, 2))
+    assert (header.loops, header.not_simulated) == (48, ())
+    turned = parse_ti_cfg(PAIR.replace("bpmCfg -1 1 0 2", "bpmCfg -1 1 2 0"))
+    assert (turned.order, turned.bpm) == ((2, 1, 0), (2, 0))
+    two = PAIR.replace("chirpCfg 1 1 0 0 0 0 0 2\n", "").replace("chirpCfg 2 2", "chirpCfg 1 1")
+    two = two.replace("bpmCfg -1 1 0 2", "bpmCfg -1 1 0 1").replace("frameCfg 0 2", "frameCfg 0 1")
+    alone = parse_ti_cfg(two)
+    assert (alone.order, alone.bpm, alone.loops) == ((0, 2), (0, 1), 48)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("bpmCfg -1 1 0 2", "bpmCfg -1 0 0 2", "6: chirpCfg txEnable = 5: should be one transmit"),
+        ("2 2 0 0 0 0 0 5", "2 2 0 0 0 0 0 3", "chirp0Idx chirp1Idx = 0 2: should be two chirps"),
+        ("1 1 0 0 0 0 0 2", "1 1 0 0 0 0 0 1", "= 0 2: should be the two chirps of a loop, or the"),
+        (
+            "chirpCfg 2 2 0 0 0 0 0 5\nframeCfg 0 2",
+            "chirpCfg 2 2 0 0 0 0 0 5\nchirpCfg 3 3 0 0 0 0 0 2\nframeCfg 0 3",
+            "= 0 2: should be the two chirps of a loop, or the first and the last of three",
+        ),
+    ],
+)
+def test_other_mixtures_of_bpm_are_refused(old: str, new: str, message: str) -> None:
+    with pytest.raises(CaptureError) as caught:
+        parse_ti_cfg(PAIR.replace(old, new), "board.cfg")
+    assert message in str(caught.value)
 
 
 def test_frame_of_the_mcu_plus_sdk_repeats_the_number_of_samples() -> None:

@@ -298,6 +298,7 @@ def write_simulated(
     label: Label,
     segments: PulseTimes | None = None,
     delays: Sequence[float] = (0.0,),
+    bpm: tuple[int, int] | None = None,
 ) -> RecordingInfo:
     """Write simulated samples as a recording: of chirps, of range profiles, or of slow time.
 
@@ -309,6 +310,7 @@ def write_simulated(
         label: activity and person.
         segments: times of the pulses; None is without gaps.
         delays: delay of the pulses of each receiver, s.
+        bpm: places in a board's loop of the chirps in which two transmitters send; None for none.
 
     Raises:
         UnfinishedError: it cannot be written.
@@ -334,6 +336,7 @@ def write_simulated(
         receiver_delay_s=delays,
         labels=[label],
         source=SourceNote(format="simulated"),
+        bpm=bpm,
     )
     parts = 2 if np.iscomplexobj(beat) else 1
     values = np.ascontiguousarray(beat).view(beat.real.dtype).reshape(*beat.shape, parts)

@@ -118,6 +118,8 @@ class RecordingInfo:
     source: SourceNote
     segments: int = 1  # stretches of pulses without a gap
     labels: Sequence[Label] = ()
+    # places in a loop of the chirps in which two transmitters send together, of a simulated board
+    bpm: tuple[int, int] | None = None
 
     @property
     def carrier_hz(self) -> float:
@@ -225,6 +227,8 @@ def write_recording(
             chunks = _chunks(info, dtype)
             data = file.create_dataset(content.dataset, info.shape, dtype, chunks=chunks)
             data.attrs["axes"] = content.axes
+            if info.bpm is not None:
+                data.attrs["bpm"] = info.bpm
             for pulses, block in _blocks(info, stream):
                 data[..., pulses] = block
                 check()

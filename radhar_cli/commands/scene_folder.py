@@ -82,21 +82,12 @@ def _write_recording(simulation: "Simulation", path: Path) -> Path:
         cube = simulation.frames["cube"]  # [frame, loop, virtual, sample]
         beat = cube.reshape(-1, *cube.shape[2:]).transpose(1, 2, 0)
         delays = [k * board.slot for k, _ in board.pairs]
-        write_simulated(path, beat, simulation.waveform, label, board.pulses, delays)
-        if board.bpm is not None:
-            _note_pair(path, board.bpm)
+        waveform, pulses = simulation.waveform, board.pulses
+        write_simulated(path, beat, waveform, label, pulses, delays, board.bpm)
     else:
         assert simulation.beat is not None
         write_simulated(path, simulation.beat[None], simulation.waveform, label)
     return path
-
-
-def _note_pair(path: Path, bpm: tuple[int, int]) -> None:
-    """Note in a recording the chirps of a loop in which two transmitters send together."""
-    import h5py  # slow to import
-
-    with h5py.File(path, "r+") as file:
-        file["beat"].attrs["bpm"] = bpm
 
 
 def _draw_figures(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:

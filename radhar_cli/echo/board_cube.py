@@ -43,40 +43,40 @@ class SumOfTwo:
     """Paths of a chirp in which two transmitters send.
 
     Attributes:
-        one: Paths of the first.
-        other: Paths of the second, as many.
+        lower: Paths of the first.
+        higher: Paths of the second, as many.
         factors: Factors of the two fields: 1; -1 of a transmitter that is turned by 180 degrees, or
             fed so; 0 of one that does not send.
     """
 
-    one: PathSource
-    other: PathSource
+    lower: PathSource
+    higher: PathSource
     factors: tuple[float, float]
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Instants (s) at which a path is not smooth, in order."""
-        return self.one.breakpoints
+        return self.lower.breakpoints
 
     @property
     def highest_frequency(self) -> float:
         """Fundamental of the fastest motion, Hz."""
-        return self.one.highest_frequency
+        return self.lower.highest_frequency
 
     @property
     def smooth(self) -> bool:
         """Whether paths are smooth between the breakpoints."""
-        return self.one.smooth and self.other.smooth
+        return self.lower.smooth and self.higher.smooth
 
     def __call__(self, t: Float) -> Paths:
         """Return the paths at times t [M] (s), those of the first transmitter first."""
-        one = self.one(t)
-        other = self.other(t) if self.factors[1] else one
-        fields = self.factors[0] * one.amplitude, self.factors[1] * other.amplitude
+        first = self.lower(t)
+        second = self.higher(t) if self.factors[1] else first
+        fields = self.factors[0] * first.amplitude, self.factors[1] * second.amplitude
         return Paths(
-            np.concatenate([one.delay, other.delay]),
+            np.concatenate([first.delay, second.delay]),
             np.concatenate(fields),
-            Through.joined([one.through, other.through]),
+            Through.joined([first.through, second.through]),
         )
 
 

@@ -102,11 +102,11 @@ def separate_transmitters(x: Complex, board: Board) -> Complex:
         return x
     turns = (board.bpm[1] - board.bpm[0]) / len(board.order)
     turned = np.exp(-2j * np.pi * turns * np.fft.fftfreq(board.n_doppler))[:, None, None]
-    both = x[..., board.sums, :]
-    one = x[..., board.differences, :] * turned.astype(x.dtype)
+    total = x[..., board.sums, :]
+    difference = x[..., board.differences, :] * turned.astype(x.dtype)
     a, b = board.signs_of_two
-    x[..., board.sums, :] = (both + one) * (a / 2)
-    x[..., board.differences, :] = (both - one) * (b / 2)
+    x[..., board.sums, :] = (total + difference) * (a / 2)
+    x[..., board.differences, :] = (total - difference) * (b / 2)
     return x
 
 

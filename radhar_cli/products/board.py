@@ -316,14 +316,14 @@ def apply_channel_errors(cube: Complex, factors: Complex, board: Board) -> Compl
         factors: factor of each pair of transmitter and receiver [virtual].
         board: board of the cube.
     """
-    own, other = factors.copy(), np.zeros_like(factors)
+    direct, crossed = factors.copy(), np.zeros_like(factors)
     if board.bpm is not None:
         lower, higher = factors[board.sums], factors[board.differences]
-        own[board.sums] = own[board.differences] = (lower + higher) / 2
-        other[board.sums] = other[board.differences] = (lower - higher) / 2
-    changed = np.multiply(cube, own[:, None], dtype=cube.dtype, casting="same_kind")
+        direct[board.sums] = direct[board.differences] = (lower + higher) / 2
+        crossed[board.sums] = crossed[board.differences] = (lower - higher) / 2
+    changed = np.multiply(cube, direct[:, None], dtype=cube.dtype, casting="same_kind")
     if board.bpm is not None:
-        mixed = cube * other[:, None].astype(cube.dtype)
+        mixed = cube * crossed[:, None].astype(cube.dtype)
         changed[:, :, board.sums] += mixed[:, :, board.differences]
         changed[:, :, board.differences] += mixed[:, :, board.sums]
     return changed

@@ -217,8 +217,8 @@ class Board:
     @property
     def unit(self) -> float:
         """Length of the unit of the elements' places, half a wavelength, m."""
-        given = self.half_wavelength or self.array.unit_m
-        return given or SPEED_OF_LIGHT / (2 * self.centre)
+        unit = self.half_wavelength or self.array.unit_m
+        return unit or SPEED_OF_LIGHT / (2 * self.centre)
 
     def element(self, place: tuple[float, float]) -> tuple[float, float, float]:
         """Position (m) in the scene of an element at a place (left, up) in half wavelengths."""
@@ -266,9 +266,9 @@ class Board:
         """Channels [receiver] of the chirp that has the difference of two transmitters."""
         return self._channels_at(1)
 
-    def _channels_at(self, which: int) -> Index:
+    def _channels_at(self, chirp: int) -> Index:
         """Channels of one of the two chirps of `bpm`; none without it."""
-        place = None if self.bpm is None else self.bpm[which]
+        place = None if self.bpm is None else self.bpm[chirp]
         return np.array([v for v, (k, _) in enumerate(self.pairs) if k == place], np.intp)
 
     @cached_property

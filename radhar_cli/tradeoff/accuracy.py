@@ -179,22 +179,36 @@ class AccuracyStudy:
         Raises:
             RadharError: the data set cannot be made, or the network cannot be trained.
         """
+        recorded = self.recorded(setting, number)
+        if recorded is not None:
+            return recorded
         parts = self._parts(setting, number)
-        settings = self._train_config(number)
-        names = {name: part.folder.name for name, part in parts.items()}
-        text = json.dumps([names, settings.model_dump_json()])
-        record = self.folder / "records" / f"{_digest(text)}.json"
-        if record.exists():
-            return SeedAccuracy(**json.loads(record.read_text())["accuracy"])
         for part in parts.values():
             part.build(self.progress)
-        run = self._train(parts.pop("learned").folder, settings)
+        run = self._train(parts.pop("learned").folder, self._train_config(number))
         shares = {name: measure_share(run, part.folder) for name, part in parts.items()}
         accuracy = SeedAccuracy(shares.get("default"), shares["own"], len(parts["own"]))
-        about = {"setting": list(setting), "seed": number, "run": run.name, "parts": names}
+        about = {"setting": list(setting), "seed": number, "run": run.name}
         data = json.dumps({**about, "accuracy": asdict(accuracy)}, indent=2) + "\n"
-        write_result(self.folder, record, data.encode())
+        write_result(self.folder, self._record_path(setting, number), data.encode())
         return accuracy
+
+    def recorded(self, setting: Overrides, number: int) -> SeedAccuracy | None:
+        """Accuracies of a setting and a seed that the folder has; None if they are to be made."""
+        record = self._record_path(setting, number)
+        if not record.exists():
+            return None
+        return SeedAccuracy(**json.loads(record.read_text())["accuracy"])
+
+    def _record_path(self, setting: Overrides, number: int) -> Path:
+        parts = (
+            self._part(setting, number, False, self.products),
+            self._part(setting, number, True, self.products),
+            self._part((), number, True),
+        )
+        names = [part.folder.name for part in parts]
+        text = json.dumps([names, self._train_config(number).model_dump_json()])
+        return self.folder / "records" / f"{_digest(text)}.json"
 
     def _parts(self, setting: Overrides, number: int) -> dict[str, "StudyData"]:
         """Data sets of a seed: learned from, and tested on, by name."""
@@ -202,7 +216,7 @@ class AccuracyStudy:
             "learned": self._part(setting, number, False, self.products),
             "own": self._part(setting, number, True, self.products),
         }
-        if self._is_alike(setting):
+        if self._is_alike(setting, number):
             (name,) = parts["learned"].config.maps
             parts["default"] = self._part((f"maps=[{name}]",), number, True)
         return parts
@@ -237,7 +251,7 @@ class AccuracyStudy:
             train(settings, images, run, _Quiet(self.progress))
         return run
 
-    def _is_alike(self, setting: Overrides) -> bool:
+    def _is_alike(self, setting: Overrides, number: int) -> bool:
         """Whether images of a setting have the map, size, classes and axes of the config's.
 
         Axes are alike where none of their ends differs by more than a pixel.
@@ -249,8 +263,8 @@ class AccuracyStudy:
         if Rows.of(config).activities != Rows.of(default).activities:
             return False
         parts = (
-            self._part(setting, 1, True, self.products),
-            self._part((f"maps=[{name}]",), 1, True),
+            self._part(setting, number, True, self.products),
+            self._part((f"maps=[{name}]",), number, True),
         )
         for part in parts:
             part.build(self.progress)

@@ -1,20 +1,19 @@
 """What settings of a config cost a network that learns from its images: a table of accuracies.
 
     python scripts/studies/accuracy_by_setting.py -o OUT [--config configs/quickstart.yaml]
-        [--seeds 5] [--learned 50] [--tested 25] [--epochs 20] [--only X]
+        [--seeds 1 2 3 4 5] [--learned 50] [--tested 25] [--epochs 20] [--only X] [--table]
 
 A network a setting and seed learns from images of the setting and is tested on images of the config
 as it is and of the setting, of other scenes (radhar_cli/tradeoff/accuracy.py). Rows "signal with an
 error of -X dB" add white noise to the slow-time signal, at that level below its power, which stands
 for an engine that is as wrong as that. Seeds come one after the other, each with all settings; what
-is in OUT is kept, so that the same line goes on where it was stopped. After every network OUT has
-results.json and table.md of what is done.
+is in OUT is kept, so that the same line goes on where it was stopped, and several processes may
+share OUT, each with seeds of its own. The table at the end is of what OUT has; --table makes none.
 """
 
 import argparse
-import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -99,54 +98,49 @@ ROWS = (
     signal_error(-50),
     Row("image of 128 px", ("image.size_px=128",)),
 )
-Results = dict[str, list[SeedAccuracy]]
+Results = dict[str, dict[int, SeedAccuracy]]  # {row: {seed: accuracies}}
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("-o", "--out", type=Path, required=True)
     parser.add_argument("--config", type=Path, default=ROOT / "configs/quickstart.yaml")
-    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3, 4, 5])
     parser.add_argument("--learned", type=int, default=50)
     parser.add_argument("--tested", type=int, default=25)
     parser.add_argument("--epochs", type=int, default=20)
     parser.add_argument("--only", default="", help="rows whose names have this, and the default")
+    parser.add_argument("--table", action="store_true", help="make no network")
     given = parser.parse_args()
     sizes = Sizes(given.learned, given.tested, given.epochs)
     rows = [row for row in ROWS if given.only in row.name or row.name == DEFAULT]
-    given.out.mkdir(parents=True, exist_ok=True)
     prepare_process()
-    results: Results = {row.name: [] for row in rows}
+    results: Results = {row.name: {} for row in rows}
     with BarProgress("network") as progress:
-        for number in range(1, given.seeds + 1):
+        for number in given.seeds:
             for row in rows:
                 study = AccuracyStudy(given.config, (), given.out, progress, sizes, row.products)
-                results[row.name].append(study.measure_seed(row.overrides, number))
-                write_results(given.out, results)
-    print((given.out / "table.md").read_text())
-
-
-def write_results(out: Path, results: Results) -> None:
-    """Write what is done: results.json, and table.md."""
-    numbers = {name: [asdict(each) for each in some] for name, some in results.items()}
-    document = {"commit": commit(), "settings": numbers}
-    (out / "results.json").write_text(json.dumps(document, indent=2) + "\n")
-    (out / "table.md").write_text("\n".join(lines_of(results)) + "\n")
+                if not given.table:
+                    study.measure_seed(row.overrides, number)
+                recorded = study.recorded(row.overrides, number)
+                if recorded is not None:
+                    results[row.name][number] = recorded
+    print(f"commit {commit()}", "", *lines_of(results), sep="\n")
 
 
 def lines_of(results: Results) -> list[str]:
     """Lines of the table: accuracies in per cent, differences from the default in points."""
-    default = setting_accuracy(results[DEFAULT]).by_seed
-    lines = []
-    for name, some in results.items():
-        if not some:
+    default, lines = results[DEFAULT], []
+    for name, by_seed in results.items():
+        both = [number for number in by_seed if number in default]
+        if not both:
             continue
-        accuracy = setting_accuracy(some)
-        difference = paired_difference(accuracy.by_seed, default)
+        accuracy = setting_accuracy([by_seed[number] for number in both])
+        alike = setting_accuracy([default[number] for number in both])
+        difference = in_points(paired_difference(accuracy.by_seed, alike.by_seed))
         on_default = mean_and_range(accuracy.by_seed) if accuracy.tested_on == "default" else ""
         cells = [name, on_default, mean_and_range(accuracy.own_by_seed)]
-        cells += ["" if name == DEFAULT else in_points(difference), str(len(some))]
-        lines.append(cells)
+        lines.append([*cells, "" if name == DEFAULT else difference, str(len(both))])
     header = ["learned from", "on images of the config (%)", "on images like them (%)"]
     return table([*header, "difference (points, 95 %)", "seeds"], lines)
 

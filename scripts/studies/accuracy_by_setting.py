@@ -5,15 +5,15 @@
 
 A network a setting and seed learns from images of the setting and is tested on images of the config
 as it is and of the setting, of other scenes (radhar_cli/tradeoff/accuracy.py). Rows "signal with an
-error of -X dB" add white noise to the slow-time signal, at that level below its power, which stands
-for an engine that is as wrong as that. Seeds come one after the other, each with all settings; what
-is in OUT is kept, so that the same line goes on where it was stopped, and several processes may
-share OUT, each with seeds of its own. The table at the end is of what OUT has; --table makes none.
+error of -X dB" add white noise to the signal after the canceller, at that level below its power,
+which stands for an engine that is as wrong as that. Seeds come one after the other, each with all
+settings; what is in OUT is kept, so that the same line goes on where it was stopped, and several
+processes may share OUT, each with seeds of its own. The table at the end is of what OUT has, with
+--table of that alone.
 """
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -23,14 +23,15 @@ from shared import ROOT, commit, table
 
 from radhar_cli.assembly.receiver import noise_stream
 from radhar_cli.commands.terminal import BarProgress
-from radhar_cli.numerics.arrays import Complex
+from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.processes.worker_process import prepare_process
-from radhar_cli.processing.look import Look
+from radhar_cli.processing.canceller import Canceller
+from radhar_cli.processing.signal import Signal
+from radhar_cli.products.direct import MeasuredEcho, receive_measured_echo
 from radhar_cli.products.plan import Product
-from radhar_cli.products.receiver import make_receiver
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.products.signal import receive_echo
 from radhar_cli.receiver.impairment import Impairment
-from radhar_cli.receiver.noise import WhiteNoise, circular_gaussian
+from radhar_cli.receiver.noise import circular_gaussian
 from radhar_cli.scene import Scene
 from radhar_cli.tradeoff.accuracy import AccuracyStudy, SeedAccuracy, Sizes, setting_accuracy
 from radhar_cli.tradeoff.intervals import Interval, mean_interval, paired_difference
@@ -38,24 +39,29 @@ from radhar_cli.tradeoff.intervals import Interval, mean_interval, paired_differ
 DEFAULT = "the config as it is"
 
 
-@dataclass(frozen=True)
-class SignalError(Impairment):
-    """White error of the slow-time signal, before the noise, at a level relative to its power."""
+def receive_wrong_echo(
+    scene: Scene,
+    echo: MeasuredEcho,
+    direct: DirectEcho,
+    canceller: Canceller,
+    receiver: tuple[Impairment, ...],
+    db: float,
+) -> Signal:
+    """Signal with a white error after the canceller, of relative L2 norm 10^(db/20).
 
-    db: float
-    scene: Scene
-
-    def apply(self, x: Complex, look: Look) -> Complex:
-        """Add the error to x [K, M], of relative L2 norm 10^(db/20)."""
-        error = circular_gaussian(noise_stream(self.scene, "error of the signal"), x.shape)
-        return x + 10 ** (self.db / 20) * np.linalg.norm(x) / np.linalg.norm(error) * error
-
-
-def make_wrong_receiver(
-    scene: Scene, noise: WhiteNoise, waveform: Waveform, db: float
-) -> tuple[Impairment, ...]:
-    """Make a receiver that takes a wrong signal: its impairments after the error."""
-    return (SignalError(db, scene), *make_receiver(scene, noise, waveform))
+    Args:
+        scene: what is simulated, which names the random stream.
+        echo: samples of the echo.
+        direct: closed form of the echo.
+        canceller: canceller of static echoes.
+        receiver: impairments, which are not part of what the error is relative to.
+        db: level of the error.
+    """
+    clean = receive_echo(echo.samples.copy(), direct.look, (), canceller).x
+    signal = receive_measured_echo(echo, direct, canceller, receiver)
+    error = circular_gaussian(noise_stream(scene, "error of the signal"), clean.shape)
+    error *= 10 ** (db / 20) * np.linalg.norm(clean) / np.linalg.norm(error)
+    return signal.with_samples(signal.x + error)
 
 
 class Row(NamedTuple):
@@ -70,8 +76,9 @@ class Row(NamedTuple):
         """Products that stand in place of the table's."""
         if self.error_db is None:
             return ()
-        make = partial(make_wrong_receiver, db=self.error_db)
-        return (Product("receiver", ("scene", "noise", "waveform"), make, "error, noise"),)
+        make = partial(receive_wrong_echo, db=self.error_db)
+        needs = ("scene", "echo", "direct", "canceller", "receiver")
+        return (Product("signal", needs, make, "receiver, canceller, error"),)
 
 
 def signal_error(db: float) -> Row:
@@ -83,13 +90,13 @@ ROWS = (
     Row(DEFAULT),
     signal_error(-20),
     signal_error(-30),
-    Row("FSST, compensated, instead of STFT", ("maps=[fsst_compensated]",)),
     Row("image of 32 px", ("image.size_px=32",)),
     Row("body of segments", ("body.scatterers=segments",)),
     Row("STFT overlap of 0.8", ("processing.overlap_fraction=0.8",)),
     Row("PRF halved", ("radar.prf_hz=1750",)),
-    Row("no noise", ("snr_db=null",)),
     Row("motion of the paper", ("motion.model=paper",)),
+    Row("FSST, compensated, instead of STFT", ("maps=[fsst_compensated]",)),
+    Row("no noise", ("snr_db=null",)),
     Row("SNR of 30 dB throughout", ("snr_db=30",)),
     signal_error(-40),
     Row("tolerance of -40 dB", ("engine.tolerance_db=-40",)),

@@ -23,6 +23,7 @@ from radhar_cli.config.section import Flag, Section, defaults_of
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import half_up
 from radhar_cli.radar.chirp_window import WindowName
+from radhar_cli.radar.detection import Chain
 
 
 class SavgolConfig(Section):
@@ -157,11 +158,12 @@ class ProcessingConfig(Section):
 class CloudConfig(Section):
     """How points are found in the frames of a board (docs/guide/boards.md)."""
 
-    chain: Literal["best", "board"] = "best"
-    """Detection chain: best is what the data allow, board what TI's firmware does with the .cfg."""
+    chain: Chain = "best"
+    """Detection chain: best is what the data allow, the others what TI's firmware does with the
+    .cfg, board that which the file is for: the default where it has the commands of one."""
     pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), ActsIf("cloud.chain", "best")] = 1e-5
     """Rate of false alarms of a range-Doppler cell."""
-    quantise: Annotated[Flag, ActsIf("cloud.chain", "board")] = True
+    quantise: Annotated[Flag, ActsIf("cloud.chain", "board", "sdk1", "sdk3")] = True
     """Whether numbers are rounded as the firmware's fixed-point ones."""
     doppler_carrier: Literal["centre", "start"] = "centre"
     """Frequency that the points' speeds refer to; TI's software takes that at which ramps start."""

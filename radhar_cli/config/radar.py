@@ -33,6 +33,7 @@ from radhar_cli.radar.board import (
     longest_rows,
     sidelobe,
 )
+from radhar_cli.radar.detection import Chain
 
 if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader
@@ -416,12 +417,24 @@ class BoardRadar(_Emission[N], Generic[N]):
             return f"all elements of the array lie in one {('column', 'row')[axis]}"
         return None
 
-    def why_no_points(self, chain: Literal["best", "board"]) -> str | None:
+    @property
+    def likely_chain(self) -> Chain:
+        """The firmware's chain whose commands the file has, unless the elements do not fit it."""
+        firmware = self.header.firmware
+        if firmware is None or self.why_no_points(firmware) is not None:
+            return "best"
+        return firmware
+
+    def why_no_points(self, chain: Chain) -> str | None:
         """Say why the elements of the board do not tell where points are; None if they do.
 
-        The firmware's chain takes the elements of a row for neighbours. The other knows their
-        places, but takes high sidelobes of a sparse row for targets of their own.
+        Firmware takes the elements of a row for neighbours, but for people tracking, whose .cfg has
+        their places. `best` knows them, but takes high sidelobes of a sparse row for targets.
         """
+        if chain == "people_tracking" or (
+            chain == "board" and self.header.firmware == "people_tracking"
+        ):
+            return None
         places = self.virtual_places
         row = [places[v][0] for v in longest_rows(places, 0)[0]] if places else []
         spacings = [right - left for left, right in pairwise(row)]

@@ -571,6 +571,8 @@ def _fill_for_board(c: Request, radar: BoardRadar, changed: dict[str, dict[str, 
         changed.setdefault("processing", {})["clutter"] = clutter
     if "range_sum" not in c.processing.model_fields_set:
         changed.setdefault("processing", {})["range_sum"] = "gated"
+    if "chain" not in c.cloud.model_fields_set:
+        changed.setdefault("cloud", {})["chain"] = radar.likely_chain
     pose = {} if header.pose is None else vars(header.pose)
     for key in pose.keys() - radar.model_fields_set:
         changed.setdefault("radar", {})[key] = pose[key]

@@ -29,6 +29,7 @@ from radhar_cli.config.section import Section
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
 from radhar_cli.radar.ti_commands import Family
 
@@ -172,7 +173,7 @@ def of_board(cfg: str, folder: Path) -> str:
     """
     text = cfg_text(cfg, Path(), "--radar")
     board = parse_ti_cfg(text, cfg)
-    device, chain = _likely_device(board), "board" if board.has_cfar else "best"
+    device, chain = _likely_device(board), board.firmware or "best"
     path = os.path.relpath(Path(cfg).resolve(), folder.resolve())
     if cfg.lower() in RADARS:
         device, path = cfg.upper(), cfg.lower()
@@ -190,9 +191,16 @@ activities: [punching, kicking, grabbing, sitting_down, standing_up]
 duration_s: {max(3.0, 2 * board.period_s):g}
 motion: {{place: {{range_m: {{uniform: [{nearest:.2g}, {farthest:.2g}]}}}}}}
 body: {{scatterers: surfaces}}
-cloud: {{chain: {chain}}}  # board: as the firmware makes points; best: fewer, finer ones
+cloud: {{chain: {chain}}}  # {_describe_chain(chain)}
 maps: [{maps}]
 """
+
+
+def _describe_chain(chain: Chain) -> str:
+    """Say what the other chains are, for a comment."""
+    if chain == "best":
+        return "as the data allow: the file has no detection that is simulated"
+    return "as the firmware makes points; best: fewer, finer ones"
 
 
 def of_preset(name: str) -> str:
@@ -234,7 +242,7 @@ def _likely_device(board: BoardHeader) -> str:
     return by_family.get(board.family, "IWR1443BOOST")
 
 
-def _maps_of_board(cfg: str, device: str, period_s: float, chain: str) -> tuple[str, ...]:
+def _maps_of_board(cfg: str, device: str, period_s: float, chain: Chain) -> tuple[str, ...]:
     """Choose maps of MAPS_OF_BOARDS that a board makes; all of them if the device does not fit.
 
     That it does not fit is said when the config is read.

@@ -29,6 +29,8 @@ from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, FrameMapKind, Fram
 from radhar_cli.processing.frame_sheets import cloud_sheet, maps_sheet
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate
+from radhar_cli.processing.people_tracking.chain import track_people
+from radhar_cli.processing.people_tracking.counting import count_people
 from radhar_cli.processing.points import Cloud, board_points
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
@@ -57,7 +59,8 @@ from radhar_cli.products.signal_power import (
 )
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.chirp_window import RECTANGULAR, ChirpWindow
-from radhar_cli.radar.detection import Detection
+from radhar_cli.radar.detection import Detection, Firmware
+from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
 from radhar_cli.radar.wall import Wall
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Scene
@@ -86,15 +89,17 @@ class CloudChain:
     """How points are found in the frames of a board.
 
     Attributes:
-        is_firmware: whether as TI's firmware finds them, rather than as well as the data allow.
-        detection: settings of the board's .cfg.
+        firmware: whose firmware finds them; None for as well as the data allow.
+        detection: settings of an out-of-box demo's .cfg.
+        people: settings of people tracking or counting; None for neither.
         pfa: rate of false alarms of a cell, where not the firmware finds them.
         quantises: whether numbers are rounded as the firmware's are.
         refers_to_start: whether speeds refer to the frequency at which ramps start.
     """
 
-    is_firmware: bool
+    firmware: Firmware | None
     detection: Detection
+    people: PeopleTracking | PeopleCounting | None
     pfa: float
     quantises: bool
     refers_to_start: bool
@@ -103,10 +108,11 @@ class CloudChain:
     def of(cls, config: Config) -> "CloudChain":
         """Read `cloud` and the detection of `radar.cfg` of a config."""
         assert isinstance(config.radar, BoardRadar)
-        cloud = config.cloud
+        cloud, header = config.cloud, config.radar.header
         return cls(
-            cloud.chain == "board",
+            None if cloud.chain == "best" else header.firmware,
             detection_of(config.radar, config.processing),
+            header.people,
             cloud.pfa,
             cloud.quantise,
             cloud.doppler_carrier == "start",
@@ -374,9 +380,14 @@ def find_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:
     """
     carrier = board.start if chain.refers_to_start else None
     detection = chain.detection
-    if chain.is_firmware:
-        return board_points(cube, board, detection, chain.quantises, carrier)
-    return best_points(cube, board, detection.remove_mean, chain.pfa, carrier, detection.bias)
+    if chain.firmware is None:
+        return best_points(cube, board, detection.remove_mean, chain.pfa, carrier, detection.bias)
+    match chain.people:
+        case PeopleTracking():
+            return track_people(cube, board, chain.people, carrier)
+        case PeopleCounting():
+            return count_people(cube, board, chain.people, detection.remove_mean, carrier)
+    return board_points(cube, board, detection, chain.quantises, carrier)
 
 
 def points_of(cloud: Cloud) -> Float:

@@ -2,9 +2,13 @@
 
 from dataclasses import dataclass, replace
 from math import ceil, log2, log10
-from typing import NamedTuple
+from typing import Literal, NamedTuple, TypeAlias
 
 CA, CAGO, CASO = range(3)
+# Chains of TI's firmware: those of out-of-box demos, and two that look for people.
+Firmware: TypeAlias = Literal["sdk1", "sdk3", "people_tracking", "people_counting"]
+# How points are found: as well as the data allow, or by firmware; `board` is that of the file.
+Chain: TypeAlias = Literal["best", "board", "sdk1", "sdk3", "people_tracking", "people_counting"]
 
 
 class Cfar(NamedTuple):

@@ -11,7 +11,8 @@ from enum import IntEnum
 from functools import lru_cache
 
 from radhar_cli.errors import CaptureError
-from radhar_cli.radar.detection import Detection
+from radhar_cli.radar.detection import Detection, Firmware
+from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
 from radhar_cli.radar.ti_commands import (
     ALL_SUBFRAMES,
     COUNT,
@@ -23,6 +24,7 @@ from radhar_cli.radar.ti_commands import (
     split_lines,
 )
 from radhar_cli.radar.ti_detection import read_detection
+from radhar_cli.radar.ti_people import is_short_fine_motion, missing_commands, read_people
 
 MAX_CFG = 2**16  # characters
 MAX_CHIRPS = 512  # of a frame
@@ -239,7 +241,10 @@ class BoardHeader(FrameHeader):
     Attributes:
         family: Software that the file is for.
         detection: Detection of its points.
-        has_cfar: Whether a line sets the CFAR, without which firmware finds no points.
+        has_cfar: Whether a line sets the CFAR of an out-of-box demo.
+        people: Detection of people tracking or counting; None for neither.
+        missing: Commands that the chain of the family needs and the file lacks, with lines that
+            would do.
         pose: Place and direction by sensorPosition; None without that line.
         unknown: Commands that radhar does not know.
         not_simulated: Commands that switch on what is not simulated.
@@ -248,9 +253,22 @@ class BoardHeader(FrameHeader):
     family: Family
     detection: Detection
     has_cfar: bool
+    people: PeopleTracking | PeopleCounting | None
+    missing: tuple[str, ...]
     pose: BoardPose | None
     unknown: tuple[str, ...]
     not_simulated: tuple[str, ...]
+
+    @property
+    def firmware(self) -> Firmware | None:
+        """Chain of TI's firmware whose commands the file has; None without any."""
+        if isinstance(self.people, PeopleTracking):
+            return "people_tracking"
+        if isinstance(self.people, PeopleCounting):
+            return "people_counting"
+        if not self.has_cfar or self.family is Family.L_SDK:
+            return None
+        return "sdk3" if self.family in (Family.SDK_3, Family.MCU_PLUS) else "sdk1"
 
     @property
     def order(self) -> tuple[int, ...]:
@@ -291,11 +309,15 @@ def parse_ti_cfg(text: str, where: str = "radar.cfg") -> BoardHeader:
         len(header.masks) * len(header.receivers),
         1 << (header.samples - 1).bit_length(),
     )
+    family = find_family(lines.lines)
+    missing = missing_commands(lines.lines, family)
     return BoardHeader(
         **vars(header),
-        family=find_family(lines.lines),
+        family=family,
         detection=read_detection(lines.lines, channels, bins),
-        has_cfar=any(line.name == "cfarCfg" for line in lines.with_effect(Effect.POINTS)),
+        has_cfar=any("thresholdScale" in line.numbers for line in lines.of_name("cfarCfg")),
+        people=None if missing else read_people(lines.lines, family, channels, bins),
+        missing=missing,
         pose=_read_pose(lines.with_effect(Effect.POSE)),
         unknown=tuple(dict.fromkeys(line.name[:40] for line in lines.lines if not line.command)),
         not_simulated=tuple(dict.fromkeys(filter(None, map(_name_if_said, lines.lines)))),
@@ -448,6 +470,10 @@ class _Lines:
     def with_effect(self, effect: Effect) -> list[CfgLine]:
         """Return the lines of commands with an effect."""
         return [line for line in self.lines if line.command and line.command.effect is effect]
+
+    def of_name(self, name: str) -> list[CfgLine]:
+        """Return the lines of a command that sets the detection of points."""
+        return [line for line in self.with_effect(Effect.POINTS) if line.name == name]
 
     def all(self, name: str, example: str) -> list[CfgLine]:
         """Return the lines of a command that cannot be missing, such as `example`."""
@@ -610,6 +636,8 @@ def _name_if_said(line: CfgLine) -> str | None:
         return command.name if line.numbers["txPhaseShifter"] else None
     if command.name == "adcCfg":  # samples are not rounded
         return command.name if line.numbers["numADCBits"] != 2 else None
+    if command.name == "fineMotionCfg":
+        return command.name if is_short_fine_motion(line) else None
     if command.effect is not Effect.SAID:
         return None
     is_readable = bool(command.arguments) and len(line.words) in command.counts

@@ -376,11 +376,29 @@ _CFAR = (
     *_flags("cyclicMode"),
     Argument("thresholdScale", 0, 1e6),
 )
+CELLS = 1024  # most cells of a window, a guard, or an end that is left out
 _CFAR_OF_PEOPLE = (
-    *_wholes("cfarMethod", "cfarDiscardRangeLeft", "cfarDiscardRangeRight"),
-    *_wholes("cfarDiscardAngleLeft", "cfarDiscardAngleRight", "refWinSize0", "refWinSize1"),
-    *_wholes("guardWinSize0", "guardWinSize1", "rangeThre", "azimuthThre", "log2MagFlag"),
+    Argument("cfarMethod", 6, 6, meaning="two passes along range and angle"),
+    *_wholes("cfarDiscardRangeLeft", "cfarDiscardRangeRight", high=CELLS),
+    *_wholes("cfarDiscardAngleLeft", "cfarDiscardAngleRight", high=CELLS),
+    *_wholes("refWinSize0", "refWinSize1", low=1, high=CELLS),
+    *_wholes("guardWinSize0", "guardWinSize1", high=CELLS),
+    Argument("rangeThre", 0, 1e6, meaning="tenths of a power ratio"),
+    Argument("azimuthThre", 0, 1e6, meaning="tenths of a power ratio"),
+    *_wholes("log2MagFlag"),
     *_optional("inputScaleDown"),
+)
+_CFAR_OF_TRACKING = (
+    *_wholes("leftSkipSize", "rightSkipSize", high=CELLS),
+    *_wholes("leftSkipSizeAzimuth", "rightSkipSizeAngle", high=CELLS),
+    *_wholes("searchWinSizeRange", "searchWinSizeAngle", low=1, high=CELLS),
+    *_wholes("guardSizeRange", "guardSizeAngle", high=CELLS),
+    *(
+        Argument(name, 0, 1e6, meaning="a power ratio")
+        for name in ("threRange", "threAngle", "threSidelob")
+    ),
+    *_flags("enSecondPass"),
+    *_optional("dynamicFlag"),
 )
 _CFAR_OF_MCU_PLUS = (
     *_CFAR,
@@ -395,7 +413,7 @@ _POINTS = (
     Command(
         "cfarCfg", Effect.POINTS, (*_CFAR, *_flags("peakGroupingEn")), Family.SDK_3, Subframe.ALWAYS
     ),
-    Command("cfarCfg", Effect.SAID, _CFAR_OF_PEOPLE, Family.PEOPLE),
+    Command("cfarCfg", Effect.POINTS, _CFAR_OF_PEOPLE, Family.PEOPLE),
     Command("cfarCfg", Effect.POINTS, _CFAR_OF_MCU_PLUS, Family.MCU_PLUS, Subframe.ALWAYS),
     Command(
         "peakGrouping",
@@ -444,6 +462,113 @@ _POINTS = (
         subframe=Subframe.OPTIONAL,
     ),
 )
+_GAMMA = Argument("mvdr_alpha", 1e-6, 1, meaning="loading over the mean power")
+_RATIOS = tuple(
+    Argument(name, 0, 1e6, meaning="a power ratio") for name in ("peakExpRelThr", "peakExpSNRThr")
+)
+_PEOPLE_TRACKING = (
+    *(
+        Command(name, Effect.POINTS, _CFAR_OF_TRACKING, Family.PEOPLE_3D, Subframe.ALWAYS)
+        for name in ("dynamicRACfarCfg", "staticRACfarCfg")
+    ),
+    Command(
+        "dynamicRangeAngleCfg",
+        Effect.POINTS,
+        (
+            Argument("searchStep", 0.05, 45, meaning="degree"),
+            _GAMMA,
+            Argument("detectionMethod", 1, 2, True, "azimuth then elevation, or both then a zoom"),
+            Argument("dopplerEstMethod", 0, 0, meaning="the largest peak"),
+        ),
+        Family.PEOPLE_3D,
+        Subframe.ALWAYS,
+    ),
+    Command(
+        "dynamic2DAngleCfg",
+        Effect.POINTS,
+        (
+            Argument("elevSearchStep", 0.05, 45, meaning="degree"),
+            _GAMMA,
+            *(
+                Argument(name)
+                for name in ("maxNpeak2Search", "peakExpSamples", "elevOnly", "sideLobThr")
+            ),
+            *_RATIOS,
+        ),
+        Family.PEOPLE_3D,
+        Subframe.ALWAYS,
+    ),
+    Command(
+        "dynamic2DAngleCfg",
+        Effect.POINTS,
+        (
+            *_wholes("zoominFactor", low=1, high=32),
+            Argument("zoominNn8bors"),
+            *_wholes("peakExpSamples", high=32),
+            *_RATIOS,
+            *_wholes("localMaxCheckFlag", high=2),
+        ),
+        Family.PEOPLE_3D,
+        Subframe.ALWAYS,
+    ),
+    Command(
+        "staticRangeAngleCfg",
+        Effect.POINTS,
+        (
+            *_flags("staticProcEnabled"),
+            *_wholes("staticAzimStepDeciFactor", "staticElevStepDeciFactor", low=1, high=CELLS),
+        ),
+        Family.PEOPLE_3D,
+        Subframe.ALWAYS,
+    ),
+    Command(
+        "fineMotionCfg",
+        Effect.POINTS,
+        (
+            *_flags("fineMotionProcEnabled"),
+            Argument("fineMotionObservationTime", 1e-3, 1e3, False, "s", True),
+            Argument("fineMotionProcCycle", 1, CELLS, True, "frames", True),
+            Argument("fineMotionDopplerThrIdx", 0, CELLS, True, "Doppler bins", True),
+        ),
+        Family.PEOPLE_3D,
+        Subframe.ALWAYS,
+    ),
+    Command(
+        "fovCfg",
+        Effect.POINTS,
+        tuple(Argument(name, 1, 90, meaning="degree, half") for name in ("azimFoV", "elevFoV")),
+        Family.PEOPLE_3D,
+        Subframe.ALWAYS,
+    ),
+    *(
+        Command(
+            name,
+            Effect.POINTS,
+            tuple(
+                Argument(f"antenna{n}", -high, high, meaning=meaning, is_optional=n > 1)
+                for n in range(1, CHANNELS + 1)
+            ),
+            Family.PEOPLE_3D,
+        )
+        for name, high, meaning in (
+            ("antGeometry0", 100, "half wavelengths to the right"),
+            ("antGeometry1", 100, "half wavelengths upwards"),
+            ("antPhaseRot", 1, "1 or -1"),
+        )
+    ),
+)
+_DOA = Command(
+    "doaCfg",
+    Effect.POINTS,
+    (
+        Argument("estAngleRange", 10, 900, meaning="tenths of a degree"),
+        Argument("estAngleResolution", 50, 45000, meaning="thousandths of a degree"),
+        Argument("gamma", 1e-3, 1000, meaning="thousandths"),
+        *_flags("clutterRemovalFlag"),
+        *_optional(*(f"argument{number}" for number in range(5, 11))),
+    ),
+    Family.PEOPLE,
+)
 _POSE = (
     Command(
         "sensorPosition",
@@ -479,24 +604,6 @@ _SAID = (
         Effect.SAID,
         (*_wholes("enabled"), Argument("targetDistance"), Argument("searchWin")),
     ),
-    *(
-        Command(name, Effect.SAID, family=Family.PEOPLE_3D)
-        for name in (
-            *("dynamicRACfarCfg", "staticRACfarCfg", "dynamicRangeAngleCfg", "dynamic2DAngleCfg"),
-            *("dopplerCfarCfg", "staticRangeAngleCfg", "fineMotionCfg", "fovCfg"),
-            *("antGeometry0", "antGeometry1", "antPhaseRot"),
-        )
-    ),
-    Command(
-        "doaCfg",
-        Effect.SAID,
-        (
-            *_wholes("estAngleRange", "estAngleResolution", "gamma"),
-            *_flags("clutterRemovalFlag"),
-            *_optional(*(f"argument{number}" for number in range(5, 11))),
-        ),
-        Family.PEOPLE,
-    ),
 )
 # Control of the demo, tracker, presence, vital signs: nothing of them is in a cube or its points.
 _SILENT = {
@@ -517,6 +624,7 @@ _SILENT = {
         *("allocationParam", "maxAcceleration", "trackingCfg", "classifierCfg", "vitalsign"),
         *("VSRangeIdxCfg", "VSTargetId", "mpdBoundaryBox", "clusterCfg", "majorStateCfg"),
         *("minorStateCfg", "microDopplerCfg", "profileSwitchCfg"),
+        "dopplerCfarCfg",  # of a search for Doppler that is not the largest peak's
     ),
 }
 _ADVANCED_FRAMES = "advanced frames are not read; should be frameCfg"
@@ -564,7 +672,8 @@ def _by_name() -> Mapping[str, tuple[Command, ...]]:
         for name in names
     )
     commands = dict[str, tuple[Command, ...]]()
-    for command in (*_SIGNAL, *_POINTS, *_POSE, *_SAID, *_CAPTURES, *silent, *_REFUSED):
+    points = *_POINTS, *_PEOPLE_TRACKING, _DOA
+    for command in (*_SIGNAL, *points, *_POSE, *_SAID, *_CAPTURES, *silent, *_REFUSED):
         commands[command.name] = (*commands.get(command.name, ()), command)
     return MappingProxyType(commands)
 

@@ -27,16 +27,16 @@ def read_detection(
     """
     detection = Detection(along_range=NO_CFAR)
     for line in lines:
-        if line.command is None or not (line.command.effect is Effect.POINTS or line.name in _MEAN):
+        if line.command is None or line.command.effect is not Effect.POINTS:
             continue
         numbers = line.numbers
         if numbers[SUBFRAME.name] not in (ALL_SUBFRAMES, subframe):
             continue
-        if line.name == "cfarCfg":
+        if line.name == "cfarCfg" and "thresholdScale" in numbers:
             detection = _set_cfar(detection, line, numbers, channels, bins)
         elif line.name == "compRangeBiasAndRxChanPhase":
             detection = _set_bias(detection, line, numbers, channels)
-        else:
+        elif line.name in _SETTERS:
             detection = _SETTERS[line.name](detection, numbers)
     return detection
 
@@ -99,6 +99,11 @@ def _set_mean_removal(detection: Detection, numbers: Numbers) -> Detection:
     return replace(detection, remove_mean=bool(flag))
 
 
+def _remove_mean(detection: Detection, _: Numbers) -> Detection:
+    """Take the mean over the loops of a frame out, as people tracking always does."""
+    return replace(detection, remove_mean=True)
+
+
 def _set_angle_limits(detection: Detection, numbers: Numbers) -> Detection:
     """Set the limits of azimuth and elevation of points, degrees."""
     return replace(
@@ -116,11 +121,11 @@ def _set_cfar_limits(detection: Detection, numbers: Numbers) -> Detection:
     return replace(detection, range_m=limits)
 
 
-_MEAN = ("clutterRemoval", "doaCfg")  # of doaCfg no more than that is simulated
 _SETTERS: Mapping[str, Callable[[Detection, Numbers], Detection]] = {
     "peakGrouping": _set_grouping,
     "multiObjBeamForming": _set_second_peak,
-    **dict.fromkeys(_MEAN, _set_mean_removal),
+    **dict.fromkeys(("clutterRemoval", "doaCfg"), _set_mean_removal),
+    "dynamicRACfarCfg": _remove_mean,
     "aoaFovCfg": _set_angle_limits,
     "cfarFovCfg": _set_cfar_limits,
 }

@@ -11,7 +11,9 @@ from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar
 from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.errors import SceneError
 from radhar_cli.processing.map_kind import MAP_KINDS
+from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.propagation import leg
+from radhar_cli.radar.ti_cfg import BoardHeader
 from radhar_cli.scene import Scene, nominal_scene
 from radhar_cli.scene_checks.drawing import CROWDED, describe_crowd, find_crowded, suggest_cure
 from radhar_cli.scene_checks.flags import Flags, describe_flag, describe_flags
@@ -66,10 +68,22 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
     if header.not_simulated:
         names = ", ".join(header.not_simulated)
         yield f"radar.cfg: {names}: what is set there is not simulated"
+    if "chain" not in config.cloud.model_fields_set and "points" in config.stored:
+        yield _describe_chain(config.cloud.chain, header)
     pose = {} if header.pose is None else vars(header.pose)
     config_keys = [f"radar.{key}" for key, number in pose.items() if getattr(radar, key) != number]
     if config_keys:
         yield f"radar.cfg: sensorPosition yields to the config's {', '.join(config_keys)}"
+
+
+def _describe_chain(chain: Chain, header: BoardHeader) -> str:
+    """Say by which chain points are found where the config does not."""
+    if chain != "best":
+        return f"cloud.chain: {chain}, the firmware whose commands radar.cfg has"
+    why = (*header.missing, "radar.cfg has no detection of a firmware that is simulated")[0]
+    if header.firmware is not None:
+        why = f"the elements of the board do not fit {header.firmware}"
+    return f"cloud.chain: best, as {why}"
 
 
 def _gives_window(config: Config) -> bool:

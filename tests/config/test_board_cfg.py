@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from helpers.boards import CFG
+from helpers.scatterers import ISK_CFG
 
 from radhar_cli.config import Config
 from radhar_cli.config.radar import BoardRadar
@@ -14,12 +15,24 @@ from radhar_cli.scene_checks.warnings import config_warnings
 TRACKING = f"{CFG}sensorPosition 2 10 15\n"
 WITHOUT_CFAR = CFG.replace("cfarCfg 0 2 8 4 3 0 1130\n", "")
 
+COUNTING = """
+channelCfg 15 3 0
+adcCfg 2 1
+profileCfg 0 77 30 7 62 0 0 60 1 128 2500 0 0 30
+chirpCfg 0 0 0 0 0 0 0 1
+chirpCfg 1 1 0 0 0 0 0 2
+frameCfg 0 1 128 0 50 1 0
+cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0
+doaCfg 600 1875 30 1
+"""
+
 
 def board(cfg: str, cloud: dict[str, Any] | None = None, **radar: Any) -> Config:
     """Config of an IWR1443BOOST; its radar's other keys by name."""
     keys = {"cfg": cfg, "device": "IWR1443BOOST", **radar}
+    maps = keys.pop("maps", ["rtm"])
     return Config.model_validate(
-        {"radar": keys, "duration_s": 1.0, "maps": ["rtm"], "cloud": cloud or {}}
+        {"radar": keys, "duration_s": 1.0, "maps": maps, "cloud": cloud or {}}
     )
 
 
@@ -53,7 +66,7 @@ def test_a_started_config_leaves_the_pose_to_the_file(tmp_path: Path) -> None:
 
 
 def test_the_chain_of_a_board_needs_its_cfar(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"radar\.cfg has no cfarCfg"):
+    with pytest.raises(ValueError, match=r"radar\.cfg: cfarCfg is missing"):
         board(WITHOUT_CFAR, cloud={"chain": "board"})
     assert board(WITHOUT_CFAR).cloud.chain == "best"
     (tmp_path / "board.cfg").write_text(WITHOUT_CFAR)
@@ -87,3 +100,63 @@ def test_commands_without_effect_are_named_in_a_line() -> None:
         "radar.cfg: nearFieldCfg, extendedMaxVelocity: what is set there is not simulated",
     ]
     assert not [line for line in config_warnings(board(CFG)) if "radar.cfg" in line]
+
+
+@pytest.mark.parametrize(
+    ("cfg", "device", "chain"),
+    [
+        (CFG, "IWR1443BOOST", "sdk1"),
+        (
+            CFG.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg -1 0 2 8 4 3 0 15 1"),
+            "IWR1843BOOST",
+            "sdk3",
+        ),
+        (ISK_CFG, "IWR6843ISK", "people_tracking"),
+        (COUNTING, "IWR1642BOOST", "people_counting"),
+        (WITHOUT_CFAR, "IWR1443BOOST", "best"),
+        (ISK_CFG.replace("fovCfg", "% fovCfg"), "IWR6843ISK", "best"),
+    ],
+)
+def test_the_chain_is_that_of_the_commands_of_the_file_and_is_said(
+    cfg: str, device: str, chain: str
+) -> None:
+    config = board(cfg, device=device, maps=["points"])
+    assert config.cloud.chain == chain
+    (said,) = (line for line in config_warnings(config) if "cloud.chain" in line)
+    assert said.startswith(f"cloud.chain: {chain}")
+    assert ("fovCfg is missing" in said) == ("% fovCfg" in cfg)
+    asked = board(cfg, {"chain": chain}, device=device, maps=["points"])
+    assert not [line for line in config_warnings(asked) if "cloud.chain" in line]
+
+
+@pytest.mark.parametrize("chain", ["sdk1", "sdk3", "people_counting"])
+def test_a_chain_whose_commands_are_missing_is_refused(chain: str) -> None:
+    with pytest.raises(ValueError, match=r"should be people_tracking or best"):
+        board(ISK_CFG, {"chain": chain}, device="IWR6843ISK")
+    lacking = ISK_CFG.replace("antPhaseRot", "% antPhaseRot")
+    with pytest.raises(ValueError, match=r"antPhaseRot is missing; a line that would do"):
+        board(lacking, {"chain": "board"}, device="IWR6843ISK")
+
+
+def test_the_short_fine_motion_of_other_firmware_is_said() -> None:
+    short = ISK_CFG.replace("fineMotionCfg -1 0", "fineMotionCfg -1 1")
+    said = [line for line in config_warnings(board(short, device="IWR6843ISK")) if "fine" in line]
+    assert said == ["radar.cfg: fineMotionCfg: what is set there is not simulated"]
+
+
+@pytest.mark.parametrize(
+    ("written", "wrong", "words"),
+    [
+        ("Cfg -1 0.75 0.0010 1 0", "Cfg -1 0.75 0.0010 0 0", "detectionMethod = 0: should be 1"),
+        ("Cfg -1 0.75 0.0010 1 0", "Cfg -1 0.75 0.0010 2 0", "should be 7 with dynamicRangeAngle"),
+        ("-1 4 4 2 2 8 12", "-1 4 4 2 2 80 12", "searchWinSizeRange = 80: should be less"),
+        ("-1 4 4 2 2 8 12", "-1 4 4 2 2 8 120", "searchWinSizeAngle = 120: should be less"),
+        ("antPhaseRot 1 1", "antPhaseRot 0 1", "should be 1 or -1 each"),
+        ("antGeometry1 -1", "antGeometry1", "11 numbers: should be 12, one a virtual channel"),
+        ("staticRangeAngleCfg -1 0", "staticRangeAngleCfg -1 2", "staticProcEnabled = 2: should"),
+    ],
+)
+def test_wrong_numbers_of_people_tracking_are_refused(written: str, wrong: str, words: str) -> None:
+    assert written in ISK_CFG
+    with pytest.raises(ValueError, match=words):
+        board(ISK_CFG.replace(written, wrong), device="IWR6843ISK")

@@ -32,6 +32,7 @@ activities: [punching]
 motion: {range_m: 2.2}
 duration_s: 0.3
 samples_per_class: 2
+cloud: {chain: best}
 maps: [points]
 """
 

@@ -55,7 +55,7 @@ def test_family_decides_what_twelve_numbers_of_cfarCfg_are() -> None:
     people = CFG.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0")
     header = parse_ti_cfg(people.replace("clutterRemoval 1", "doaCfg 600 1875 30 1"))
     assert (header.family, header.detection.remove_mean) == (Family.PEOPLE, True)
-    assert header.not_simulated == ("cfarCfg", "doaCfg")
+    assert (header.not_simulated, header.firmware) == ((), "people_counting")
     newer = CFG.replace("frameCfg 0 2 32 0 100 1 0", "frameCfg 0 2 32 0 80 100 1 0")
     newer = newer.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg -1 0 2 16 4 4 1 12 1 0 0 1")
     header = parse_ti_cfg(newer)
@@ -70,7 +70,10 @@ def test_family_decides_what_twelve_numbers_of_cfarCfg_are() -> None:
         ("cfarCfg -1 0 2 8 4 3 0 15", Family.SDK_2),
         ("cfarCfg 0 2 8 4 3 0 1130", Family.SDK_1),
         ("subDataFrameCfg 0 80 96 1", Family.MCU_PLUS),
-        ("dynamicRACfarCfg -1 4\ndynamicRangeAngleCfg -1 0.75", Family.PEOPLE_3D),
+        (
+            "dynamicRACfarCfg -1 4 4 2 2 8 12 4 8 4 8 0.4 1 1\ndynamicRangeAngleCfg -1 7 0.1 2 0",
+            Family.PEOPLE_3D,
+        ),
         ("", Family.ANY),
     ],
 )

@@ -128,9 +128,13 @@ def _frame_problems(c: Request, board: "BoardHeader") -> Iterator[Problem]:
     if clutter == "mean" and board.loops == 1:
         right = "should be none with frames of 1 loop (frameCfg), of which a mean leaves nothing"
         yield Problem("processing.clutter", clutter, right)
-    if c.cloud.chain == "board" and not board.has_cfar:
-        right = "should be best: radar.cfg has no cfarCfg of a chain that is simulated"
-        yield Problem("cloud.chain", c.cloud.chain, right)
+    firmware, chain = board.firmware, c.cloud.chain
+    if firmware is None and chain != "best":
+        missing = (*board.missing, "cfarCfg is missing")[0]
+        yield Problem("cloud.chain", chain, f"should be best: radar.cfg: {missing}")
+    elif chain not in ("best", "board", firmware):
+        right = f"should be {firmware} or best: radar.cfg has the commands of that firmware"
+        yield Problem("cloud.chain", chain, right)
 
 
 def _output_problems_of_board(c: Request) -> Iterator[Problem]:

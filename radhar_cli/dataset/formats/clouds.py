@@ -41,6 +41,7 @@ MARS_JOINTS = (
 NECK, HIP_ASIDE, FOOT_AHEAD, FOOT_BELOW = 1 / 3, 0.23, 0.22, 0.2
 ROS_SPLITS = ("Train", "Validation", "Test")  # folders; RadHAR has the first and the last
 ROS_FRAME = "ti_mmwave"
+MAGNITUDES = ("board", "sdk1", "sdk3")  # chains whose intensity is a magnitude
 TI = ("frame", "x", "y", "z", "doppler", "snr", "noise", "track")
 NO_TRACK = 255  # of a point that belongs to nobody
 
@@ -67,7 +68,7 @@ def clouds_of(data: Dataset, row: int) -> Clouds:
     products = data.products
     points, start = products["points"][row], products["points_start"][row]
     snr_db = points[:, 5].astype(float)
-    board = isinstance(data.config, Config) and data.config.cloud.chain == "board"
+    board = isinstance(data.config, Config) and data.config.cloud.chain in MAGNITUDES
     return Clouds(
         frame=np.repeat(np.arange(len(start) - 1), np.diff(start)),
         xyz=_ti_axes(points),

@@ -101,8 +101,10 @@ def _class_counts(rows: "Rows") -> dict[str, int]:
 
 def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
     """Print what a build has written, and where."""
+    from radhar_cli.config.data_set import Config
     from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
     from radhar_cli.dataset.split import split_rows
+    from radhar_cli.products.acceleration import describe_acceleration
 
     folder, rows = outcome.folder, Rows.of(config)
     size = (folder / DATASET).stat().st_size
@@ -125,6 +127,8 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
     samples = counted(outcome.samples, "sample")
     tell(f"{folder / DATASET}: {samples}, {outcome.new_samples} new, {_mib(size)}")
     tell(f"  {rows.counts_text}; " + ", ".join(f"{count} {part}" for part, count in split.items()))
+    if isinstance(config, Config) and (acceleration := describe_acceleration(config)):
+        tell(f"  {acceleration}")
     tell(f"  check it: radhar verify {folder}")
 
 
@@ -153,6 +157,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     from radhar_cli.dataset.estimate import CHECK_SHARE, DRY_RUN_S, AtLeast, Estimate, plan_build
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
+    from radhar_cli.products.acceleration import describe_acceleration
     from radhar_cli.products.table import plan_images
 
     rows = Rows.of(config)
@@ -183,6 +188,8 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     checked = f"{build_plan.checked} of {len(rows)} checked"
     tell(f"scenes      {checked}: {build_plan.redrawn} drawn again{short}")
     _tell_cost(build_plan)
+    if acceleration := describe_acceleration(config):
+        tell(f"            {acceleration}")
     for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")

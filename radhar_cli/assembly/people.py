@@ -5,16 +5,13 @@ comes from streams named by (seed, class, index) and in sizes of the config, 0 f
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
-from math import ceil, inf, pi, radians
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from math import inf, pi, radians
+from typing import NamedTuple
 
 import numpy as np
 
 from radhar_cli.activities.activity import MOVEMENTS
-from radhar_cli.assembly.floor import draw_floor_movements, join_on_floor
-from radhar_cli.assembly.gaits import jogging_gait, other_gaits, running_gait
-from radhar_cli.assembly.gestures import draw_gestures
+from radhar_cli.assembly.floor import join_on_floor
 from radhar_cli.assembly.onset import (
     Bout,
     bout_of,
@@ -25,26 +22,8 @@ from radhar_cli.assembly.onset import (
     stop_onset,
 )
 from radhar_cli.assembly.place import start_of
-from radhar_cli.config.motion import (
-    FallName,
-    Falls,
-    GrabbingConfig,
-    MotionConfig,
-    StrikingConfig,
-)
+from radhar_cli.assembly.repertoire import DrawnRepertoire, low_pass_waves
 from radhar_cli.config.sequence import SequenceConfig, SequenceStep
-from radhar_cli.motion.human.falling import (
-    FallBackward,
-    FallForward,
-    OnFours,
-    Prone,
-    Sitting,
-    Supine,
-)
-from radhar_cli.motion.human.falling_from_seat import FallFromSeat
-from radhar_cli.motion.human.falling_sideways import FallSideways
-from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
-from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import (
     FIDGETS,
     GOLDEN,
@@ -53,35 +32,14 @@ from radhar_cli.motion.human.idle import (
     Fidget,
     Idle,
     Sway,
-    Waves,
-    spread_phases,
 )
-from radhar_cli.motion.human.kicking import Kick
-from radhar_cli.motion.human.lane import Lane
-from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.planted import ELBOWS, LEGS_AND_TRUNK, SHOULDERS
-from radhar_cli.motion.human.punching import Punch
-from radhar_cli.motion.human.repertoire import AROUND, Repertoire
-from radhar_cli.motion.human.sitting import Rise, Seat, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
-from radhar_cli.motion.human.stepping import STUMBLES, StepTo
-from radhar_cli.motion.human.turning import Turn
-from radhar_cli.motion.human.walking import Gait
-from radhar_cli.numerics.arrays import Float
+from radhar_cli.motion.human.stepping import StepTo
 from radhar_cli.scene import Person
 
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
-Fall = FallForward | FallBackward | FallSideways
-M = TypeVar("M", bound="DataclassInstance")  # a movement with a duration
-
-RAGGED_HZ = (0.1, 0.25, 0.4)
-MOST_HZ = 5.0  # repetitions per second: claps
-MIN_STRIDE_S = 0.5  # no stride is shorter
 SHUFFLE_S = 0.9  # duration of a shuffle
 STEP_S = 0.7  # duration of a step towards or from a seat, without that of its length
 STEP_LIFT = 0.06  # height of its foot, m
@@ -179,7 +137,7 @@ def _plan_bout(person: Person) -> _Plan:
     }
     if not bout.from_rest and (rate := rates.get(slug)):
         begin = -(motion.repeating.cycle_phase % 1) / rate
-    repertoire = _repertoire(person, None)
+    repertoire = DrawnRepertoire(person, None)
     movement = repertoire.bout(slug, bout.end - begin, bout.from_rest)
     onset = begin if bout.from_rest else bout_onset(person)
     return _Plan((movement,), begin=begin, onset=onset)
@@ -191,7 +149,7 @@ def _plan_transition(person: Person) -> _Plan:
     duration, start = timing.seat_duration_s, timing.seat_start_s
     if slug == "grabbing":
         duration, start = timing.grab_duration_s, timing.grab_start_s
-    movements = _repertoire(person, duration).activity(person.activity.number)
+    movements = DrawnRepertoire(person, duration).activity(person.activity.number)
     main = movements[0]
     movements = _add_steps(person, movements)
     if start is None:
@@ -207,7 +165,7 @@ def _plan_transition(person: Person) -> _Plan:
 def _plan_rise(person: Person) -> _Plan:
     """Plan rising, and the walk after it."""
     timing, duration = person.timing, person.timing.rise_duration_s
-    movements = _repertoire(person, duration).activity(person.activity.number)
+    movements = DrawnRepertoire(person, duration).activity(person.activity.number)
     begin = timing.rise_start_s
     if begin is None:
         begin = rise_onset(person, duration)
@@ -223,7 +181,7 @@ def _plan_stop(person: Person, physique: Physique) -> _Plan:
     duration = timing.sit_duration_s
     if person.activity.slug == "walking_to_falling":
         duration = timing.fall_duration_s
-    begin, repertoire = 0.0, _repertoire(person, duration)
+    begin, repertoire = 0.0, DrawnRepertoire(person, duration)
     walk, second = repertoire.activity(person.activity.number)
     onset = None
     if timing.walk_stop_s is None:  # a walk that begins as long before
@@ -299,224 +257,9 @@ def movement_of(
 ) -> Movement:
     """Movement of a step of a sequence, after the previous ones; what goes on does so that long."""
     duration = _duration_of(step)
-    repertoire = _repertoire(person, duration, step.place)
+    repertoire = DrawnRepertoire(person, duration, step.place)
     (movement,) = repertoire.sequence([step.name], [going_on if duration is None else duration])
     return join_on_floor(previous, movement)
-
-
-def _punch(striking: StrikingConfig[float], paces: Float, sizes: Float) -> Punch:
-    """Punches of a person, whose times and sizes vary from one to the next."""
-    scale = striking.strike_scale
-    return Punch(
-        frequency=scale * striking.punch_hz,
-        paces=_nonzero_tuple(scale * paces),
-        sizes=_nonzero_tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
-    )
-
-
-def _kick(striking: StrikingConfig[float], paces: Float, sizes: Float) -> Kick:
-    """Kicks of a person, whose times and sizes vary from one to the next."""
-    scale = striking.strike_scale
-    return Kick(
-        frequency=scale * striking.kick_hz,
-        paces=_nonzero_tuple(scale * paces),
-        sizes=_nonzero_tuple(sizes),
-    )
-
-
-def _grab(grabbing: GrabbingConfig[float], duration: float, lags: tuple[Lags, Lags]) -> Grab:
-    """Picking something up, which takes so many seconds without the time at the floor."""
-    return Grab(
-        down=duration * 1.2 / 2.5,
-        dwell=grabbing.dwell_s,
-        up=duration * 1.3 / 2.5,
-        thigh=radians(-62) * grabbing.bend_deg / 72,
-        trunk=radians(grabbing.bend_deg),
-        lowering=lags[0],
-        rising=lags[1],
-    )
-
-
-def _repertoire(person: Person, duration: float | None, place: int = 0) -> Repertoire:
-    """How this person moves.
-
-    Args:
-        person: Person of the scene.
-        duration: Duration of a movement that has one, s; None for the usual one.
-        place: Place of the movement in its sequence, which names its random streams.
-    """
-    motion = person.motion
-    seat = Seat(
-        height=motion.sitting.seat_height,
-        recline=radians(motion.sitting.recline_deg),
-        lap=motion.sitting.hands_on_lap,
-    )
-    rise = Rise(lean=radians(motion.sitting.lean_deg))
-    paces, sizes = _repetitions(person, ceil(MOST_HZ * person.seconds) + 8, place)
-    lags = _lags(person, place)
-    sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
-    floor = draw_floor_movements(person, duration, rise, place)
-    gait = _gait(person, place)
-    return Repertoire(
-        gait=gait,
-        other_gaits=other_gaits(person, gait, place),
-        walk=person.seconds if person.timing.walk_stop_s is None else person.timing.walk_stop_s,
-        punch=_punch(motion.striking, paces, sizes),
-        kick=_kick(motion.striking, paces, sizes),
-        grab=_grab(motion.grabbing, 2.5 if duration is None else duration, lags),
-        sit_down=_with_duration(duration, sitting),
-        stand_up=_with_duration(duration, StandUp(seat=seat, rise=rise, lags=lags[1])),
-        turn=Turn(
-            frequency=motion.rotating.rotation_hz,
-            angle=radians(motion.rotating.turn_deg),
-            paces=_nonzero_tuple(paces),
-            sizes=_nonzero_tuple(sizes),
-        ),
-        run=running_gait(person, place),
-        jog=jogging_gait(person, place),
-        fall=_fall(person, duration),
-        fall_on_hands=_fall(person, duration, caught=True),
-        fall_off_seat=_fall_off_seat(seat, person, 1.0 if duration is None else duration),
-        fall_on_rising=_fall_off_seat(seat, person, 1.7 if duration is None else duration, 0.5),
-        stumble=_with_duration(duration, _stumble(person)),
-        trip=radians(motion.falling.stumble_deg),
-        get_up=_with_duration(duration, GetUp()),
-        try_to_get_up=_with_duration(duration, TryToGetUp()),
-        turn_around=_with_duration(duration, AROUND),
-        **floor._asdict(),
-        **draw_gestures(person, seat, paces, sizes, place)._asdict(),
-        exercise_period=motion.exercises.period,
-        exercise_paces=_nonzero_tuple(paces),
-        exercise_sizes=_nonzero_tuple(motion.exercises.size * np.minimum(sizes, 1.05)),
-    )
-
-
-def _with_duration(duration: float | None, movement: M) -> M:
-    """Movement with another duration (s), unless that is None."""
-    return movement if duration is None else replace(movement, duration=duration)
-
-
-def _lags(person: Person, place: int) -> tuple[Lags, Lags]:
-    """Lags of the joints in going down, and in coming up."""
-    rng = person.stream(f"motion.joint_lag/{place}")
-    share, channels = person.motion.transitions.joint_lag, (*LEGS_AND_TRUNK, *SHOULDERS, *ELBOWS)
-    down, up = (
-        Lags(share, dict(zip(channels, rng.random(len(channels)).tolist(), strict=True)))
-        for _ in range(2)
-    )
-    return down, up
-
-
-def _side(person: Person) -> float:
-    """Side of a fall: 1 to the left, -1 to the right."""
-    return 1.0 if person.stream("motion.fall/side").random() < 0.5 else -1.0
-
-
-def _fall(person: Person, duration: float | None, caught: bool = False) -> Fall:
-    """Fall from standing, broken by the hands or not."""
-    motion = person.motion
-    if _fall_direction(person) == "forward":
-        prone, heels = OnFours() if caught else Prone(), radians(motion.falling.heels_deg)
-        return _with_duration(duration, FallForward(prone=prone, heels=heels))
-    if _fall_direction(person) == "backward":
-        return _with_duration(duration, FallBackward(supine=Sitting() if caught else Supine()))
-    aside = FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)
-    return _with_duration(duration, aside)
-
-
-def _fall_off_seat(
-    seat: Seat, person: Person, total_duration: float, rising_share: float = 0.0
-) -> FallFromSeat | FallSideways:
-    """Fall off a seat.
-
-    Args:
-        seat: Seat of the person.
-        person: Person of the scene.
-        total_duration: Duration with rising, s.
-        rising_share: Share of it for which the person rises first.
-    """
-    rising, duration = rising_share * total_duration, (1 - 0.75 * rising_share) * total_duration
-    if _fall_direction(person) == "sideways":
-        return FallSideways(duration, _side(person), seat=seat, rising=rising)
-    return FallFromSeat(duration, _fall_direction(person) == "forward", rising, seat)
-
-
-def _fall_direction(person: Person) -> FallName:
-    """Direction in which the person falls or stumbles."""
-    direction = person.motion.falling.direction
-    assert not isinstance(direction, Falls)  # drawn with the scene
-    return direction
-
-
-def _stumble(person: Person) -> StepTo:
-    """Stumble in the direction in which the person would fall."""
-    motion = person.motion
-    stumble = STUMBLES[_fall_direction(person)]
-    pitch = radians(motion.falling.stumble_deg)
-    if _fall_direction(person) == "forward":
-        return replace(stumble, pitch=pitch)
-    if _fall_direction(person) == "backward":
-        return replace(stumble, pitch=-0.4 * pitch)
-    side = _side(person)
-    return replace(stumble, place=Place(0.0, side * stumble.place.left), lean=side * 0.4 * pitch)
-
-
-def _gait(person: Person, place: int) -> Gait:
-    """Gait of a walk at some place in a sequence."""
-    motion = person.motion
-    strides = ceil(person.seconds / MIN_STRIDE_S) + 8
-    rng = person.stream(f"motion.speed_variation/{place}")
-    variation = motion.walking.speed_variation
-    # The duration of a stride is the difference of two deviations.
-    jitter, widths = (
-        share * variation * rng.standard_normal(strides) for share in (8**-0.5, 1 / 3)
-    )
-    return Gait(
-        speed=motion.walking.speed_mps,
-        period_scale=motion.walking.period_scale,
-        phase=motion.repeating.cycle_phase,
-        arm_swing=motion.walking.arm_swing,
-        trunk_pitch=radians(motion.walking.trunk_pitch_deg),
-        half_width=motion.walking.step_width / 2,
-        start=motion.walking.speed_up,
-        ragged=_waves(motion, variation, RAGGED_HZ, 0.7),
-        jitter=_nonzero_tuple(np.clip(jitter, -0.03, 0.03)),
-        widths=_nonzero_tuple(np.clip(widths, -0.02, 0.03)),
-        lane=_lane(person, place),
-    )
-
-
-def _lane(person: Person, place: int) -> Lane | None:
-    """Lane of a walker who turns round, a part of which may lie behind them; or None."""
-    motion = person.motion
-    if not (length := motion.walking.lane_m):
-        return None
-    to_left = person.stream(f"motion.lane_m/side/{place}").random() < 0.5
-    first = (1 - motion.walking.lane_start) * length
-    return Lane(length, first, side=1.0 if to_left else -1.0)
-
-
-def _nonzero_tuple(numbers: Float) -> tuple[float, ...]:
-    """Numbers as a tuple, empty where all are 0."""
-    return tuple(numbers.tolist()) if numbers.any() else ()
-
-
-def _repetitions(person: Person, count: int, place: int) -> tuple[Float, Float]:
-    """Pace and size of each repetition over the usual ones, each [count]."""
-    motion = person.motion
-    tempo = person.stream(f"motion.tempo_jitter/{place}").standard_normal(count)
-    size = person.stream(f"motion.size_jitter/{place}").standard_normal(count)
-    paces = np.clip(1 + motion.repeating.tempo_jitter * tempo, 0.7, 1.4)
-    return paces, np.clip(1 + motion.repeating.size_jitter * size, 0.6, 1.15)
-
-
-def _waves(
-    motion: MotionConfig[float], deviation: float, rates: Iterable[float], first: float
-) -> Waves:
-    """Low-pass waves of a standard deviation that have been going on for `motion.idle.phase_s`."""
-    f = tuple(rates)
-    phases = np.array(spread_phases(len(f), first)) + 2 * pi * np.array(f) * motion.idle.phase_s
-    return Waves.low_pass(deviation, tuple(phases % (2 * pi)), f) if deviation else Waves()
 
 
 def idle_of_stream(person: Person, physique: Physique, movements: tuple[Movement, ...]) -> Idle:
@@ -530,8 +273,8 @@ def _idle(person: Person, physique: Physique, plan: _Plan) -> Idle:
     motion = person.motion
     idle_s = motion.idle.phase_s
     sway = Sway(
-        _waves(motion, subject.sway_ahead_m, _SWAY_HZ, 0.0),
-        _waves(motion, subject.sway_aside_m, _SWAY_HZ, 0.3),
+        low_pass_waves(motion, subject.sway_ahead_m, _SWAY_HZ, 0.0),
+        low_pass_waves(motion, subject.sway_aside_m, _SWAY_HZ, 0.3),
     )
     breathing, pulse = subject.breathing_hz, subject.pulse_hz
     breath = Breath(

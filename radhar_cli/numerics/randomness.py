@@ -27,4 +27,8 @@ def stream(seed: int, purpose: int, *key: int, name: str) -> np.random.Generator
         name: the field or the noise, for example ``motion.range_m``.
     """
     spawn_key = (purpose, len(key), *key, zlib.crc32(name.encode()))
+    if all(0 <= number < 2**32 for number in (seed, *key)):
+        # What SeedSequence makes of seed and key, for half of the time that it takes to do so.
+        words = np.array([seed, 0, 0, 0, *spawn_key], np.uint32)
+        return np.random.Generator(np.random.PCG64(np.random.SeedSequence(words)))
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=spawn_key)))

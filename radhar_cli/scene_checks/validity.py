@@ -299,7 +299,11 @@ def _refine_nearest(
     """
     if np.diff(pulses).max() == 1:
         return nearest
-    between = np.sqrt((np.diff(p, axis=2) ** 2).sum(axis=0).max())
+    steps = np.diff(p, axis=2)
+    between = np.hypot.reduce(np.maximum(steps.max(axis=(1, 2)), -steps.min(axis=(1, 2))))
+    if nearest.distance - between > MIN_DISTANCE_M:  # the longest along each axis, to begin with
+        return nearest
+    between = np.sqrt((steps**2).sum(axis=0).max())
     if nearest.distance - between > MIN_DISTANCE_M:
         return nearest
     waveform, antennas = around.waveform, around.antennas

@@ -60,3 +60,13 @@ def test_streams_of_neighbours_are_uncorrelated() -> None:
     assert abs(np.corrcoef(here, there)[0, 1]) < 5 / np.sqrt(count)
     assert abs(np.corrcoef(here, other)[0, 1]) < 5 / np.sqrt(count)
     assert here.mean() == pytest.approx(0.5, abs=5 * np.sqrt(1 / 12 / count))
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2**31 + 5, 2**32 - 1, 2**32, 2**63 - 1])
+@pytest.mark.parametrize("key", [(), (0,), (3, 7, 0), (11, 2**32 - 1), (1, 2**32)])
+def test_it_is_the_stream_of_a_seed_sequence(seed: int, key: tuple[int, ...]) -> None:
+    """However its words are handed over."""
+    spawn_key = (NOISE, len(key), *key, crc32(b"motion.range_m"))
+    right = np.random.PCG64(np.random.SeedSequence(seed, spawn_key=spawn_key))
+    found = stream(seed, NOISE, *key, name="motion.range_m")
+    assert found.bit_generator.state == right.state

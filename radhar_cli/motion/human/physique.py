@@ -49,39 +49,39 @@ class Physique:
         """Stature over that of the smallest grown-up, 1 of grown-ups."""
         return min(self.stature / GROWN_UP, 1.0)
 
-    @property
+    @cached_property
     def quickness(self) -> float:
         """Times and speeds of a child over those of the smallest grown-up: sqrt of `smallness`."""
         return sqrt(self.smallness)
 
-    @property
+    @cached_property
     def _longer_trunk(self) -> float:
         """Factor of the trunk that keeps the stature where legs are shorter."""
         legs, trunk = 2 * self._links["right_knee"][2], self._links["hip"][2]
         lost = SHORTER_LEGS * self.childlike * legs
         return 1 + lost / (trunk - self._links["head"][2])
 
-    @property
+    @cached_property
     def leg(self) -> float:
         """Length of the thigh, and of the shank, m."""
         return -self._links["right_knee"][2] * (1 - SHORTER_LEGS * self.childlike)
 
-    @property
+    @cached_property
     def arm(self) -> float:
         """Length of the upper arm, and of the forearm, m."""
         return -self._links["right_elbow"][2]
 
-    @property
+    @cached_property
     def trunk(self) -> float:
         """Distance from hip to torso, m."""
         return -self._links["hip"][2] * self._longer_trunk
 
-    @property
+    @cached_property
     def neck(self) -> float:
         """Distance from torso to head, m."""
         return self._links["head"][2] * self._longer_trunk
 
-    @property
+    @cached_property
     def shoulder(self) -> float:
         """Distance of a shoulder beside the torso, and above it, m."""
         return self._links["left_shoulder"][1]
@@ -106,7 +106,7 @@ class Physique:
         """Longest distance from hip joint to ankle that a leg gets, m."""
         return self.straightest * 2 * self.leg
 
-    @property
+    @cached_property
     def tallest(self) -> float:
         """Height of the hip above standing legs, m."""
         return self.ankle + self.standing * 2 * self.leg

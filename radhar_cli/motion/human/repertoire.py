@@ -79,32 +79,11 @@ class Repertoire:
 
     def activity(self, number: int) -> tuple[Movement, ...]:
         """Movements of the activity S`number`; what repeats does so from the first instant on."""
-        stopping = Walk(self.gait, self.walk, from_rest=False)
-        movements: dict[int, tuple[Movement, ...]] = {
-            1: (Stand(),),
-            2: (replace(self.punch, duration=inf, from_rest=False),),
-            3: (replace(self.kick, duration=inf, from_rest=False),),
-            4: (self.grab,),
-            5: (self.sit_down,),
-            6: (self.stand_up,),
-            7: (replace(self.turn, duration=inf, from_rest=False),),
-            8: (Walk(self.gait, from_rest=False),),
-            9: (self.stand_up, Walk(self.gait)),
-            10: (stopping, self.sit_down),
-            11: (self.get_up, Walk(self.gait)),
-            12: (stopping, self.fall),
-        }
-        return movements[number]
+        return ACTIVITIES[number](self)
 
     def bout(self, name: str, duration: float, from_rest: bool) -> Movement:
         """Punching, kicking, rotating or walking for `duration` s, steadily or from rest."""
-        bouts: dict[str, Walk | Punch | Kick | Turn] = {
-            "punching": self.punch,
-            "kicking": self.kick,
-            "body_rotating": self.turn,
-            "walking": Walk(self.gait),
-        }
-        return replace(bouts[name], duration=duration, from_rest=from_rest)
+        return replace(BOUTS[name](self), duration=duration, from_rest=from_rest)
 
     def sequence(self, names: Sequence[str], durations: Sequence[float]) -> tuple[Movement, ...]:
         """Movements of `activity.MOVEMENTS` by name, one after the other, each from rest.
@@ -139,6 +118,27 @@ class Repertoire:
         )
 
 
+# What is made of a repertoire, of which nothing else is worked out.
+BOUTS: dict[str, Callable[[Repertoire], Walk | Punch | Kick | Turn]] = {
+    "punching": lambda person: person.punch,
+    "kicking": lambda person: person.kick,
+    "body_rotating": lambda person: person.turn,
+    "walking": lambda person: Walk(person.gait),
+}
+ACTIVITIES: dict[int, Callable[[Repertoire], tuple[Movement, ...]]] = {
+    1: lambda person: (Stand(),),
+    2: lambda person: (person.bout("punching", inf, from_rest=False),),
+    3: lambda person: (person.bout("kicking", inf, from_rest=False),),
+    4: lambda person: (person.grab,),
+    5: lambda person: (person.sit_down,),
+    6: lambda person: (person.stand_up,),
+    7: lambda person: (person.bout("body_rotating", inf, from_rest=False),),
+    8: lambda person: (person.bout("walking", inf, from_rest=False),),
+    9: lambda person: (person.stand_up, Walk(person.gait)),
+    10: lambda person: (Walk(person.gait, person.walk, from_rest=False), person.sit_down),
+    11: lambda person: (person.get_up, Walk(person.gait)),
+    12: lambda person: (Walk(person.gait, person.walk, from_rest=False), person.fall),
+}
 # How a person makes each movement of a sequence, from a repertoire and a duration, s.
 # `activities.activity.MOVEMENTS` has the states that it begins and ends in.
 MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from radhar_cli.numerics.arrays import Complex, Index
+from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 
@@ -113,7 +113,7 @@ class RangeBins(FastTime):
     def rank(self) -> int:
         if self.white:
             return self.rows
-        return self.waveform.n_adc if self.bins is None else self._colour.shape[1]
+        return self.waveform.n_adc if self.bins is None else min(self.rows, self.waveform.n_adc)
 
     def __call__(self, s: Complex) -> Complex:
         return range_compression(s, self.waveform, self._bins)
@@ -122,17 +122,28 @@ class RangeBins(FastTime):
         if self.white:
             v *= scale * np.sqrt(self.waveform.n_adc)
             return v
-        v *= scale
-        return self(v) if self.bins is None else self._colour @ v
+        if self.rank == self.waveform.n_adc:  # as many numbers as samples: these themselves
+            v *= scale
+            return self(v)
+        assert self.bins is not None
+        real: Any = v.real.dtype
+        factor = _colour_factor(self.waveform, self.rows, real)
+        coloured = (factor @ np.ascontiguousarray(v).view(real)).view(v.dtype)
+        middle = (self.waveform.n_adc - 1) / 2 - self.waveform.n0
+        k = np.arange(self.bins.start, self.bins.stop)[:, None]
+        turned: Complex = coloured * (
+            scale * np.exp(2j * np.pi * np.mod(k * middle / self.waveform.n_fft, 1))
+        )
+        return turned
+
+    def consecutive(self, first: int, stop: int) -> "RangeBins":
+        """Range bins of the rows first .. stop - 1 of these."""
+        begin = self._bins.start or 0
+        return replace(self, bins=slice(begin + first, begin + stop))
 
     @property
     def _bins(self) -> slice:
         return slice(None) if self.bins is None else self.bins
-
-    @property
-    def _colour(self) -> Complex:
-        assert self.bins is not None
-        return _colour(self.waveform, self.bins.start, self.bins.stop)
 
 
 @dataclass(frozen=True)
@@ -153,16 +164,27 @@ class ProfileSamples(RangeBins):
         return v
 
 
-@lru_cache(maxsize=4)
-def _colour(waveform: Waveform, first: int, stop: int) -> Complex:
-    """Factor R^H of W W^H for bins first .. stop - 1.
+def _colour_factor(waveform: Waveform, count: int, real: Any) -> Float:
+    """Factor L [count, count] of the covariance of consecutive bins, fewer than samples.
 
-    It is sum_n w[n]^2 exp(j 2 pi (k - k')(n - n0)/N_FFT).
+    Referred to the middle of the samples it is the real L L^T = sum_n w[n]^2 cos(2 pi (k - k') (n -
+    (N_ADC - 1)/2)/N_FFT), wherever the bins are. L is lower triangular, so that the factor of fewer
+    bins is a part of it.
     """
-    n = np.arange(waveform.n_adc) - waveform.n0
-    w = np.exp(2j * np.pi * np.mod(np.outer(np.arange(first, stop), n) / waveform.n_fft, 1))
-    w *= waveform.window.weights(waveform.n_adc)
-    return np.linalg.qr(w.conj().T).R.conj().T
+    size = max(16, 1 << (count - 1).bit_length())  # so that few are worked out
+    return _lower_factor(waveform, size, real)[:count, :count]
+
+
+@lru_cache(maxsize=8)
+def _lower_factor(waveform: Waveform, count: int, real: Any) -> Float:
+    """Factor L [count, 2 N_ADC or less] of `_colour_factor`."""
+    n = np.arange(waveform.n_adc)[:, None] - (waveform.n_adc - 1) / 2
+    angle = 2 * np.pi * np.mod(n * np.arange(count) / waveform.n_fft, 1)
+    waves = np.concatenate([np.cos(angle), np.sin(angle)])
+    waves *= np.tile(waveform.window.weights(waveform.n_adc), 2)[:, None]
+    upper: Any = np.linalg.qr(waves, mode="r")
+    factor: Float = upper.T.astype(real)
+    return factor
 
 
 @lru_cache(maxsize=4)
@@ -196,6 +218,9 @@ class Look:
     taps: tuple[float, ...] = (1.0,)  # taps of the canceller
     # where rows are drawn one after the other, the pulses of each that count
     spans: Sequence[slice] | None = None
+    # of all pulses of a recording those that are looked at once its mean is taken out: the others
+    # count by their sum alone
+    shown: Index | None = None
     # state of each impairment from one block of pulses to the next, by its id
     _states: dict[int, tuple[object, Any]] = field(default_factory=dict, repr=False)
 

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from radhar_cli.processing.canceller import Canceller, Fir
+from radhar_cli.processing.canceller import Canceller, Fir, MeanRemoval
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.signal import shown_pulses
 from radhar_cli.radar.waveform import Waveform
@@ -12,7 +12,7 @@ def look_at_profiles(waveform: Waveform, canceller: Canceller, width: int) -> Lo
     """Look at the range bins that a range-time map shows.
 
     After a `Fir` these are the pulses of the map's columns; before another canceller all pulses,
-    on which its output depends.
+    on which its output depends. Of the pulses that are not shown, the mean depends on the sum.
 
     Args:
         waveform: waveform of the radar.
@@ -21,7 +21,9 @@ def look_at_profiles(waveform: Waveform, canceller: Canceller, width: int) -> Lo
     """
     if not isinstance(canceller, Fir):
         spans = [slice(0, waveform.n_pulses)] * waveform.n_bins
-        return Look.of_all("range_signals", RangeBins(waveform), spans=spans)
+        look = Look.of_all("range_signals", RangeBins(waveform), spans=spans)
+        by_sum = isinstance(canceller, MeanRemoval)
+        return replace(look, shown=shown_pulses(look.count, width)) if by_sum else look
     pulses = shown_pulses(waveform.n_pulses - canceller.lost, width)
     from_start = replace(waveform, centred=False)  # of which the power is the same, for less work
     return Look("range_profiles", RangeBins(from_start), pulses, canceller.taps)

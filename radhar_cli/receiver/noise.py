@@ -2,12 +2,15 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from radhar_cli.numerics.arrays import Complex
-from radhar_cli.processing.look import Look
+from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.receiver.impairment import Impairment
+
+CHUNK = 2**17  # numbers drawn at once where range bins are correlated
 
 
 def noise_variance(signal_power: float, snr_db: float) -> float:
@@ -39,6 +42,8 @@ def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Com
     such; else the pulses that they need are drawn and cancelled.
     """
     fast, rank, reach = look.fast, look.fast.rank, len(look.taps) - 1
+    if reach == 0 and isinstance(fast, RangeBins) and _are_few_and_correlated(fast, look):
+        return _correlated_noise(fast, look, rng, sigma)
     if look.spans is not None and fast.white:
         v = np.zeros((rank, look.count), complex)
         for row, span in zip(v, look.spans, strict=True):
@@ -54,6 +59,35 @@ def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Com
     return fast.colour(v, sigma)
 
 
+def _are_few_and_correlated(bins: RangeBins, look: Look) -> bool:
+    """Whether noise is correlated over fewer bins than there are samples, at many pulses."""
+    many = look.spans is not None or bins.bins is not None
+    return many and not bins.white and bins.rows < bins.waveform.n_adc
+
+
+def _correlated_noise(
+    bins: RangeBins, look: Look, rng: np.random.Generator, sigma: float
+) -> Complex:
+    """White noise in range bins that it is not independent in [K, M].
+
+    Stretch by stretch of the pulses, in the bins that count there, in single precision, as it is
+    drawn.
+    """
+    spans = look.spans or [slice(0, look.count)] * bins.rows
+    begin, end = np.array([(span.start, span.stop) for span in spans]).T
+    longest = max(1, CHUNK // bins.rows)
+    edges = np.unique(np.concatenate([begin, end, np.arange(0, look.count, longest)]))
+    x = np.zeros((bins.rows, look.count), complex)
+    for start, stop in pairwise(edges.tolist()):
+        rows = np.flatnonzero((begin <= start) & (stop <= end))
+        if rows.size:
+            first, last = int(rows[0]), int(rows[-1]) + 1
+            part = bins.consecutive(first, last)
+            v = circular_gaussian(rng, (part.rank, stop - start), single=True)
+            x[first:last, start:stop] = part.colour(v, sigma)
+    return x
+
+
 @dataclass(frozen=True)
 class WhiteNoise(Impairment):
     """White noise of a receive channel."""
@@ -64,9 +98,17 @@ class WhiteNoise(Impairment):
     def apply(self, x: Complex, look: Look) -> Complex:
         """Add sigma v to x [K, M], v of covariance W W^H.
 
-        Blocks of any length have the same raw samples.
+        Blocks of any length have the same raw samples. Of pulses that count by their sum alone one
+        gets the noise of all.
         """
-        noisy = white_noise(look, look.state_of(self, self.stream), self.sigma)
+        rng = look.state_of(self, self.stream)
+        if look.shown is not None and (others := look.count - look.shown.size):
+            columns = np.append(look.shown, np.setdiff1d(np.arange(look.count), look.shown)[0])
+            v = circular_gaussian(rng, (columns.size, look.fast.rank)).T
+            v[:, -1] *= np.sqrt(others)
+            x[:, columns] += look.fast.colour(v, self.sigma)
+            return x
+        noisy = white_noise(look, rng, self.sigma)
         noisy += x
         return noisy
 

@@ -12,11 +12,12 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import load_config
 from radhar_cli.echo.gated import kernel, windowed_kernel
 from radhar_cli.errors import ConfigError
+from radhar_cli.processing.canceller import MeanRemoval
 from radhar_cli.processing.look import Look, RangeBins, RangeSum, noise_gain
 from radhar_cli.products.run import Results, record
 from radhar_cli.radar.chirp_window import ChirpWindow, WindowName
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.receiver.noise import white_noise
+from radhar_cli.receiver.noise import WhiteNoise, white_noise
 from radhar_cli.scene import draw_scene
 from radhar_cli.scene_checks.visibility import cell_gain_db
 
@@ -78,6 +79,43 @@ def test_noise_has_the_covariance_of_the_window_and_the_power_of_none(name, bins
     exact = compression @ compression.conj().T
     assert np.diag(exact).real == pytest.approx(w.n_adc, rel=1e-12)
     assert np.abs(found - exact).max() < 6 * w.n_adc / np.sqrt(x.shape[1])
+
+
+@pytest.mark.parametrize("fft_length", [None, 512])
+@pytest.mark.parametrize("name", ["hann", "chebyshev"])
+def test_noise_in_the_bins_that_count_has_the_covariance_of_the_window(name, fft_length):
+    """Wherever these bins are, and in whatever stretches of the pulses."""
+    w = replace(WAVEFORM, window=ChirpWindow(name), fft_length=fft_length)
+    compression = RangeBins(w, slice(3, 9))(np.eye(w.n_adc, dtype=complex))
+    exact = compression @ compression.conj().T
+    spans = [slice(0, 0), *[slice(0, 30000)] * 2, slice(20000, 60000), slice(30000, 60000)]
+    look = Look("noise", RangeBins(w, slice(3, 9)), range(60000), spans=[*spans, slice(0, 60000)])
+    x = white_noise(look, np.random.default_rng(1))
+    for pulses in (slice(0, 20000), slice(20000, 30000), slice(30000, 60000)):
+        rows = [k for k, span in enumerate(look.spans) if span.start <= pulses.start < span.stop]
+        some = x[rows, pulses]
+        found = some @ some.conj().T / some.shape[1]
+        assert np.abs(found - exact[np.ix_(rows, rows)]).max() < 6 * w.n_adc / np.sqrt(
+            some.shape[1]
+        )
+        later = some[:, 1:] @ some[:, :-1].conj().T / some.shape[1]
+        assert np.abs(later).max() < 6 * w.n_adc / np.sqrt(some.shape[1])
+
+
+@pytest.mark.parametrize("name", ["rectangular", "hann"])
+def test_pulses_that_count_by_their_sum_alone_get_the_noise_of_all(name):
+    """After the mean is taken out, the pulses shown have the covariance I - 1/M."""
+    w = replace(WAVEFORM, window=ChirpWindow(name), duration=12e-3)
+    shown, total = np.array([1, 4, 8]), np.zeros((3, 3), complex)
+    for seed in range(400):
+        look = replace(Look.of_all("noise", RangeBins(w)), shown=shown)
+        white = WhiteNoise(0.5, lambda _, seed=seed: np.random.default_rng(seed))
+        x = white.apply(np.zeros((w.n_bins, w.n_pulses), complex), look)
+        assert np.count_nonzero(x.any(axis=0)) == shown.size + 1
+        y = MeanRemoval()(x)[:, shown]
+        total += y.T @ y.conj() / (400 * w.n_bins * w.n_adc * 0.25)
+    assert w.n_pulses == 12
+    assert np.abs(total - (np.eye(3) - 1 / 12)).max() < 6 * 2 / np.sqrt(400 * w.n_bins)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -220,7 +220,7 @@ class Look:
     spans: Sequence[slice] | None = None
     # of all pulses of a recording those that are looked at once its mean is taken out: the others
     # count by their sum alone
-    shown: Index | None = None
+    columns: Index | None = None
     # state of each impairment from one block of pulses to the next, by its id
     _states: dict[int, tuple[object, Any]] = field(default_factory=dict, repr=False)
 

@@ -23,7 +23,7 @@ def look_at_profiles(waveform: Waveform, canceller: Canceller, width: int) -> Lo
         spans = [slice(0, waveform.n_pulses)] * waveform.n_bins
         look = Look.of_all("range_signals", RangeBins(waveform), spans=spans)
         by_sum = isinstance(canceller, MeanRemoval)
-        return replace(look, shown=shown_pulses(look.count, width)) if by_sum else look
+        return replace(look, columns=shown_pulses(look.count, width)) if by_sum else look
     pulses = shown_pulses(waveform.n_pulses - canceller.lost, width)
     from_start = replace(waveform, centred=False)  # of which the power is the same, for less work
     return Look("range_profiles", RangeBins(from_start), pulses, canceller.taps)

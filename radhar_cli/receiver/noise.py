@@ -102,8 +102,8 @@ class WhiteNoise(Impairment):
         gets the noise of all.
         """
         rng = look.state_of(self, self.stream)
-        if look.shown is not None and (others := look.count - look.shown.size):
-            columns = np.append(look.shown, np.setdiff1d(np.arange(look.count), look.shown)[0])
+        if look.columns is not None and (others := look.count - look.columns.size):
+            columns = np.append(look.columns, np.setdiff1d(np.arange(look.count), look.columns)[0])
             v = circular_gaussian(rng, (columns.size, look.fast.rank)).T
             v[:, -1] *= np.sqrt(others)
             x[:, columns] += look.fast.colour(v, self.sigma)

@@ -108,7 +108,7 @@ def test_pulses_that_count_by_their_sum_alone_get_the_noise_of_all(name):
     w = replace(WAVEFORM, window=ChirpWindow(name), duration=12e-3)
     shown, total = np.array([1, 4, 8]), np.zeros((3, 3), complex)
     for seed in range(400):
-        look = replace(Look.of_all("noise", RangeBins(w)), shown=shown)
+        look = replace(Look.of_all("noise", RangeBins(w)), columns=shown)
         white = WhiteNoise(0.5, lambda _, seed=seed: np.random.default_rng(seed))
         x = white.apply(np.zeros((w.n_bins, w.n_pulses), complex), look)
         assert np.count_nonzero(x.any(axis=0)) == shown.size + 1

@@ -19,7 +19,6 @@ from radhar_cli.radar.detection import Cfar, Detection
 
 COLUMNS = ("x", "y", "z", "doppler", "intensity", "snr_db", "range_index", "doppler_index")
 BINS = 64  # bins of the angle FFT
-MAX_POINTS = 64  # most points of a frame
 NOISE_LSB = 1.5  # rms of a Doppler cell's noise in units of the fixed-point numbers
 XYZ_STEP = 2.0**-10  # m
 NOISE_FRAMES = 8  # frames from which the noise is estimated
@@ -91,11 +90,11 @@ def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, st
     if detection.along_doppler is not None:
         over = _above(d, detection.along_doppler, axis=0)
         hit &= over > detection.along_doppler.threshold_db
-    hit &= _peaks(d, detection.grouping)
+    hit &= _peaks(d, detection.grouping, detection.demo.groups_diagonally)
     hit[:, : detection.first_bin] = False
     if detection.last_bin is not None:
         hit[:, detection.last_bin + 1 :] = False
-    doppler, ranges = (bins[:MAX_POINTS] for bins in np.nonzero(hit))
+    doppler, ranges = (bins[: detection.demo.max_points] for bins in np.nonzero(hit))
     symbols = x[doppler, :, ranges]  # [n, virtual]
     if lsb > 0:
         symbols = np.round(symbols.real / lsb) + 1j * np.round(symbols.imag / lsb)
@@ -109,13 +108,16 @@ def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, st
     symbols = symbols * np.exp(-2j * np.pi * turn)
     if lsb > 0:
         symbols = np.trunc(symbols.real) + 1j * np.trunc(symbols.imag)
-    n, intensity, right, up = _angles(symbols, board, detection.second_peak, lsb > 0)
+    n, intensity, right, up = _angles(symbols, board, detection, lsb > 0)
     r = np.maximum(ranges[n] * board.range_step - detection.bias, 0)
     aside, z = r * right, r * up
     places = np.stack([np.sqrt(np.maximum(r * r - aside * aside - z * z, 0)), -aside, z])
     if lsb > 0:
         places = np.round(places / XYZ_STEP) * XYZ_STEP
-    about = -signed[n] * step, intensity, snr[doppler[n], ranges[n]], ranges[n], -signed[n]
+    snr_db = snr[doppler[n], ranges[n]] * detection.demo.snr_scale
+    if lsb > 0 and detection.demo.snr_step_db > 0:
+        snr_db = np.round(snr_db / detection.demo.snr_step_db) * detection.demo.snr_step_db
+    about = -signed[n] * step, intensity, snr_db, ranges[n], -signed[n]
     points = np.stack([*places, *about], axis=1)
     return points[_in_view(points, detection)]
 
@@ -143,28 +145,34 @@ def _above(d: Float, cfar: Cfar, axis: int) -> Float:
     return np.moveaxis(above, -1, axis)
 
 
-def _peaks(d: Float, grouping: tuple[bool, bool]) -> Bool:
-    """Whether cells [Doppler, range] are not below their neighbours; Doppler closes on itself."""
+def _peaks(d: Float, grouping: tuple[bool, bool], diagonally: bool) -> Bool:
+    """Whether cells [Doppler, range] are not below their neighbours; Doppler closes on itself.
+
+    Args:
+        d: Decibels [Doppler, range].
+        grouping: Whether neighbours along range, and along Doppler, are compared.
+        diagonally: Whether, with both, those across both axes are compared too.
+    """
     is_peak = np.ones(d.shape, bool)
     wide = np.pad(d, ((0, 0), (1, 1)), constant_values=-np.inf)
     wide = np.concatenate([wide[-1:], wide, wide[:1]])
     rows = (-1, 0, 1) if grouping[1] else (0,)
     columns = (-1, 0, 1) if grouping[0] else (0,)
     for i in rows:
-        for j in columns:
+        for j in columns if diagonally or i == 0 else (0,):
             is_peak &= d >= wide[1 + i : 1 + i + len(d), 1 + j : 1 + j + d.shape[1]]
     return is_peak
 
 
 def _angles(
-    symbols: Complex, board: Board, second: float | None, integer: bool
+    symbols: Complex, board: Board, detection: Detection, integer: bool
 ) -> tuple[Index, Float, Float, Float]:
     """Directions of the first peak over angle of each symbol, and of second peaks.
 
     Args:
         symbols: Samples [n, virtual] of the detected cells.
         board: The board.
-        second: Least height of a second peak over the first; None for no second peaks.
+        detection: Detection settings: least height of a second peak, most points.
         integer: Whether heights are whole numbers.
 
     Returns:
@@ -178,13 +186,14 @@ def _angles(
     heights = np.floor(heights) if integer else heights
     n = np.arange(len(symbols))
     bins = heights.argmax(axis=1)
+    second = detection.second_peak
     if second is not None:
         other_heights = np.where(_flanks(heights, bins), -1, heights)
         least, second_bins = second * heights[n, bins], other_heights.argmax(axis=1)
         with_second = np.flatnonzero(
             other_heights[n, second_bins] > (np.floor(least) if integer else least)
         )
-        with_second = with_second[: MAX_POINTS - n.size]
+        with_second = with_second[: detection.demo.max_points - n.size]
         n, bins = np.concatenate([n, with_second]), np.concatenate([bins, second_bins[with_second]])
     right = 2 * np.where(bins < BINS // 2, bins, bins - BINS) / BINS
     up = np.zeros(n.size)

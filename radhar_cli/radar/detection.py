@@ -29,6 +29,26 @@ class Cfar(NamedTuple):
     threshold_db: float
 
 
+class Demo(NamedTuple):
+    """What tells the firmware of one out-of-box demo from another's.
+
+    Attributes:
+        max_points: Most points of a frame.
+        groups_diagonally: Whether peak grouping along both axes compares eight neighbours, and not
+            four.
+        snr_scale: SNR of a point over the decibels of the CFAR.
+        snr_step_db: Step of the SNR of points, dB; 0 for none.
+    """
+
+    max_points: int = 64
+    groups_diagonally: bool = True
+    snr_scale: float = 1.0
+    snr_step_db: float = 0.0
+
+
+DEMO_OF_SDK_1 = Demo()
+
+
 @dataclass(frozen=True)
 class Detection:
     """Detection settings of a .cfg.
@@ -47,6 +67,7 @@ class Detection:
         elevation_deg: Limits of elevation.
         range_m: Limits of range.
         doppler_mps: Limits of radial speed, positive receding.
+        demo: What the firmware does that no line of the .cfg sets.
     """
 
     along_range: Cfar
@@ -62,10 +83,20 @@ class Detection:
     elevation_deg: tuple[float, float] | None = None
     range_m: tuple[float, float] | None = None
     doppler_mps: tuple[float, float] | None = None
+    demo: Demo = DEMO_OF_SDK_1
 
     def without_limits(self) -> "Detection":
         """Return the detection without limits of angles, range and speed."""
         return replace(self, azimuth_deg=None, elevation_deg=None, range_m=None, doppler_mps=None)
+
+
+def demo_of_sdk3(channels: int) -> Demo:
+    """The out-of-box demo of SDK 3 (`objdetrangehwa`), for a number n of virtual channels.
+
+    Its sum of logarithms over n channels is divided by 2^ceil(log2 n), which the threshold takes
+    into account and the SNR of points does not: 12/16 of the decibels of an IWR6843.
+    """
+    return Demo(500, False, channels / 2 ** ceil(log2(channels)), 0.1)
 
 
 def ti_threshold_db(value: float, channels: int) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeAlias
 
-from radhar_cli.radar.detection import CASO, Cfar, Detection, ti_threshold_db
+from radhar_cli.radar.detection import CASO, Cfar, Detection, demo_of_sdk3, ti_threshold_db
 from radhar_cli.radar.ti_commands import ALL_SUBFRAMES, SUBFRAME, CfgLine, Effect
 
 Numbers: TypeAlias = Mapping[str, float]
@@ -44,7 +44,10 @@ def read_detection(
 def _set_cfar(
     detection: Detection, line: CfgLine, numbers: Numbers, channels: int, bins: int
 ) -> Detection:
-    """Set the CFAR of an axis; the line of SDK 3 has decibels, and the peak grouping, too."""
+    """Set the CFAR of an axis; the line of SDK 3 has decibels, and the peak grouping, too.
+
+    With that line come the other habits of its firmware.
+    """
     window, guard = int(numbers["winLen"]), int(numbers["guardLen"])
     scale, grouping = numbers["thresholdScale"], numbers.get("peakGroupingEn")
     threshold_db = ti_threshold_db(scale, channels) if grouping is None else scale
@@ -56,6 +59,7 @@ def _set_cfar(
             "winLen", window, f"less: {window + guard} cells on each side do not fit {bins} bins"
         )
     if grouping is not None:
+        detection = replace(detection, demo=demo_of_sdk3(channels))
         axes = list(detection.grouping)
         axes[along_doppler] = bool(grouping)
         detection = replace(detection, grouping=(axes[0], axes[1]))

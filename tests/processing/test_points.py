@@ -10,9 +10,20 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.processing.points import COLUMNS, board_points
+from radhar_cli.processing.points import COLUMNS, _peaks, board_points
 from radhar_cli.radar.board import DEVICES
-from radhar_cli.radar.detection import CA, CAGO, CASO, Cfar, Detection, ti_threshold_db
+from radhar_cli.radar.detection import (
+    CA,
+    CAGO,
+    CASO,
+    Cfar,
+    Demo,
+    Detection,
+    demo_of_sdk3,
+    ti_threshold_db,
+)
+from radhar_cli.radar.ti_commands import split_lines
+from radhar_cli.radar.ti_detection import read_detection
 
 DETECTION = Detection(
     Cfar(CASO, 8, 4, False, ti_threshold_db(1130, 12)),
@@ -150,3 +161,36 @@ def test_signs_of_the_feeds_are_taken_out_once() -> None:
         detection = replace(STANDING, coefficients=coefficients)
         best = points((2, 0.4, 0.3), (0, 0, 0), detection, array=array)[0]
         np.testing.assert_allclose(best[:3], (2, 0.4, 0.3), atol=0.09)
+
+
+SDK_3 = replace(DETECTION, grouping=(True, True), demo=demo_of_sdk3(12))
+
+
+def test_grouping_of_sdk_3_compares_four_neighbours() -> None:
+    d = np.zeros((8, 16))
+    d[2, 5], d[3, 6], d[2, 7] = 20.0, 15.0, 12.0  # each a neighbour of the one before
+    assert np.argwhere(_peaks(d, (True, True), True) & (d > 0)).tolist() == [[2, 5]]
+    four = np.argwhere(_peaks(d, (True, True), False) & (d > 0))
+    assert four.tolist() == [[2, 5], [2, 7], [3, 6]]
+
+
+def test_points_of_sdk_3_have_the_snr_of_its_column() -> None:
+    scatterers = [[1.5 + 0.2 * n, 0.3 * n - 1, 0.1] for n in range(8)]
+    cube, board = cube_of(scatterers, [[0.6, 0, 0]] * 8, snr_db=0.0)
+    as_sdk_1 = board_points(cube, board, replace(SDK_3, demo=Demo(500, False)), True).points
+    as_sdk_3 = board_points(cube, board, SDK_3, True).points
+    assert len(as_sdk_3) == len(as_sdk_1) > 3
+    np.testing.assert_allclose(as_sdk_3[:, 5], as_sdk_1[:, 5] * 0.75, atol=0.051)
+    np.testing.assert_allclose(as_sdk_3[:, 5] * 10, np.round(as_sdk_3[:, 5] * 10), atol=1e-4)
+    assert as_sdk_3[:, 5].min() >= 0.75 * SDK_3.along_range.threshold_db - 0.05
+    unrounded = board_points(cube, board, SDK_3, False).points
+    assert (np.abs(unrounded[:, 5] * 10 - np.round(unrounded[:, 5] * 10)) > 1e-3).any()
+
+
+def test_frames_of_sdk_3_have_more_than_64_points() -> None:
+    lines = split_lines("cfarCfg -1 0 0 8 4 4 0 1 0\ncfarCfg -1 1 0 8 4 4 1 1 0\n", "cfg")
+    detection = read_detection(lines, 12, 128)
+    assert (detection.demo.max_points, detection.demo.snr_scale) == (500, 0.75)
+    assert read_detection(lines, 8, 128).demo.snr_scale == 1
+    cube, board = cube_of([[2.0, 0, 0]], [[0.6, 0, 0]], snr_db=-10.0)
+    assert 64 < board_points(cube, board, detection, True).start[-1] <= 500

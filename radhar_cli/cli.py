@@ -20,7 +20,7 @@ COMMANDS = {
     "Look": ("simulate", "motion", "preview", "view", "inspect"),
     "Real radars": ("import", "process", "fit", "compare"),
     "Learn": ("train", "eval", "predict", "adapt", "export"),
-    "Settings": ("tradeoff",),
+    "Settings": ("tradeoff", "limits"),
 }
 MODULES = {"import": "import_", "eval": "evaluate"}  # and functions; of the others as the command
 STATUSES = (

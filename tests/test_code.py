@@ -41,6 +41,7 @@ PACKAGES = (
     "two_sample",
     "audit",
     "tradeoff",
+    "limits",
     "commands",
     "cli",
     "__main__",

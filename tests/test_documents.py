@@ -56,6 +56,7 @@ SMALL = {
     "adapt": {"--epochs": "1"},
     "verify": {"--samples": "1"},
     "simulate": {"--set": "duration_s=3"},
+    "limits": {"--minutes": "0.05"},
 }
 # What SLURM would say.
 ENVIRONMENT = {

@@ -164,6 +164,15 @@ def _load(
     kind: type[S], path: Path | None, overrides: Iterable[str | Override]
 ) -> tuple[S, Places, Options]:
     """Read a config, the places of its keys, and the options that gave some of them."""
+    document, places, options = _read_values(path, overrides)
+    where = str(path) if path else ", ".join(dict.fromkeys(options.values())) or "the defaults"
+    return validated(kind, document, where, places, options), places, options
+
+
+def _read_values(
+    path: Path | None, overrides: Iterable[str | Override]
+) -> tuple[dict[str, Any], Places, Options]:
+    """Read the plain values of a config, their places, and the options that gave some of them."""
     parsed = [Override.parse(one) if isinstance(one, str) else one for one in overrides]
     of_base: dict[str, Any] = {}
     for override in parsed:
@@ -179,8 +188,42 @@ def _load(
         if override.key == "radar.cfg":
             places[FILE_OF_CFG] = name_of_cfg(parse_yaml(override.text, override.option)[0])
         options[override.key] = override.option
-    where = str(path) if path else ", ".join(dict.fromkeys(options.values())) or "the defaults"
-    return validated(kind, document, where, places, options), places, options
+    return document, places, options
+
+
+def read_values(path: Path, overrides: Iterable[str | Override] = ()) -> dict[str, Any]:
+    """Read the plain values of a config file and its bases under overrides, unchecked.
+
+    Args:
+        path: YAML file.
+        overrides: as of `load_config`.
+
+    Raises:
+        ConfigError: a file cannot be read, or is no YAML.
+    """
+    return _read_values(path, overrides)[0]
+
+
+def config_of_values(values: dict[str, Any], folder: Path) -> Config:
+    """Make a config of plain values, whose messages name keys but no file.
+
+    Args:
+        values: as `read_values` returns them, changed or not.
+        folder: folder from which files of motion are named.
+
+    Raises:
+        ConfigError: they are no config.
+    """
+
+    def refuse(key: str, value: object, right: str) -> ConfigError:
+        return ConfigError(f"{key}{_value_and_advice(Problem(key, value, right))}")
+
+    try:
+        config = validated(Config, values, "", {})
+    except ConfigError as error:
+        lines = str(error).splitlines()
+        raise ConfigError("\n".join(line.removeprefix(": ") for line in lines)) from None
+    return resolve_files(config, folder, refuse)
 
 
 def validated(

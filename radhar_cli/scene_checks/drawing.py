@@ -26,8 +26,16 @@ CROWDED = "their motion.place, or motion.range_m and cross_range_m, should leave
 DRAWS_OF = {Redrawn.NOTHING: 1, Redrawn.NUMBERS: FAR_DRAWS, Redrawn.CHOICES: FAR_CHOICES}
 
 
-def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Scene, Flags]:
+def draw_valid_scene(
+    config: Config, activity: Activity, index: int, attempts: int = MAX_ATTEMPTS
+) -> tuple[Scene, Flags]:
     """Draw one sample, check it and apply `on_invalid`; return it and what to warn of.
+
+    Args:
+        config: config of the data set.
+        activity: class of the sample.
+        index: number of the sample within its class.
+        attempts: most draws of the sample's own person.
 
     Raises:
         SceneError: a scatterer too close to an antenna (unless redrawn), any scene outside the
@@ -42,11 +50,7 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
             return _add_others(config, scene, check.flags)
         misses.append(check.miss)
-        if (
-            len(misses) == MAX_ATTEMPTS
-            or config.on_invalid != "redraw"
-            or is_hopeless(misses, draws)
-        ):
+        if len(misses) >= attempts or config.on_invalid != "redraw" or is_hopeless(misses, draws):
             break
     reason = f"{check.invalid}{_describe_place(scene.people[0])}"
     cure = suggest_cure(scene.people[0], check)

@@ -54,14 +54,14 @@ def limits(
         write_report,
     )
     from radhar_cli.limits.study import study_limits
-    from radhar_cli.limits.trial import Trial
+    from radhar_cli.limits.trial import ConfigTrial
     from radhar_cli.processes.worker_process import prepare_process
 
     if out is not None:
         refuse_file(out)
         refuse_to_replace_results(out, FILES, overwrite)
     prepare_process()
-    trial = Trial.of_file(config, set_ or ())
+    trial = ConfigTrial.of_file(config, set_ or ())
     with BarProgress("limit") as progress:
         study = study_limits(trial, key, 60 * minutes, progress)
     for line in terminal_lines(study):

@@ -20,7 +20,7 @@ from radhar_cli.limits.limit import (
 )
 from radhar_cli.limits.margins import Margin, Reach, margins_of, reach_of
 from radhar_cli.limits.search import End, Path, find_end_at_zero
-from radhar_cli.limits.trial import Place, Trial, judge_sample, refusal_of
+from radhar_cli.limits.trial import ConfigTrial, Place, judge_sample, refusal_of
 from radhar_cli.limits.work import Counts, counted_work, work_ratio
 from radhar_cli.processes.progress import Progress
 from radhar_cli.processes.time_limit import time_limit
@@ -69,7 +69,7 @@ class Study:
 
 
 def study_limits(
-    trial: Trial, keys: Sequence[str] | None, seconds: float, progress: Progress
+    trial: ConfigTrial, keys: Sequence[str] | None, seconds: float, progress: Progress
 ) -> Study:
     """Find how far every number of a config may go.
 
@@ -126,7 +126,7 @@ def chosen_numbers(config: Config, keys: Sequence[str] | None) -> tuple[NumberKe
 class _Search:
     """Search for the limits of a config."""
 
-    def __init__(self, trial: Trial, study: Study, end: float) -> None:
+    def __init__(self, trial: ConfigTrial, study: Study, end: float) -> None:
         self.trial, self.study, self.end = trial, study, end
         self.base_work: Counts = counted_work(trial.config)
         self.reaches: dict[Place, Reach] = {}

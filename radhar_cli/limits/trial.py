@@ -38,7 +38,7 @@ Place = tuple[Activity, int]  # class of a sample, and its number within the cla
 
 
 @dataclass
-class Trial:
+class ConfigTrial:
     """A config file, and what it comes to with other numbers.
 
     Attributes:
@@ -56,7 +56,7 @@ class Trial:
     troubled: dict[str, str] = field(default_factory=dict)
 
     @classmethod
-    def of_file(cls, path: Path, overrides: Iterable[str]) -> "Trial":
+    def of_file(cls, path: Path, overrides: Iterable[str]) -> "ConfigTrial":
         """Read a config file and draw its scenes.
 
         Raises:

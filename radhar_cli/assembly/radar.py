@@ -21,6 +21,7 @@ from radhar_cli.config.radar import (
 from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.chirp_window import RECTANGULAR
 from radhar_cli.radar.detection import Detection
+from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.waveform import Waveform
@@ -55,6 +56,10 @@ def board_of(radar: BoardRadar[float], seconds: float = 0.0) -> Board:
         gain=10 ** (radar.antenna_gain_dbi / 10),
         backoff_db=header.profile.backoff_db,
         bpm=header.bpm,
+        is_real=header.sampling is Sampling.REAL,
+        keeps_half=header.sampling is not Sampling.COMPLEX,
+        averaged=header.averaged,
+        burst_s=header.loop_s if header.has_bursts else None,
     )
 
 

@@ -53,10 +53,13 @@ def frames_of_recording(
     if not is_whole.any():
         raise CaptureError(f"{recording.path}: holds no whole frame of {board.loops} loops there")
     board = replace(board, frames=int(is_whole.sum()))
-    cube = np.empty((board.frames, board.loops, board.channels, board.samples), np.complex64)
+    _require_kind_of_samples(recording, board)
+    shape = board.frames, board.loops, board.channels, board.samples
+    cube = np.empty(shape, np.float32 if board.is_real else np.complex64)
     starts = part.first + part.segments.first[is_whole]
     for frame, pulse in enumerate(starts.tolist()):
-        cube[frame] = recording.beat(pulse, pulse + board.loops).transpose(2, 0, 1)
+        beat = recording.beat(pulse, pulse + board.loops).transpose(2, 0, 1)
+        cube[frame] = beat.real if board.is_real else beat
     inputs = {"cube": cube, "board": board}
     return run(plan(products(config), names, inputs), inputs).products, board
 
@@ -77,6 +80,17 @@ def _board(recording: Recording, config: Config) -> Board:
     if difference is not None:
         raise CaptureError(f"{recording.path}: {difference}, as radar.cfg has it")
     return board
+
+
+def _require_kind_of_samples(recording: Recording, board: Board) -> None:
+    """Raise CaptureError unless the samples are real, or complex, as those of the board."""
+    kinds = "complex", "real"
+    is_real = recording.samples.parts == 1
+    if is_real != board.is_real:
+        raise CaptureError(
+            f"{recording.path}: samples are {kinds[is_real]}: should be {kinds[board.is_real]}, as "
+            "radar.cfg has it"
+        )
 
 
 def timing_of(board: Board) -> FmcwTiming:

@@ -7,7 +7,8 @@ from radhar_cli.capture.lvds_format import LvdsFormat, read_lvds_format
 from radhar_cli.capture.ti_studio import read_studio
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import text_of
-from radhar_cli.radar.ti_cfg import MAX_CFG, FrameHeader, Sampling, parse_frames
+from radhar_cli.radar.frame_header import FrameHeader, Sampling
+from radhar_cli.radar.ti_cfg import MAX_CFG, parse_frames
 
 
 def read_ti_settings(path: Path) -> dict[str, Any]:

@@ -14,14 +14,8 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.section import Section
 from radhar_cli.errors import CaptureError, ConfigError
 from radhar_cli.files.untrusted import read_json
-from radhar_cli.radar.ti_cfg import (
-    ChirpProfile,
-    ChirpRange,
-    FrameHeader,
-    FrameTiming,
-    Sampling,
-    frame_header,
-)
+from radhar_cli.radar.frame_header import ChirpProfile, FrameHeader, Sampling
+from radhar_cli.radar.ti_cfg import ChirpRange, FrameTiming, frame_header
 
 
 def _parse_hexadecimal(value: object) -> object:
@@ -125,7 +119,7 @@ def read_studio(path: Path) -> tuple[FrameHeader, LvdsFormat]:
         raise CaptureError(f"{path}: laneEn = {device.lanes:#x}: should enable 2 or 4 lanes")
     place = f"{path}:"
     header = frame_header(
-        {each.number: each.profile(place) for each in device.profiles},
+        {each.number: each.profile(f"{place} numAdcSamples") for each in device.profiles},
         [
             ChirpRange(each.first, each.last, each.profile, each.transmitters, place)
             for each in device.chirps

@@ -326,7 +326,7 @@ class BoardRadar(_Emission[N], Generic[N]):
         """
         from radhar_cli.radar.ti_cfg import parse_ti_cfg  # slow to import, and of boards alone
 
-        return parse_ti_cfg(self.cfg)
+        return parse_ti_cfg(self.cfg, device=self.device)
 
     @property
     def carrier_hz(self) -> float:  # type: ignore[override]

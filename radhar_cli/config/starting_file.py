@@ -32,6 +32,7 @@ from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
 from radhar_cli.radar.ti_commands import Family
+from radhar_cli.radar.ti_l_sdk import TWO_BITS
 
 WIDTH = 100
 MAPS_OF_BOARDS = ("stft", "range_doppler", "range_azimuth", "points")
@@ -179,12 +180,12 @@ def of_board(cfg: str, folder: Path) -> str:
         device, path = cfg.upper(), cfg.lower()
     maps = ", ".join(_maps_of_board(text, device, board.period_s, chain))
     position = "" if board.pose else ", position_m: [0, 0, 1]"
-    range_step = SPEED_OF_LIGHT * board.adc_rate_hz / (2 * board.slope_hz)
-    speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.slot_s * len(board.order))
-    nearest, farthest = min(1.5, range_step / 3), min(3.0, range_step / 1.5)
+    range_end = board.farthest_m
+    speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.loop_s)
+    nearest, farthest = min(1.5, range_end / 3), min(3.0, range_end / 1.5)
     antennas = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
     return f"""# {antennas}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
-# ranges to {range_step:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
+# ranges to {range_end:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
 radar: {{device: {device}, cfg: {json.dumps(path)}{position}}}
 samples_per_class: 20
 activities: [punching, kicking, grabbing, sitting_down, standing_up]
@@ -232,9 +233,11 @@ def of_preset(name: str) -> str:
 
 def _likely_device(board: BoardHeader) -> str:
     """Name a device that software and frequency of a .cfg are for."""
-    if board.start_hz < 70e9:
+    if board.start_hz < 70e9 and board.family is not Family.L_SDK:
         return "IWR6843ISK"
     by_family = {
+        Family.L_SDK: TWO_BITS if len(board.receivers) > 3 else "IWRL6432BOOST",
+        Family.MCU_PLUS: "AWR2944EVM",
         Family.SDK_3: "IWR1843BOOST",  # which xWR14xx does not have
         Family.PEOPLE_3D: "IWR1843BOOST",
         Family.PEOPLE: "IWR1642BOOST",

@@ -47,7 +47,8 @@ class FrameMaps:
 def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
     """Range spectrum X [frame, loop, virtual, range] of a cube, signs of the feeds taken out.
 
-    Beats have the sign exp(-j 2 pi K tau t), so the kernel is the conjugate one.
+    Beats have the sign exp(-j 2 pi K tau t), so the kernel is the conjugate one. Of real samples it
+    is doubled, so that a steady echo reads as of complex ones.
 
     Args:
         cube: Samples [frame, loop, virtual, sample].
@@ -59,7 +60,9 @@ def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
     weighted = cube * (window / window.sum()).astype(cube.real.dtype)
     if (board.signs < 0).any():
         weighted *= board.signs[:, None].astype(cube.real.dtype)
-    return scipy.fft.ifft(weighted, board.n_fft, axis=-1, norm="forward")
+    spectrum: Complex = scipy.fft.ifft(weighted, board.n_fft, axis=-1, norm="forward")
+    kept = spectrum[..., : board.n_bins]
+    return 2 * kept if board.is_real else kept
 
 
 def without_mean(cube: Complex) -> Complex:
@@ -152,7 +155,7 @@ class FrameAxis:
 
 def ranges_of_bins(board: Board) -> Float:
     """Ranges of all bins of a board [K], m."""
-    ranges: Float = np.arange(board.n_fft) * board.range_step
+    ranges: Float = np.arange(board.n_bins) * board.range_step
     return ranges
 
 
@@ -195,7 +198,7 @@ def spectra(cube: Complex, board: Board, remove_mean: bool) -> Iterator[tuple[sl
 
 def range_doppler(cube: Complex, board: Board, remove_mean: bool) -> FrameMaps:
     """Range-Doppler maps [frame, range, Doppler], the mean power of the virtual channels."""
-    power = np.empty((len(cube), board.n_fft, board.n_doppler), np.float32)
+    power = np.empty((len(cube), board.n_bins, board.n_doppler), np.float32)
     order = ascending(board.n_doppler)
     for frames, x in spectra(cube, board, remove_mean):
         mean = (x.real**2 + x.imag**2).mean(axis=2)
@@ -217,7 +220,7 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     sines = np.sin(np.radians(angles))[:, None]
     window = hann(board.loops)
     level = board.n_doppler * float((window**2).sum() / window.sum() ** 2)
-    power = np.zeros((len(cube), board.n_fft, angles.size), np.float32)
+    power = np.zeros((len(cube), board.n_bins, angles.size), np.float32)
     for frames, x in spectra(cube, board, remove_mean):
         x = without_turns(x, board)
         for row in rows:

@@ -31,6 +31,8 @@ def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None))
     # The transform runs along contiguous memory where s is the transpose of [M, N_ADC].
     profile: Complex = ifft(s.T, waveform.n_fft, axis=1, norm="forward").T
     profile = profile[: waveform.n_bins][bins]
+    if waveform.bin_gain != 1:
+        profile = profile * waveform.bin_gain
     if waveform.n0:
         k = np.arange(waveform.n_bins)[bins, None]
         profile = profile * np.exp(-2j * np.pi * np.mod(k * waveform.n0 / waveform.n_fft, 1))

@@ -302,13 +302,14 @@ def accuracy_of_board(echo: BoardEcho) -> EchoAccuracy:
     return echo.accuracy
 
 
-def receive_cube(echo: BoardEcho, noise: WhiteNoise, board: Board, scene: Scene) -> Complex:
-    """Apply the errors of the channels to a cube, and add noise."""
+def receive_cube(echo: BoardEcho, noise: WhiteNoise, board: Board, scene: Scene) -> Complex | Float:
+    """Apply the errors of the channels to a cube, and add noise; keep what a real ADC keeps."""
     cube: Complex = echo.cube
     factors = draw_channel_errors(scene, board.channels)
     if factors is not None:
         cube = apply_channel_errors(cube, factors, board)
-    return noise.added_to(cube, "cube") if noise.sigma > 0 else cube
+    cube = noise.added_to(cube, "cube") if noise.sigma > 0 else cube
+    return np.ascontiguousarray(cube.real) if board.is_real else cube
 
 
 def apply_channel_errors(cube: Complex, factors: Complex, board: Board) -> Complex:
@@ -423,7 +424,8 @@ def compute_range_bins(
     scale = board.signs.copy()
     scale[[*board.sums, *board.differences]] *= sqrt(0.5)
     w = replace(board.waveform, window=window)
-    x = np.empty((board.channels, w.n_bins, board.frames * board.loops), cube.dtype)
+    shape = board.channels, w.n_bins, board.frames * board.loops
+    x = np.empty(shape, np.result_type(cube.dtype, np.complex64))
     for v in range(board.channels):
         samples = cube[:, :, v].reshape(-1, board.samples).T * scale[v]
         s = Signal(samples[None], board.pulses, w.f0).cancelled(canceller).x[0]

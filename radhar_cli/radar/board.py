@@ -18,6 +18,7 @@ from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.pulse_times import PulseTimes
+from radhar_cli.radar.ti_commands import Family
 from radhar_cli.radar.waveform import Waveform
 
 Places: TypeAlias = tuple[tuple[float, float], ...]  # (left, up) in half wavelengths
@@ -50,25 +51,49 @@ class Device:
 
     Attributes:
         array: Antenna elements.
+        families: Software that is made for it.
         heeds_limits: Whether the firmware leaves out points beyond the limits of aoaFovCfg and
             cfarFovCfg, which the demo of xWR14xx does not know.
     """
 
     array: Array
+    families: tuple[Family, ...]
     heeds_limits: bool = True
 
 
 _ROW: Places = ((0, 0), (1, 0), (2, 0), (3, 0))
 _SAME = (1.0, 1.0, 1.0, 1.0)
 _BOOST = Array(((0, 0), (2, 1), (4, 0)), _ROW, _SAME, (28.0, 14.0))
-_1443, _1843 = Device(_BOOST, heeds_limits=False), Device(_BOOST)
-_1642 = Device(Array(((0, 0), (4, 0)), _ROW, _SAME, (28.0, 14.0)))
+_FIRST = Family.SDK_1, Family.SDK_2
+_TRACKING = Family.SDK_3, Family.PEOPLE_3D
+_1443 = Device(_BOOST, _FIRST, heeds_limits=False)
+_1843 = Device(_BOOST, _TRACKING)
+_1642 = Device(Array(((0, 0), (4, 0)), _ROW, _SAME, (28.0, 14.0)), (*_FIRST, Family.PEOPLE))
 _ISK = Array(((0, -1), (2, 0), (4, -1)), _ROW, _SAME, (60.0, 15.0))
 _ODS = Array(
     ((0, 0), (2, 0), (2, -2)),
     ((0, 0), (0, -1), (1, -1), (1, 0)),
     (1.0, -1.0, -1.0, 1.0),
     (60.0, 60.0),
+)
+_2944 = Array(
+    ((0, 0), (2, 1.6), (4, 0), (8, 0)), _ROW, _SAME, (28.0, 14.0)
+)  # probable: rows 0.8 wavelength apart
+_6432 = Array(
+    ((0, 0), (1, 0)),
+    ((0, 0), (1, 1), (2, 0)),
+    (1.0, -1.0, 1.0),
+    (60.0, 30.0),  # a guess
+    tx_sign=(1.0, -1.0),
+    unit_m=2.418e-3,
+)
+_6844 = Array(
+    ((2, 2), (0, 2), (0, 0), (2, 0)),
+    ((0, 1), (0, 0), (1, 0), (1, 1)),
+    _SAME,
+    (60.0, 60.0),
+    tx_sign=(-1.0, 1.0, -1.0, 1.0),
+    unit_m=2.54e-3,
 )
 _AOP = Array(
     ((0, 0), (2, -2), (0, -2)),
@@ -81,9 +106,12 @@ DEVICES: Mapping[str, Device] = MappingProxyType(
         **dict.fromkeys(("IWR1443BOOST", "AWR1443BOOST"), _1443),
         **dict.fromkeys(("IWR1642BOOST", "AWR1642BOOST"), _1642),
         **dict.fromkeys(("IWR1843BOOST", "AWR1843BOOST"), _1843),
-        "IWR6843ISK": Device(_ISK),
-        "IWR6843ISK-ODS": Device(_ODS),
-        "IWR6843AOP": Device(_AOP),
+        "IWR6843ISK": Device(_ISK, (*_TRACKING, Family.PEOPLE)),
+        "IWR6843ISK-ODS": Device(_ODS, _TRACKING),
+        "IWR6843AOP": Device(_AOP, _TRACKING),
+        "AWR2944EVM": Device(_2944, (Family.MCU_PLUS,)),
+        "IWRL6432BOOST": Device(_6432, (Family.L_SDK,)),
+        "IWRL6844EVM": Device(_6844, (Family.L_SDK,)),
     }
 )
 MAX_SIDELOBE = 0.3  # highest sidelobe, over the main lobe, of a row that tells targets apart
@@ -151,6 +179,10 @@ class Board:
         backoff_db: By how much the power of each transmitter of the device is lower; () for none.
         bpm: Places in the loop of the chirps in which two transmitters send together, the second
             one turned by 180 degrees in the latter: those of `order` there; None for none.
+        is_real: Whether samples are real.
+        keeps_half: Whether range bins are those of half the band, as the other half has images.
+        averaged: Number of chirps in a row of which one sample is the mean.
+        burst_s: Time from loop to loop, s; None where loops follow without a pause.
     """
 
     array: Array
@@ -173,6 +205,10 @@ class Board:
     gain: float = 1.0
     backoff_db: tuple[float, ...] = ()
     bpm: tuple[int, int] | None = None
+    is_real: bool = False
+    keeps_half: bool = False
+    averaged: int = 1
+    burst_s: float | None = None
 
     @property
     def centre(self) -> float:
@@ -182,7 +218,7 @@ class Board:
     @property
     def loop(self) -> float:
         """Time from a chirp to the next of the same transmitter, s."""
-        return self.slot * len(self.order)
+        return self.burst_s or self.slot * len(self.order)
 
     @property
     def channels(self) -> int:
@@ -191,8 +227,13 @@ class Board:
 
     @property
     def n_fft(self) -> int:
-        """Number of range bins: the next power of two; complex samples have all of them."""
+        """Length of the transform over a chirp: the next power of two."""
         return 1 << (self.samples - 1).bit_length()
+
+    @property
+    def n_bins(self) -> int:
+        """Number of range bins: all, or the first half."""
+        return self.n_fft // 2 if self.keeps_half else self.n_fft
 
     @property
     def n_doppler(self) -> int:
@@ -302,6 +343,9 @@ class Board:
         """
         frame = np.arange(self.frames)[frames, None, None]
         loop, k = np.arange(self.loops)[:, None], np.arange(len(self.order))
+        if self.burst_s is not None:
+            times: Float = frame * self.period + loop * self.burst_s + k * self.slot
+            return times
         return frame * self.period + (loop * len(self.order) + k) * self.slot
 
     @property
@@ -367,13 +411,25 @@ class BoardWaveform(Waveform):
 
     @property
     def n_bins(self) -> int:
-        """Number of range bins: all are kept, as complex samples have no half band."""
-        return self.n_fft
+        """Number of range bins that are kept; of complex 1x samples all."""
+        assert self.board is not None
+        return self.board.n_bins
+
+    @property
+    def sample_rate(self) -> float:
+        """Samples per second that noise is white up to; a mean of chirps takes less of it, Hz."""
+        assert self.board is not None
+        return self.adc_rate / self.board.averaged
+
+    @property
+    def bin_gain(self) -> float:
+        """Factor of range bins, 2 of real samples."""
+        return 2.0 if self.board is not None and self.board.is_real else 1.0
 
     @property
     def half_band_range(self) -> float:
-        """Range c fs/(2 K), m, at which ranges begin again."""
-        return self.range_step * self.n_fft
+        """Range at which ranges begin again, or the half band ends: c fs/(2 K) or half of it, m."""
+        return self.range_step * self.n_bins
 
     def times(self, pulses: Float) -> Float:
         """Times (s) at which chirps begin, by their numbers [...].
@@ -382,4 +438,7 @@ class BoardWaveform(Waveform):
         """
         assert self.board is not None
         frame, chirp = np.divmod(pulses, self.board.loops * len(self.board.order))
+        if self.board.burst_s is not None:
+            loop, k = np.divmod(chirp, len(self.board.order))
+            return frame * self.board.period + loop * self.board.burst_s + k * self.board.slot
         return frame * self.board.period + chirp * self.board.slot

@@ -6,12 +6,12 @@ that repeat within a loop are further loops, as the firmware counts them (`mmwde
 """
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, field
-from enum import IntEnum
+from dataclasses import dataclass
 from functools import lru_cache
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import Detection, Firmware
+from radhar_cli.radar.frame_header import ROUNDING, ChirpProfile, FrameHeader, Sampling
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
 from radhar_cli.radar.ti_commands import (
     ALL_SUBFRAMES,
@@ -24,76 +24,11 @@ from radhar_cli.radar.ti_commands import (
     split_lines,
 )
 from radhar_cli.radar.ti_detection import read_detection
+from radhar_cli.radar.ti_l_sdk import read_l_sdk
 from radhar_cli.radar.ti_people import is_short_fine_motion, missing_commands, read_people
 
 MAX_CFG = 2**16  # characters
 MAX_CHIRPS = 512  # of a frame
-_ROUNDING = 1 + 1e-6  # of times that a file states in decimals
-
-
-class Sampling(IntEnum):
-    """Samples of a chirp, by TI's number adcOutputFmt."""
-
-    REAL = 0
-    COMPLEX = 1  # complex 1x
-    COMPLEX_2X = 2  # with the image band
-
-
-@dataclass(frozen=True)
-class ChirpProfile:
-    """Ramp of a chirp and the samples that are taken in it, in TI's units.
-
-    Attributes:
-        start_ghz: Frequency at which the ramp starts.
-        idle_us: Time before the ramp.
-        adc_start_us: Time from the start of the ramp to the first sample.
-        ramp_end_us: Time from the start of the ramp to its end.
-        slope_mhz_per_us: Slope of the ramp.
-        samples: Number of samples.
-        rate_ksps: Sampling rate.
-        backoff_db: By how much the power of each transmitter is lower; () for none.
-        place: Line or key that messages name.
-    """
-
-    start_ghz: float
-    idle_us: float
-    adc_start_us: float
-    ramp_end_us: float
-    slope_mhz_per_us: float
-    samples: int
-    rate_ksps: float
-    backoff_db: tuple[float, ...] = ()
-    place: str = field(default="", compare=False)
-
-    @property
-    def slope_hz(self) -> float:
-        """Slope of the ramp, Hz per second."""
-        return self.slope_mhz_per_us * 1e12
-
-    @property
-    def carrier_hz(self) -> float:
-        """Frequency at the first sample, Hz."""
-        return self.start_ghz * 1e9 + self.slope_hz * self.adc_start_us * 1e-6
-
-    @property
-    def adc_rate_hz(self) -> float:
-        """Sampling rate, Hz."""
-        return self.rate_ksps * 1e3
-
-    @property
-    def slot_s(self) -> float:
-        """Time from the start of a chirp to that of the next, s."""
-        return (self.idle_us + self.ramp_end_us) * 1e-6
-
-    def require_samples_within_ramp(self) -> None:
-        """Raise CaptureError if the ramp ends before the last sample."""
-        sampled_us = self.ramp_end_us - self.adc_start_us
-        if self.samples / self.adc_rate_hz > sampled_us * 1e-6 * _ROUNDING:
-            fitting = max(int(sampled_us * self.adc_rate_hz / 1e6), 0)
-            raise CaptureError(
-                f"{self.place} numAdcSamples = {self.samples}: should be at most {fitting}: at "
-                f"{self.adc_rate_hz:g} Hz they end after the ramp ({self.ramp_end_us:g} us)"
-            )
 
 
 @dataclass(frozen=True)
@@ -149,74 +84,6 @@ class ChirpPair:
     first: int
     second: int
     place: str
-
-
-@dataclass(frozen=True)
-class FrameHeader:
-    """What a TI radar sends, and the samples that it takes: all that a raw capture tells.
-
-    Attributes:
-        profile: Ramp and samples of every chirp.
-        masks: Transmitters of the chirps of a loop, until they repeat; bit n is transmitter n.
-        loops: Number of loops of a frame.
-        frames: Number of frames of a recording; 0 is as many as there is time for.
-        period_s: Time from frame to frame, s.
-        receivers: Numbers of the receivers that are on, from 0 on.
-        sampling: Kind of the samples.
-        adc_bits: Number of bits of a sample.
-        bpm: Places in the loop of the chirps that have the sum and the difference of two
-            transmitters; None where transmitters take turns.
-    """
-
-    profile: ChirpProfile
-    masks: tuple[int, ...]
-    loops: int
-    frames: int
-    period_s: float
-    receivers: tuple[int, ...]
-    sampling: Sampling
-    adc_bits: int
-    bpm: tuple[int, int] | None
-
-    @property
-    def start_hz(self) -> float:
-        """Frequency at which a ramp starts, Hz."""
-        return self.profile.start_ghz * 1e9
-
-    @property
-    def carrier_hz(self) -> float:
-        """Frequency at the first sample that is kept, Hz."""
-        return self.profile.carrier_hz
-
-    @property
-    def slope_hz(self) -> float:
-        """Slope of a ramp, Hz per second."""
-        return self.profile.slope_hz
-
-    @property
-    def adc_rate_hz(self) -> float:
-        """Sampling rate, Hz."""
-        return self.profile.adc_rate_hz
-
-    @property
-    def samples(self) -> int:
-        """Number of samples of a chirp."""
-        return self.profile.samples
-
-    @property
-    def slot_s(self) -> float:
-        """Time from chirp to chirp, s."""
-        return self.profile.slot_s
-
-    @property
-    def bandwidth_hz(self) -> float:
-        """Frequency swept while the samples are taken, Hz."""
-        return self.slope_hz * self.samples / self.adc_rate_hz
-
-    @property
-    def prf_hz(self) -> float:
-        """Chirps of one transmitter per second, within a frame."""
-        return 1 / (len(self.masks) * self.slot_s)
 
 
 @dataclass(frozen=True)
@@ -285,17 +152,19 @@ class BoardHeader(FrameHeader):
     @property
     def frames_apart(self) -> bool:
         """Whether there is time between the last chirp of a frame and the next frame."""
-        chirps_s = self.loops * len(self.order) * self.slot_s
+        chirps_s = self.loops * self.loop_s
         return abs(self.period_s - chirps_s) >= 1e-9 * self.period_s
 
 
 @lru_cache(maxsize=16)
-def parse_ti_cfg(text: str, where: str = "radar.cfg") -> BoardHeader:
+def parse_ti_cfg(text: str, where: str = "radar.cfg", device: str | None = None) -> BoardHeader:
     """Parse the .cfg of a board that is to be simulated.
 
     Args:
         text: Lines of the .cfg.
         where: File or key that messages name.
+        device: Board that the file runs on, which says how fast xWRL boards sample; None for the
+            likely one.
 
     Raises:
         CaptureError: A line cannot be read, or asks for what boards of radhar cannot do.
@@ -303,13 +172,11 @@ def parse_ti_cfg(text: str, where: str = "radar.cfg") -> BoardHeader:
     lines = _Lines(text, where)
     for line in lines.with_effect(Effect.NOT_SIMULATED):
         raise CaptureError(f"{line.place}: {line.name}: {line.command and line.command.reason}")
-    header = _read_frames(lines)
-    _require_simulated(header, lines)
-    channels, bins = (
-        len(header.masks) * len(header.receivers),
-        1 << (header.samples - 1).bit_length(),
-    )
-    family = find_family(lines.lines)
+    header = _read_frames(lines, device)
+    if lines.family is not Family.L_SDK:
+        _require_simulated(header, lines)
+    channels, bins = len(header.masks) * len(header.receivers), header.bins
+    family = lines.family
     missing = missing_commands(lines.lines, family)
     return BoardHeader(
         **vars(header),
@@ -366,7 +233,7 @@ def frame_header(
     profile = _single_profile(loop, profiles)
     profile.require_samples_within_ramp()
     busy_s = timing.loops * len(loop) * profile.slot_s
-    if busy_s > timing.period_ms * 1e-3 * _ROUNDING:
+    if busy_s > timing.period_ms * 1e-3 * ROUNDING:
         raise CaptureError(
             f"{timing.place} framePeriodicity = {timing.period_ms:g}: should be at least "
             f"{busy_s * 1e3:.6g} ms, {timing.loops} loops of {len(loop)} chirps of "
@@ -386,6 +253,8 @@ def frame_header(
         sampling=samples[0],
         adc_bits=samples[1],
         bpm=bpm,
+        averaged=1,
+        loop_s=turns * profile.slot_s,
     )
 
 
@@ -466,6 +335,7 @@ class _Lines:
     def __init__(self, text: str, where: str) -> None:
         self.where = where
         self.lines = split_lines(text, where)
+        self.family = find_family(self.lines)
 
     def with_effect(self, effect: Effect) -> list[CfgLine]:
         """Return the lines of commands with an effect."""
@@ -483,8 +353,10 @@ class _Lines:
         return lines
 
 
-def _read_frames(lines: _Lines) -> FrameHeader:
+def _read_frames(lines: _Lines, device: str | None = None) -> FrameHeader:
     """Read all that the lines say of chirps, frames and samples."""
+    if lines.family is Family.L_SDK:
+        return read_l_sdk(lines.lines, lines.where, device)
     modes = [line.numbers for line in lines.lines if line.name == "dfeDataOutputMode"]
     for line in lines.with_effect(Effect.NOT_READ):
         if modes and line.name in ("advFrameCfg", "subFrameCfg"):  # with mode 1 frameCfg counts
@@ -526,7 +398,7 @@ def _read_profile(line: CfgLine) -> tuple[int, ChirpProfile]:
         samples=int(numbers["numAdcSamples"]),
         rate_ksps=numbers["digOutSampleRate"],
         backoff_db=tuple(float(code) for code in codes.to_bytes(4, "little")) if codes else (),
-        place=f"{line.place}: {line.name}",
+        place=f"{line.place}: {line.name} numAdcSamples",
     )
 
 
@@ -572,8 +444,10 @@ def _read_pose(lines: Sequence[CfgLine]) -> BoardPose | None:
     if not lines:
         return None
     numbers = [line.numbers for line in lines][-1]
+    right, ahead = numbers.get("xOffset", 0.0), numbers.get("yOffset", 0.0)
+    height = numbers.get("zOffset", numbers.get("height", 0.0))
     return BoardPose(
-        position_m=(0.0, 0.0, numbers["height"]),
+        position_m=(ahead, 0.0 - right, height),
         yaw_deg=0.0 - numbers["azimuthTilt"],
         tilt_deg=numbers["elevationTilt"],
     )
@@ -581,11 +455,6 @@ def _read_pose(lines: Sequence[CfgLine]) -> BoardPose | None:
 
 def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
     """Raise CaptureError for chirps and samples that boards of radhar do not have."""
-    adc = lines.all("adcCfg", "")[-1]
-    if header.sampling is not Sampling.COMPLEX:
-        raise adc.refusal(
-            "adcOutputFmt", header.sampling, "1: complex samples of which no image is kept"
-        )
     channels = lines.all("channelCfg", "")[-1]
     if not header.receivers:
         raise channels.refusal("rxChannelEn", channels.words[0], "1 to 15: a receiver that is on")

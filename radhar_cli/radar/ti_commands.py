@@ -65,6 +65,7 @@ class Argument:
         is_whole: Whether only whole numbers are right.
         meaning: What the numbers stand for, in messages; "" where the limits say all.
         is_optional: Whether a line may end before it.
+        choices: Numbers that alone are right; () for those within the limits.
     """
 
     name: str
@@ -73,6 +74,7 @@ class Argument:
     is_whole: bool = False
     meaning: str = ""
     is_optional: bool = False
+    choices: tuple[int, ...] = ()
 
     @property
     def right(self) -> str:
@@ -81,8 +83,9 @@ class Argument:
 
     @property
     def _limits(self) -> str:
-        if self.is_whole and self.high - self.low <= 3:
-            *choices, last = map(str, range(int(self.low), int(self.high) + 1))
+        if self.choices or (self.is_whole and self.high - self.low <= 3):
+            numbers = self.choices or range(int(self.low), int(self.high) + 1)
+            *choices, last = map(str, numbers)
             return f"{', '.join(choices)} or {last}" if choices else last
         if self.low == self.high:
             return f"{self.low:g}"
@@ -109,7 +112,8 @@ class Argument:
             raise CaptureError(
                 f"{place} {self.name} = {word[:40]}: should be a number, decimal or 0x"
             )
-        if not self.low <= value <= self.high or (self.is_whole and value != int(value)):
+        is_right = value in self.choices if self.choices else self.low <= value <= self.high
+        if not is_right or (self.is_whole and value != int(value)):
             raise CaptureError(f"{place} {self.name} = {word[:40]}: should be {self.right}")
         return value
 
@@ -195,12 +199,21 @@ class CfgLine:
     def command(self) -> Command | None:
         """The command as the file's family has it; None for one that is not known.
 
-        Where the family has none of so many numbers, another's that has them.
+        Where the family has none of so many numbers, another's that has them; not of L-SDK, whose
+        lines are others by the same name.
         """
-        commands = COMMANDS.get(self.name, ())
+        commands = self._candidates
         fitting = [command for command in commands if len(self.words) in command.counts]
         of_family = (command for command in fitting if command.family is self.family)
         return next(of_family, (*fitting, *commands, None)[0])
+
+    @property
+    def _candidates(self) -> tuple[Command, ...]:
+        """Commands of the line's name that the file's family may have."""
+        commands = COMMANDS.get(self.name, ())
+        if self.family is Family.L_SDK:
+            return tuple(one for one in commands if one.family is self.family) or commands
+        return commands
 
     @cached_property
     def numbers(self) -> Mapping[str, float]:
@@ -212,7 +225,7 @@ class CfgLine:
         command = self.command
         assert command is not None
         if len(self.words) not in command.counts:
-            families = COMMANDS[self.name]
+            families = self._candidates
             usages = " or ".join(
                 one.usage + f" ({one.family.value})" * (len(families) > 1) for one in families
             )
@@ -279,6 +292,7 @@ def _positive(name: str, meaning: str) -> Argument:
     return Argument(name, 1e-3, 1e6, meaning=meaning)
 
 
+_TDM = (0, 1, 4)
 SUBFRAME = Argument("subFrameIdx", -1, 3, True, "-1 for all subframes")
 _SIGNAL = (
     Command(
@@ -367,6 +381,67 @@ _SIGNAL = (
         subframe=Subframe.OPTIONAL,
     ),
 )
+_SIGNAL_OF_L_SDK = (
+    Command(
+        "channelCfg",
+        Effect.SIGNAL,
+        (
+            Argument("rxChCtrlBitMask", 1, 255, True, "a mask of receivers"),
+            Argument("txChCtrlBitMask", 1, 255, True, "a mask of transmitters"),
+            Argument("miscCtrl"),
+        ),
+        Family.L_SDK,
+    ),
+    Command(
+        "chirpComnCfg",
+        Effect.SIGNAL,
+        (
+            *_wholes("digOutputSampRate", low=1, high=1000),
+            *_wholes("digOutputBitsSel", "dfeFirSel"),
+            *_wholes("numOfAdcSamples", low=2, high=2**16),
+            Argument("chirpTxMimoPatSel", meaning="0, 1: in turns; 4: two together", choices=_TDM),
+            _positive("chirpRampEndTime", "us"),
+            *_wholes("chirpRxHpfSel"),
+        ),
+        Family.L_SDK,
+    ),
+    Command(
+        "chirpTimingCfg",
+        Effect.SIGNAL,
+        (
+            Argument("chirpIdleTime", 0, 1e6, meaning="us"),
+            *_wholes("chirpAdcSkipSamples", high=2**16),
+            Argument("chirpTxStartTime", meaning="us"),
+            _positive("chirpRfFreqSlope", "MHz/us"),
+            _positive("chirpRfFreqStart", "GHz"),
+        ),
+        Family.L_SDK,
+    ),
+    Command(
+        "frameCfg",
+        Effect.SIGNAL,
+        (
+            *_wholes("numOfChirpsInBurst", low=1, high=2**16),
+            *_wholes("numOfChirpsAccum", high=2**10),
+            _positive("burstPeriodicity", "us"),
+            *_wholes("numOfBurstsInFrame", low=1, high=2**16),
+            _positive("framePeriodicity", "ms"),
+            *_wholes("numOfFrames"),
+        ),
+        Family.L_SDK,
+    ),
+    Command(
+        "factoryCalibCfg",
+        Effect.SIGNAL,
+        (
+            *_flags("saveEnable", "restoreEnable"),
+            Argument("rxGain"),
+            Argument("txBackoff", 0, 255, meaning="dB less of all transmitters"),
+            Argument("flashOffset"),
+        ),
+        Family.L_SDK,
+    ),
+)
 _CFAR = (
     *_flags("procDirection"),
     Argument("averageMode", 0, 2, True, "CA, CAGO and CASO"),
@@ -400,6 +475,14 @@ _CFAR_OF_TRACKING = (
     *_flags("enSecondPass"),
     *_optional("dynamicFlag"),
 )
+_CFAR_OF_L_SDK = tuple(
+    Argument(name)
+    for name in (
+        *("averageMode", "winLen", "guardLen", "noiseDivShift", "cyclicMode", "threshold"),
+        *("peakGroupingEn", "sideLobeThreshold", "enableLocalMaxRange", "enableLocalMaxAzimuth"),
+        *("enableInterpRangeDom", "enableInterpAzimuthDom"),
+    )
+)
 _CFAR_OF_MCU_PLUS = (
     *_CFAR,
     *_flags("peakGroupingEn"),
@@ -414,6 +497,7 @@ _POINTS = (
         "cfarCfg", Effect.POINTS, (*_CFAR, *_flags("peakGroupingEn")), Family.SDK_3, Subframe.ALWAYS
     ),
     Command("cfarCfg", Effect.POINTS, _CFAR_OF_PEOPLE, Family.PEOPLE),
+    Command("cfarCfg", Effect.SAID, _CFAR_OF_L_SDK, Family.L_SDK),
     Command("cfarCfg", Effect.POINTS, _CFAR_OF_MCU_PLUS, Family.MCU_PLUS, Subframe.ALWAYS),
     Command(
         "peakGrouping",
@@ -580,6 +664,19 @@ _POSE = (
         ),
         Family.PEOPLE_3D,
     ),
+    Command(
+        "sensorPosition",
+        Effect.POSE,
+        (
+            *(
+                Argument(name, -1000, 1000, meaning="m")
+                for name in ("xOffset", "yOffset", "zOffset")
+            ),
+            Argument("azimuthTilt", -360, 360, meaning="degree to the right"),
+            Argument("elevationTilt", -360, 360, meaning="degree down"),
+        ),
+        Family.L_SDK,
+    ),
 )
 _SAID = (
     Command("extendedMaxVelocity", Effect.SAID, _wholes("enabled"), subframe=Subframe.OPTIONAL),
@@ -599,6 +696,10 @@ _SAID = (
         ),
         subframe=Subframe.OPTIONAL,
     ),
+    *(
+        Command(name, Effect.SAID, family=Family.L_SDK)
+        for name in ("sigProcChainCfg", "cfarProcCfg", "aoaProcCfg")
+    ),
     Command(
         "measureRangeBiasAndRxChanPhase",
         Effect.SAID,
@@ -615,6 +716,10 @@ _SILENT = {
         *("lowPowerCfg", "compressionCfg", "intfMitigCfg", "localMaxCfg", "rangeProcCfg"),
         *("antennaCalibParams", "enetStreamCfg", "spreadSpectrumConfig", "subDataFrameCfg"),
     ),
+    Family.L_SDK: (
+        *("antGeometryCfg", "antGeometryTX", "antGeometryRx", "antGeometryDist"),
+        "antGeometryBoard",
+    ),
     Family.PEOPLE: (
         *("SceneryParam", "GatingParam", "StateParam", "AllocationParam", "VariationParam"),
         *("AccelerationParam", "PointCloudEn"),
@@ -628,7 +733,6 @@ _SILENT = {
     ),
 }
 _ADVANCED_FRAMES = "advanced frames are not read; should be frameCfg"
-_L_SDK = "files of the MMWAVE-L-SDK (xWRL boards) are not read; should be one of SDK 1 to 4"
 _DDMA = "DDMA is not simulated; should be one transmitter a chirp (the TDM demo's profile)"
 _REFUSED = (
     Command("advFrameCfg", Effect.NOT_READ, reason=_ADVANCED_FRAMES),
@@ -639,8 +743,6 @@ _REFUSED = (
         )
         for name in ("contModeCfg", "advChirpCfg", "LUTDataCfg")
     ),
-    Command("chirpComnCfg", Effect.NOT_READ, family=Family.L_SDK, reason=_L_SDK),
-    Command("chirpTimingCfg", Effect.NOT_READ, family=Family.L_SDK, reason=_L_SDK),
     Command("ddmPhaseShiftAntOrder", Effect.NOT_SIMULATED, family=Family.MCU_PLUS, reason=_DDMA),
     Command(
         "bpmCfgAdvanced",
@@ -673,7 +775,8 @@ def _by_name() -> Mapping[str, tuple[Command, ...]]:
     )
     commands = dict[str, tuple[Command, ...]]()
     points = *_POINTS, *_PEOPLE_TRACKING, _DOA
-    for command in (*_SIGNAL, *points, *_POSE, *_SAID, *_CAPTURES, *silent, *_REFUSED):
+    signal = *_SIGNAL, *_SIGNAL_OF_L_SDK
+    for command in (*signal, *points, *_POSE, *_SAID, *_CAPTURES, *silent, *_REFUSED):
         commands[command.name] = (*commands.get(command.name, ()), command)
     return MappingProxyType(commands)
 

@@ -95,6 +95,11 @@ class Waveform:
         """Radial speed (m/s) at which the Doppler reaches PRF/2."""
         return SPEED_OF_LIGHT * self.prf / (4 * self.f0)
 
+    @property
+    def bin_gain(self) -> float:
+        """Factor of range bins, 2 of samples that are real: half of their echo is elsewhere."""
+        return 1.0
+
     def frequencies(self) -> Float:
         """Frequencies fc + K n/fs [N_ADC] (Hz) at the fast-time samples of a chirp."""
         return self.fc + self.slope * np.arange(self.n_adc) / self.adc_rate

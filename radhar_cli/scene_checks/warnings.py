@@ -12,8 +12,10 @@ from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.errors import SceneError
 from radhar_cli.processing.map_kind import MAP_KINDS
 from radhar_cli.radar.detection import Chain
+from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.propagation import leg
 from radhar_cli.radar.ti_cfg import BoardHeader
+from radhar_cli.radar.ti_commands import Family
 from radhar_cli.scene import Scene, nominal_scene
 from radhar_cli.scene_checks.drawing import CROWDED, describe_crowd, find_crowded, suggest_cure
 from radhar_cli.scene_checks.flags import Flags, describe_flag, describe_flags
@@ -70,6 +72,8 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
         yield f"radar.cfg: {names}: what is set there is not simulated"
     if "chain" not in config.cloud.model_fields_set and "points" in config.stored:
         yield _describe_chain(config.cloud.chain, header)
+    if header.sampling is Sampling.REAL and header.family not in (Family.MCU_PLUS, Family.L_SDK):
+        yield "radar.cfg: adcCfg has real samples, which firmware of SDK 1 to 3 does not take"
     pose = {} if header.pose is None else vars(header.pose)
     config_keys = [f"radar.{key}" for key, number in pose.items() if getattr(radar, key) != number]
     if config_keys:

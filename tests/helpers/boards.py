@@ -71,11 +71,17 @@ def channels(board: Board, p: Any, v: Any, a: Any) -> list[Straight]:
 
 
 def cube_of(
-    p: Any, v: Any, board: Board = MARS, snr_db: float | None = 20.0, seed: int = 0, **changes: Any
+    p: Any,
+    v: Any,
+    board: Board = MARS,
+    snr_db: float | None = 20.0,
+    seed: int = 0,
+    a: float = 1.0,
+    **changes: Any,
 ) -> tuple[Complex, Board]:
-    """Samples of scatterers of amplitude 1, and their board."""
+    """Samples of scatterers of amplitude a, and their board."""
     board = replace(board, **{"frames": 1, **changes})
-    squares = (np.array(p, float).reshape(-1, 3) ** 2).sum(axis=1)
+    squares = a * (np.array(p, float).reshape(-1, 3) ** 2).sum(axis=1)
     sources = combine_transmitters(channels(board, p, v, squares), board)
     cube, power = exact_cube(sources, board)
     if snr_db is not None:

@@ -431,6 +431,6 @@ def test_a_cfg_that_is_not_there_is_named(path: Path) -> None:
 
 
 def test_a_mistake_in_the_cfg_is_named_with_its_line(path: Path) -> None:
-    (path.parent / "board.cfg").write_text(CFG.replace("adcCfg 2 1", "adcCfg 2 2"))
-    with pytest.raises(ConfigError, match=r"radar\.cfg:3: adcCfg adcOutputFmt = 2: should be 1"):
+    (path.parent / "board.cfg").write_text(CFG.replace("adcCfg 2 1", "adcCfg 2 3"))
+    with pytest.raises(ConfigError, match=r"^board\.cfg:3: adcCfg adcOutputFmt = 3: should be 0"):
         load_config(path)

@@ -69,8 +69,15 @@ def test_frames_without_idle_time_have_no_gaps() -> None:
     assert len(replace(MARS, period=32 * 3 * 57e-6).pulses) == 1
 
 
+TRANSMITTERS = {
+    **dict.fromkeys(("IWR1642BOOST", "AWR1642BOOST", "IWRL6432BOOST"), 2),
+    **dict.fromkeys(("AWR2944EVM", "IWRL6844EVM"), 4),
+}
+
+
 @pytest.mark.parametrize("device", DEVICES)
 def test_every_device_has_a_sign_for_each_receiver(device: str) -> None:
     array = DEVICES[device].array
-    assert len(array.rx_sign) == len(array.rx) == 4
-    assert len(array.tx) == (2 if "1642" in device else 3)
+    assert len(array.rx_sign) == len(array.rx) == (3 if "6432" in device else 4)
+    assert len(array.tx) == TRANSMITTERS.get(device, 3)
+    assert len(array.tx_sign) in (0, len(array.tx))

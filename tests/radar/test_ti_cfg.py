@@ -144,7 +144,7 @@ def test_turned_phases_are_named() -> None:
 
 
 WRONG = [
-    ("adcCfg 2 1", "adcCfg 2 2", "3: adcCfg adcOutputFmt = 2: should be 1: complex samples"),
+    ("adcCfg 2 1", "adcCfg 2 3", "3: adcCfg adcOutputFmt = 3: should be 0, 1 or 2 (real, complex"),
     ("adcCfg 2 1", "adcCfg 3 1", "numADCBits = 3: should be 0, 1 or 2 (12, 14"),
     ("adcCfg 2 1", "adcCfg 2", "3: adcCfg has 1 numbers: should be adcCfg numADCBits adcOutputFmt"),
     (

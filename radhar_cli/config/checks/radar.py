@@ -14,6 +14,7 @@ from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
+from radhar_cli.radar.ti_commands import Family
 
 if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader
@@ -94,6 +95,12 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
         right = (
             f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
         )
+        yield Problem("radar.device", radar.device, right)
+        return
+    device = DEVICES.get(str(radar.device))
+    if device is not None and board.family not in (Family.ANY, *device.families):
+        others = [name for name, other in DEVICES.items() if board.family in other.families]
+        right = f"should be {' or '.join(others)}: radar.cfg is of {board.family.value}"
         yield Problem("radar.device", radar.device, right)
         return
     tx, rx = len(radar.elements.tx), len(radar.elements.rx)

@@ -130,9 +130,8 @@ def _gate_problems(c: AnyRequest) -> Iterator[Problem]:
         return
     within = processing.gate_m
     half_band = waveform_at(c, "bandwidth_hz").half_band_range  # the least
-    if isinstance(c.radar, BoardRadar):  # of whose complex samples every range bin is kept
-        header = c.radar.header
-        half_band = SPEED_OF_LIGHT * header.adc_rate_hz / (2 * header.slope_hz)
+    if isinstance(c.radar, BoardRadar):
+        half_band = c.radar.header.farthest_m
     if isinstance(within, tuple):
         if within[1] >= half_band:
             right = f"should end before the range half-band does, at {half_band:.4g} m"

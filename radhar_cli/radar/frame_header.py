@@ -1,0 +1,165 @@
+"""Chirps, frames and samples of a TI radar, whichever file says them."""
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+from radhar_cli.errors import CaptureError
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+
+ROUNDING = 1 + 1e-6  # of times that a file states in decimals
+
+
+class Sampling(IntEnum):
+    """Samples of a chirp, by TI's number adcOutputFmt."""
+
+    REAL = 0
+    COMPLEX = 1  # complex 1x
+    COMPLEX_2X = 2  # with the image band
+
+
+@dataclass(frozen=True)
+class ChirpProfile:
+    """Ramp of a chirp and the samples that are taken in it, in TI's units.
+
+    Attributes:
+        start_ghz: Frequency at which the ramp starts.
+        idle_us: Time before the ramp.
+        adc_start_us: Time from the start of the ramp to the first sample.
+        ramp_end_us: Time from the start of the ramp to its end.
+        slope_mhz_per_us: Slope of the ramp.
+        samples: Number of samples.
+        rate_ksps: Sampling rate.
+        backoff_db: By how much the power of each transmitter is lower; () for none.
+        place: Line and argument of the number of samples, which messages name.
+    """
+
+    start_ghz: float
+    idle_us: float
+    adc_start_us: float
+    ramp_end_us: float
+    slope_mhz_per_us: float
+    samples: int
+    rate_ksps: float
+    backoff_db: tuple[float, ...] = ()
+    place: str = field(default="", compare=False)
+
+    @property
+    def slope_hz(self) -> float:
+        """Slope of the ramp, Hz per second."""
+        return self.slope_mhz_per_us * 1e12
+
+    @property
+    def carrier_hz(self) -> float:
+        """Frequency at the first sample, Hz."""
+        return self.start_ghz * 1e9 + self.slope_hz * self.adc_start_us * 1e-6
+
+    @property
+    def adc_rate_hz(self) -> float:
+        """Sampling rate, Hz."""
+        return self.rate_ksps * 1e3
+
+    @property
+    def slot_s(self) -> float:
+        """Time from the start of a chirp to that of the next, s."""
+        return (self.idle_us + self.ramp_end_us) * 1e-6
+
+    def require_samples_within_ramp(self) -> None:
+        """Raise CaptureError if the ramp ends before the last sample."""
+        sampled_us = self.ramp_end_us - self.adc_start_us
+        if self.samples / self.adc_rate_hz > sampled_us * 1e-6 * ROUNDING:
+            ended_us = self.adc_start_us + self.samples / self.adc_rate_hz * 1e6
+            fitting = max(int(sampled_us * self.adc_rate_hz / 1e6), 0)
+            raise CaptureError(
+                f"{self.place} = {self.samples}: should be at most {fitting}: at "
+                f"{self.adc_rate_hz:g} Hz they end at {ended_us:.6g} us, after the ramp "
+                f"({self.ramp_end_us:g} us)"
+            )
+
+
+@dataclass(frozen=True)
+class FrameHeader:
+    """What a TI radar sends, and the samples that it takes: all that a raw capture tells.
+
+    Attributes:
+        profile: Ramp and samples of every chirp.
+        masks: Transmitters of the chirps of a loop, until they repeat; bit n is transmitter n.
+        loops: Number of loops of a frame.
+        frames: Number of frames of a recording; 0 is as many as there is time for.
+        period_s: Time from frame to frame, s.
+        receivers: Numbers of the receivers that are on, from 0 on.
+        sampling: Kind of the samples.
+        adc_bits: Number of bits of a sample.
+        bpm: Places in the loop of the chirps that have the sum and the difference of two
+            transmitters; None where transmitters take turns.
+        averaged: Number of chirps in a row of which one sample is the mean.
+        loop_s: Time from loop to loop, s.
+    """
+
+    profile: ChirpProfile
+    masks: tuple[int, ...]
+    loops: int
+    frames: int
+    period_s: float
+    receivers: tuple[int, ...]
+    sampling: Sampling
+    adc_bits: int
+    bpm: tuple[int, int] | None
+    averaged: int
+    loop_s: float
+
+    @property
+    def start_hz(self) -> float:
+        """Frequency at which a ramp starts, Hz."""
+        return self.profile.start_ghz * 1e9
+
+    @property
+    def carrier_hz(self) -> float:
+        """Frequency at the first sample that is kept, Hz."""
+        return self.profile.carrier_hz
+
+    @property
+    def slope_hz(self) -> float:
+        """Slope of a ramp, Hz per second."""
+        return self.profile.slope_hz
+
+    @property
+    def adc_rate_hz(self) -> float:
+        """Sampling rate, Hz."""
+        return self.profile.adc_rate_hz
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of a chirp."""
+        return self.profile.samples
+
+    @property
+    def slot_s(self) -> float:
+        """Time from chirp to chirp, or from mean to mean, s."""
+        return self.profile.slot_s * self.averaged
+
+    @property
+    def has_bursts(self) -> bool:
+        """Whether there is time between the last chirp of a loop and the next loop."""
+        return abs(self.loop_s - len(self.masks) * self.slot_s) > 1e-9 * self.loop_s
+
+    @property
+    def bins(self) -> int:
+        """Number of range bins: those of half the band, unless samples are complex 1x."""
+        n_fft = 1 << (self.samples - 1).bit_length()
+        return n_fft if self.sampling is Sampling.COMPLEX else n_fft // 2
+
+    @property
+    def farthest_m(self) -> float:
+        """Range at which the range bins end, m."""
+        share = 1 if self.sampling is Sampling.COMPLEX else 2
+        return SPEED_OF_LIGHT * self.adc_rate_hz / (2 * share * self.slope_hz)
+
+    @property
+    def bandwidth_hz(self) -> float:
+        """Frequency swept while the samples are taken, Hz."""
+        return self.slope_hz * self.samples / self.adc_rate_hz
+
+    @property
+    def prf_hz(self) -> float:
+        """Chirps of one transmitter per second, within a frame."""
+        return 1 / self.loop_s

@@ -61,8 +61,8 @@ def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
     if (board.signs < 0).any():
         weighted *= board.signs[:, None].astype(cube.real.dtype)
     spectrum: Complex = scipy.fft.ifft(weighted, board.n_fft, axis=-1, norm="forward")
-    kept = spectrum[..., : board.n_bins]
-    return 2 * kept if board.is_real else kept
+    bins: Complex = spectrum[..., : board.n_bins]
+    return 2 * bins if board.is_real else bins
 
 
 def without_mean(cube: Complex) -> Complex:

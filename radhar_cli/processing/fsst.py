@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from radhar_cli.numerics.accelerators import installed, machine_code
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.fourier import COEFFICIENTS, spectra_by_parts
 from radhar_cli.processing.stft import Stft
 
+MIN_COEFFICIENTS = 2**17  # of a map; with fewer, numba takes longer to load than 300 maps save
 # Largest shift that has its digits, and integers that hold it, signed and not; 32 bits are quicker.
 _OF_SINGLE: tuple[float, Any, Any] = 2.0**24, np.int32, np.uint32
 _OF_DOUBLE: tuple[float, Any, Any] = 2.0**52, np.int64, np.uint64
@@ -65,7 +67,8 @@ def power_blocks(stft: Stft, threshold: float) -> Iterator[Float]:
     """Yield |T|^2, summed over the channels, of blocks of frames [frames, frequency].
 
     Of a transform in single precision powers are float32. One coefficient in 1e5 or fewer then lies
-    within rounding of the border between two bins, and goes to the other one.
+    within rounding of the border between two bins, and goes to the other one. numba, where it is
+    installed, compiles the sums of those that are large.
 
     Args:
         stft: Transform of a signal of one row.
@@ -80,17 +83,57 @@ def power_blocks(stft: Stft, threshold: float) -> Iterator[Float]:
     passes = map(coefficients, range(len(stft.blocks) if threshold else 0))
     largest = max((_largest_power(v) for block in passes for v in block), default=0.0)
     least = threshold * sqrt(largest)
-    middle = stft.size // 2  # to where frequency 0 goes
+    is_large = stft.single and stft.starts.size * stft.size >= MIN_COEFFICIENTS
+    compiled = is_large and installed("numba") is not None
+    add = _add_squeezed_power_compiled if compiled else _add_squeezed_power
     for number, block in enumerate(stft.blocks):
         each = coefficients(number)
         total = np.zeros(each[0].shape, each[0].real.dtype)
         for x, v in zip(rows, each, strict=True):
-            slopes = spectra_by_parts(stft.segments(x, block), frames.window_slope, stft.size)
-            for part, slope in slopes:
-                power = squared_magnitudes(synchrosqueeze(v[part], slope, least))
-                total[part, middle:] += power[:, : stft.size - middle]
-                total[part, :middle] += power[:, stft.size - middle :]
+            segments = stft.segments(x, block)
+            for part, slope in spectra_by_parts(segments, frames.window_slope, stft.size):
+                add(total[part], v[part], slope, least)
         yield total
+
+
+def _add_squeezed_power(total: Float, v: Complex, slope: Complex, least: float) -> None:
+    """Add |T|^2, frequencies rising, to a total [frames, L]; arguments of `synchrosqueeze`."""
+    middle, after = v.shape[1] // 2, -(-v.shape[1] // 2)
+    power = squared_magnitudes(synchrosqueeze(v, slope, least))
+    total[:, middle:] += power[:, :after]
+    total[:, :middle] += power[:, after:]
+
+
+def _add_squeezed_power_compiled(total: Float, v: Complex, slope: Complex, least: float) -> None:
+    """Do as `_add_squeezed_power`, of complex64, in one pass over the coefficients."""
+    least_power = np.float32(max(least**2, float(np.finfo(np.float32).tiny)))
+    machine_code(_fill_in)(total, v, slope, least_power)
+
+
+def _fill_in(total: Float, v: Complex, slope: Complex, least_power: np.float32) -> None:
+    """Add |T|^2 [frames, L], row by row, compiled by numba."""
+    length = v.shape[1]
+    bins, farthest = np.float32(length / (2 * np.pi)), np.float32(_OF_SINGLE[0])
+    shift, squeezed = np.empty(length, np.int32), np.empty((length, 2), np.float32)
+    for row in range(len(v)):
+        for k in range(length):
+            real, imag = v[row, k].real, v[row, k].imag
+            cross = slope[row, k].real * imag - slope[row, k].imag * real
+            power = max(real * real + imag * imag, least_power)
+            turn = min(max(bins * (cross / power) + np.float32(0.5), -farthest), farthest)
+            shift[k] = np.int32(np.floor(turn))
+        squeezed[:] = 0
+        for k in range(length):
+            real, imag = v[row, k].real, v[row, k].imag
+            if real * real + imag * imag >= least_power:
+                target = k + shift[k]
+                if target < 0 or target >= length:
+                    target %= length
+                squeezed[target, 0] += real
+                squeezed[target, 1] += imag
+        for k in range(length):
+            rising = k + length // 2 if k < length - length // 2 else k - (length - length // 2)
+            total[row, rising] += squeezed[k, 0] ** 2 + squeezed[k, 1] ** 2
 
 
 def _largest_power(v: Complex) -> float:

@@ -5,7 +5,9 @@ import pytest
 from helpers import reference as ref
 from helpers.signals import signal
 
+from radhar_cli.numerics.accelerators import installed
 from radhar_cli.processing import fsst
+from radhar_cli.processing import stft as stft_module
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.stft import Stft
 
@@ -125,3 +127,32 @@ def test_the_signal_it_is_given_stays_as_it_was():
     list(fsst.power_blocks(stft, 1e-3))
     list(stft.power_blocks())
     assert np.array_equal(x, kept)
+
+
+@pytest.mark.skipif(installed("numba") is None, reason="needs radhar[fast]")
+@pytest.mark.parametrize("threshold", [0.0, 1e-3, 0.1])
+@pytest.mark.parametrize("length", [60, 61])
+def test_compiled_sums_are_those_of_numpy(length: int, threshold: float, monkeypatch) -> None:
+    """But for the few coefficients on the border between two bins; in blocks and of channels."""
+    n, frames = np.arange(3000), Frames(length, 4)
+    walker = np.exp(2j * np.pi * (0.2 * n / length + 3 * np.sin(n / 100)))
+    x = np.stack([walker + 1e-2 * random_signal(n.size, seed) for seed in range(2)])[:, None]
+    stft = Stft(signal(x[0, 0]).with_samples(x), frames, single=True)
+    monkeypatch.setattr(stft_module, "BLOCK_COEFFICIENTS", 300 * length)
+    maps = []
+    for least in (np.inf, 1):
+        monkeypatch.setattr(fsst, "MIN_COEFFICIENTS", least)
+        maps.append(np.concatenate(list(fsst.power_blocks(stft, threshold))))
+    plain, compiled = maps
+    assert len(stft.blocks) > 2
+    assert compiled.dtype == plain.dtype == np.float32
+    differ = np.abs(compiled - plain) > 1e-3 * plain + 1e-8 * plain.max()
+    assert np.mean(differ) < 1e-3
+    assert compiled.sum() == pytest.approx(plain.sum(), rel=1e-4)
+
+
+@pytest.mark.skipif(installed("numba") is None, reason="needs radhar[fast]")
+def test_compiled_sums_of_nothing_are_nothing(monkeypatch) -> None:
+    monkeypatch.setattr(fsst, "MIN_COEFFICIENTS", 1)
+    stft = Stft(signal(np.zeros(400, complex)), Frames(50, 5), single=True)
+    assert not np.concatenate(list(fsst.power_blocks(stft, 1e-3))).any()

@@ -7,7 +7,8 @@ the point clouds of its Industrial Visualizer.
 """
 
 import csv
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.radar import BoardRadar
+from radhar_cli.dataset.formats.uart import demo_frames, people_frames
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
@@ -26,6 +28,13 @@ from radhar_cli.motion.segments import cross, unit
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processes.progress import Progress
+from radhar_cli.processing.people_tracking.compressed_points import (
+    SNR,
+    Polar,
+    pack_points,
+    unpack_points,
+)
+from radhar_cli.radar.detection import Firmware
 
 SIDE = 8  # MARS: 64 points of a frame as a square
 MARS_SPLITS = ("train", "validate", "test")  # in its file names
@@ -41,7 +50,7 @@ MARS_JOINTS = (
 NECK, HIP_ASIDE, FOOT_AHEAD, FOOT_BELOW = 1 / 3, 0.23, 0.22, 0.2
 ROS_SPLITS = ("Train", "Validation", "Test")  # folders; RadHAR has the first and the last
 ROS_FRAME = "ti_mmwave"
-MAGNITUDES = ("board", "sdk1", "sdk3")  # chains whose intensity is a magnitude
+MAGNITUDES = ("sdk1", "sdk3")  # firmware whose intensity is a magnitude
 TI = ("frame", "x", "y", "z", "doppler", "snr", "noise", "track")
 NO_TRACK = 255  # of a point that belongs to nobody
 
@@ -60,19 +69,33 @@ class Clouds(NamedTuple):
     joints: Float  # of the first person, [frame, joint, 3], m: right, ahead, up
 
 
+Encode: TypeAlias = Callable[[Iterator[Float]], Iterator[bytes]]
+MESSAGES: Mapping[str | None, Encode] = {"people_tracking": people_frames, "sdk3": demo_frames}
 Columns: TypeAlias = Callable[[Clouds], Sequence[Any]]
+
+
+def firmware_of(data: Dataset) -> Firmware | None:
+    """Firmware that found the points of a data set; None of `cloud.chain: best`."""
+    config = data.config
+    if not isinstance(config, Config) or not isinstance(config.radar, BoardRadar):
+        return None
+    return None if config.cloud.chain == "best" else config.radar.header.firmware
 
 
 def clouds_of(data: Dataset, row: int) -> Clouds:
     """Read the point clouds of the sample in a row, in TI's axes."""
-    products = data.products
+    products, firmware = data.products, firmware_of(data)
     points, start = products["points"][row], products["points_start"][row]
-    snr_db = points[:, 5].astype(float)
-    board = isinstance(data.config, Config) and data.config.cloud.chain in MAGNITUDES
+    snr_db, xyz, doppler = points[:, 5].astype(float), _ti_axes(points), -points[:, 3].astype(float)
+    board = firmware in MAGNITUDES
+    if firmware == "people_tracking":
+        sent = unpack_points(pack_points(Polar.of_cloud(points)))
+        xyz, doppler = sent.places, sent.doppler
+        snr_db = 10 * np.log10(np.maximum(sent.snr, SNR))
     return Clouds(
         frame=np.repeat(np.arange(len(start) - 1), np.diff(start)),
-        xyz=_ti_axes(points),
-        doppler=-points[:, 3].astype(float),
+        xyz=xyz,
+        doppler=doppler,
         bins=-np.round(points[:, 7]).astype(np.intp),
         amplitude=points[:, 4].astype(float) if board else 10 ** (snr_db / 20),
         snr_db=snr_db,
@@ -237,17 +260,26 @@ def _radar_scans(c: Clouds, period_s: float, middle: int) -> str:
 def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <split>/<class>/<sample>.csv into a folder, with the columns TI.
 
+    Beside it stands <sample>.bin, what the board would have sent, of firmware whose message is
+    known: people tracking, and the out-of-box demo of SDK 3.
+
     Raises:
         FolderError: there are no points.
     """
     _require_points(data, "ti")
 
+    firmware = firmware_of(data)
+
     def columns(c: Clouds) -> Sequence[Any]:
-        noise = 20 * np.log10(np.maximum(c.amplitude, 1e-9)) - c.snr_db
+        snr, noise = c.snr_db, 20 * np.log10(np.maximum(c.amplitude, 1e-9)) - c.snr_db
+        if firmware == "people_tracking":
+            snr, noise = 10 ** (c.snr_db / 10), np.zeros(c.snr_db.size)
         track = np.where(c.person < 0, NO_TRACK, c.person)
-        return (c.frame, *c.xyz.T, c.doppler, c.snr_db, noise, track)
+        return (c.frame, *c.xyz.T, c.doppler, snr, noise, track)
 
     _write_csv(data, folder, TI, columns, progress)
+    if firmware in MESSAGES:
+        _write_messages(data, folder, MESSAGES[firmware])
     _describe(data, folder, f"{_TI}\n\n{_READ_CSV}")
 
 
@@ -309,6 +341,17 @@ def _write_csv(
             progress.advance(1)
 
 
+def _write_messages(data: Dataset, folder: Path, encode: Encode) -> None:
+    """Write <split>/<class>/<sample>.bin of every sample, frame after frame."""
+    rows = Rows.of(data.config)
+    for split, part in data.present_splits.items():
+        for entry in _of_split(data, split):
+            points, start = (data.products[name][entry.row] for name in ("points", "points_start"))
+            frames = (points[first:stop] for first, stop in pairwise(start))
+            path = folder / part / entry.label / f"{rows.name(entry.row)}.bin"
+            path.write_bytes(b"".join(encode(frames)))
+
+
 def _number(value: float) -> str:
     """A number in six digits, never -0; an integer as it is."""
     return f"{value + 0.0:.6g}" if isinstance(value, float) else str(value)
@@ -354,7 +397,10 @@ points = [*yaml.safe_load_all(open("Train/CLASS/SAMPLE.txt").read())][:-1]  # sl
 _TI = """\
 `train/CLASS/SAMPLE.csv` has a line a point: its frame, and the seven columns that a point cloud of
 TI's Industrial Visualizer has: x (right), y (ahead), z (up of the radar; m), Doppler (m/s, receding
-positive), SNR and noise (dB), and the track: here the person whose the point is, 255 nobody's."""
+positive), SNR and noise (dB), and the track: here the person whose the point is, 255 nobody's.
+Of people tracking, all is rounded as its message TLV 1020 is, SNR is a ratio of powers and noise 0.
+`SAMPLE.bin`, of people tracking and of SDK 3, is what the board would have sent: frames of magic
+word, header of 40 bytes, and TLV 1020, or TLVs 1 and 7 (whose noise is 0)."""
 
 _READ_CSV = """\
 ```python

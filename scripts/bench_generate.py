@@ -646,8 +646,68 @@ def lengths(rounds: int, against: Path | None = None) -> dict[str, Any]:
     return results
 
 
+ESTIMATED = {  # what is estimated and built: config, settings beside it
+    "quickstart": ("quickstart", ("samples_per_class=30",)),
+    "77 GHz, segments": ("human/free_space_77GHz", ("samples_per_class=30",)),
+    "paper, free space": ("paper/free_space", ("samples_per_class=50",)),
+    "Glasgow, gate": ("measured/glasgow_5p8GHz", ("samples_per_class=30",)),
+    "IWR1443": ("boards/iwr1443", ("samples_per_class=2",)),
+    "streams": ("human/streams", ("stream.count=8",)),
+}
+
+
+def run_timed(*arguments: str | Path) -> tuple[float, float, str]:
+    """Run a command of radhar; return its wall and processor time (s) and its output."""
+    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments)]
+    before, start = os.times(), time.perf_counter()
+    done = subprocess.run(command, check=True, capture_output=True, cwd=ROOT, text=True)
+    after, wall = os.times(), time.perf_counter() - start
+    children = after.children_user - before.children_user
+    return wall, children + after.children_system - before.children_system, done.stdout
+
+
+def estimates(rounds: int) -> dict[str, Any]:
+    """Time that `generate --dry-run` says, over that of the build which follows it."""
+    print("\nestimated and real seconds of builds with as many jobs as pay, and load before them")
+    results: dict[str, list[dict[str, Any]]] = {}
+    for label, (config, more) in ESTIMATED.items():
+        for _ in range(min(rounds, 2)):
+            load = os.getloadavg()[0]
+            with tempfile.TemporaryDirectory() as place:
+                command = ["generate", f"configs/{config}.yaml", "-o", f"{place}/o", "--json"]
+                command += [word for setting in more for word in ("--set", setting)]
+                dry_wall, _, said = run_timed(*command, "--dry-run")
+                wall, processor, _ = run_timed(*command)
+            estimate = json.loads(said)
+            row = {
+                "load": load,
+                "samples": estimate["samples"],
+                "jobs": estimate["jobs"],
+                "probes": estimate["probes"],
+                "dry_run": dry_wall,
+                "core_share": estimate["core_share"],
+                "wall": wall,
+                "wall_ratio": estimate["seconds"] / wall,
+                "within_range": estimate["seconds_range"][0]
+                <= wall
+                <= estimate["seconds_range"][1],
+                "processor": processor,
+                "processor_ratio": estimate["processor_seconds"] / processor,
+            }
+            results.setdefault(label, []).append(row)
+            print(
+                f"  {label:<20}{row['samples']:6d} samples, load {load:4.1f}, share of a core "
+                f"{row['core_share']:.2f}: processor {processor:6.1f} s, estimate "
+                f"{row['processor_ratio']:.2f} of it; wall {wall:6.1f} s, {row['wall_ratio']:.2f}; "
+                f"dry run {dry_wall:.1f} s, {row['probes']} samples",
+                flush=True,
+            )
+    return results
+
+
 SECTIONS = {
     "lengths": lengths,
+    "estimates": estimates,
     "rows": rows,
     "builds": builds,
     "people": people,

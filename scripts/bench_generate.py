@@ -705,7 +705,72 @@ def estimates(rounds: int) -> dict[str, Any]:
     return results
 
 
+_KINDS = """
+import json, sys
+import numpy as np
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import choose_batch_size
+from radhar_cli.dataset.estimate import FILE_S, encode_samples
+from radhar_cli.dataset.layout import Rows, row_bytes
+from radhar_cli.dataset.trial import make_trial_sample
+config, rounds, count = load_config(sys.argv[1], sys.argv[4:]), int(sys.argv[2]), int(sys.argv[3])
+label = sys.argv[1]
+rows = Rows.of(config).spread_progressively(count)
+make_trial_sample(config, label, rows[0])
+made = [[make_trial_sample(config, label, row) for row in rows] for _ in range(rounds)]
+least = [min(of_row, key=lambda sample: sample.processor) for of_row in zip(*made)]
+written = encode_samples(config, [sample.row for sample in least])
+batch = choose_batch_size(1000, 2, row_bytes(config))
+write = written.sample_seconds + written.shard_seconds / batch
+write += FILE_S * len(config.maps) * config.output.png
+stages = {name: np.mean([sample.stages[name] for sample in least]) for name in least[0].stages}
+stages["write"] += write
+print(json.dumps({name: 1e3 * seconds for name, seconds in stages.items()}))
+"""
+KINDS = {  # of samples: config, settings beside it, number of samples that are timed
+    "paper, free space": ("paper/free_space", (), 24),
+    "paper, through the wall": ("paper/through_wall", (), 24),
+    "quickstart: 24 GHz, 13 points, two maps": ("quickstart", (), 24),
+    "people at 77 GHz, 13 points": ("human/free_space_77GHz", ("body.scatterers=points",), 24),
+    "people at 77 GHz, segments": ("human/free_space_77GHz", (), 24),
+    "people through a wall, 2 GHz": ("human/through_wall_2GHz", (), 24),
+    "three people in a room": ("human/people", (), 8),
+    "Glasgow: gate of 21 range bins": ("measured/glasgow_5p8GHz", (), 24),
+    "board IWR1443, clouds alone": ("boards/iwr1443", ("maps=[points]",), 6),
+    "board IWR1443, all maps and clouds": ("boards/iwr1443", (), 6),
+    "stream of a minute, 24 GHz": ("human/streams", (), 6),
+}
+THOUSAND, CORES = 1000, 2
+
+
+def kinds(rounds: int) -> dict[str, Any]:
+    """What a thousand samples of each kind cost, files included: processor time, two cores."""
+    print("\na thousand samples: ms of processor time a sample (the least of rounds), minutes on 2")
+    print("cores, and the largest stages in percent")
+    results: dict[str, Any] = {}
+    one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    for label, (config, more, count) in KINDS.items():
+        words = [f"configs/{config}.yaml", str(rounds), str(count), *more]
+        done = subprocess.run(
+            [sys.executable, "-c", _KINDS, *words],
+            env=os.environ | one_thread,
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        stages = json.loads(done.stdout)
+        total = sum(stages.values())
+        minutes = THOUSAND * total / 1e3 / CORES / 60
+        results[label] = {"ms": total, "minutes": minutes, "stages": stages}
+        largest = sorted(stages, key=stages.__getitem__, reverse=True)[:4]
+        line = ", ".join(f"{name} {100 * stages[name] / total:.0f}" for name in largest)
+        print(f"  {label:<42}{total:9.1f} ms{minutes:8.2f} min   {line}", flush=True)
+    return results
+
+
 SECTIONS = {
+    "kinds": kinds,
     "lengths": lengths,
     "estimates": estimates,
     "rows": rows,

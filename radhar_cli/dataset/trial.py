@@ -8,12 +8,15 @@ from typing import NamedTuple
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.sample import SampleRow, store
 from radhar_cli.dataset.workers import run_within
+from radhar_cli.numerics.arrays import Levels
 from radhar_cli.processes.progress import Progress
 from radhar_cli.processes.worker_process import prepare_process
+from radhar_cli.products.plan import Plan
 from radhar_cli.products.run import run
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene_checks.drawing import draw_valid_scene
@@ -44,23 +47,55 @@ class TrialSample(NamedTuple):
         return sum(self.stages.values())
 
 
-def make_trial_sample(config: Config, row: int) -> TrialSample:
-    """Make one sample of a data set, down to the bytes of its PNG files; nothing is written."""
-    prepare_process()
-    plan, started, before = plan_images(config), monotonic(), process_time()
-    scene, _ = draw_valid_scene(config, *Rows.of(config)[row])
+class _Preparations(NamedTuple):
+    """What a process makes once for all samples of a batch."""
+
+    config: Config
+    plan: Plan
+    rows: Rows
+    columns: tuple[scene_fields.Field, ...]
+    table: Levels | None
+
+
+_PREPARED: dict[str, _Preparations] = {}  # by the identity of a data set, the latest alone
+
+
+def _prepare(config: Config, data_set: str) -> _Preparations:
+    """Prepare a process for samples of a data set; a copy of its config finds it prepared.
+
+    Args:
+        config: that of the data set.
+        data_set: hash of its identity.
+    """
+    if data_set not in _PREPARED:
+        prepare_process()
+        table = colour_table(config.image.colour_map) if config.output.png else None
+        plan, columns = plan_images(config), scene_fields.fields(config)
+        _PREPARED.clear()
+        _PREPARED[data_set] = _Preparations(config, plan, Rows.of(config), columns, table)
+    return _PREPARED[data_set]
+
+
+def make_trial_sample(config: Config, data_set: str, row: int) -> TrialSample:
+    """Make one sample of a data set, down to the bytes of its PNG files; nothing is written.
+
+    Args:
+        config: that of the data set.
+        data_set: hash of its identity.
+        row: row of the sample.
+    """
+    config, plan, rows, columns, table = _prepare(config, data_set)
+    started, before = monotonic(), process_time()
+    scene, _ = draw_valid_scene(config, *rows[row])
     stages = {DRAW: process_time() - before}
     recording = run(plan, {"scene": scene})
     stages |= recording.seconds
     start = process_time()
     sample = store(recording, scene, config)
-    values = scene_fields.values(scene, scene_fields.fields(config), sample.error_db)
-    png_bytes = 0
-    if config.output.png:
-        table, level = colour_table(config.image.colour_map), config.output.png_level
-        png_bytes = sum(
-            len(encode_png(image.levels, table, level)) for image in sample.images.values()
-        )
+    values, png_bytes = scene_fields.values(scene, columns, sample.error_db), 0
+    if table is not None:
+        level, images = config.output.png_level, sample.images.values()
+        png_bytes = sum(len(encode_png(image.levels, table, level)) for image in images)
     stages[WRITE] = process_time() - start
     made_row = SampleRow(sample, values)
     return TrialSample(os.getpid(), made_row, png_bytes, started, monotonic(), before, stages)
@@ -91,13 +126,14 @@ def try_samples(
         seconds: longest time, s.
         progress: is told of every sample.
     """
+    data_set = identity_hash(identity(config))
     begun, by_process, end = monotonic(), dict[int, list[TrialSample]](), inf
 
-    def tasks() -> Iterator[tuple[Config, int]]:
+    def tasks() -> Iterator[tuple[Config, str, int]]:
         for row in [*places[:jobs], *places]:
             if monotonic() > end:
                 return
-            yield config, row
+            yield config, data_set, row
 
     def receive(sample: TrialSample) -> None:
         nonlocal end

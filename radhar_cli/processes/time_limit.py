@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from math import inf
 from typing import Any
 
-AGAIN_S = 0.25
+AGAIN_S = 2.0  # longer than a busy machine keeps a process waiting while it leaves the block
 
 
 class _OutOfTime(BaseException):

@@ -6,6 +6,7 @@ pulses.
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 from math import ceil, inf, isnan, log10, nan
 from typing import NamedTuple, TypeVar
 
@@ -16,6 +17,7 @@ from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.half_band_sum import MAX_CELLS, reference_table
 from radhar_cli.echo.knots import EVEN, Roughness, Spacing
 from radhar_cli.echo.paths import Paths
+from radhar_cli.echo.phase_recurrence import run_length
 from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller, Fir
@@ -31,11 +33,13 @@ TABLE_DB = -48.0
 SINGLE_DB = -115.0  # error of the recurrence in float32
 CUBIC_DB = -140.0  # of a cubic phase over 20 pulses, which may err by -120 dB in a few places
 # Settings aim below the tolerance, and are taken if the stated error is below it by SPARE.
-MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 30.0, -220.0
+MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 6.0, 30.0, -220.0
 LOOSEST_DB = -80.0  # the default; what is looser runs as it (docs/physics/engines.md)
 PROBES = 96
-ROUGH = 0.4  # share of the probes that lie where interpolation is likely to err most
-DEVIATIONS = 2.0  # standard errors by which the stated error lies above the estimate
+# Shares of the probes that lie where interpolation is likely to err most, and at ends of runs.
+ROUGH, SEAMS = 0.4, 0.15
+# The stated error lies as many standard errors above the estimate, and so many dB above that.
+DEVIATIONS, BOUND_DB = 2.0, 4.0
 GOLDEN = 0.6180339887498949
 MAX_REFERENCE_SAMPLES, BLOCK = 2**14, 2**14  # of a chirp whose G is tabulated; values at work
 Values = TypeVar("Values", float, Float)
@@ -117,7 +121,7 @@ def measured_db(
     """
     taps = canceller.taps if isinstance(canceller, Fir) else NO_CANCELLER.taps
     probes = choose_probes(
-        _powers(y, canceller, roughness.step), y.size - canceller.lost, roughness
+        _powers(y, canceller, roughness.step), y.size - canceller.lost, roughness, len(taps) - 1
     )
     if probes.total == 0:
         return -inf
@@ -138,7 +142,7 @@ class Probes(NamedTuple):
         """Bound of the relative error (dB) from the squared errors |e|^2 [P] at the pulses.
 
         Each |e|^2 over its density estimates P/sum |e|^2; the bound lies DEVIATIONS standard
-        errors of the mean above it.
+        errors of the mean and BOUND_DB above it.
         """
         estimates = squares / self.density
         spread = estimates.std() * np.sqrt(estimates.size)
@@ -147,20 +151,22 @@ class Probes(NamedTuple):
             return nan
         if isnan(relative):
             return inf
-        return 10 * log10(relative) if relative > 0 else -inf
+        return BOUND_DB + 10 * log10(relative) if relative > 0 else -inf
 
 
-def choose_probes(powers: Float, pulses: int, roughness: Roughness = EVEN) -> Probes:
+def choose_probes(powers: Float, pulses: int, roughness: Roughness = EVEN, lost: int = 0) -> Probes:
     """Choose PROBES pulses at which a signal is compared with the exact one.
 
     A share `ROUGH` of them lies where interpolation is likely to err most, so that few milliseconds
     which hold most of the error are among them; of the others half are spread evenly, half by the
     power, so that a jump which holds most of that, as of a limb that crosses a wall's face, is.
+    Of those in a segment a share `SEAMS` or more lies where a run of pulses ends.
 
     Args:
         powers: Sum of |x|^2 over each segment of pulses [segments].
         pulses: Number M of pulses of x.
         roughness: How large |e|^2 may be in each segment, up to a factor, and their pulses.
+        lost: Number of pulses by which the canceller shortens a signal.
     """
     starts = np.arange(0, pulses, roughness.step)
     total = float(powers.sum())
@@ -175,10 +181,33 @@ def choose_probes(powers: Float, pulses: int, roughness: Roughness = EVEN) -> Pr
     place = (np.arange(PROBES) + np.arange(PROBES) * GOLDEN % 1) / PROBES
     ends = np.cumsum(share)
     segment = np.searchsorted(ends, place).clip(max=starts.size - 1)
-    within = (place - ends[segment]) / share[segment] + 1
+    within = ((place - ends[segment]) / share[segment] + 1).clip(0, 1 - 1e-9)
     length = lengths[segment]
-    offset = (within * length).astype(np.intp).clip(0, length - 1)
-    return Probes(starts[segment] + offset, share[segment] * (PROBES / length), total)
+    offset, density = (within * length).astype(np.intp), 1 / length
+    order, seams = _seams_first(roughness.step, lost)
+    if seams < SEAMS * order.size:  # else as many lie there anyway
+        at_seam, full = within < SEAMS, length == order.size
+        rank = np.where(
+            at_seam,
+            within * (seams / SEAMS),
+            seams + (within - SEAMS) * ((order.size - seams) / (1 - SEAMS)),
+        ).astype(np.intp)
+        offset = np.where(full, order[rank], offset)
+        shares = np.where(at_seam, SEAMS / seams, (1 - SEAMS) / (order.size - seams))
+        density = np.where(full, shares, density)
+    return Probes(starts[segment] + offset, share[segment] * density * PROBES, total)
+
+
+@lru_cache(maxsize=128)
+def _seams_first(step: int, lost: int) -> tuple[Index, int]:
+    """Pulses of a segment [step] by order: those at the end of a run before others; and how many.
+
+    Rounding grows along a run, and a canceller sees the jump to the next.
+    """
+    pulses, length = np.arange(step), run_length(step)
+    after = pulses + max(1, lost)
+    at_end = (after // length != pulses // length) | (after >= step)
+    return np.argsort(~at_end, kind="stable"), int(at_end.sum())
 
 
 def segment_powers(x: Complex, step: int) -> Float:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.echo.accuracy import GOLDEN, AccuracyError, Probes, goal
+from radhar_cli.echo.accuracy import GOLDEN, SPARE_DB, AccuracyError, Probes, goal
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.chebyshev import coefficients
 from radhar_cli.echo.interpolation import lagrange_basis
@@ -26,7 +26,6 @@ from radhar_cli.radar.board import Board
 BLOCK_FRAMES = 16
 SINGLE_DB = -100.0  # tolerances below need double precision
 PROBES = 96
-SPARE_DB = 10.0  # by which the measured error must be below the tolerance
 NODES, MORE_NODES = 6, 16
 MARGIN_DB = 20.0
 MAX_TERMS = 24

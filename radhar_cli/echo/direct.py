@@ -42,7 +42,8 @@ from radhar_cli.radar.waveform import Waveform
 # twenty follow from each; and at knots from which those follow.
 BLOCK, PHASORS, CHUNK = 2**15, 2**13, 2**20
 CUBIC = 3  # degree of phases between knots
-SINGLE_ROUNDING_DB = -132.0  # rounding of slowly turning phasors in float32
+# Rounding of slowly turning phasors in float32, and by how much it must stay below the tolerance.
+SINGLE_ROUNDING_DB, ROUNDING_SPARE_DB = -132.0, 10.0
 SAMPLED = 64
 
 
@@ -153,7 +154,7 @@ class DirectEcho:
         amplitude = paths.amplitude[:, sampled] * summed[:, None]
         taps = enumerate(self.canceller.taps)
         left = sum(c * unit_phasor(k * turn, np.complex64) for k, c in taps)
-        rounding_db = SINGLE_ROUNDING_DB - (goal(self.tolerance_db) - SPARE_DB)
+        rounding_db = SINGLE_ROUNDING_DB + ROUNDING_SPARE_DB - goal(self.tolerance_db)
         least = 10 ** (rounding_db / 10) * np.sum(amplitude**2)
         return bool(np.sum(np.abs(left * amplitude) ** 2) > least)
 

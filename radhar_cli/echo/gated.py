@@ -197,7 +197,7 @@ class GatedEcho(DirectEcho):
         power = np.einsum("km,km->m", pairs, pairs).reshape(-1, 2).sum(axis=1)
         step = motion.roughness.step
         powers = np.add.reduceat(power, np.arange(0, power.size, step))
-        probes = choose_probes(powers, power.size, motion.roughness)
+        probes = choose_probes(powers, power.size, motion.roughness, fir.lost)
         if probes.total == 0:
             return -inf
         centred = replace(w, centred=True)

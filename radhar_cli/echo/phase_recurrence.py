@@ -31,6 +31,11 @@ def nodes(degree: int, length: int) -> Float:
     return places
 
 
+def run_length(step: int) -> int:
+    """Pulses of each of the equal runs that a segment of `step` pulses is divided into."""
+    return -(-step // -(-step // MAX_RUN))
+
+
 class Runs(NamedTuple):
     """A segment in equal runs of pulses, each with a polynomial of its own."""
 
@@ -46,8 +51,8 @@ def runs(step: int, degree: int) -> Runs:
 
     Of degree TAPS - 1 they are the polynomial through the knots itself.
     """
-    count = -(-step // MAX_RUN)
-    length = -(-step // count)
+    length = run_length(step)
+    count = -(-step // length)
     places = nodes(degree, length)
     order = np.arange(places.size)
     to_pulses = lagrange_basis(places, order.astype(float)).T

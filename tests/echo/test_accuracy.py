@@ -23,7 +23,7 @@ from radhar_cli.scene import draw_scene
 
 pytestmark = pytest.mark.usefixtures("either_sum")
 
-ESTIMATE_DB = 13.0  # the error is an estimate from some dozens of pulses; docs/physics/engines.md
+LARGER_DB = 20.0  # the stated error is a bound from some dozens of pulses; docs/physics/engines.md
 CUBE = {"kind": "cube"}
 
 
@@ -97,7 +97,7 @@ def within(drawn: dict, activity: Activity, tolerance_db: float) -> float | None
         return -np.inf
     error_db = ref.error_db(found, right)
     assert error_db <= tolerance_db, (activity.slug, waveform, accuracy)
-    assert error_db == pytest.approx(accuracy.error_db, abs=ESTIMATE_DB), (activity.slug, waveform)
+    assert error_db <= accuracy.error_db <= error_db + LARGER_DB, (activity.slug, waveform)
     return error_db
 
 
@@ -269,7 +269,7 @@ def test_the_tolerance_is_that_after_any_canceller(canceller):
     )
     error_db = ref.error_db(found, right)
     assert error_db < -100
-    assert error_db == pytest.approx(accuracy.error_db, abs=ESTIMATE_DB)
+    assert error_db <= accuracy.error_db <= error_db + LARGER_DB
 
 
 class TestEstimate:
@@ -288,11 +288,11 @@ class TestEstimate:
         noise = np.random.default_rng(3).standard_normal((2, y.size)) * 1e-4 * np.abs(y).mean()
         wrong = y + noise[0] + 1j * noise[1]
         right_db = ref.error_db(np.diff(wrong), np.diff(y))
-        assert self.measured(wrong, waveform) == pytest.approx(right_db, abs=3)
+        assert right_db <= self.measured(wrong, waveform) <= right_db + 7
 
     def test_a_tenth_of_the_recording(self, exact):
         y, waveform = exact
         wrong = y.copy()
         wrong[1000:1250] *= 1 + 1e-4 * np.sin(np.arange(250))
         right_db = ref.error_db(np.diff(wrong), np.diff(y))
-        assert self.measured(wrong, waveform) == pytest.approx(right_db, abs=6)
+        assert right_db <= self.measured(wrong, waveform) <= right_db + 10

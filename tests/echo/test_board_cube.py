@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.radar import BoardRadar
-from radhar_cli.echo.accuracy import LOOSEST_DB, AccuracyError
-from radhar_cli.echo.board_cube import SPARE_DB, exact_cube, fast_cube, mean_power, measured_db
+from radhar_cli.echo.accuracy import LOOSEST_DB, SPARE_DB, AccuracyError
+from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power, measured_db
 from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
@@ -87,7 +87,7 @@ def test_the_fast_sum_keeps_its_tolerance_or_says_so(tolerance: float, speed: fl
         return
     error = 20 * np.log10(np.linalg.norm(cube - exact) / np.linalg.norm(exact))
     assert error <= tolerance
-    assert measured == pytest.approx(error, abs=10) or measured < -180
+    assert error <= measured < error + 14 or measured < -180
     assert fast_power == pytest.approx(power, rel=1e-6)
 
 

@@ -152,9 +152,9 @@ def test_the_tolerance_is_kept(block):
         said_db = max(found["accuracy"].error_db, error_db if error_db < -170 else -np.inf)
         assert error_db <= tolerance_db, (drawn, activity.slug, found["accuracy"])
         if isinstance(canceller, Fir):
-            assert error_db == pytest.approx(said_db, abs=13), (drawn, activity.slug)
+            assert error_db <= said_db <= error_db + 17, (drawn, activity.slug)
         else:  # the reported error bounds it
-            assert error_db < said_db + 16, (drawn, activity.slug)
+            assert error_db <= said_db, (drawn, activity.slug)
         made += 1
     assert made >= 12
 
@@ -170,7 +170,7 @@ def test_after_any_canceller(canceller, tolerance_db):
     right = exact_bins(WALK(np.arange(2500) / 5000), RADAR)[40:80]
     error_db = ref.error_db(canceller(y), canceller(right))
     assert error_db < tolerance_db
-    assert error_db < accuracy.error_db + 6
+    assert error_db <= accuracy.error_db
 
 
 def test_a_high_pass_that_leaves_little_keeps_the_promise():
@@ -180,7 +180,7 @@ def test_a_high_pass_that_leaves_little_keeps_the_promise():
     y, accuracy = replace(echo(-60.0, canceller=canceller), source=sway).rows()
     right = exact_bins(sway(np.arange(2500) / 5000), RADAR)[40:80]
     assert np.linalg.norm(canceller(right)) < 0.1 * np.linalg.norm(MeanRemoval()(right))
-    assert ref.error_db(canceller(y), canceller(right)) < min(-60, accuracy.error_db + 6)
+    assert ref.error_db(canceller(y), canceller(right)) <= min(-60, accuracy.error_db)
 
 
 def test_static_paths_are_left_out():

@@ -12,7 +12,6 @@ from radhar_cli.products.run import record
 from radhar_cli.scene import draw_scene
 
 ROOT = Path(__file__).resolve().parents[2]
-PROMISED_DB = 13.0  # docs/physics/engines.md
 
 
 def test_a_burst_of_errors_in_a_few_milliseconds_is_measured() -> None:
@@ -27,7 +26,7 @@ def test_a_burst_of_errors_in_a_few_milliseconds_is_measured() -> None:
     right, _ = DirectEcho(made["paths"], made["waveform"], -120.0).slow_time()
     error, x = np.diff(y - right), np.diff(right)
     true_db = 20 * np.log10(np.linalg.norm(error) / np.linalg.norm(x))
-    assert stated.error_db == pytest.approx(true_db, abs=6.0)
+    assert true_db <= stated.error_db < true_db + 10
 
 
 @pytest.mark.slow
@@ -37,4 +36,4 @@ def test_random_scenes() -> None:
     assert len(found) > 40
     for one in found:
         assert one.true_db < one.tolerance_db, one
-        assert one.true_db - one.stated_db < PROMISED_DB, one
+        assert one.true_db <= one.stated_db, one

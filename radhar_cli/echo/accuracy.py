@@ -31,7 +31,7 @@ PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.1, 0.05
 # Cubic Hermite cells err by the fourth power of their width: -48 dB at 4 a fast-time sample.
 TABLE_DB = -48.0
 SINGLE_DB = -115.0  # error of the recurrence in float32
-CUBIC_DB = -140.0  # of a cubic phase over 20 pulses, which may err by -120 dB in a few places
+CUBIC_DB = -146.0  # of cubic phases over 20 pulses or fewer: for tolerances down to -120 dB
 # Settings aim below the tolerance, and are taken if the stated error is below it by SPARE.
 MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 6.0, 30.0, -220.0
 LOOSEST_DB = -80.0  # the default; what is looser runs as it (docs/physics/engines.md)

@@ -99,6 +99,10 @@ def half_band_table(waveform: Waveform, oversampling: int, single: bool = False)
 
 @lru_cache(maxsize=4)
 def reference_table(waveform: Waveform) -> HalfBandTable:
-    """Table of G that is exact to some 1e-12, against which sums are measured."""
+    """Table of G against which sums are measured.
+
+    It errs by the sixth power of the cell: by 2e-11 of sum |D[n]| at most, or 1.3e-9 with the phase
+    reference at the start of the chirp, and usually by far less.
+    """
     finest = max(1, MAX_CELLS // waveform.n_adc)
     return HalfBandTable(waveform, min(REFERENCE_OVERSAMPLING, finest), quintic=True)

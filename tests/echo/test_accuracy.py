@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from helpers import reference as ref
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from radhar_cli.activities.activity import ACTIVITIES, Activity
 from radhar_cli.assembly.motion import motion_of
@@ -110,6 +112,14 @@ def test_the_tolerance_is_kept(block):
         for number in range(48)
     ]
     assert sum(error is not None and np.isfinite(error) for error in found) >= 30
+
+
+@given(seed=st.integers(0, 2**32 - 1), tolerance_db=st.floats(-110, -6))
+@settings(max_examples=12)
+def test_what_is_stated_is_a_bound(seed, tolerance_db):
+    """Of any radar, which `within` asserts."""
+    rng = np.random.default_rng(seed)
+    within(random_config(rng), ACTIVITIES[seed % 12], tolerance_db)
 
 
 def test_without_mti_it_is_that_of_the_whole_signal():
@@ -225,6 +235,25 @@ def test_a_looser_tolerance_is_kept_where_the_default_cannot_be():
 
 def test_the_default_is_the_loosest():
     assert EngineConfig().tolerance_db == LOOSEST_DB
+
+
+def test_tighter_tolerances_of_a_person_take_more_work_and_one_attempt():
+    """Paths at knots and at exact pulses: of these there are fewer the closer knots are, so that
+    there may be a few per cent less to do before precision costs more."""
+    config = CONFIG | {"duration_s": 2.0, "motion": {"model": "human"}, "radar": {"prf_hz": 8000}}
+    scene = draw_scene(Config.model_validate(config | {"seed": 257}), ACTIVITIES[5], 0)
+    made, work, precise = record(scene, ["paths", "waveform"]), list[int](), list[bool]()
+    for tolerance_db in (-60.0, -80.0, -90.0, -100.0, -110.0, -120.0):
+        echo = DirectEcho(made["paths"], made["waveform"], tolerance_db)
+        ((_, accuracy),) = echo._attempts()
+        knots = echo._motion.chunk
+        assert knots is not None
+        work.append(knots.shift.size + knots.exact_pulses.size)
+        precise.append(not accuracy.single)
+    assert work[0] == work[1]
+    assert all(np.diff(work) > -0.05 * work[0])
+    assert work[-1] > 1.2 * work[0]
+    assert precise == sorted(precise)
 
 
 def test_slow_motion_is_computed_in_double_at_once():

@@ -5,11 +5,14 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 from helpers import reference as ref
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.signal.windows import blackmanharris
 
 from radhar_cli.echo import half_band_sum as hbs
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.processing.look import RangeSum, noise_gain, weights
+from radhar_cli.radar.chirp_window import ChirpWindow
 from radhar_cli.radar.waveform import Waveform
 
 RADARS = {
@@ -52,6 +55,26 @@ def test_table_error_with_the_phase_reference_at_the_start(oversampling, expecte
     table = hbs.HalfBandTable(waveform(radar), oversampling)
     error = ref.error_db(table(U), ref.half_band_sum(U, radar))
     assert error == pytest.approx(expected_db, abs=3)  # the trial of docs/physics/model.md
+
+
+@given(
+    samples=st.integers(2, 300),
+    padding=st.integers(0, 60),
+    centred=st.booleans(),
+    window=st.sampled_from(["rectangular", "hann", "chebyshev"]),
+    u=st.lists(st.floats(-2.5, 2.5), min_size=1, max_size=20),
+)
+def test_what_errors_are_measured_against_is_right(samples, padding, centred, window, u):
+    """The table of quintics, against which every signal is compared, against the plain sum: they
+    leave h^6/46080 of the sixth derivative."""
+    shape = ChirpWindow(window if samples >= 3 else "rectangular")
+    fft_length = 2 * ((samples + 1) // 2 + padding)
+    w = Waveform(77e9, 1e9, 1e-4, samples * 1e4, 1e3, 1.0, fft_length, centred, window=shape)
+    assert w.n_adc == samples
+    d, n = weights(w), np.arange(samples) - w.n0
+    right = np.exp(-2j * np.pi * np.outer(u, n)) @ d
+    left = (2 * np.pi * np.abs(n) / (32 * samples)) ** 6 / 46080 + 1e-14 * samples
+    assert np.abs(hbs.reference_table(w)(np.array(u)) - right).max() <= left @ np.abs(d)
 
 
 @radars

@@ -6,6 +6,7 @@ import pytest
 from radhar_cli.echo.accuracy import choose_probes
 from radhar_cli.echo.knots import Roughness, Spacing, resolve
 from radhar_cli.echo.paths import Paths
+from radhar_cli.echo.phase_recurrence import run_length
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.waveform import Waveform
 
@@ -99,6 +100,20 @@ def test_probes_count_every_pulse_once_whatever_the_segments() -> None:
             np.add.at(counts, probes.pulses, 1 / probes.density / 100)
         assert counts.sum() == pytest.approx(size, rel=0.05)
         assert counts[-size // 3 :].mean() == pytest.approx(1, abs=0.2)
+
+
+@pytest.mark.parametrize("lost", [0, 1, 2])
+@pytest.mark.parametrize("step", [7, 18, 26, 45])
+def test_probes_lie_at_ends_of_runs(step: int, lost: int) -> None:
+    """In single precision an error grows until there, and a canceller sees it jump back."""
+    size = 40 * step + 3
+    power = np.append(np.full(40, float(step)), 3.0)
+    probes = choose_probes(power, size, Roughness(step, np.ones(41)), lost)
+    at_end = (probes.pulses % step + max(1, lost)) % run_length(step) < max(1, lost)
+    at_end |= probes.pulses % step + max(1, lost) >= step
+    assert 0.1 < at_end.mean() < 0.35
+    jumps = at_end / probes.density
+    assert jumps.sum() == pytest.approx(40 * max(1, lost) * -(-step // 20), rel=0.35)
 
 
 def test_a_breakpoint_is_not_rough_where_the_stencil_avoids_it() -> None:

@@ -207,8 +207,9 @@ class _Search:
 
     def _failing(self, key: NumberKey, number: float, places: list[Place]) -> Place | None:
         """First sample that shows something new with a number, or None."""
+        config = self.trial.config_with(key.key, number)
         for place in places:
-            if not self._judge(key, number, [place]).is_clean:
+            if not self.trial.judge_scene(config, *place).is_clean:
                 return place
         return None
 

@@ -22,7 +22,7 @@ from radhar_cli.limits.limit import CLEAN, Consequence, Judgement, Origin
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.scene_checks.flags import Flags, describe_flag
-from radhar_cli.scene_checks.warnings import config_warnings
+from radhar_cli.scene_checks.warnings import warnings_of_signal
 
 ATTEMPTS = 8  # draws of a scene on the way to a limit, where a data set takes a thousand
 SAMPLES = 2  # of each class that are drawn at a limit
@@ -63,8 +63,17 @@ class ConfigTrial:
             ConfigError: it is no config.
             SceneError: no class of it has a scene that can be drawn.
         """
-        values = read_values(path, overrides)
-        trial = cls(values, path.parent, config_of_values(values, path.parent))
+        return cls.of_values(read_values(path, overrides), path.parent)
+
+    @classmethod
+    def of_values(cls, values: dict[str, Any], folder: Path) -> "ConfigTrial":
+        """Make a config of plain values and draw its scenes; motion files are named from a folder.
+
+        Raises:
+            ConfigError: it is no config.
+            SceneError: no class of it has a scene that can be drawn.
+        """
+        trial = cls(values, folder, config_of_values(values, folder))
         trial.known = {_without_numbers(line) for line in _config_lines(trial.config)}
         error: RadharError | None = None
         for activity in trial.config.chosen_activities:
@@ -111,13 +120,13 @@ class ConfigTrial:
                 warned = Judgement(Consequence.WARNED, source, _in_short(line))
                 break
         for activity, index in places:
-            judgement = self._judge_scene(config, activity, index)
+            judgement = self.judge_scene(config, activity, index)
             if judgement.effect in (Consequence.REFUSED, Consequence.REDRAWN):
                 return judgement
             warned = judgement if warned.is_clean else warned
         return warned
 
-    def _judge_scene(self, config: Config, activity: Activity, index: int) -> Judgement:
+    def judge_scene(self, config: Config, activity: Activity, index: int) -> Judgement:
         """Judge whether a scene can be drawn, and what is warned of in it."""
         same = next((a for a in config.chosen_activities if a.slug == activity.slug), None)
         if same is None:
@@ -192,7 +201,7 @@ def _overflows() -> Iterator[list[str]]:
 
 
 def _config_lines(config: Config) -> list[str]:
-    return [*config_warnings(config), *timing_warnings(config)]
+    return [*warnings_of_signal(config), *timing_warnings(config)]
 
 
 def _flag_lines(flags: Flags, config: Config) -> list[str]:

@@ -22,7 +22,7 @@ from radhar_cli.config.number import support
 from radhar_cli.config.range_zone import range_zone
 from radhar_cli.config.room import WallConfig
 from radhar_cli.config.section import PerActivity
-from radhar_cli.scene import FALL, numbers
+from radhar_cli.scene import FALL, USUAL_SPEEDS, numbers
 
 _OF_PEOPLE = ("subject.", "motion.", "timing.")
 
@@ -34,6 +34,7 @@ def unused_keys(config: Config) -> list[str]:
     without = {"recordings": "the scenes of a config; it needs radhar generate --recordings"}
     without |= dict(_of_nobody(config, config.chosen_activities, config.activities))
     without |= dict([*_of_other_maps(config), *_without_condition(config)])
+    _forget_usual_speeds(without, fixed)
     if fixed or "range_limits_m" not in config.image.model_fields_set:
         without.pop("image.range_limits_m", None)  # which follows from where people can be
     lines = _describe_unused(config, without, same)
@@ -43,10 +44,17 @@ def unused_keys(config: Config) -> list[str]:
         without = dict(_of_nobody(person_config, activities, person.names))
         unmet = _without_condition(person_config)
         without |= {key: why for key, why in unmet if key.startswith(_OF_PEOPLE)}
+        _forget_usual_speeds(without, fixed)
         person_lines = _describe_unused(person_config, without, same)
         person_lines += _describe_idle_entries(person_config, activities, person.names)
         lines += [f"people.{number - 1}.{line}" for line in person_lines]
     return lines
+
+
+def _forget_usual_speeds(without: dict[str, str], is_scene: bool) -> None:
+    """Leave out of a scene's unused keys the speeds that follow the stature: nobody wrote them."""
+    for key in USUAL_SPEEDS if is_scene else ():
+        without.pop(key, None)
 
 
 def _describe_unused(

@@ -32,6 +32,7 @@ from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.receiver.noise_law import Silent, Snr
 from radhar_cli.scene import Person, Scene, nominal_scene
+from radhar_cli.scene_checks.validity import MIN_DISTANCE_M
 
 # SNR of a cell with all of the echo, below which images are those of noise: people fill many cells,
 # so that each has less, although scatterers that meet in one may add in amplitude. In images of
@@ -173,7 +174,8 @@ def _thermal_snr_db(scene: Scene) -> float:
     antennas, person, w = antennas_of(scene), scene.people[0], waveform_of(scene)
     p = chest_point(person)
     legs = leg(p, antennas.tx), leg(p, antennas.rx)
-    echo = amplitude(*legs, np.ones((1, 1)), antennas.gain, w.wavelength)
+    r_tx, r_rx = (np.maximum(r, MIN_DISTANCE_M) for r in legs)
+    echo = amplitude(r_tx, r_rx, np.ones((1, 1)), antennas.gain, w.wavelength)
     sigma = noise_law_of(scene.config).sigma(0.0, w.sample_rate)
     return 20 * log10(float(echo[0, 0]) / sigma)
 

@@ -28,11 +28,14 @@ MAX_COMMANDS = 20  # of a .cfg, in a warning
 
 def config_warnings(config: Config) -> list[str]:
     """Say which keys and lines have no effect or alias, and whether maps are noise alone."""
+    return [*word_warnings(config), *unused_keys(config), *warnings_of_signal(config)]
+
+
+def warnings_of_signal(config: Config) -> list[str]:
+    """Say what aliases, and whether maps are noise alone, whatever keys have no effect."""
     radar = config.radar
     header_lines = _header_warnings(config, radar) if isinstance(radar, BoardRadar) else ()
     return [
-        *word_warnings(config),
-        *unused_keys(config),
         *tone_warnings(config),
         *header_lines,
         *noise_alone(config),

@@ -3,6 +3,11 @@
 P = mean over the channels of |X|^2 in a range-Doppler cell. With noise alone P over the mean of R
 reference cells has the distribution F(2 V, 2 V R) of V channels, from which the threshold follows
 (neighbouring cells of a Hann window are correlated, so the rate of false alarms is approximate).
+
+Targets of a cell are found one after the other in what is left of the row's spectrum, and placed in
+turns with the others taken out: RELAX, J. Li and P. Stoica, Efficient mixed-spectrum estimation
+with applications to target feature extraction, IEEE Trans. Signal Processing 44 (1996). Peaks that
+are no target are sidelobes of several, and make no point.
 """
 
 from dataclasses import dataclass
@@ -21,6 +26,10 @@ BESIDE = 0.1  # least power of a further target of a cell over its strongest
 BEYOND = 1.5  # least power of a further target over the sidelobes of the row
 TINY = np.finfo(float).tiny
 INTERVALS = np.array([-1, 0, 1])
+ROUNDS = 8  # in which the targets of a cell are placed in turns
+LEAST_SNR = 9.0  # of a further target, beam over noise: of 1 in 1000 cells noise has as much
+APART = 0.8  # least distance of the targets of a cell, widths of a beam
+NEAR = 0.6  # largest distance of a target from its beam, widths of a beam
 
 
 def best_points(
@@ -64,6 +73,7 @@ class Angles:
     beams: Complex  # weights [element, beam] that targets are found with
     fine: Complex  # weights [element, angle] that they are placed with
     beside: float  # power of a further target of a cell over its strongest, beyond sidelobes
+    width: float  # of a beam, turns
 
     @classmethod
     def of(cls, board: Board) -> "Angles":
@@ -77,7 +87,14 @@ class Angles:
             for count in (BEAMS, ANGLES)
         )
         beside = max(BESIDE, BEYOND * sidelobe(places))
-        return cls(row, upper, aside, above, beams, fine, beside)
+        width = 1 / (float(places.max()) + 1)
+        return cls(row, upper, aside, above, beams, fine, beside, width)
+
+    @property
+    def most_targets(self) -> int:
+        """Most targets of a cell that the elements tell apart."""
+        half = max(len(self.row) // 2, 1)
+        return min(half, len(self.upper)) if self.upper else half
 
 
 def _sines(count: int) -> Float:
@@ -110,19 +127,23 @@ def _frame_points(
     around = (3, 3, 2 * int(BEAMS / reach) // 2 + 1)
     largest = maximum_filter(beams, around, mode=("nearest", "wrap", "wrap"))
     strong = beams > angles.beside * beams.max(axis=2, keepdims=True)
+    floor = _floor(power)
+    targets = dict[tuple[int, int], CellTargets]()
     rows = []
-    for k, d, b in np.argwhere((beams == largest) & strong & hit[first:stop, :, None]):
+    for k, d, b in np.argwhere((beams == largest) & strong & hit[first:stop, :, None]).tolist():
         level = np.log(np.maximum(beams[:, d, b], TINY))
         r = max((first + k + _offset(level, k, False)) * board.range_step - bias, 0.0)
         signed = (d + board.n_doppler // 2) % board.n_doppler - board.n_doppler // 2
         fine = signed + _offset(np.log(np.maximum(beams[k, :, b], TINY)), d, True)
-        element = turned[k, d] * np.exp(
-            -2j * np.pi * (fine - signed) / board.n_doppler * board.turns
-        )
-        left, up = _direction(element, board, angles, 2 * np.pi * b / BEAMS)
-        if left * left + up * up <= 1:
+        if (k, d) not in targets:
+            turn = np.exp(-2j * np.pi * (fine - signed) / board.n_doppler * board.turns)
+            least = LEAST_SNR * noise[first + k, d] / len(row)
+            targets[k, d] = CellTargets.of(turned[k, d] * turn, board, angles, least)
+        direction = targets[k, d].take(b / BEAMS)
+        if direction is not None:
+            left, up = direction
             ahead = np.sqrt(r * r * (1 - left * left - up * up))
-            snr = 10 * np.log10(power[first + k, d] / noise[first + k, d])
+            snr = 10 * np.log10(power[first + k, d] / (floor or noise[first + k, d]))
             about = fine * step, beams[k, d, b], snr, first + k, signed
             rows.append((ahead, r * left, r * up, *about))
     return np.array(rows, float).reshape(-1, len(COLUMNS))
@@ -150,31 +171,113 @@ def _offset(level: Float, bin_: int, cyclic: bool) -> float:
     return float(np.clip((before - after) / (2 * curve), -0.5, 0.5)) if curve < 0 else 0.0
 
 
-def _direction(element: Complex, board: Board, angles: Angles, near: float) -> tuple[float, float]:
-    """Direction sines (left, up) of the target near a phase step (rad) between elements.
+@dataclass
+class CellTargets:
+    """Targets of a range-Doppler cell, each of which becomes a point once.
 
-    The first is the peak of the row's spectrum there; with the other peaks of the spectrum taken
-    out by least squares, the second follows from the phase between two rows.
+    Attributes:
+        turns: Phase steps between the elements of the row [J], turns.
+        left: Direction sines to the left [J].
+        up: Direction sines upwards [J].
+        near: Largest distance of a target from the beam in which it is seen, turns.
     """
-    row, upper = angles.row, angles.upper
-    if len(row) == 1:
-        left, chosen = np.zeros(1), 0
-    else:
-        spectrum = np.abs(element[row] @ angles.fine) ** 2
-        peaks = (spectrum >= np.roll(spectrum, 1)) & (spectrum > np.roll(spectrum, -1))
-        peaks &= spectrum > angles.beside * spectrum.max()
-        level = np.log(np.maximum(spectrum, TINY))
-        bins = sorted(np.flatnonzero(peaks), key=lambda n: -spectrum[n])[: max(len(upper), 1)]
-        turns = np.array([(b + _offset(level, int(b), True)) / ANGLES for b in bins])
-        apart = turns - near / (2 * np.pi)
-        chosen = int(np.abs(apart - np.round(apart)).argmin())
-        left = 2 * (turns - np.round(turns))
-    up = 0.0
-    if upper:
-        ratio = _targets(element, board, upper, left) / _targets(element, board, row, left)
-        turned = np.angle(ratio[chosen]) / np.pi - angles.aside * left[chosen]
-        up = ((turned + 1) % 2 - 1) / angles.above
-    return float(left[chosen]), float(up)
+
+    turns: Float
+    left: Float
+    up: Float
+    near: float
+
+    @classmethod
+    def of(cls, element: Complex, board: Board, angles: Angles, least: float) -> "CellTargets":
+        """Find the targets of a cell.
+
+        The azimuth follows from the phase step along the longest row, the elevation from the phase
+        between two rows.
+
+        Args:
+            element: Samples [virtual] of the cell.
+            board: The board.
+            angles: Rows and weights.
+            least: Least power of a further target.
+        """
+        row, upper = angles.row, angles.upper
+        if len(row) == 1:
+            turns: Float = np.zeros(1)
+        else:
+            turns = find_phase_steps(element[row], board, angles, least)
+        left, up = 2 * (turns - np.round(turns)), np.zeros(turns.size)
+        if upper:
+            ratio = _targets(element, board, upper, left) / _targets(element, board, row, left)
+            turned = np.angle(ratio) / np.pi - angles.aside * left
+            up = ((turned + 1) % 2 - 1) / angles.above
+        near = NEAR * angles.width if len(row) > 1 else 1.0
+        return cls(turns, left, up, near)
+
+    def take(self, beam: float) -> tuple[float, float] | None:
+        """Direction sines (left, up) of the target in a beam (turns), which is gone then.
+
+        None where there is none, or none that is in a real direction.
+        """
+        apart = self.turns - beam
+        apart = np.abs(apart - np.round(apart))
+        if not apart.size or apart.min() > self.near:
+            return None
+        nearest = int(apart.argmin())
+        left, up = float(self.left[nearest]), float(self.up[nearest])
+        self.turns = np.delete(self.turns, nearest)
+        self.left, self.up = np.delete(self.left, nearest), np.delete(self.up, nearest)
+        return (left, up) if left * left + up * up <= 1 else None
+
+
+def find_phase_steps(signal: Complex, board: Board, angles: Angles, least: float) -> Float:
+    """Phase steps [J] (turns) between the elements of the row of the targets in a signal.
+
+    Args:
+        signal: Samples [element] of the row.
+        board: The board.
+        angles: Rows and weights.
+        least: Least power of a further target.
+    """
+    places = board.places[angles.row, 0] - board.places[angles.row[0], 0]
+    turns: Float = np.empty(0)
+    remainder, strongest = signal, 0.0
+    while turns.size < angles.most_targets:
+        turn, power = _largest(remainder, angles)
+        if turns.size:
+            apart = turns - turn
+            is_close = np.abs(apart - np.round(apart)).min() < APART * angles.width
+            if is_close or power < max(angles.beside * strongest, least):
+                break
+        turns = np.append(turns, turn)
+        for j in [*range(turns.size)] * (ROUNDS if turns.size > 1 else 0):
+            parts = _parts(signal, places, turns)
+            turns[j], _ = _largest(signal - parts.sum(axis=1) + parts[:, j], angles)
+        parts = _parts(signal, places, turns)
+        remainder, strongest = signal - parts.sum(axis=1), float((np.abs(parts) ** 2).max())
+    return turns
+
+
+def _parts(signal: Complex, places: Float, turns: Float) -> Complex:
+    """Parts [element, J] of a signal that targets of some phase steps make, by least squares."""
+    steering = np.exp(2j * np.pi * np.outer(places, turns))
+    parts: Complex = steering * np.linalg.lstsq(steering, signal)[0]
+    return parts
+
+
+def _largest(signal: Complex, angles: Angles) -> tuple[float, float]:
+    """Phase step (turns) and power of the largest peak of the spectrum of a row [element]."""
+    spectrum = np.abs(signal @ angles.fine) ** 2 / len(signal) ** 2
+    peak = int(spectrum.argmax())
+    offset = _offset(np.log(np.maximum(spectrum, TINY)), peak, True)
+    return (peak + offset) / ANGLES, float(spectrum[peak])
+
+
+def _floor(power: Float) -> float:
+    """Mean noise power of a frame [range, Doppler]: people fill less than half of its cells.
+
+    Beside a strong echo its own sidelobes are above the noise, which limits no SNR so.
+    """
+    return float(np.median(power))
 
 
 def _targets(element: Complex, board: Board, row: list[int], left: Float) -> Complex:

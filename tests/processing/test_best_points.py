@@ -6,6 +6,7 @@ from helpers.boards import MARS, cube_of
 
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.best_points import best_points
+from radhar_cli.processing.frame_maps import hann
 from radhar_cli.processing.points import board_points
 from radhar_cli.radar.board import DEVICES, Array
 from radhar_cli.radar.detection import CASO, Cfar, Detection
@@ -96,3 +97,44 @@ def test_few_elements_tell_what_they_can(name: str, chain: str) -> None:
     within = 0.03 if chain == "best" else 0.1
     assert y / 2 == pytest.approx(0.3 if left else 0, abs=within)
     assert z / 2 == pytest.approx(0.2 if up else 0, abs=within)
+
+
+def test_two_equal_in_a_cell_make_no_third_point() -> None:
+    rng, frames, strays, errors = np.random.default_rng(5), 40, 0, list[float]()
+    for seed in range(frames):
+        apart, speed = rng.uniform(20, 80), rng.uniform(0.3, 1.5)
+        middle = rng.uniform(-1, 1) * (50 - apart / 2)
+        az = np.radians([middle - apart / 2, middle + apart / 2])
+        el = np.radians(rng.uniform(-8, 8))
+        ways = np.stack(
+            [np.cos(az) * np.cos(el), np.sin(az) * np.cos(el), np.full(2, np.sin(el))], axis=1
+        )
+        p = ways * rng.uniform(1.5, 3) + ways * rng.uniform(0, 0.004, (2, 1))
+        cube, board = cube_of(p, ways * speed, snr_db=20.0, seed=seed)
+        points = best_points(cube, board, True, 1e-5).points
+        nearest = np.linalg.norm(points[:, None, :3] - p, axis=2).min(axis=1)
+        strays += bool((nearest > 0.35).any())
+        azimuth = np.degrees(np.arctan2(points[:, 1], points[:, 0]))
+        error = np.abs(azimuth[:, None] - np.degrees(az)).min(axis=1)
+        errors += error[nearest < 0.35].tolist()
+    assert strays <= 0.08 * frames
+    assert np.sqrt(np.mean(np.square(errors))) < 0.5
+
+
+@pytest.mark.parametrize("snr_db", [-10.0, 10.0, 40.0])
+def test_snr_does_not_saturate(snr_db: float) -> None:
+    cube, board = cube_of([[2.0, 0.3, 0.1]], [[0.7, 0, 0]], snr_db=snr_db)
+    fast, slow = hann(board.samples), hann(board.loops)
+    gain = fast.sum() ** 2 / (fast**2).sum() * slow.sum() ** 2 / (slow**2).sum()
+    found = best_points(cube, board, True, 1e-5).points[:, 5].max()
+    assert found == pytest.approx(snr_db + 10 * np.log10(gain), abs=2.5)
+
+
+def test_noise_makes_a_point_a_cell_that_exceeds_by_chance() -> None:
+    rng, counts = np.random.default_rng(3), []
+    for _ in range(20):
+        cube, board = cube_of([[2.0, 0, 0]], [[0, 0, 0]], snr_db=None)
+        noise = rng.standard_normal((2, *cube.shape)).astype(np.float32)
+        counts.append(len(best_points(noise[0] + 1j * noise[1], board, True, 1e-3).points))
+    cells = board.n_fft * board.n_doppler
+    assert 0.2e-3 * cells < np.mean(counts) < 1.5e-3 * cells

@@ -1,53 +1,117 @@
 """`radhar tradeoff`: what accuracy costs on the scenes of a config."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from radhar_cli.commands.options import Overrides, ReplaceResults, refuse_to_replace_results
-from radhar_cli.commands.tell import report
+from radhar_cli.commands.options import Overrides, ReplaceResults, resumable
+from radhar_cli.commands.tell import report, tell
+
+if TYPE_CHECKING:
+    from radhar_cli.tradeoff.report import TradeoffReport
+    from radhar_cli.tradeoff.sweep import Sweep
+
+QUICK_S = 168.0  # of a quick sweep, its start and figure left out
 
 
 def tradeoff(
     config: Annotated[Path, typer.Argument(help="YAML config whose scenes are measured.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     quick: Annotated[
-        bool, typer.Option("--quick", help="Measure only three activities, in three rounds.")
+        bool,
+        typer.Option("--quick", help="Measure three scenes in few rounds, within three minutes."),
     ] = False,
+    minutes: Annotated[
+        float | None,
+        typer.Option(
+            "--minutes",
+            min=0.1,
+            max=10_000,
+            help="Time for the sweep; settings that do not fit are named. The default is none, "
+            "with --quick 3.",
+        ),
+    ] = None,
+    accuracy: Annotated[
+        int | None,
+        typer.Option(
+            "--accuracy",
+            metavar="SEEDS",
+            min=2,
+            max=100,
+            help="Also train networks on data of each setting that saves time, with so many seeds "
+            "(needs radhar[train]).",
+        ),
+    ] = None,
     set_: Overrides = None,
     overwrite: ReplaceResults = False,
 ) -> None:
-    """Measure what accuracy costs: error and time of engine settings.
+    """Measure what accuracy costs: time of each setting, error of what it shows, and what to take.
 
     Example:
 
       radhar tradeoff configs/paper/free_space.yaml -o out/tradeoff --quick
 
-    Keep the machine idle during the run: load distorts the times, but not the errors.
+    Keep the machine idle during the run: load blurs the times, and the report says how far. What
+    is measured is kept at once; the same command goes on after a stop.
     """
-    from radhar_cli.commands.learning_options import needs
+    from radhar_cli.commands.learning_options import needs, needs_torch
 
     needs("tradeoff", ["skimage"])
-    from radhar_cli.commands.terminal import BarProgress
+    if accuracy is not None:
+        needs_torch()
     from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.dataset.workers import cores
     from radhar_cli.processes.worker_process import prepare_process
-    from radhar_cli.tradeoff.report import FILES, write_report
-    from radhar_cli.tradeoff.settings import Scenes
-    from radhar_cli.tradeoff.study import ROUNDS, run_sweep
+    from radhar_cli.tradeoff.report import TradeoffReport
+    from radhar_cli.tradeoff.scenes import Scenes
 
     refuse_file(out)
-    refuse_to_replace_results(out, FILES, overwrite)
     scenes = Scenes(config, tuple(set_ or ()), quick)
     scenes.config()
-    command = " ".join(
-        ["radhar tradeoff", str(config), f"-o {out}"]
-        + [f"--set {each}" for each in scenes.overrides]
-        + ["--quick"] * quick
-    )
+    words = ["radhar tradeoff", str(config), f"-o {out}"]
+    words += [f"--set {override}" for override in scenes.overrides] + ["--quick"] * quick
+    words += [] if minutes is None else [f"--minutes {minutes:g}"]
+    words += [] if accuracy is None else [f"--accuracy {accuracy}"]
+    files = TradeoffReport(out, scenes, " ".join(words), cores())
+    sweep = files.read_earlier(overwrite)
     prepare_process()
-    with BarProgress("step") as progress:
-        rows = run_sweep(scenes, progress)
-    conditions: dict[str, Any] = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
-    written = write_report(out, config.stem, command, rows, conditions)
-    report(files=written)
+    seconds = QUICK_S if quick and minutes is None else 60 * (minutes or float("inf"))
+    _measure(files, sweep, seconds, accuracy)
+    written = files.write(sweep)
+    from radhar_cli.tradeoff.recommendation import recommend
+
+    sentences = recommend(sweep, files.cores)
+    for sentence in sentences:
+        tell(sentence)
+    report(files=written, recommendation=sentences)
+
+
+def _measure(files: "TradeoffReport", sweep: "Sweep", seconds: float, seeds: int | None) -> None:
+    """Measure what is not measured yet; what there is when it is stopped is written.
+
+    Args:
+        files: report of the sweep.
+        sweep: what is measured already, and grows.
+        seconds: time for all of it, s.
+        seeds: seeds of networks; None for no networks.
+    """
+    from radhar_cli.commands.terminal import BarProgress
+    from radhar_cli.tradeoff.networks import measure_accuracies
+    from radhar_cli.tradeoff.study import Budget, TradeoffStudy
+
+    budget = Budget(seconds)
+    with BarProgress("setting") as progress, resumable(f"what was measured in {files.folder}"):
+        try:
+            study = TradeoffStudy(files.scenes, sweep, budget, progress, lambda: files.keep(sweep))
+            study.run()
+            if seeds is not None:
+                measure_accuracies(
+                    *(files.scenes, sweep, seeds, files.folder / "accuracy", progress),
+                    lambda: files.keep(sweep),
+                    budget.left,
+                )
+        except (KeyboardInterrupt, SystemExit):
+            if sweep.rows:
+                files.write(sweep)
+            raise

@@ -1,6 +1,7 @@
 """Work that is left when its time is over, such as a trial of what a build would do."""
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -34,6 +35,8 @@ def time_limit(seconds: float) -> Iterator[None]:
         if not over:
             raise _OutOfTime
 
+    hook = sys.unraisablehook  # which would print it
+    sys.unraisablehook = lambda swallowed: None if _is_over(swallowed) else hook(swallowed)
     before = signal.signal(signal.SIGALRM, leave)
     # Again and again, as Python swallows what is raised within a `__del__`.
     remaining, interval = signal.setitimer(signal.ITIMER_REAL, max(seconds, 1e-6), AGAIN_S)
@@ -45,3 +48,9 @@ def time_limit(seconds: float) -> Iterator[None]:
         over = True
         signal.setitimer(signal.ITIMER_REAL, remaining, interval)
         signal.signal(signal.SIGALRM, before)
+        sys.unraisablehook = hook
+
+
+def _is_over(swallowed: Any) -> bool:
+    """Whether what Python has swallowed is the end of the time, which comes again."""
+    return isinstance(swallowed.exc_value, _OutOfTime)

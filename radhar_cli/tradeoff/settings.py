@@ -1,198 +1,252 @@
-"""Scenes of the sweep; settings, each with a baseline for time and exact data for error."""
+"""Settings of radars of one channel, of scenes and of processing that a config may trade."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
+from collections.abc import Iterator
 
-from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.number import nominal
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import BoardRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
 from radhar_cli.config.room import WallConfig
-from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
+from radhar_cli.processing.map_kind import MAP_KINDS
+from radhar_cli.tradeoff.board_settings import board_settings
+from radhar_cli.tradeoff.setting import Change, Setting, Worth, keyed
 
-# Of what differs most: a standing person's arms, a walk, a fall.
-QUICK = ("punching", "walking", "walking_to_falling")
-BUDGETS = (-20, -30, -40, -50, -60, -70, -80, -100, -120)
+TOLERANCES_DB = (-60, -80, -100, -120)
 CLUTTER = ("difference", "mean", "highpass", "none")
-CUBE = ("engine.kind=cube",)
-DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_db:g}")
-
-
-@dataclass(frozen=True)
-class Scenes:
-    """Scenes of the sweep: samples 0 of the activities of a config file."""
-
-    path: Path  # config file
-    overrides: tuple[str, ...]  # of the command line; those of a setting come after them
-    quick: bool  # whether three activities are enough
-
-    def config(self, further: Sequence[str] = ()) -> Config:
-        """Config under further overrides.
-
-        Raises:
-            ConfigError: the overrides do not fit it.
-        """
-        return _config(self.path, (*self.overrides, *further))
-
-    def names(self) -> list[str]:
-        """Slugs of the activities; of three where `quick`."""
-        slugs = [activity.slug for activity in self.config().chosen_activities]
-        quick_slugs = [slug for slug in slugs if slug in QUICK] or slugs[: len(QUICK)]
-        return quick_slugs if self.quick else slugs
-
-    def draw(self, slug: str, config: Config) -> Scene:
-        """Scene of sample 0 of an activity; settings of engine, maps and image do not change it."""
-        activity = next(a for a in config.chosen_activities if a.slug == slug)
-        return draw_valid_scene(config, activity, 0)[0]
-
-
-@cache
-def _config(path: Path, overrides: tuple[str, ...]) -> Config:
-    return load_config(path, overrides)
-
-
-@dataclass(frozen=True)
-class Setting:
-    """One row of the sweep; all overrides are dotted `key=value` pairs."""
-
-    group: str  # budget, precision, engine or switch
-    name: str  # as printed
-    overrides: tuple[str, ...]  # the setting itself; its time is measured with them
-    # of the data whose error is measured: `overrides`, or for a switch, without it
-    compared: tuple[str, ...]
-    exact: tuple[str, ...]  # of the exact data that the error is relative to
-    # of the run that the time is divided by, on the same scenes, interleaved
-    baseline: tuple[str, ...] = DIRECT
-    baseline_name: str = "the default"  # as printed
-    noisy: bool = False  # whether its errors are those of data with the config's noise
-
-    @property
-    def is_default(self) -> bool:
-        """Whether this is what a config without an `engine:` gets."""
-        return self.group == "budget" and self.overrides == DIRECT
-
-
-def sweep(config: Config) -> list[Setting]:
-    """Settings of the sweep that make sense for a config."""
-    return [*_engine_settings(), *_switch_settings(config)]
-
-
-def _engine_settings() -> list[Setting]:
-    budgets = sorted({*BUDGETS, round(EngineConfig().tolerance_db)}, reverse=True)
-    overrides: dict[tuple[str, str], tuple[str, ...]] = {
-        ("budget", f"{db} dB"): ("engine.kind=direct", f"engine.tolerance_db={db:g}")
-        for db in budgets
-    }
-    overrides["precision", "double"] = (*DIRECT, "engine.precision=double")
-    overrides["engine", "cube"] = CUBE
-    return [
-        Setting(*group_and_name, setting, setting, CUBE)
-        for group_and_name, setting in overrides.items()
-    ]
-
-
+BODIES = ("points", "segments", "surfaces")
+RAYS = ("straight", "plane", "refracted")
 CORRIDOR = (
     "room.box_m={x: [-2, 1000], y: [-4, 4], height: 3}",
     "room.faces={floor: concrete, ceiling: concrete, left: concrete, right: concrete}",
 )
 BEAM = "radar.beam={azimuth_deg: 70, elevation_deg: 30}"
+LEAST_PX = 8
 
 
-def _switch_settings(config: Config) -> list[Setting]:
-    """Settings of physics and transforms that a config may leave out."""
-    switches = _common_switches(config)
-    if config.motion.model == "human" and not config.people:
-        switches.append(switch_off_by_default("another person, who walks", "people=[{}]"))
-    if not isinstance(config.radar, BoardRadar) and config.radar.beam is None:
-        switches.append(switch_off_by_default("beams of 70 x 30 degrees", BEAM))
-    if config.room.faces is None and config.room.back_wall_m is None:
-        switches += _room_switches()
-    if config.wall is not None:
-        switches += _wall_switches(config.wall)
-    return switches
+def settings_of(config: Config) -> list[Setting]:
+    """Settings that may be tried on a config, in the order of their worth.
 
-
-def _common_switches(config: Config) -> list[Setting]:
-    """Settings that every config may have."""
-    body_kind, clutter = config.body.scatterers, config.processing.clutter
-    other_body_kind = "points" if body_kind == "segments" else "segments"
-    dense, in_chirp = "processing.fsst_hop_pulses=1", (*CUBE, "engine.motion_in_chirp=true")
-    bodies = [f"body.scatterers=segments body.shadowing={on}".split() for on in ("true", "false")]
-    gates = [("maps=[stft]", f"processing.range_sum={kind}") for kind in ("gated", "coherent")]
-    prf = nominal(config.radar.prf_hz)
-    noises = {  # on the same white noise: no two engines draw the same
-        "noise corner at PRF/20": (*DIRECT, f"receiver.noise_corner_hz={prf / 20:g}"),
-        "interference line at PRF/8": (*DIRECT, f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"),
-    }
-    return [
-        switch_off_by_default(
-            f"scatterers: {other_body_kind} instead of {body_kind}",
-            f"body.scatterers={other_body_kind}",
-        ),
-        switch_with_baseline("shadowing", bodies, "segments without shadowing"),
-        switch_with_baseline("range_sum: gated instead of coherent", gates, "the coherent STFT"),
-        *(_clutter_switch(kind, clutter) for kind in CLUTTER if kind != clutter),
-        switch_off_by_default("room: 3 reflectors", "room.reflectors=[{}, {}, {}]"),
-        *(Setting("switch", name, on, DIRECT, on, noisy=True) for name, on in noises.items()),
-        switch_off_by_default("residual video phase", "radar.residual_video_phase=true"),
-        Setting("switch", "motion within the chirp", in_chirp, CUBE, in_chirp, CUBE, "the cube"),
-        switch_with_baseline(
-            "FSST at every sample",
-            [("maps=[fsst]", dense), ("maps=[fsst]",)],
-            "the FSST at the STFT's hop",
-        ),
-    ]
-
-
-def _clutter_switch(kind: str, default: str) -> Setting:
-    """Setting of another canceller than that of the config."""
-    overrides = [(f"processing.clutter={canceller}",) for canceller in (kind, default)]
-    return switch_with_baseline(f"clutter: {kind} instead of {default}", overrides, "the default")
-
-
-def _room_switches() -> list[Setting]:
-    """Settings of rooms, for a config without one."""
-    return [
-        switch_off_by_default("a corridor of concrete, 8 m wide", *CORRIDOR),
-        switch_off_by_default("the corridor with two bounces", *CORRIDOR, "room.order=2"),
-        switch_with_baseline(
-            "the same seen by beams", [(*CORRIDOR, BEAM), (BEAM,)], "beams in the open"
-        ),
-    ]
-
-
-def _wall_switches(wall: WallConfig) -> list[Setting]:
-    """Settings of rays and reflections, for a config with a wall."""
-    on, off = ((*CUBE, "wall.rays=plane", f"wall.echoes={kind}") for kind in ("exact", "none"))
-    return [
-        Setting("switch", "reflections inside the wall", on, off, on, off, "the cube"),
-        *(
-            switch_off_by_default(f"{rays} rays", f"wall.rays={rays}")
-            for rays in ("straight", "plane", "refracted")
-            if rays != wall.rays
-        ),
-        switch_off_by_default("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
-        switch_off_by_default("Fresnel, parallel", "wall.fresnel=parallel"),
-    ]
-
-
-def switch_with_baseline(name: str, on_off: Sequence[Sequence[str]], off_name: str) -> Setting:
-    """Switch that is compared with something other than the default.
-
-    Args:
-        name: name of the setting.
-        on_off: overrides with the switch on, and without it.
-        off_name: name of the baseline.
+    Whether the config allows them shows when it is read with them.
     """
-    on, off = on_off
-    without, exact = (*DIRECT, *off), (*CUBE, *on)
-    return Setting("switch", name, (*DIRECT, *on), without, exact, without, off_name)
+    settings = [
+        *engine_settings(config),
+        *map_settings(config),
+        *body_settings(config),
+        *radar_settings(config),
+        *processing_settings(config),
+        *people_settings(config),
+        *room_settings(config),
+        *wall_settings(config),
+        *receiver_settings(config),
+    ]
+    return sorted(settings, key=lambda setting: setting.worth)
 
 
-def switch_off_by_default(name: str, *on: str) -> Setting:
-    """Switch of physics that is off by default: its cost, and the error of leaving it out."""
-    return Setting("switch", name, (*DIRECT, *on), DIRECT, (*CUBE, *on))
+def engine_settings(config: Config) -> Iterator[Setting]:
+    """Yield other computations of the same physics; an impulse radar has but one."""
+    if isinstance(config.radar, ImpulseRadar):
+        return
+    engine = config.engine
+    for tolerance_db in TOLERANCES_DB:
+        if engine.kind == "direct" and tolerance_db != engine.tolerance_db:
+            override = f"engine.tolerance_db={tolerance_db}"
+            yield keyed("engine", override, Worth.ENGINE, Change.ERROR)
+    reflects = config.wall is not None and config.wall.echoes == "exact"
+    if reflects:  # which the cube alone can
+        return
+    other_kind = "cube" if engine.kind == "direct" else "direct"
+    yield keyed("engine", f"engine.kind={other_kind}", Worth.ENGINE, Change.ERROR)
+    if engine.kind == "direct" and engine.precision != "double":
+        yield keyed("engine", "engine.precision=double", Worth.ENGINE, Change.ERROR)
+    if not isinstance(config.radar, BoardRadar) and not engine.motion_in_chirp:
+        cube = ("engine.kind=cube",)
+        moving = (*cube, "engine.motion_in_chirp=true")
+        name = "motion within the chirp"
+        yield Setting("engine", name, moving, cube, "engine.kind: cube", worth=Worth.SLOW)
+
+
+def map_settings(config: Config) -> Iterator[Setting]:
+    """Yield fewer maps, an FSST more, and other sizes of images."""
+    for name in config.maps:
+        if len(config.maps) > 1:
+            kept_maps = [other for other in config.maps if other != name]
+            overrides = (f"maps=[{', '.join(kept_maps)}]",)
+            yield Setting("maps", f"maps without {name}", overrides, worth=Worth.SAVES)
+    is_other = isinstance(config.radar, BoardRadar | ImpulseRadar)
+    has_fsst = not is_other and config.processing.range_sum == "coherent"
+    if has_fsst and not any(name.startswith("fsst") for name in config.maps):
+        overrides = (f"maps=[{', '.join((*config.maps, 'fsst'))}]",)
+        yield Setting("maps", "maps with fsst", overrides)
+    if any(name.startswith("fsst") for name in config.maps):
+        yield keyed("maps", "processing.fsst_hop_pulses=1", Worth.SLOW)
+    height, width = config.image.size_px
+    for parts, worth in ((2, Worth.SAVES), (4, Worth.PROCESSING)):
+        if min(height, width) // parts >= LEAST_PX and config.stream is None:
+            size = f"[{height // parts}, {width // parts}]"
+            yield keyed("maps", f"image.size_px={size}", worth)
+
+
+def body_settings(config: Config) -> Iterator[Setting]:
+    """Yield other bodies, with fewer points or without shadows."""
+    body = config.body
+    for kind in BODIES:
+        if kind != body.scatterers:
+            worth = Worth.SAVES if kind == "points" else Worth.PHYSICS
+            yield keyed("body", f"body.scatterers={kind}", worth)
+    if body.scatterers != "points":
+        for points in (10, 5):
+            if points < body.points_per_segment:
+                yield keyed("body", f"body.points_per_segment={points}", Worth.SAVES)
+    if body.scatterers == "segments" or config.people:
+        shadowing = str(not body.shadowing).lower()
+        yield keyed("body", f"body.shadowing={shadowing}", Worth.SAVES)
+
+
+def radar_settings(config: Config) -> Iterator[Setting]:
+    """Yield fewer pulses, fewer samples of each, and other radar physics."""
+    radar = config.radar
+    if isinstance(radar, BoardRadar):
+        yield from board_settings(radar, config)
+        return
+    prf = nominal(radar.prf_hz)
+    for share in (0.5, 0.75):
+        yield keyed("radar", f"radar.prf_hz={share * prf:g}", Worth.SAVES)
+    match radar:
+        case FmcwRadar():
+            rate = nominal(radar.adc_rate_hz) / 2
+            yield keyed("radar", f"radar.adc_rate_hz={rate:g}", Worth.SAVES)
+        case SfcwRadar():
+            overrides = (f"radar.steps={radar.steps // 2}", f"radar.dwell_s={2 * radar.dwell_s:g}")
+            name = f"radar.steps: {radar.steps // 2}"
+            yield Setting("radar", name, overrides, worth=Worth.SAVES)
+        case ImpulseRadar():
+            samples = radar.profile_samples // 2
+            yield keyed("radar", f"radar.profile_samples={samples}", Worth.SAVES)
+        case CwRadar():
+            pass
+    if isinstance(radar, FmcwRadar | SfcwRadar) and not radar.residual_video_phase:
+        yield keyed("radar", "radar.residual_video_phase=true", Worth.PHYSICS)
+    if radar.beam is None:
+        yield Setting("radar", "beams of 70 x 30 degrees", (BEAM,), worth=Worth.PHYSICS)
+    else:
+        yield keyed("radar", "radar.beam=null", Worth.SAVES)
+
+
+def processing_settings(config: Config) -> Iterator[Setting]:
+    """Yield other overlaps, cancellers and sums over range."""
+    processing = config.processing
+    has_doppler = any(name in MAP_KINDS and name != "rtm" for name in config.maps)
+    if has_doppler and not isinstance(config.radar, BoardRadar):
+        for share, worth in ((2, Worth.SAVES), (5, Worth.PROCESSING)):
+            overlap = 1 - share * (1 - processing.overlap_fraction)
+            if overlap > 0:
+                yield keyed("processing", f"processing.overlap_fraction={overlap:.3g}", worth)
+    is_board = isinstance(config.radar, BoardRadar)
+    for kind in ("mean", "none") if is_board else CLUTTER:
+        if kind != processing.clutter:
+            yield keyed("processing", f"processing.clutter={kind}", Worth.PROCESSING)
+    if "stft" not in config.maps or isinstance(config.radar, CwRadar):
+        return
+    kind = "gated" if processing.range_sum == "coherent" else "coherent"
+    overrides: tuple[str, ...] = (f"processing.range_sum={kind}",)
+    base: tuple[str, ...] = ()
+    if any(name.startswith("fsst") for name in config.maps):
+        base = ("maps=[stft]",)  # a gate has no fsst
+    name = f"processing.range_sum: {kind}"
+    worth = Worth.PROCESSING if kind == "gated" else Worth.SAVES
+    yield Setting(
+        *("processing", name, (*base, *overrides), base),
+        base_name="maps: [stft]" if base else Setting.base_name,
+        worth=worth,
+    )
+
+
+def people_settings(config: Config) -> Iterator[Setting]:
+    """Yield nobody else, or another person."""
+    if config.people:
+        yield keyed("people", "people=[]", Worth.SAVES)
+    elif config.motion.model == "human":
+        yield Setting("people", "another person, who walks", ("people=[{}]",), worth=Worth.PHYSICS)
+
+
+def room_settings(config: Config) -> Iterator[Setting]:
+    """Yield an emptier room, or a corridor and things in it."""
+    room = config.room
+    if room.faces is not None:
+        yield keyed("room", "room.faces=null", Worth.SAVES)
+        for order in (1, 2):
+            if order != room.order:
+                worth = Worth.SAVES if order < room.order else Worth.SLOW
+                yield keyed("room", f"room.order={order}", worth)
+    elif room.back_wall_m is None and config.stream is None:
+        corridor = "a corridor of concrete, 8 m wide"
+        yield Setting("room", corridor, CORRIDOR, worth=Worth.PHYSICS)
+        twice = (*CORRIDOR, "room.order=2")
+        yield Setting("room", "the corridor with two bounces", twice, worth=Worth.SLOW)
+    if room.back_wall_m is not None:
+        yield keyed("room", "room.back_wall_m=null", Worth.SAVES)
+    if room.reflectors:
+        yield keyed("room", "room.reflectors=[]", Worth.SAVES)
+    else:
+        overrides = ("room.reflectors=[{}, {}, {}]",)
+        yield Setting("room", "3 reflectors in the room", overrides, worth=Worth.PHYSICS)
+
+
+def wall_settings(config: Config) -> Iterator[Setting]:
+    """Yield other rays through the wall, and what reflects in it."""
+    wall = config.wall
+    if wall is None:
+        return
+    if wall.echoes == "exact":
+        yield _wall_without_echoes(config, wall)
+        return
+    for rays in RAYS:
+        if rays != wall.rays:
+            worth = Worth.SAVES if rays == "straight" else Worth.PHYSICS
+            yield keyed("wall", f"wall.rays={rays}", worth)
+    for fresnel in ("perpendicular", "parallel"):
+        if fresnel != wall.fresnel:
+            yield keyed("wall", f"wall.fresnel={fresnel}", Worth.PHYSICS)
+    is_impulse = isinstance(config.radar, ImpulseRadar)
+    base: tuple[str, ...] = () if is_impulse else ("engine.kind=cube", "wall.rays=plane")
+    base_name = Setting.base_name if is_impulse else "engine.kind: cube, plane rays"
+    overrides = (*base, "wall.echoes=exact")
+    yield Setting("wall", "wall.echoes: exact", overrides, base, base_name, worth=Worth.SLOW)
+
+
+def _wall_without_echoes(config: Config, wall: WallConfig) -> Setting:
+    """Setting of a wall that only delays and weakens, as thick, for a wall that reflects inside."""
+    layers = wall.layers or ()
+    thickness = sum(nominal(layer.thickness_m) for layer in layers) or nominal(wall.size_m[0])
+    sides = ", ".join(f"{nominal(side):g}" for side in wall.size_m[1:])
+    size = f"wall.size_m=[{thickness:g}, {sides}]"
+    overrides = ("wall.echoes=none", "wall.layers=null", size)
+    if config.engine.kind == "direct":
+        return Setting("wall", "wall.echoes: none", overrides, worth=Worth.SAVES)
+    name = "wall.echoes: none, engine.kind: direct"
+    return Setting("wall", name, (*overrides, "engine.kind=direct"), worth=Worth.SAVES)
+
+
+def receiver_settings(config: Config) -> Iterator[Setting]:
+    """Yield coloured noise and interference, or none of them."""
+    receiver = config.receiver
+    is_other = isinstance(config.radar, BoardRadar | ImpulseRadar)
+    if not config.has_noise or is_other:  # whose receivers have white noise alone
+        return
+    prf = nominal(config.radar.prf_hz)
+    if nominal(receiver.noise_corner_hz) > 0:
+        off = Setting("receiver", "receiver.noise_corner_hz: 0", ("receiver.noise_corner_hz=0",))
+    else:
+        corner = f"receiver.noise_corner_hz={prf / 20:g}"
+        off = Setting("receiver", "a noise corner at PRF/20", (corner,), is_noisy=True)
+    yield off
+    if receiver.tones:
+        yield Setting("receiver", "receiver.tones: []", ("receiver.tones=[]",), is_noisy=True)
+    else:
+        tone = f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"
+        yield Setting("receiver", "an interference line at PRF/8", (tone,), is_noisy=True)
+
+
+def are_points_alone(config: Config) -> bool:
+    """Whether a config shows points, and no maps."""
+    return not any(name in MAP_KINDS or name in FRAME_MAP_KINDS for name in config.maps)

@@ -1,95 +1,315 @@
-"""The whole sweep: errors and times of every setting, put together into rows."""
+"""The sweep: setting after setting is compared and timed, within a budget of time."""
 
-from collections.abc import Sequence
+import os
+import re
+import time
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from math import inf
-from statistics import median, quantiles
-from typing import Any, TypeAlias
+from dataclasses import dataclass
+from functools import cache, cached_property
+from math import inf, isfinite
 
+from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.errors import RadharError
 from radhar_cli.processes.progress import Progress
-from radhar_cli.tradeoff.measures import Errors, SceneErrors, Times, time_setting
-from radhar_cli.tradeoff.settings import Scenes, Setting, sweep
+from radhar_cli.processes.time_limit import time_limit
+from radhar_cli.tradeoff.differences import compare_pictures, compare_points, signal_error
+from radhar_cli.tradeoff.floor import visible_errors
+from radhar_cli.tradeoff.pictures import WORDS, Raw, Recorder, Shown, draw_shown
+from radhar_cli.tradeoff.row import Row, SceneDifference
+from radhar_cli.tradeoff.scenes import Scenes
+from radhar_cli.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth
+from radhar_cli.tradeoff.settings import settings_of
+from radhar_cli.tradeoff.sweep import Omission, Sweep
+from radhar_cli.tradeoff.timing import Ratio, Times, time_setting
 
-ROUNDS = {True: 3, False: 7}
-Record: TypeAlias = dict[str, Any]  # a setting in plain numbers, None where there is none
-
-
-def run_sweep(scenes: Scenes, progress: Progress) -> list[Record]:
-    """Measure errors and times; return a row for every setting.
-
-    Args:
-        scenes: scenes of the sweep.
-        progress: receives the measurements done, and the settings that are left out.
-    """
-    settings, names, rounds = (
-        allowed_settings(scenes, progress),
-        scenes.names(),
-        ROUNDS[scenes.quick],
-    )
-    errors_of: dict[Setting, list[Errors | None]] = {setting: [] for setting in settings}
-    progress.stage("errors", len(names) * len(settings), 0)
-    for slug in names:
-        scene = SceneErrors(scenes, slug)
-        for setting in settings:
-            errors = None  # of a scene that is refused
-            with suppress(RadharError):
-                errors = scene.measure_errors(setting)
-            errors_of[setting].append(errors)
-            progress.advance(1)
-    times: dict[Setting, list[Times]] = {setting: [] for setting in settings}
-    possible = [setting for setting in settings if None not in errors_of[setting]]
-    progress.stage("times", rounds * len(possible), 0)
-    for turn in range(rounds):
-        for setting in possible:
-            times[setting].append(time_setting(scenes, setting, turn))
-            progress.advance(1)
-    return [_row(setting, times[setting], errors_of[setting]) for setting in settings]
+AS_IT_IS = Setting("default", DEFAULT, effect=Change.ERROR, worth=Worth.SAVES)
+EXACT = ("engine.kind=cube", "engine.precision=double")
+LEAST_ROUNDS, MOST_ROUNDS, FULL_ROUNDS = 3, 7, 9
+ROUNDS_S = 2.0  # of the rounds of a setting with --quick, beyond the least number
+PAIRS_EVERY = 6  # settings between two timings of the config against itself
+LEAST_PAIRS = 4
+FLOOR_SHARE = 0.12  # of the budget
+SHARES = 3.0  # of its equal part of the time left that a setting may take
+RESERVE_S = 8.0  # of the budget, for report and figure
+MAX_REASON = 100  # characters
 
 
-def allowed_settings(scenes: Scenes, progress: Progress) -> list[Setting]:
-    """Settings that the config allows; the others are named on `progress`, with the reason."""
-    settings = []
-    for setting in sweep(scenes.config()):
-        try:
-            for overrides in (setting.overrides, setting.compared, setting.exact):
-                scenes.config(overrides)
-        except RadharError as error:
-            progress.say(f"left out: {setting.group} {setting.name}: {error}")
-            continue
-        settings.append(setting)
-    return settings
+class Budget:
+    """Time that a sweep may take."""
+
+    def __init__(self, seconds: float) -> None:
+        self._end = time.monotonic() + seconds
+
+    @property
+    def left(self) -> float:
+        """Seconds that are left, 0 or more."""
+        return max(0.0, self._end - time.monotonic())
 
 
-def _row(setting: Setting, times: Sequence[Times], errors: Sequence[Errors | None]) -> Record:
-    """Row of a setting: medians and quartiles over rounds, worst or median errors over scenes."""
+class SceneComparison:
+    """Compares settings on one sample; what several of them refer to is made once."""
 
-    def known_values(name: str) -> list[float]:
-        values = (getattr(scene, name) for scene in errors if scene is not None)
-        return [value for value in values if value is not None]
+    def __init__(self, recorder: Recorder, is_exact: bool) -> None:
+        """Make a comparison.
 
-    def worst(name: str) -> float | None:
-        return max(known_values(name), default=None)
+        Args:
+            recorder: simulates the sample.
+            is_exact: whether the config as it is has no error of computation.
+        """
+        self._recorder, self._is_exact = recorder, is_exact
+        self._base = cache(self._draw_base)
 
-    signal = known_values("signal_error_db")
-    quartiles = quantiles([one.ratio for one in times], n=4, method="inclusive") if times else None
-    low, ratio, high = quartiles or (None, None, None)
-    return {
-        "group": setting.group,
-        "setting": setting.name,
-        "default": setting.is_default,
-        "overrides": " ".join(setting.overrides),
-        "time_over": setting.baseline_name,
-        "sample_ms": median(one.sample_ms for one in times) if times else None,
-        "time_ratio": ratio,
-        "time_ratio_low": low,
-        "time_ratio_high": high,
-        "exact": worst("signal_error_db") == -inf,
-        "signal_error_db": worst("signal_error_db"),
-        "signal_error_median_db": median(signal) if signal else None,
-        "ssim": min(known_values("ssim"), default=None),
-        "pixels_changed": worst("pixels_changed"),
-        "measured_error_db": worst("measured_error_db"),
-        "scenes": len(errors),
-        "refused": errors.count(None),
+    @cached_property
+    def raw(self) -> Raw:
+        """Raw products of the config as it is, and its noise."""
+        return self._recorder.simulate((), with_noise=True)
+
+    @cached_property
+    def _exact(self) -> tuple[Raw, Shown]:
+        raw = self.raw if self._is_exact else self._recorder.simulate(EXACT)
+        return raw, draw_shown(raw, self.raw.noise)
+
+    def compare(self, setting: Setting) -> SceneDifference | None:
+        """Compare what a setting shows with what it should show, or with its base.
+
+        Errors are those of pictures with the same noise on both sides. Other pictures are compared
+        without noise, but for masks and settings of the noise.
+
+        Returns:
+            The difference; None where the scene under the setting is another one.
+
+        Raises:
+            RadharError: the scene cannot be simulated so.
+        """
+        if setting.effect is Change.ERROR:
+            base_raw, base = self._exact
+            if setting.overrides == EXACT[:1]:
+                raw = base_raw
+            else:
+                raw = self._recorder.simulate(setting.overrides) if setting.overrides else self.raw
+            return _difference(raw, draw_shown(raw, self.raw.noise), base_raw, base)
+        if self._recorder.draw(setting.overrides).attempt != self._recorder.attempt:
+            return None
+        is_noisy = setting.is_noisy or self.raw.scene.config.image.kind == "cfar"
+        raw, visible = self._draw(setting.overrides, is_noisy)
+        return _difference(raw, visible, *self._base(setting.base, is_noisy))
+
+    def _draw(self, overrides: Overrides, is_noisy: bool) -> tuple[Raw, Shown]:
+        raw = self._recorder.simulate(overrides, is_noisy) if overrides else self.raw
+        return raw, draw_shown(raw, raw.noise if is_noisy else None)
+
+    def _draw_base(self, overrides: Overrides, is_noisy: bool) -> tuple[Raw, Shown]:
+        return self._draw(overrides, is_noisy)
+
+
+def _difference(raw: Raw, visible: Shown, base_raw: Raw, base: Shown) -> SceneDifference:
+    """Difference of what a setting shows from its base."""
+    name, error_db = signal_error(raw, base_raw)
+    maps = {
+        map_name: compare_pictures(picture, base.pictures[map_name])
+        for map_name, picture in visible.pictures.items()
+        if map_name in base.pictures
     }
+    points = None
+    if visible.cloud is not None and base.cloud is not None:
+        points = compare_points(visible.cloud, base.cloud)
+    return SceneDifference(WORDS.get(name, name), error_db, raw.stated_db, maps, points)
+
+
+@dataclass
+class TradeoffStudy:
+    """A sweep of the settings of a config.
+
+    Attributes:
+        scenes: scenes of the sweep.
+        sweep: what is measured already, and grows.
+        budget: time that there is.
+        progress: is told of settings that are done and left out.
+        save: keeps the sweep as it is; called after every setting.
+    """
+
+    scenes: Scenes
+    sweep: Sweep
+    budget: Budget
+    progress: Progress
+    save: Callable[[], None]
+
+    def run(self) -> None:
+        """Measure what is not measured yet, as far as the time goes.
+
+        Raises:
+            RadharError: the config as it is cannot be simulated.
+        """
+        self.sweep.loads.append(load_average())
+        settings = self._allowed_settings()
+        start = time.monotonic()
+        if self.sweep.row_of(DEFAULT) is None:
+            row = self._measure(AS_IT_IS, inf, refuse=True)
+            assert row is not None
+            self.sweep.rows.append(row)
+        self._tell_estimate(len(settings), time.monotonic() - start)
+        self.save()
+        self._measure_floors()
+        waiting = [each for each in settings if self.sweep.row_of(each.name) is None]
+        self.progress.stage("settings", len(settings), len(settings) - len(waiting), "setting")
+        for number, setting in enumerate(waiting):
+            if number % PAIRS_EVERY == 0:
+                self._time_against_itself()
+            self._try(setting, len(waiting) - number)
+            self.progress.advance(1)
+        while len(self.sweep.pairs) < LEAST_PAIRS and self.budget.left > 0:
+            self._time_against_itself()
+        self.sweep.loads.append(load_average())
+        self.save()
+
+    @cached_property
+    def _comparisons(self) -> list[SceneComparison]:
+        config = self.scenes.config()
+        is_exact = config.engine.kind == "cube" or isinstance(config.radar, ImpulseRadar)
+        samples = self.scenes.samples()
+        return [SceneComparison(Recorder(self.scenes, sample), is_exact) for sample in samples]
+
+    @cached_property
+    def _level_db(self) -> float | None:
+        """Decibels of a grey level; None where pictures show no decibels."""
+        image = self.scenes.config().image
+        return image.dynamic_range_db / 255 if image.kind == "decibel" else None
+
+    def _allowed_settings(self) -> list[Setting]:
+        """Settings that the config allows; the others are noted, with the reason."""
+        settings = []
+        for setting in settings_of(self.scenes.config()):
+            try:
+                self.scenes.config(setting.overrides)
+                self.scenes.config(setting.base)
+            except RadharError as error:
+                self._leave_out(setting, error)
+                continue
+            settings.append(setting)
+        return settings
+
+    def _leave_out(self, setting: Setting, error: RadharError) -> None:
+        omission = Omission(setting.name, reason_of(error))
+        self.sweep.left_out.append(omission)
+        self.progress.say(f"left out: {omission.name}: {omission.reason}")
+
+    def _tell_estimate(self, count: int, seconds: float) -> None:
+        """Say how long the sweep is likely to take."""
+        row = self.sweep.row_of(DEFAULT)
+        if row is None or row.sample_ms is None:
+            return
+        sample_s, samples = row.sample_ms / 1e3, len(self.scenes.samples())
+        rounds = LEAST_ROUNDS if self.scenes.quick else FULL_ROUNDS
+        each = sample_s * (3 * samples + 4 * rounds * min(samples, 1 + 0.3 / sample_s))
+        needed = (seconds + count * each) / 60
+        within = self.budget.left / 60
+        limit = f", of which there are {within:.1f}" if isfinite(within) else ""
+        sample = f"{count} settings; {row.sample_ms:.0f} ms a sample"
+        self.progress.say(f"{sample}: about {max(needed, 0.1):.1f} minutes{limit}")
+
+    def _measure_floors(self) -> None:
+        """Find the error that images show at least, of as many scenes as there is time for."""
+        if self.sweep.floor_scenes or self.budget.left == 0:
+            return
+        seconds = FLOOR_SHARE * self.budget.left
+        with time_limit(seconds):
+            for comparison in self._comparisons:
+                for name, floor_db in visible_errors(comparison.raw):
+                    known = self.sweep.floors.get(name, floor_db)
+                    self.sweep.floors[name] = min(known, floor_db)
+                self.sweep.floor_scenes += 1
+        self.save()
+
+    def _time_against_itself(self) -> None:
+        """Time the config as it is against itself."""
+        rounds: list[Times] = []
+        if self.budget.left == 0:
+            return
+        with time_limit(self._limit(4)):
+            self._time(AS_IT_IS, rounds)
+        if rounds:
+            self.sweep.pairs.append(Ratio.of(rounds))
+
+    def _limit(self, waiting: int) -> float:
+        """Time that a setting may take, s, where so many wait."""
+        return max(SHARES * self.budget.left / max(waiting, SHARES), 1e-3)
+
+    def _try(self, setting: Setting, waiting: int) -> None:
+        """Measure a setting, or note why not; keep what there is."""
+        limit = self._limit(waiting)
+        row = None
+        if self.budget.left > 0:
+            try:
+                row = self._measure(setting, limit)
+            except RadharError as error:
+                self._leave_out(setting, error)
+                return
+        if row is None:
+            reason = f"more than {limit:.0f} s" if self.budget.left > 0 else "no time was left"
+            self.sweep.unmeasured.append(Omission(setting.name, reason))
+        else:
+            self.sweep.rows.append(row)
+        self.save()
+
+    def _measure(self, setting: Setting, limit: float, refuse: bool = False) -> Row | None:
+        """Measure a setting within a time, s; None where that was too short.
+
+        Args:
+            setting: the setting.
+            limit: time for it, s.
+            refuse: whether a scene that cannot be simulated is an error, or left out.
+
+        Raises:
+            RadharError: none of its scenes can be simulated.
+        """
+        scenes: list[SceneDifference] = []
+        rounds: list[Times] = []
+        notes: list[str] = []
+        with time_limit(limit):
+            for number, comparison in enumerate(self._comparisons):
+                try:
+                    difference = comparison.compare(setting)
+                except RadharError:
+                    if refuse or (number == len(self._comparisons) - 1 and not scenes):
+                        raise
+                    notes.append("a scene is refused")
+                    continue
+                if difference is None:
+                    notes.append("a scene is another one, as this one is invalid")
+                else:
+                    scenes.append(difference)
+                if number == 0:
+                    rounds.append(time_setting(self.scenes, setting, 0))
+            self._time(setting, rounds)
+        if not rounds or not (scenes or notes):
+            return None
+        note = "; ".join(dict.fromkeys(notes))
+        return Row.of(setting, Ratio.of(rounds), scenes, self._level_db, note)
+
+    def _time(self, setting: Setting, rounds: list[Times]) -> None:
+        """Add rounds of timing to some."""
+        start, quick = time.monotonic(), self.scenes.quick
+        most_rounds = MOST_ROUNDS if quick else FULL_ROUNDS
+        while len(rounds) < most_rounds:
+            spent = time.monotonic() - start
+            if quick and len(rounds) >= LEAST_ROUNDS and spent > ROUNDS_S:
+                break
+            rounds.append(time_setting(self.scenes, setting, len(rounds)))
+
+
+def load_average() -> float:
+    """Load of the machine in the last minute, processes; NaN where nobody counts them."""
+    with suppress(OSError, AttributeError):
+        return round(os.getloadavg()[0], 2)
+    return float("nan")
+
+
+def reason_of(error: RadharError) -> str:
+    """Reason why a config does not allow a setting: a short line without keys of the file."""
+    lines: Sequence[str] = str(error).splitlines() or [""]
+    reason = re.split(r"(?:^|: )should be ", lines[0], maxsplit=1)[-1]
+    reason = re.sub(r"^\S+:\d+: ", "", reason)
+    if reason != lines[0]:
+        reason = f"should be {reason}" if "should be " in lines[0] else reason
+    return reason if len(reason) <= MAX_REASON else f"{reason[:MAX_REASON].rsplit(' ', 1)[0]} ..."

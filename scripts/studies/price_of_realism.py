@@ -33,8 +33,10 @@ from radhar_cli.learning.single_result import open_eval_set, open_run
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.learning.tasks.task import create_task
 from radhar_cli.learning.training import train
-from radhar_cli.tradeoff.measures import time_setting
-from radhar_cli.tradeoff.settings import BEAM, Scenes, Setting
+from radhar_cli.tradeoff.scenes import Scenes
+from radhar_cli.tradeoff.setting import Setting
+from radhar_cli.tradeoff.settings import BEAM
+from radhar_cli.tradeoff.timing import time_setting
 
 FIXED = {"epochs": 20, "device": "cpu", "threads": 1, "workers": 0}
 SCENES = """
@@ -131,7 +133,7 @@ class Study(NamedTuple):
 
     def time(self, row: Row) -> float:
         """How many times as long a sample takes with the addition, median of nine rounds."""
-        setting = Setting("", row.name, row.base + row.added, (), (), row.base)
+        setting = Setting("", row.name, row.base + row.added, row.base)
         scenes = Scenes(self.out / "scenes.yaml", (), False)
         return median(time_setting(scenes, setting, turn).ratio for turn in range(9))
 

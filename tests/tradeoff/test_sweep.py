@@ -1,180 +1,249 @@
-"""`radhar tradeoff`: what it measures and writes."""
+"""`radhar tradeoff`: every kind of radar, what it writes, and that it goes on after a stop."""
 
 import csv
 import json
 
 import pytest
+from helpers.command_line import ROOT
 from helpers.listener import Listener
 from typer.testing import CliRunner
 
 from radhar_cli.cli import program
 from radhar_cli.scene import scene_numbers
 from radhar_cli.tradeoff import study
-from radhar_cli.tradeoff.settings import Scenes, sweep
+from radhar_cli.tradeoff.row import Row
+from radhar_cli.tradeoff.scenes import Scenes, SweepSample
+from radhar_cli.tradeoff.setting import DEFAULT, Change
+from radhar_cli.tradeoff.settings import settings_of
+from radhar_cli.tradeoff.sweep import Sweep
 
-CONFIG = """
+FMCW = """
 motion: {model: paper}
 activities: [stationary, punching, walking]
 duration_s: 1.0
-radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 1000, adc_rate_hz: 1e6}
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500, adc_rate_hz: 1e6}
 maps: [stft]
 image: {size_px: 48, cfar: {guard: [2, 1], training: [10, 5]}}
 """
+PEOPLE = """
+activities: [walking]
+duration_s: 1.0
+motion: {place: {range_m: 3}}
+image: {size_px: 48}
+"""
+KINDS = {
+    "fmcw": FMCW,
+    "gated": FMCW + "processing: {range_sum: gated}\n",
+    "sfcw": PEOPLE
+    + "radar: {waveform: sfcw, carrier_hz: 2e9, bandwidth_hz: 1e9, steps: 80, dwell_s: 20e-6, "
+    "prf_hz: 200}\nmaps: [rtm, stft]\n",
+    "cw": PEOPLE + "radar: {waveform: cw, carrier_hz: 24e9, prf_hz: 1000, output: real}\n",
+    "impulse": PEOPLE.replace("image: {", "image: {kind: signed, ")
+    + "radar: {waveform: impulse, carrier_hz: 1e9, bandwidth_hz: 1e9, prf_hz: 64, "
+    "profile_m: [0, 10], profile_samples: 512}\nmaps: [rtm]\n",
+    "board": PEOPLE.replace("duration_s: 1.0", "duration_s: 0.3")
+    + "radar: {device: IWR1443BOOST, cfg: iwr1443boost}\ncloud: {chain: board}\n"
+    "maps: [range_doppler, points]\n",
+}
+# Settings of the fast tests, which the kinds have in common or alone.
 TRIED = (
-    *("-40 dB", "-60 dB", "-80 dB", "-100 dB", "-120 dB", "cube", "double"),
-    *("residual video phase", "FSST at every sample", "refracted rays"),
-    *(
-        "scatterers: segments instead of points",
-        "shadowing",
-        "range_sum: gated instead of coherent",
-    ),
-    *("clutter: mean instead of difference", "room: 3 reflectors"),
-    *("noise corner at PRF/20", "interference line at PRF/8"),
+    *("engine.tolerance_db: -120", "engine.precision: double", "body.scatterers: segments"),
+    *("processing.overlap_fraction: 0.8", "half as many frames", "processing.clutter: mean"),
+    *("radar.steps: 40", "radar.prf_hz: 32", "radar.prf_hz: 500", "a noise corner at PRF/20"),
 )
-
-
-@pytest.fixture
-def config(tmp_path):
-    path = tmp_path / "c.yaml"
-    path.write_text(CONFIG)
-    return path
-
-
-def tried(config):
-    return [setting for setting in sweep(config) if setting.name in TRIED]
-
-
-@pytest.fixture(scope="module")
-def done(tmp_path_factory):
-    """A config and its finished sweep, a few settings of each kind; who changes it takes a copy."""
-    place = tmp_path_factory.mktemp("sweep")
-    path = place / "c.yaml"
-    path.write_text(CONFIG)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study, "sweep", tried)
-        patch.setattr("radhar_cli.tradeoff.measures.SECONDS", 0.0)
-        outcome = tradeoff(path, place / "out")
-    assert outcome.exit_code == 0, outcome.output
-    return path, place / "out"
 
 
 def tradeoff(config, out, *more):
     return CliRunner().invoke(
-        program(), ["tradeoff", str(config), "-o", str(out), "--quick", *more]
+        program(), ["tradeoff", str(config), "-o", str(out), "--quick", "--minutes", "60", *more]
     )
 
 
+@pytest.fixture
+def few(monkeypatch):
+    """Few settings, and as few rounds as there may be."""
+
+    def tried(config):
+        return [setting for setting in settings_of(config) if setting.name in TRIED]
+
+    monkeypatch.setattr(study, "settings_of", tried)
+    monkeypatch.setattr(study, "LEAST_PAIRS", 1)
+    monkeypatch.setattr(study, "MOST_ROUNDS", 1)
+    monkeypatch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+
+
+def write(folder, kind):
+    path = folder / f"{kind}.yaml"
+    path.write_text(KINDS[kind])
+    return path
+
+
+def numbers_of(out):
+    return json.loads((out / "tradeoff.json").read_text())
+
+
 def rows_of(out):
-    rows = json.loads((out / "tradeoff.json").read_text())["settings"]
-    return {row["setting"]: row for row in rows}
+    return {row["name"]: Row.read(row) for row in numbers_of(out)["settings"]}
 
 
-class TestCommand:
-    def test_writes_three_files_that_agree(self, done):
-        config, out = done
-        rows = rows_of(out)
-        with (out / "tradeoff.csv").open() as file:
-            table = list(csv.DictReader(file))
-        assert [row["setting"] for row in table] == list(rows)
-        text = (out / "tradeoff.md").read_text()
-        assert all(name in text for name in rows)
-        assert str(config) in text
-        assert {path.name for path in out.iterdir()} == {
-            f"tradeoff.{x}" for x in ("csv", "json", "md")
-        }
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_of_radar(few, tmp_path, kind):
+    """Files agree, errors are below the tolerance, and other pictures are told from errors."""
+    out = tmp_path / "out"
+    outcome = tradeoff(write(tmp_path, kind), out)
+    assert outcome.exit_code == 0, outcome.output
+    rows = rows_of(out)
+    assert {path.name for path in out.iterdir()} == {
+        f"tradeoff.{suffix}" for suffix in ("csv", "json", "md", "png", "html")
+    }
+    with (out / "tradeoff.csv").open() as file:
+        assert {line["setting"] for line in csv.DictReader(file)} == set(rows)
+    page = (out / "tradeoff.md").read_text()
+    assert all(name in page for name in rows)
+    assert all(sentence in outcome.output for sentence in numbers_of(out)["recommendation"])
+    assert "Recommended: " in outcome.output
+    default = rows[DEFAULT]
+    assert default.error_db < -80
+    assert all(row.error_db < -80 for row in rows.values() if row.effect is Change.ERROR)
+    changed = rows["body.scatterers: segments"]
+    assert changed.effect is Change.PICTURE
+    assert changed.over_one > 0.01
+    assert set(numbers_of(out)["floors_db"]) >= set(default.maps)
+    if kind == "board":
+        assert set(default.maps) == {"range_doppler"}
+        assert default.error_of == "the cube"
+        assert default.points.moved == 0
+        assert rows["half as many frames"].points.per_frame > 0
+    if kind == "gated":
+        assert default.error_of == "the gate's bins"
 
-    def test_numbers_are_what_they_should_be(self, done):
-        rows = rows_of(done[1])
-        for db in (-40, -60, -80, -100, -120):
-            row = rows[f"{db} dB"]
-            assert row["signal_error_db"] < db
-            assert row["time_ratio"] > 0
-            assert row["refused"] == 0
-        assert rows["-40 dB"]["signal_error_db"] > rows["-120 dB"]["signal_error_db"]
-        assert rows["-40 dB"]["ssim"] <= rows["-120 dB"]["ssim"] <= 1
-        cube = rows["cube"]
-        assert cube["exact"]
-        assert cube["signal_error_db"] is None
-        assert cube["pixels_changed"] == 0
-        assert cube["time_ratio"] > 0
-        assert rows["double"]["measured_error_db"] < -80
-        assert sum(row["default"] for row in rows.values()) == 1
 
-    def test_a_switch_shows_what_is_missed_without_it(self, done):
-        rows = rows_of(done[1])
-        assert "refracted rays" not in rows  # no wall, no rays through it
-        for name, signal in (
-            ("residual video phase", (-80, 0)),
-            ("FSST at every sample", (-300, -60)),
-            ("scatterers: segments instead of points", (-10, 20)),
-            ("shadowing", (-60, -10)),
-            ("range_sum: gated instead of coherent", (-300, -60)),  # the coherent sum stays
-            ("room: 3 reflectors", (-80, 0)),
-            ("noise corner at PRF/20", (-80, 0)),  # the same white noise on both sides
-            ("interference line at PRF/8", (-80, 0)),
-        ):
-            assert signal[0] < rows[name]["signal_error_db"] < signal[1], name
-            assert rows[name]["refused"] == 0
-        mean = rows["clutter: mean instead of difference"]
-        assert mean["signal_error_db"] is None  # one pulse more: nothing to subtract
-        dense = rows["FSST at every sample"]
-        assert max(dense["ssim"], mean["ssim"]) < 0.999
-        assert dense["time_over"] == "the FSST at the STFT's hop"
-        assert rows["range_sum: gated instead of coherent"]["pixels_changed"] > 0.1
+class TestGate:
+    def test_its_error_is_that_of_the_bins_that_frames_show(self, tmp_path):
+        """An error in a bin that no frame shows does not count; in one that is shown it does."""
+        scenes = Scenes(write(tmp_path, "gated"), (), quick=True)
+        recorder = study.Recorder(scenes, SweepSample("walking"))
+        raw = recorder.simulate(("engine.kind=cube",))
+        bins = raw.values["range_signals"]
+        assert raw.needed.any()
+        assert not raw.needed.all()
+        for shown, error_db in ((False, float("-inf")), (True, None)):
+            changed = bins + (raw.needed if shown else ~raw.needed) * abs(bins).max()
+            other = raw._replace(values={"range_signals": changed})
+            name, measured_db = study.signal_error(other, raw)
+            assert name == "range_signals"
+            assert measured_db == error_db or measured_db > -20
+
+
+class TestStops:
+    def test_what_is_measured_is_kept_and_the_same_command_goes_on(
+        self, few, tmp_path, monkeypatch
+    ):
+        config, out = write(tmp_path, "fmcw"), tmp_path / "out"
+        measure, calls = study.TradeoffStudy._measure, []
+
+        def stop_at_third(self, setting, limit, refuse=False):
+            calls.append(setting.name)
+            if len(calls) == 3:
+                raise KeyboardInterrupt
+            return measure(self, setting, limit, refuse)
+
+        monkeypatch.setattr(study.TradeoffStudy, "_measure", stop_at_third)
+        stopped = tradeoff(config, out)
+        assert stopped.exit_code == 130
+        assert "the same command resumes" in stopped.output
+        kept = rows_of(out)
+        assert list(kept) == calls[:2]
+        assert "## Settings" in (out / "tradeoff.md").read_text()  # readable as it is
+        monkeypatch.setattr(study.TradeoffStudy, "_measure", measure)
+        assert tradeoff(config, out).exit_code == 0
+        done = rows_of(out)
+        assert {name: done[name] for name in kept} == kept
+        assert len(done) > len(kept)
+        assert not list(out.rglob("*unfinished*"))
+
+    def test_results_of_another_config_are_not_gone_on_with(self, few, tmp_path):
+        config, out = write(tmp_path, "cw"), tmp_path / "out"
+        assert tradeoff(config, out).exit_code == 0
+        refused = tradeoff(config, out, "--set", "radar.prf_hz=2000")
+        assert refused.exit_code != 0
+        assert "radar.prf_hz" in str(refused.exception)
+        replaced = tradeoff(config, out, "--set", "radar.prf_hz=2000", "--overwrite")
+        assert replaced.exit_code == 0, replaced.output
+
+    def test_settings_without_time_are_named(self, few, tmp_path):
+        config = write(tmp_path, "fmcw")
+        sweep = Sweep()
+        scenes = Scenes(config, (), quick=True)
+        study.TradeoffStudy(scenes, sweep, study.Budget(0.0), Listener(), lambda: None).run()
+        assert [row.name for row in sweep.rows] == [DEFAULT]
+        assert "engine.precision: double" in {name for name, _ in sweep.unmeasured}
 
 
 class TestSettings:
-    def scenes(self, config, *more):
-        return Scenes(config, more, quick=False)
+    def scenes(self, folder, kind, *more):
+        return Scenes(write(folder, kind), more, quick=False)
 
-    def test_every_setting_is_a_config(self, config):
-        for more in ((), ("wall={}",)):
-            scenes = self.scenes(config, *more)
-            for setting in sweep(scenes.config()):
-                for overrides in (
-                    setting.overrides,
-                    setting.compared,
-                    setting.exact,
-                    setting.baseline,
-                ):
-                    assert scenes.config(overrides)
+    @pytest.mark.parametrize("kind", KINDS)
+    def test_names_are_told_apart(self, tmp_path, kind):
+        settings = settings_of(self.scenes(tmp_path, kind).config())
+        assert len({setting.name for setting in settings}) == len(settings)
 
-    def test_one_that_the_config_forbids_is_left_out_and_named(self, config):
-        """A high-pass above PRF/2 cannot be, the other settings can."""
-        listener = Listener()
-        scenes = self.scenes(config, "processing.highpass.cutoff_hz=600")
-        possible = study.allowed_settings(scenes, listener)
-        assert not any("highpass" in setting.name for setting in possible)
-        (message,) = listener.messages
-        assert "processing.highpass" in message
+    def test_a_setting_that_the_config_forbids_is_named_with_its_reason(self, tmp_path):
+        listener, sweep = Listener(), Sweep()
+        scenes = self.scenes(tmp_path, "fmcw", "processing.highpass.cutoff_hz=300")
+        allowed = study.TradeoffStudy(scenes, sweep, study.Budget(0), listener, lambda: None)
+        names = {setting.name for setting in allowed._allowed_settings()}
+        assert "processing.clutter: highpass" not in names
+        messages = [message for message in listener.messages if "highpass" in message]
+        assert len(messages) == 1
+        assert messages[0].startswith("left out: processing.clutter: highpass: ")
+        assert "\n" not in messages[0]
 
-    def test_names_are_told_apart_and_one_is_the_default(self, config):
-        settings = sweep(self.scenes(config, "wall={}").config())
-        assert len({(s.group, s.name) for s in settings}) == len(settings)
-        assert sum(s.is_default for s in settings) == 1
+    def test_scenes_do_not_depend_on_engine_and_maps(self, tmp_path):
+        scenes = self.scenes(tmp_path, "fmcw")
+        usual = scene_numbers(scenes.draw(SweepSample("walking"), scenes.config()))
+        for setting in settings_of(scenes.config()):
+            if setting.group in ("engine", "maps", "processing"):
+                scene = scenes.draw(SweepSample("walking"), scenes.config(setting.overrides))
+                assert usual.items() <= scene_numbers(scene).items()
 
-    def test_scenes_do_not_depend_on_the_setting(self, config):
-        scenes = self.scenes(config)
-        usual = scene_numbers(scenes.draw("walking", scenes.config()))
-        for setting in sweep(scenes.config()):
-            scene = scenes.draw("walking", scenes.config(setting.overrides))
-            assert usual.items() <= scene_numbers(scene).items()
-
-    def test_people_and_rays_that_a_config_does_not_have_are_tried(self, tmp_path):
+    def test_what_a_config_does_not_have_is_tried(self, tmp_path):
         path = tmp_path / "people.yaml"
-        path.write_text(CONFIG.replace("model: paper", "model: human") + "wall: {}\n")
-        names = {setting.name for setting in sweep(Scenes(path, (), quick=True).config())}
-        assert {"another person, who walks", "straight rays", "refracted rays"} <= names
-        assert {"beams of 70 x 30 degrees", "reflections inside the wall"} <= names
-        assert "plane rays" not in names
+        path.write_text(FMCW.replace("model: paper", "model: human") + "wall: {}\n")
+        names = {setting.name for setting in settings_of(Scenes(path, (), quick=True).config())}
+        assert {"another person, who walks", "wall.rays: refracted", "wall.echoes: exact"} <= names
+        assert {"beams of 70 x 30 degrees", "maps with fsst", "radar.prf_hz: 250"} <= names
+        assert "wall.rays: plane" not in names
 
-    def test_the_other_body_setting_is_the_one_the_config_lacks(self, config):
-        scenes = self.scenes(config, "body.scatterers=segments")
-        names = [setting.name for setting in sweep(scenes.config())]
-        assert "scatterers: points instead of segments" in names
-        assert "shadowing" in names
+    def test_gates_are_compared_without_maps_that_forbid_them(self, tmp_path):
+        scenes = self.scenes(tmp_path, "fmcw", "maps=[stft, fsst]")
+        settings = {setting.name: setting for setting in settings_of(scenes.config())}
+        assert settings["processing.range_sum: gated"].base == ("maps=[stft]",)
 
-    def test_gates_are_compared_without_maps_that_forbid_them(self, config):
-        scenes = self.scenes(config, "maps=[stft, fsst]")
-        names = [setting.name for setting in study.allowed_settings(scenes, Listener())]
-        assert "range_sum: gated instead of coherent" in names
+
+SHIPPED = sorted(path for path in (ROOT / "configs").rglob("*.yaml") if path.parent.name != "train")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: str(path.relative_to(ROOT / "configs")))
+def test_every_shipped_config(path, tmp_path, monkeypatch):
+    """All settings of all configs, with the smallest effort: a row, or a line that says why not."""
+    monkeypatch.setattr(study, "MOST_ROUNDS", 1)
+    monkeypatch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+    monkeypatch.setattr(Scenes, "samples", lambda self: [SweepSample(first_slug(self))])
+    outcome = tradeoff(path, tmp_path / "out")
+    assert outcome.exit_code == 0, outcome.output
+    numbers = numbers_of(tmp_path / "out")
+    measured = {row["name"] for row in numbers["settings"]}
+    left_out = {omission["name"] for omission in numbers["left_out"]}
+    every = {setting.name for setting in settings_of(Scenes(path, (), quick=True).config())}
+    unmeasured = {omission["name"] for omission in numbers["unmeasured"]}
+    assert measured | left_out | unmeasured == every | {DEFAULT}
+    assert numbers["floors_db"]
+    assert "Recommended: " in outcome.output
+
+
+def first_slug(scenes):
+    slugs = [activity.slug for activity in scenes.config().chosen_activities]
+    return "walking" if "walking" in slugs else slugs[0]

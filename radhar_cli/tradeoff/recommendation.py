@@ -1,0 +1,278 @@
+"""What a sweep recommends, in sentences that follow from its rows and their uncertainty."""
+
+from collections.abc import Iterator, Sequence
+from math import inf, isfinite
+
+from radhar_cli.tradeoff.floor import VISIBLE
+from radhar_cli.tradeoff.intervals import paired_difference
+from radhar_cli.tradeoff.row import Row
+from radhar_cli.tradeoff.setting import DEFAULT
+from radhar_cli.tradeoff.sweep import Sweep
+
+MOST_SAVINGS, MOST_COSTS = 6, 3
+LEAST_ROUNDS = 3  # of timing, without which nothing is concluded
+COSTLY = 1.5  # times the time, from which on a setting is named as costly
+NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+TOLERANCE = "engine.tolerance_db: "
+
+
+def recommend(sweep: Sweep, cores: int = 0) -> list[str]:
+    """Sentences about what a config may save, at which price, and how sure that is.
+
+    A setting saves or costs time only where the whole interval of its ratio lies beyond what the
+    config as it is differs from itself.
+
+    Args:
+        sweep: rows, floors and pairs of a sweep.
+        cores: cores of the machine, for the sentence on its load; 0 where nobody knows.
+    """
+    return [
+        *_floor_sentences(sweep),
+        *_engine_sentences(sweep),
+        *_saving_sentences(sweep),
+        *_cost_sentences(sweep),
+        *_blur_sentences(sweep, cores),
+    ]
+
+
+def saves(row: Row, blur: float) -> bool:
+    """Whether a row takes less time than the config as it is, beyond its own interval and the blur.
+
+    Args:
+        row: the row.
+        blur: share by which the config as it is differs from itself.
+    """
+    is_comparable = row.base_name == DEFAULT and not row.is_default and row.rounds >= LEAST_ROUNDS
+    return is_comparable and row.ratio_high is not None and row.ratio_high < 1 - blur
+
+
+def _costs(row: Row, blur: float) -> bool:
+    """Whether a row takes more time, beyond its own interval and the blur."""
+    is_timed = not row.is_default and row.rounds >= LEAST_ROUNDS
+    return is_timed and row.ratio_low is not None and row.ratio_low > 1 + blur
+
+
+def _floor_sentences(sweep: Sweep) -> Iterator[str]:
+    """Yield what 8 bits show at least, and where the config's own error lies."""
+    if not sweep.floors:
+        return
+    name, floor_db = min(sweep.floors.items(), key=lambda item: item[1])
+    maps = {key: value for key, value in sweep.floors.items() if key != "points"}
+    if maps:
+        visible, map_floor = min(maps.items(), key=lambda item: item[1])
+        others = [f"{key} {value} dB" for key, value in maps.items() if key != visible]
+        listed = f"; {', '.join(others)}" if others else ""
+        yield (
+            f"At this config 8 bits cannot show an error of less than {map_floor} dB of the signal "
+            f"({visible}{listed}): below it fewer than {_percent(VISIBLE)} of the pixels differ by "
+            "more than a level."
+        )
+    if "points" in sweep.floors:
+        yield (
+            f"{_percent(VISIBLE)} of the points move by more than 1 cm from an error of "
+            f"{sweep.floors['points']} dB on."
+        )
+    row = sweep.row_of(DEFAULT)
+    if row is None or row.error_db is None:
+        return
+    scenes = f"worst of {_counted(row.scenes, 'scene')}"
+    if row.error_db == -inf:
+        yield f"The config as it is makes no error of computation ({scenes})."
+    elif row.error_db < floor_db:
+        yield (
+            f"Its own error, {row.error_db:.0f} dB of {row.error_of} ({scenes}), is "
+            f"{floor_db - row.error_db:.0f} dB below that."
+        )
+    else:
+        yield (
+            f"Its own error, {row.error_db:.0f} dB of {row.error_of} ({scenes}), shows in {name}: "
+            f"a tighter engine.tolerance_db is worth its time."
+        )
+
+
+def _engine_sentences(sweep: Sweep) -> Iterator[str]:
+    """Yield what other computations of the same physics cost, and whether they show."""
+    default = sweep.row_of(DEFAULT)
+    default_db = None if default is None else default.error_db
+    for row in sweep.rows:
+        if not row.is_error or row.is_default or row.ratio is None:
+            continue
+        if saves(row, sweep.blur):
+            continue  # named among what saves
+        visible = _shown_error(row)
+        is_same = row.name.startswith(TOLERANCE) and row.error_db == default_db
+        if is_same:
+            yield (
+                f"`{row.name}` is the same signal as the default's and saves nothing "
+                f"({_times(row)} the time)."
+            )
+        elif _costs(row, sweep.blur):
+            yield f"{_quoted(row)} takes {_times(row)} the time; {visible}."
+        else:
+            yield f"{_quoted(row)} takes the same time within the blur; {visible}."
+
+
+def _shown_error(row: Row) -> str:
+    """Whether an error of a row shows in pictures, in words."""
+    over_one = row.over_one
+    if over_one is None:
+        return "what it shows was not compared"
+    if over_one == 0:
+        return "no pixel is more than a level from the exact one"
+    return f"{_percent(over_one)} of the pixels are more than a level from the exact ones"
+
+
+def _saving_sentences(sweep: Sweep) -> Iterator[str]:
+    """Yield what saves time, at what price, and what to take."""
+    found_rows = sorted(
+        (row for row in sweep.rows if saves(row, sweep.blur)), key=lambda row: row.ratio or 1
+    )
+    default = sweep.row_of(DEFAULT)
+    for row in found_rows[:MOST_SAVINGS]:
+        yield f"{_quoted(row)} saves {_saved(row)} of the time{_price(row, default)}."
+    if len(found_rows) > MOST_SAVINGS:
+        others = ", ".join(_quoted(row) for row in found_rows[MOST_SAVINGS:])
+        yield f"Others that save less: {others}."
+    free = [row for row in found_rows if _is_free(row, default)]
+    if free:
+        yield f"Recommended: {' or '.join(_quoted(row) for row in free)}."
+    elif found_rows:
+        yield (
+            "Recommended: the config as it is; what saves time gives other pictures, which are "
+            "worth it only if a network learns as well from them."
+        )
+    else:
+        yield "Recommended: the config as it is; nothing that was tried saves time beyond the blur."
+    if found_rows and not any(row.accuracy for row in found_rows):
+        yield (
+            "The effect on a network was not measured; `--accuracy 5` trains networks on data of "
+            "each of them."
+        )
+
+
+def _is_free(row: Row, default: Row | None) -> bool:
+    """Whether a row that saves time costs nothing that is shown, or no accuracy."""
+    if row.accuracy is not None and default is not None and default.accuracy is not None:
+        return _lost(row, default)[1] <= 0
+    return bool(row.maps or row.points) and (row.over_one or 0) <= VISIBLE and not drops_map(row)
+
+
+def drops_map(row: Row) -> bool:
+    """Whether a row has fewer maps than the config, so that what stays is not all."""
+    return row.name.startswith("maps without ")
+
+
+def _price(row: Row, default: Row | None) -> str:
+    """What a row that saves time changes, as the end of a sentence."""
+    if row.accuracy is not None and default is not None and default.accuracy is not None:
+        lost, low, _ = _lost(row, default)
+        seeds = _counted(len(row.accuracy.by_seed), "seed")
+        means = f"{100 * default.accuracy.mean:.0f} to {100 * row.accuracy.mean:.0f}, {seeds}"
+        if row.accuracy.tested_on == "own":
+            means += ", tested on its own images"
+        if low > 0:
+            return f" and costs {_counted(round(100 * lost), 'point')} of accuracy ({means})"
+        return f" and costs no accuracy that is beyond chance ({means})"
+    if not row.maps and row.points is None:
+        return f"; {row.note}" if row.note else ""
+    if (row.over_one or 0) == 0:
+        staying = " of the maps that stay" if drops_map(row) else " that is shown"
+        return f" and changes nothing{staying}"
+    if row.is_error or (row.over_one or 0) <= VISIBLE:
+        return f" and changes {_percent(row.over_one or 0)} of the pixels by more than a level"
+    return f" and gives another picture ({_picture_words(row)})"
+
+
+def _picture_words(row: Row) -> str:
+    """How much another picture differs, in words."""
+    words = []
+    if row.maps:
+        name, worst = max(row.maps.items(), key=lambda item: item[1].over_one_median)
+        size = f"{worst.rms_levels_median:.0f} levels"
+        if worst.rms_db is not None and worst.rms_levels > 0:
+            size = f"{worst.rms_db * worst.rms_levels_median / worst.rms_levels:.1f} dB rms"
+        words.append(f"{name}: {_percent(worst.over_one_median)} of the pixels, {size}")
+    if row.points is not None:
+        words.append(
+            f"{_percent(row.points.moved)} of the points, {row.points.per_frame:.1f} a frame "
+            f"instead of {row.points.base_per_frame:.1f}"
+        )
+    return "; ".join(words)
+
+
+def _lost(row: Row, default: Row) -> tuple[float, float, float]:
+    """Accuracy that a row loses against the default, paired by seed, with its interval."""
+    assert row.accuracy is not None
+    assert default.accuracy is not None
+    mean, low, high = paired_difference(row.accuracy.by_seed, default.accuracy.by_seed)
+    return -mean, -high, -low
+
+
+def _cost_sentences(sweep: Sweep) -> Iterator[str]:
+    """Yield what costs many times the time: physics and transforms that the config leaves out."""
+    costly = [row for row in sweep.rows if _costs(row, sweep.blur) and not row.is_error]
+    costly = [row for row in costly if (row.ratio or 0) > COSTLY]
+    costly.sort(key=lambda row: -(row.ratio or 0))
+    if costly:
+        listed = "; ".join(
+            f"{_quoted(row)} {_times(row)}"
+            + ("" if row.base_name == DEFAULT else f" (of {row.base_name})")
+            for row in costly[:MOST_COSTS]
+        )
+        yield f"What is left out and would cost most: {listed} the time."
+
+
+def _blur_sentences(sweep: Sweep, cores: int) -> Iterator[str]:
+    """Yield how sure the times are, and what was not measured."""
+    loads = [load for load in sweep.loads if isfinite(load)]
+    load = ""
+    if loads:
+        on = f" on {_counted(cores, 'core')}" if cores else ""
+        load = f", load {min(loads):.1f} to {max(loads):.1f}{on}"
+    if sweep.pairs:
+        pairs = _counted(len(sweep.pairs), "comparison")
+        yield (
+            f"The config differs from itself by up to {_percent(sweep.blur)} in time ({pairs}"
+            f"{load}): smaller differences say nothing."
+        )
+    if sweep.unmeasured:
+        names = ", ".join(f"`{name}`" for name, _ in sweep.unmeasured)
+        yield f"Not measured for lack of time: {names}."
+
+
+def _quoted(row: Row) -> str:
+    return f"`{row.name}`"
+
+
+def _saved(row: Row) -> str:
+    """Share of the time that a row saves, with its interval: 18 % (16 to 20)."""
+    assert row.ratio is not None
+    assert row.ratio_low is not None
+    assert row.ratio_high is not None
+    low, high = 100 * (1 - row.ratio_high), 100 * (1 - row.ratio_low)
+    return f"{100 * (1 - row.ratio):.0f} % ({low:.0f} to {high:.0f})"
+
+
+def _times(row: Row) -> str:
+    """How many times the time a row takes: 1.52 times, 19 times."""
+    ratio = row.ratio or 0.0
+    return f"{ratio:.0f} times" if ratio >= 10 else f"{ratio:.2f} times"
+
+
+def _percent(share: float) -> str:
+    """A share in percent, with two digits where it is small."""
+    percent = 100 * share
+    if 0 < percent < 0.01:
+        return "less than 0.01 %"
+    return f"{percent:.0f} %" if percent >= 10 or percent == 0 else f"{percent:.2g} %"
+
+
+def _counted(count: int, noun: str) -> str:
+    """A number in words and its noun: five seeds."""
+    number = NUMBERS[count] if count < len(NUMBERS) else str(count)
+    return f"{number} {noun}{'s' * (count != 1)}"
+
+
+def sentences_as_list(sentences: Sequence[str]) -> str:
+    """Sentences as a list in Markdown."""
+    return "\n".join(f"- {sentence}" for sentence in sentences)

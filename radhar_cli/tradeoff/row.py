@@ -1,0 +1,233 @@
+"""Rows of the table: what a setting costs and what it changes, as plain numbers."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
+from math import inf
+from statistics import median
+from typing import Any, NamedTuple
+
+from radhar_cli.tradeoff.differences import MapDifference, PointDifference, worst_maps
+from radhar_cli.tradeoff.setting import Change, Setting
+from radhar_cli.tradeoff.timing import Ratio
+
+
+class SceneDifference(NamedTuple):
+    """What a setting changes of one scene.
+
+    Attributes:
+        error_of: signal whose error is measured, in words.
+        error_db: its relative error, dB; -inf of none, None where there is none to compare.
+        stated_db: error that the engine states itself.
+        maps: {map: difference}.
+        points: difference of the points, None without any.
+    """
+
+    error_of: str
+    error_db: float | None
+    stated_db: float | None
+    maps: Mapping[str, MapDifference]
+    points: PointDifference | None
+
+
+@dataclass(frozen=True)
+class MapNumbers:
+    """Differences of a map over scenes: the worst scene's, and medians.
+
+    Attributes:
+        changed: share of the pixels whose level differs.
+        over_one: share of those that differ by more than one level.
+        ssim: smallest SSIM; None where it is not defined.
+        rms_levels: root mean square of the difference, levels.
+        rms_db: the same in dB; None of pictures that show no decibels.
+        over_one_median: median over scenes of `over_one`.
+        rms_levels_median: median over scenes of `rms_levels`.
+    """
+
+    changed: float
+    over_one: float
+    ssim: float | None
+    rms_levels: float
+    rms_db: float | None
+    over_one_median: float
+    rms_levels_median: float
+
+    @classmethod
+    def of(cls, differences: Sequence[MapDifference], level_db: float | None) -> "MapNumbers":
+        """Numbers of a map in several scenes.
+
+        Args:
+            differences: difference of each scene.
+            level_db: decibels of a grey level; None of pictures that show none.
+        """
+        worst = worst_maps(differences)
+        return cls(
+            *worst,
+            None if level_db is None else level_db * worst.rms_levels,
+            median(difference.over_one for difference in differences),
+            median(difference.rms_levels for difference in differences),
+        )
+
+
+@dataclass(frozen=True)
+class AccuracyNumbers:
+    """Accuracy of a network that learned from data of a setting, 0 to 1, with its interval.
+
+    Attributes:
+        by_seed: accuracy by seed.
+        mean: mean of it.
+        low: lower end of a 95 % interval of the mean.
+        high: upper end.
+        tested_on: data that it was tested on, in a word.
+    """
+
+    by_seed: tuple[float, ...]
+    mean: float
+    low: float
+    high: float
+    tested_on: str = "default"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of the table.
+
+    Attributes:
+        group: part of radhar that the setting belongs to.
+        name: key and value, or what is changed in words.
+        overrides: overrides that make the setting.
+        base_name: what time and picture are compared with.
+        effect: whether data differ by an error, or by design.
+        is_default: whether it is the config as it is.
+        sample_ms: time of a sample, ms.
+        ratio: that time over the time of what it is compared with.
+        ratio_low: lower end of its interval.
+        ratio_high: upper end.
+        rounds: rounds of timing.
+        scenes: scenes that were compared.
+        error_of: signal whose error is measured, in words.
+        error_db: relative error of it, worst scene, dB; -inf of none.
+        error_median_db: median over the scenes.
+        stated_db: error that the engine stated, worst scene.
+        maps: {map: differences}.
+        points: difference of a board's points, of the worst scene.
+        note: what is to be known besides.
+        accuracy: accuracy of a network, where it was measured.
+    """
+
+    group: str
+    name: str
+    overrides: tuple[str, ...]
+    base_name: str
+    effect: Change
+    is_default: bool = False
+    sample_ms: float | None = None
+    ratio: float | None = None
+    ratio_low: float | None = None
+    ratio_high: float | None = None
+    rounds: int = 0
+    scenes: int = 0
+    error_of: str = ""
+    error_db: float | None = None
+    error_median_db: float | None = None
+    stated_db: float | None = None
+    maps: Mapping[str, MapNumbers] = field(default_factory=dict)
+    points: PointDifference | None = None
+    note: str = ""
+    accuracy: AccuracyNumbers | None = None
+
+    @classmethod
+    def of(
+        cls,
+        setting: Setting,
+        ratio: Ratio | None,
+        scenes: Sequence[SceneDifference],
+        level_db: float | None,
+        note: str = "",
+    ) -> "Row":
+        """Row of what was measured of a setting.
+
+        Args:
+            setting: the setting.
+            ratio: its time.
+            scenes: differences of the scenes that were compared.
+            level_db: decibels of a grey level; None of pictures that show none.
+            note: what is to be known besides.
+        """
+        errors = [scene.error_db for scene in scenes if scene.error_db is not None]
+        stated = [scene.stated_db for scene in scenes if scene.stated_db is not None]
+        names = dict.fromkeys(name for scene in scenes for name in scene.maps)
+        points = [scene.points for scene in scenes if scene.points is not None]
+        times: dict[str, Any] = {}
+        if ratio is not None:
+            times = {"sample_ms": ratio.sample_ms, "ratio": ratio.value, "rounds": ratio.rounds}
+            times |= {"ratio_low": ratio.low, "ratio_high": ratio.high}
+        return cls(
+            setting.group,
+            setting.name,
+            setting.overrides,
+            setting.base_name,
+            setting.effect,
+            is_default=not setting.overrides,
+            **times,
+            scenes=len(scenes),
+            error_of=next((scene.error_of for scene in scenes), ""),
+            error_db=max(errors, default=None),
+            error_median_db=median(errors) if errors else None,
+            stated_db=max(stated, default=None),
+            maps={
+                name: MapNumbers.of(
+                    [scene.maps[name] for scene in scenes if name in scene.maps], level_db
+                )
+                for name in names
+            },
+            points=max(points, key=lambda difference: difference.moved, default=None),
+            note=note,
+        )
+
+    @property
+    def is_error(self) -> bool:
+        """Whether its data differ by an error of computation."""
+        return self.effect is Change.ERROR
+
+    @property
+    def over_one(self) -> float | None:
+        """Largest share of the pixels of a map that differ by more than a level, or of points."""
+        return max(self._shares(), default=None)
+
+    def _shares(self) -> list[float]:
+        shares = [numbers.over_one for numbers in self.maps.values()]
+        return shares + ([] if self.points is None else [self.points.moved])
+
+    @property
+    def rms_levels(self) -> float | None:
+        """Largest rms difference of a map, levels; None where no map is compared."""
+        return max((numbers.rms_levels for numbers in self.maps.values()), default=None)
+
+    def numbers(self) -> dict[str, Any]:
+        """Plain values for JSON; an error of -inf is "exact"."""
+        plain = asdict(self)
+        for key in ("error_db", "error_median_db", "stated_db"):
+            plain[key] = "exact" if plain[key] == -inf else plain[key]
+        if self.points is not None:
+            plain["points"] = self.points._asdict()
+        return plain
+
+    @classmethod
+    def read(cls, numbers: Mapping[str, Any]) -> "Row":
+        """Row of plain values that `numbers` gave.
+
+        Raises:
+            KeyError, TypeError, ValueError: they are others.
+        """
+        values = {each.name: numbers[each.name] for each in fields(cls)}
+        for key in ("error_db", "error_median_db", "stated_db"):
+            values[key] = -inf if values[key] == "exact" else values[key]
+        values["effect"] = Change(values["effect"])
+        values["overrides"] = tuple(values["overrides"])
+        values["maps"] = {name: MapNumbers(**each) for name, each in values["maps"].items()}
+        if values["points"] is not None:
+            values["points"] = PointDifference(**values["points"])
+        if values["accuracy"] is not None:
+            by_seed = tuple(values["accuracy"]["by_seed"])
+            values["accuracy"] = AccuracyNumbers(**{**values["accuracy"], "by_seed": by_seed})
+        return cls(**values)

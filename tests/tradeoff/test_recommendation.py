@@ -1,0 +1,143 @@
+"""What is recommended of synthetic rows: nothing within the blur, and what it costs."""
+
+from dataclasses import replace
+
+import pytest
+
+from radhar_cli.tradeoff.differences import PointDifference
+from radhar_cli.tradeoff.recommendation import recommend, saves
+from radhar_cli.tradeoff.row import AccuracyNumbers, MapNumbers, Row
+from radhar_cli.tradeoff.setting import DEFAULT, Change
+from radhar_cli.tradeoff.sweep import Omission, Sweep
+from radhar_cli.tradeoff.timing import Ratio
+
+AS_IT_IS = Row(
+    *("default", DEFAULT, (), DEFAULT, Change.ERROR),
+    is_default=True,
+    sample_ms=20.0,
+    ratio=1.0,
+    ratio_low=0.99,
+    ratio_high=1.01,
+    rounds=7,
+    scenes=3,
+    error_of="the signal",
+    error_db=-107.0,
+)
+
+
+def row(name, ratio, spread=0.01, over_one=0.3, effect=Change.PICTURE, **more):
+    maps = {"stft": MapNumbers(over_one, over_one, 0.9, 5.0, 1.0, over_one, 5.0)}
+    times = {"ratio_low": ratio - spread, "ratio_high": ratio + spread, "rounds": 5}
+    values = {"sample_ms": 20 * ratio, "ratio": ratio, **times, "maps": maps, **more}
+    return Row("group", name, (name,), DEFAULT, effect, **values)
+
+
+def sweep(*rows, blur=0.03, **more):
+    pairs = [Ratio(20.0, 1 + blur, 0.98, 1.04, 7)]
+    return Sweep([AS_IT_IS, *rows], {"stft": -53}, 3, pairs, [0.5, 1.5], **more)
+
+
+def text(*rows, **more):
+    return "\n".join(recommend(sweep(*rows, **more), cores=2))
+
+
+def accuracy(*by_seed):
+    mean = sum(by_seed) / len(by_seed)
+    return AccuracyNumbers(by_seed, mean, mean - 0.02, mean + 0.02)
+
+
+def test_the_floor_of_the_image_and_the_error_of_the_config():
+    lines = text()
+    assert "8 bits cannot show an error of less than -53 dB" in lines
+    assert "Its own error, -107 dB of the signal (worst of three scenes), is 54 dB below" in lines
+
+
+def test_an_error_that_shows_is_said():
+    sentences = recommend(replace(sweep(), rows=[replace(AS_IT_IS, error_db=-40.0)]))
+    assert any("shows in stft" in sentence for sentence in sentences)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "spread", "is_saving"),
+    [(0.8, 0.01, True), (0.98, 0.0, False), (0.8, 0.18, False), (1.2, 0.01, False)],
+)
+def test_nothing_within_the_blur_is_a_saving(ratio, spread, is_saving):
+    tried = row("image.size_px: [32, 32]", ratio, spread)
+    assert saves(tried, 0.03) is is_saving
+    assert ("`image.size_px: [32, 32]` saves" in text(tried)) is is_saving
+
+
+def test_a_single_round_concludes_nothing():
+    assert not saves(row("body.scatterers: points", 0.4, rounds=1), 0.03)
+
+
+def test_where_nothing_saves_the_config_stays():
+    assert "Recommended: the config as it is; nothing" in text(row("x: 1", 0.99))
+
+
+def test_a_saving_that_is_not_seen_is_recommended():
+    lines = text(row("processing.overlap_fraction: 0.88", 0.9, over_one=0.002))
+    assert "saves 10 % (9 to 11) of the time and changes 0.2 % of the pixels" in lines
+    assert "Recommended: `processing.overlap_fraction: 0.88`." in lines
+
+
+def test_another_picture_is_named_and_not_recommended_unmeasured():
+    lines = text(row("body.scatterers: points", 0.4))
+    assert "`body.scatterers: points` saves 60 % (59 to 61) of the time and gives another" in lines
+    assert "Recommended: the config as it is" in lines
+    assert "The effect on a network was not measured; `--accuracy 5`" in lines
+
+
+def test_accuracy_that_is_lost_beyond_chance_is_a_price():
+    tried = row("body.scatterers: points", 0.4, accuracy=accuracy(0.76, 0.77, 0.78, 0.77, 0.77))
+    default = replace(AS_IT_IS, accuracy=accuracy(0.8, 0.81, 0.82, 0.81, 0.81))
+    lines = "\n".join(recommend(replace(sweep(), rows=[default, tried])))
+    assert "saves 60 % (59 to 61) of the time and costs four points of accuracy" in lines
+    assert "(81 to 77, five seeds)" in lines
+    assert "Recommended: the config as it is" in lines
+    assert "not measured" not in lines
+
+
+def test_accuracy_that_chance_explains_is_none():
+    tried = row("body.scatterers: points", 0.4, accuracy=accuracy(0.70, 0.88, 0.81))
+    default = replace(AS_IT_IS, accuracy=accuracy(0.80, 0.81, 0.82))
+    lines = "\n".join(recommend(replace(sweep(), rows=[default, tried])))
+    assert "costs no accuracy that is beyond chance (81 to 80, three seeds)" in lines
+    assert "Recommended: `body.scatterers: points`." in lines
+
+
+def test_maps_that_are_left_out_are_no_free_saving():
+    lines = text(row("maps without fsst", 0.6, over_one=0.0))
+    assert "changes nothing of the maps that stay" in lines
+    assert "Recommended: the config as it is" in lines
+
+
+def test_a_looser_tolerance_that_is_the_same_says_so():
+    tried = row("engine.tolerance_db: -60", 1.0, over_one=0.0, effect=Change.ERROR, error_db=-107.0)
+    assert "`engine.tolerance_db: -60` is the same signal as the default's" in text(tried)
+
+
+def test_the_cube_is_slower_and_shows_nothing_more():
+    tried = row("engine.kind: cube", 19.0, over_one=0.0, effect=Change.ERROR, error_db=-300.0)
+    assert "`engine.kind: cube` takes 19 times the time; no pixel is more than a level" in text(
+        tried
+    )
+
+
+def test_points_that_move_are_counted():
+    moved = PointDifference(0.5, 0.03, 20.0, 40.0)
+    lines = text(row("1 transmitter", 0.5, maps={}, points=moved))
+    assert "50 % of the points, 20.0 a frame instead of 40.0" in lines
+
+
+def test_load_and_what_was_not_measured_are_told():
+    lines = text(unmeasured=[Omission("room.order: 2", "more than 9 s")])
+    assert (
+        "differs from itself by up to 3 % in time (one comparison, load 0.5 to 1.5 on two" in lines
+    )
+    assert "Not measured for lack of time: `room.order: 2`." in lines
+
+
+def test_rows_survive_json():
+    tried = row("body.scatterers: points", 0.4, accuracy=accuracy(0.7, 0.8), error_db=float("-inf"))
+    assert Row.read(tried.numbers()) == tried

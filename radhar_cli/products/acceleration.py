@@ -6,10 +6,11 @@ from radhar_cli.config.radar import BoardRadar, ImpulseRadar
 from radhar_cli.echo.compiled import MIN_TERMS
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.accelerators import installed
+from radhar_cli.processing.map_kind import MAP_KINDS
 
 
 def describe_acceleration(config: Config) -> str | None:
-    """Say that numba compiles the sums over paths, or what it would save.
+    """Say that numba compiles a part of a sample, or about what it would save.
 
     Shares of a sample's time are those of docs/records/costs.md.
 
@@ -17,17 +18,29 @@ def describe_acceleration(config: Config) -> str | None:
         config: that of a data set.
 
     Returns:
-        A line; None where sums are too small, or others than numba compiles.
+        A line; None where numba compiles nothing.
     """
-    other_sums = isinstance(config.radar, BoardRadar | ImpulseRadar) or config.wall is not None
-    if other_sums or config.engine.kind != "direct" or config.engine.precision == "double":
+    if config.engine.precision == "double" or isinstance(config.radar, BoardRadar):
         return None
-    pulses = support(config.duration_s)[1] * support(config.radar.prf_hz)[1]
-    are_points = config.body.scatterers == "points"
-    if len(JOINTS) * pulses < MIN_TERMS:
+    kinds = (MAP_KINDS[name] for name in config.maps if name in MAP_KINDS)
+    has_fsst = any(kind.transform == "fsst" for kind in kinds)
+    has_sums = _has_compiled_sums(config)
+    if not has_fsst and not has_sums:
         return None
     version = installed("numba")
     if version is not None:
-        return f"numba {version} compiles the sums over paths"
-    saved = "less than a tenth" if are_points else "half"
+        return f"numba {version} compiles what of a sample it speeds up"
+    saved = "a sixth" if has_fsst else "a tenth"
+    if has_sums and config.body.scatterers != "points":
+        saved = "half"
     return f"numba is not installed: pip install 'radhar[fast]' saves {saved} of a sample's time"
+
+
+def _has_compiled_sums(config: Config) -> bool:
+    """Whether sums over the paths of an echo are as large as those that numba compiles."""
+    if config.engine.kind != "direct" or config.wall is not None:  # whose paths have no knots
+        return False
+    if isinstance(config.radar, ImpulseRadar):
+        return False
+    pulses = support(config.duration_s)[1] * support(config.radar.prf_hz)[1]
+    return len(JOINTS) * pulses >= MIN_TERMS

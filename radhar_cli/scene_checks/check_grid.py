@@ -33,6 +33,12 @@ class CheckGrid(NamedTuple):
     checked: Index | slice
     pulses: Index
 
+    def of_checked(self, values: Float) -> Float:
+        """Values [..., times] at the times that are checked, one after the other in memory."""
+        if isinstance(self.checked, slice):
+            return values[..., self.checked]
+        return np.take(values, self.checked, axis=-1)
+
 
 class RecordsTimes(OfMotion):
     """A source without paths that records the times at which it is evaluated."""

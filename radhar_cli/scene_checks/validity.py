@@ -254,8 +254,8 @@ def _check_on_grid(
     antennas, wall, body = around.antennas, around.wall, around.body
     if body is not None and isinstance(body.motion, Landmarks):  # which its echo asks for too
         body.motion.landmark_positions(grid.times)
-    t, p = grid.times[grid.checked], motion.positions(grid.times)[..., grid.checked]
-    torso = motion.torso(grid.times)[..., grid.checked]
+    t, p = grid.of_checked(grid.times), grid.of_checked(motion.positions(grid.times))
+    torso = grid.of_checked(motion.torso(grid.times))
     findings.check_places(around, p, torso[:, 0])
     legs = leg(p, antennas.tx), leg(p, antennas.rx)
     delay = bistatic_delay(*legs)
@@ -299,11 +299,7 @@ def _refine_nearest(
     """
     if np.diff(pulses).max() == 1:
         return nearest
-    steps = np.diff(p, axis=2)
-    between = np.hypot.reduce(np.maximum(steps.max(axis=(1, 2)), -steps.min(axis=(1, 2))))
-    if nearest.distance - between > MIN_DISTANCE_M:  # the longest along each axis, to begin with
-        return nearest
-    between = np.sqrt((steps**2).sum(axis=0).max())
+    between = np.sqrt((np.diff(p, axis=2) ** 2).sum(axis=0).max())
     if nearest.distance - between > MIN_DISTANCE_M:
         return nearest
     waveform, antennas = around.waveform, around.antennas

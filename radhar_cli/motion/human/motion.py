@@ -192,9 +192,13 @@ class HumanMotion:
                 if is_under_way.all():
                     self._fill(self.parts[number], t[block], p[..., block], fill)
                 elif is_under_way.any():
-                    points = np.empty((3, count, np.count_nonzero(is_under_way)))
-                    self._fill(self.parts[number], t[block][is_under_way], points, fill)
-                    p[..., block][..., is_under_way] = points
+                    places = np.flatnonzero(is_under_way)
+                    points = np.empty((3, count, places.size))
+                    self._fill(self.parts[number], t[block][places], points, fill)
+                    ends = np.flatnonzero(np.diff(places) > 1) + 1
+                    for some in np.split(np.arange(places.size), ends):  # one after the other
+                        at = first + places[some[0]]
+                        p[..., at : at + some.size] = points[..., some[0] : some[-1] + 1]
         return p
 
     @cached_property

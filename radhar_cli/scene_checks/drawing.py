@@ -27,7 +27,7 @@ DRAWS_OF = {Redrawn.NOTHING: 1, Redrawn.NUMBERS: FAR_DRAWS, Redrawn.CHOICES: FAR
 
 
 def draw_valid_scene(
-    config: Config, activity: Activity, index: int, attempts: int = MAX_ATTEMPTS
+    config: Config, activity: Activity, index: int, attempts: int | None = None
 ) -> tuple[Scene, Flags]:
     """Draw one sample, check it and apply `on_invalid`; return it and what to warn of.
 
@@ -35,7 +35,7 @@ def draw_valid_scene(
         config: config of the data set.
         activity: class of the sample.
         index: number of the sample within its class.
-        attempts: most draws of the sample's own person.
+        attempts: most draws of the sample's own person; None for MAX_ATTEMPTS.
 
     Raises:
         SceneError: a scatterer too close to an antenna (unless redrawn), any scene outside the
@@ -50,7 +50,8 @@ def draw_valid_scene(
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
             return _add_others(config, scene, check.flags)
         misses.append(check.miss)
-        if len(misses) >= attempts or config.on_invalid != "redraw" or is_hopeless(misses, draws):
+        most = MAX_ATTEMPTS if attempts is None else attempts
+        if len(misses) >= most or config.on_invalid != "redraw" or is_hopeless(misses, draws):
             break
     reason = f"{check.invalid}{_describe_place(scene.people[0])}"
     cure = suggest_cure(scene.people[0], check)

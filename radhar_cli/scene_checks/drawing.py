@@ -50,8 +50,8 @@ def draw_valid_scene(
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
             return _add_others(config, scene, check.flags)
         misses.append(check.miss)
-        most = MAX_ATTEMPTS if attempts is None else attempts
-        if len(misses) >= most or config.on_invalid != "redraw" or is_hopeless(misses, draws):
+        limit = MAX_ATTEMPTS if attempts is None else attempts
+        if len(misses) >= limit or config.on_invalid != "redraw" or is_hopeless(misses, draws):
             break
     reason = f"{check.invalid}{_describe_place(scene.people[0])}"
     cure = suggest_cure(scene.people[0], check)

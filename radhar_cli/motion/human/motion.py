@@ -196,9 +196,9 @@ class HumanMotion:
                     points = np.empty((3, count, places.size))
                     self._fill(self.parts[number], t[block][places], points, fill)
                     ends = np.flatnonzero(np.diff(places) > 1) + 1
-                    for some in np.split(np.arange(places.size), ends):  # one after the other
-                        at = first + places[some[0]]
-                        p[..., at : at + some.size] = points[..., some[0] : some[-1] + 1]
+                    for run in np.split(np.arange(places.size), ends):
+                        start = first + places[run[0]]
+                        p[..., start : start + run.size] = points[..., run[0] : run[-1] + 1]
         return p
 
     @cached_property

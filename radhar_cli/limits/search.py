@@ -12,6 +12,7 @@ FAR = 1e3  # distance from which on steps of places grow with the distance
 SMALLEST = 1e-9  # of a positive number, below which there is only 0
 FIRST_STEP, GROWTH = 1 / 16, 1.6
 MOST_HALVINGS = 14
+BETWEEN = 8  # parts of the way to an end, between which it is looked for gaps
 GAP = 0.01  # of a number, within which its end is found
 
 
@@ -52,6 +53,15 @@ class Path:
             return log10(ratio) if ratio > WIDE else 0.0
         distance = abs(self.bound - self.start)
         return log10(distance / self._first_distance) if distance > FAR else 0.0
+
+    @property
+    def is_of_distances(self) -> bool:
+        """Whether steps grow with the distance from the start, rather than with the number."""
+        return self.decades > 0 and (self.start <= 0 or self.bound <= 0)
+
+    def number_between(self, share: float) -> float:
+        """Number at a share of the distance, of three digits."""
+        return float(f"{self.start + share * (self.bound - self.start):.3g}")
 
     @property
     def _first_distance(self) -> float:
@@ -117,7 +127,23 @@ def find_end(
             inside = middle
         else:
             outside, judgement = middle, tried
-    return End(path.number(inside), path.number(outside), judgement)
+    end = End(path.number(inside), path.number(outside), judgement)
+    return _nearest_gap(judge, path, fine, end) if path.is_of_distances else end
+
+
+def _nearest_gap(
+    judge: Callable[[float], Judgement],
+    path: Path,
+    fine: Callable[[Judgement], bool],
+    end: End,
+) -> End:
+    """Find an end that growing steps of distance passed over, as of an antenna in a person."""
+    nearer = Path(path.start, end.inside)
+    for step in range(1, BETWEEN):
+        if not fine(judge(nearer.number_between(step / BETWEEN))):
+            gap = Path(path.start, nearer.number_between(step / BETWEEN))
+            return find_end(judge, gap, fine)
+    return end
 
 
 def find_end_at_zero(

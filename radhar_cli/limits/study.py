@@ -1,6 +1,6 @@
 """Find the limits of a config: every number that acts, both sides, within a time."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from math import inf
@@ -30,6 +30,8 @@ from radhar_cli.scene_checks.drawing import draw_valid_scene
 SLOW = 10.0  # times the work of a sample of the config, from which on it counts as slower
 SHARE = 0.1  # of the time, that one simulated sample may take
 FEW = 3  # samples that stand for all on the way to a limit; all are drawn at its end
+REFUSING = (Consequence.REFUSED, Consequence.REDRAWN)
+FIRST_SHARE = 0.75  # of the time, in which limits are looked for without simulating
 REPAIRS = 3  # how often a way is gone again because another sample fails at its end
 MOST_SIMULATED = 6  # samples simulated on the way to an end that simulation alone shows
 
@@ -84,17 +86,21 @@ def study_limits(
     """
     study = Study(chosen_numbers(trial.config, keys), troubled=trial.troubled)
     end = monotonic() + seconds
-    with time_limit(seconds):
+    places = [(number, side) for number in study.keys for side in RangeSide]
+    places.sort(key=lambda place: place[0].key.rpartition(".")[2].isdecimal())  # places last
+    search: _Search | None = None
+    with time_limit(FIRST_SHARE * seconds):
         search = _Search(trial, study, end)
-        progress.stage("limits", 2 * len(study.keys), 0, "limit")
-        for key in study.keys:
-            for side in RangeSide:
-                study.limits[key.key, side] = search.limit(key, side)
-                progress.advance(1)
-        progress.stage("simulating", 2 * len(study.keys), 0, "limit")
-        search.time_sample()
-        for key in study.keys:
-            for side in RangeSide:
+        progress.stage("limits", len(places), 0, "limit")
+        for key, side in places:
+            study.limits[key.key, side] = search.limit(key, side)
+            progress.advance(1)
+    with time_limit(max(end - monotonic(), 0.0)):
+        known = [place for place in places if (place[0].key, place[1]) in study.limits]
+        progress.stage("simulating", len(known), 0, "limit")
+        if search is not None and known:
+            search.time_sample()
+            for key, side in known:
                 study.limits[key.key, side] = search.simulated(key, side)
                 progress.advance(1)
     return study
@@ -121,6 +127,23 @@ def chosen_numbers(config: Config, keys: Sequence[str] | None) -> tuple[NumberKe
         for number in numbers
         if any(f"{number.key}.".startswith(f"{name}.") for name in keys)
     )
+
+
+def _last_drawn(judge: Callable[[float], Judgement], end: End, farthest: End, path: Path) -> End:
+    """Find the last number whose scenes can be drawn, of those that are but warned of.
+
+    Args:
+        judge: judges a number.
+        end: end of what nothing is said of.
+        farthest: end of what checks accept.
+        path: way to the end.
+    """
+    if end.outside is None or end.judgement.effect is not Consequence.WARNED:
+        return farthest
+    if judge(farthest.inside).effect not in REFUSING:
+        return farthest
+    beyond = Path(end.outside, farthest.inside, path.is_whole)
+    return find_end_at_zero(judge, beyond, lambda judged: judged.effect not in REFUSING)
 
 
 class _Search:
@@ -165,7 +188,7 @@ class _Search:
                 lambda number, place=failing: self._judge(key, number, [place]),  # type: ignore[misc]
                 replace(path, bound=end.inside),
             )
-        return self._as_limit(key, side, end, farthest)
+        return self._as_limit(key, side, end, _last_drawn(judge, end, farthest, path))
 
     def _judge(self, key: NumberKey, number: float, places: Sequence[Place]) -> Judgement:
         """Judge a number by checks, counted work, and warnings and scenes where there are places.
@@ -219,7 +242,7 @@ class _Search:
         if end.outside is None or end.inside == farthest.inside:
             return Limit(key.key, side, end.inside, refusal)
         beyond = end.judgement
-        if beyond.effect in (Consequence.REFUSED, Consequence.REDRAWN):
+        if beyond.effect in REFUSING:
             return Limit(key.key, side, end.inside, beyond)
         return Limit(key.key, side, end.inside, beyond, farthest.inside, refusal)
 

@@ -69,3 +69,10 @@ def test_zero_is_tried_first_and_may_be_fine_or_the_only_one_that_is_not() -> No
 def test_a_start_beyond_which_nothing_is_fine_is_its_own_end() -> None:
     end = find_end(up_to(5.0), Path(5.0, 1e6))
     assert end.inside == 5.0
+
+
+def test_a_gap_on_the_way_of_a_place_is_the_end() -> None:
+    """Nobody stands where the antenna is, whatever is beyond."""
+    end = find_end(lambda x: BEYOND if abs(x - 0.4) < 0.3 or x < -7 else CLEAN, Path(2.5, -1e6))
+    assert end.outside < 0.7 <= end.inside
+    assert end.inside < 0.72

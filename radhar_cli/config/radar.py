@@ -405,10 +405,10 @@ class BoardRadar(_Emission[N], Generic[N]):
         """
         kind = FRAME_MAP_KINDS.get(name)  # none of the points
         shows_doppler = name == "points" or (kind is not None and kind.shows_doppler)
-        if shows_doppler and self.header.loops < MIN_LOOPS:
+        if shows_doppler and 1 < self.header.loops < MIN_LOOPS:  # a window keeps a loop of one
             return (
                 f"the {self._loops} of a frame (radar.cfg, frameCfg) show no Doppler; "
-                f"{MIN_LOOPS} do"
+                f"{MIN_LOOPS} do, or 1, whose Doppler is 0"
             )
         axis = None if kind is None else kind.array_axis
         if axis is None:

@@ -69,8 +69,10 @@ def without_mean(cube: Complex) -> Complex:
     """Subtract from a cube [frame, loop, ..] the mean over the loops of each frame.
 
     A frame whose loops are equal becomes exactly 0, which the rounding of an earlier FFT would
-    spoil.
+    spoil. A frame of one loop, of which a mean would leave nothing, stays as it is.
     """
+    if cube.shape[1] == 1:
+        return cube
     moving: Complex = cube - cube[:, :1]
     moving -= moving.mean(axis=1, keepdims=True)
     return moving

@@ -424,6 +424,8 @@ def compute_range_bins(
     scale = board.signs.copy()
     scale[[*board.sums, *board.differences]] *= sqrt(0.5)
     w = replace(board.waveform, window=window)
+    if board.loops == 1:  # of which the mean of a frame would leave nothing
+        canceller = NO_CANCELLER
     shape = board.channels, w.n_bins, board.frames * board.loops
     x = np.empty(shape, np.result_type(cube.dtype, np.complex64))
     for v in range(board.channels):

@@ -300,7 +300,7 @@ def test_what_frames_of_few_loops_show_is_made_and_the_rest_refused(path: Path, 
     fewer(path, loops)
     still = "processing.clutter=none"
     possible = {"rtm", "range_azimuth", "range_elevation", "cube"}
-    possible |= {"range_doppler", "points"} if loops >= 4 else set()
+    possible |= {"range_doppler", "points"} if loops >= 4 or loops == 1 else set()
     possible |= {"stft", "stft_compensated"} if loops >= 8 else set()
     possible |= {"stft_denoised", "stft_compensated_denoised"} if loops >= 11 else set()
     simulation = simulate(load_config(path, ["maps=[rtm]", still]), maps="all")
@@ -315,10 +315,19 @@ def test_what_frames_of_few_loops_show_is_made_and_the_rest_refused(path: Path, 
             load_config(path, [f"maps=[{name}]", still])
 
 
-def test_the_mean_of_a_single_loop_would_leave_nothing(path: Path) -> None:
+def test_the_mean_of_a_single_loop_which_would_leave_nothing_is_not_removed(path: Path) -> None:
     fewer(path, 1)
-    with pytest.raises(ConfigError, match=r"should be none with frames of 1 loop \(frameCfg\)"):
-        load_config(path, ["maps=[range_azimuth]"])
+    names = ("range_doppler", "points", "signal")
+    still, mean = (
+        made(path, *names, overrides=(f"processing.clutter={clutter}", "cloud.chain=best"))
+        for clutter in ("none", "mean")
+    )
+    assert still["range_doppler"].power.shape[2] == 1
+    assert still["range_doppler"].columns.values.tolist() == [0]
+    np.testing.assert_array_equal(still["range_doppler"].power, mean["range_doppler"].power)
+    np.testing.assert_array_equal(still["points"], mean["points"])
+    np.testing.assert_array_equal(still["signal"].x, mean["signal"].x)
+    assert (still["points"][:, 3] == 0).all()
 
 
 def test_points_of_a_row_that_does_not_tell_azimuths_are_refused(path: Path) -> None:

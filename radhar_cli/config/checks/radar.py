@@ -132,9 +132,6 @@ def _frame_problems(c: Request, board: "BoardHeader") -> Iterator[Problem]:
     if clutter not in ("mean", "none"):
         right = "should be mean (of each frame) or none with radar.cfg"
         yield Problem("processing.clutter", clutter, right)
-    if clutter == "mean" and board.loops == 1:
-        right = "should be none with frames of 1 loop (frameCfg), of which a mean leaves nothing"
-        yield Problem("processing.clutter", clutter, right)
     firmware, chain = board.firmware, c.cloud.chain
     if firmware is None and chain != "best":
         missing = (*board.missing, "cfarCfg is missing")[0]

@@ -60,6 +60,8 @@ def board_of(radar: BoardRadar[float], seconds: float = 0.0) -> Board:
         keeps_half=header.sampling is not Sampling.COMPLEX,
         averaged=header.averaged,
         burst_s=header.loop_s if header.has_bursts else None,
+        delay=header.delay_s,
+        subframe=header.subframe,
     )
 
 

@@ -312,6 +312,8 @@ class BoardRadar(_Emission[N], Generic[N]):
     """Angle of the board's boresight below the horizontal, positive down."""
     antenna_gain_dbi: Annotated[N, DECIBEL, within(-150, 150, "dBi")] = default_draw(9.0)
     """Gain of each antenna at its boresight."""
+    subframe: Annotated[int, Field(ge=0, le=3, strict=True)] = 0
+    """Number of the subframe (advFrameCfg of the .cfg) that maps, points and recordings are of."""
     half_power_deg: tuple[HalfPower, HalfPower] | None = None
     """Half-power half-widths of an element in azimuth and elevation; null is the device's."""
     half_wavelength_m: Annotated[float, Field(gt=0, le=1, strict=True)] | None = None
@@ -326,7 +328,13 @@ class BoardRadar(_Emission[N], Generic[N]):
         """
         from radhar_cli.radar.ti_cfg import parse_ti_cfg  # slow to import, and of boards alone
 
-        return parse_ti_cfg(self.cfg, device=self.device)
+        return parse_ti_cfg(self.cfg, device=self.device, subframe=self.subframe)
+
+    @property
+    def other_subframes(self) -> dict[str, int]:
+        """Numbers of the subframes of the .cfg but the chosen one, {end of names: number}."""
+        numbers = range(self.header.subframes)
+        return {f"_sf{number}": number for number in numbers if number != self.subframe}
 
     @property
     def carrier_hz(self) -> float:  # type: ignore[override]

@@ -166,7 +166,10 @@ class Request(Section):
         ghosts = ("points_kind",) if self.room.faces is not None else ()
         points = (*OF_POINTS, *ghosts) if "points" in frames else ()
         people = OF_FRAMES if frames else ()
-        return tuple(dict.fromkeys((*segments, *frames, *points, *people, *self.output.products)))
+        of_frames = (*frames, *points, *people)
+        ends = self.radar.other_subframes if isinstance(self.radar, BoardRadar) else ()
+        others = [name + end for end in ends for name in of_frames]
+        return tuple(dict.fromkeys((*segments, *of_frames, *others, *self.output.products)))
 
     @property
     def has_error(self) -> bool:

@@ -39,10 +39,12 @@ def describe_arrays(data: Dataset) -> str:
         return ""
     lines = []
     for name, array in data.products.items():
-        meaning = ROWS.get(name, "a row of the product")
-        if name in FRAME_MAPS and name != "points":
-            (rows, row_unit), (columns, column_unit) = row_axis(name), column_axis(name)
+        kind, _, subframe = name.partition("_sf")
+        meaning = ROWS.get(kind, "a row of the product")
+        if kind in FRAME_MAPS and kind != "points":
+            (rows, row_unit), (columns, column_unit) = row_axis(kind), column_axis(kind)
             meaning = f"a frame: levels [{rows} ({row_unit}), {columns} ({column_unit})]"
+        meaning += f"; of subframe {subframe}" if subframe else ""
         shape = " x ".join(map(str, array.shape[1:])) or "1"
         counts = array.counts
         each = f"{counts.min():,}" if counts.min() == counts.max() else _spread(counts)

@@ -10,6 +10,7 @@ from radhar_cli.assembly.room import kinds_of
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.config.maps import FRAME_MAPS
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.identity import identity, versions
@@ -138,13 +139,17 @@ def _describe_stream(file: h5py.File, config: Config) -> None:
 
 def _describe_products(file: h5py.File, config: Config) -> None:
     """Write the attributes of products, labels of people and slow time."""
-    if "products/points" in file:
-        file["products/points"].attrs["columns"] = [*COLUMNS]
+    radar = config.radar
+    ends = ("", *radar.other_subframes) if isinstance(radar, BoardRadar) else ("",)
+    for end in ends:
+        if f"products/points{end}" in file:
+            file[f"products/points{end}"].attrs["columns"] = [*COLUMNS]
     recorded = any(config.files_of(activity) is not None for activity in config.chosen_activities)
-    if "products/points_kind" in file:
-        file["products/points_kind"].attrs["kinds"] = kinds_of(config)
-    if "products/skeleton" in file and not recorded:
-        file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
+    for end in ends:
+        if f"products/points_kind{end}" in file:
+            file[f"products/points_kind{end}"].attrs["kinds"] = kinds_of(config)
+        if f"products/skeleton{end}" in file and not recorded:
+            file[f"products/skeleton{end}"].attrs["joint_names"] = [*JOINTS]
     if config.people:
         file[layout.LABELS].attrs["class_slugs"] = [
             activity.slug for activity in config.every_class

@@ -10,10 +10,11 @@ import numpy as np
 
 from radhar_cli.assembly.bodies import Link, make_path_sources, sum_of_paths
 from radhar_cli.assembly.processing import chirp_window_of, frames_of, fsst_frames_of
-from radhar_cli.assembly.radar import board_of, detection_of
+from radhar_cli.assembly.radar import board_of, detection_of, waveform_of
 from radhar_cli.assembly.receiver import noise_stream
 from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.data_set import Config
+from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import combine_transmitters, exact_cube, fast_cube, mean_power
@@ -125,6 +126,38 @@ def board_products(config: Config) -> Iterator[Product]:
     yield from _frame_rows(config)
     yield from _people_rows()
     yield from _signal_rows(config)
+    assert isinstance(config.radar, BoardRadar)
+    for end, number in config.radar.other_subframes.items():
+        yield from _subframe_rows(config, end, number)
+
+
+def _subframe_rows(config: Config, end: str, number: int) -> Iterator[Product]:
+    """Rows of another subframe than the chosen one, whose names have an end.
+
+    They are those of a config that has chosen it, but for images and Doppler-time maps.
+    """
+    chosen = choose_subframe(config, number)
+    rows = [*_echo_rows(chosen), *_frame_rows(chosen), *_people_rows()]
+    images = {image_name(name) for name in FRAME_MAPS}
+    names = {row.name for row in rows} | {"scene", "waveform"}
+    choose = partial(scene_of_subframe, number=number)
+    yield Product(f"scene{end}", ("scene",), choose, f"scene with subframe {number} chosen")
+    yield Product(f"waveform{end}", (f"scene{end}",), waveform_of, "its chirps and pulses")
+    for row in rows:
+        if row.name not in images:
+            needs = tuple(name + end if name in names else name for name in row.needs)
+            yield replace(row, name=row.name + end, needs=needs)
+
+
+def choose_subframe(config: Config, number: int) -> Config:
+    """Return a config whose board shows a subframe of its .cfg."""
+    radar = config.radar.model_copy(update={"subframe": number})
+    return config.model_copy(update={"radar": radar})
+
+
+def scene_of_subframe(scene: Scene, number: int) -> Scene:
+    """Return a scene whose board shows a subframe of its .cfg."""
+    return replace(scene, config=choose_subframe(scene.config, number))
 
 
 def _echo_rows(config: Config) -> Iterator[Product]:
@@ -308,7 +341,8 @@ def receive_cube(echo: BoardEcho, noise: WhiteNoise, board: Board, scene: Scene)
     factors = draw_channel_errors(scene, board.channels)
     if factors is not None:
         cube = apply_channel_errors(cube, factors, board)
-    cube = noise.added_to(cube, "cube") if noise.sigma > 0 else cube
+    name = f"cube_sf{board.subframe}" if board.subframe else "cube"
+    cube = noise.added_to(cube, name) if noise.sigma > 0 else cube
     return np.ascontiguousarray(cube.real) if board.is_real else cube
 
 

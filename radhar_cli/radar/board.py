@@ -183,6 +183,8 @@ class Board:
         keeps_half: Whether range bins are those of half the band, as the other half has images.
         averaged: Number of chirps in a row of which one sample is the mean.
         burst_s: Time from loop to loop, s; None where loops follow without a pause.
+        delay: Time from the start of a frame to its first chirp, s.
+        subframe: Number of the subframe that these are the chirps of.
     """
 
     array: Array
@@ -209,6 +211,8 @@ class Board:
     keeps_half: bool = False
     averaged: int = 1
     burst_s: float | None = None
+    delay: float = 0.0
+    subframe: int = 0
 
     @property
     def centre(self) -> float:
@@ -341,17 +345,18 @@ class Board:
 
         Positions of the scene are frozen at these times.
         """
-        frame = np.arange(self.frames)[frames, None, None]
+        begin = np.arange(self.frames)[frames, None, None] * self.period + self.delay
         loop, k = np.arange(self.loops)[:, None], np.arange(len(self.order))
         if self.burst_s is not None:
-            times: Float = frame * self.period + loop * self.burst_s + k * self.slot
+            times: Float = begin + loop * self.burst_s + k * self.slot
             return times
-        return frame * self.period + (loop * len(self.order) + k) * self.slot
+        return begin + (loop * len(self.order) + k) * self.slot
 
     @property
     def middles(self) -> Float:
         """Times (s) of the middles of the frames' chirps [frame]."""
-        return np.arange(self.frames) * self.period + self.loops * self.loop / 2
+        begins = np.arange(self.frames) * self.period + self.delay
+        return begins + self.loops * self.loop / 2
 
     @property
     def pulses(self) -> PulseTimes:
@@ -359,9 +364,8 @@ class Board:
         frame = np.arange(self.frames)
         if abs(self.period - self.loops * self.loop) < 1e-9 * self.period:
             return PulseTimes.even(self.frames * self.loops, 1 / self.loop)
-        return PulseTimes(
-            frame * self.period, frame * self.loops, self.frames * self.loops, 1 / self.loop
-        )
+        begins = frame * self.period + self.delay
+        return PulseTimes(begins, frame * self.loops, self.frames * self.loops, 1 / self.loop)
 
     @property
     def path_waveform(self) -> Waveform:
@@ -438,7 +442,8 @@ class BoardWaveform(Waveform):
         """
         assert self.board is not None
         frame, chirp = np.divmod(pulses, self.board.loops * len(self.board.order))
+        begin = frame * self.board.period + self.board.delay
         if self.board.burst_s is not None:
             loop, k = np.divmod(chirp, len(self.board.order))
-            return frame * self.board.period + loop * self.board.burst_s + k * self.board.slot
-        return frame * self.board.period + chirp * self.board.slot
+            return begin + loop * self.board.burst_s + k * self.board.slot
+        return begin + chirp * self.board.slot

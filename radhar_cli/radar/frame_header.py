@@ -93,6 +93,9 @@ class FrameHeader:
             transmitters; None where transmitters take turns.
         averaged: Number of chirps in a row of which one sample is the mean.
         loop_s: Time from loop to loop, s.
+        subframe: Number of the subframe that these are the chirps of, from 0 on.
+        subframes: Number of subframes of a frame.
+        delay_s: Time from the start of a frame to that of the subframe, s.
     """
 
     profile: ChirpProfile
@@ -106,6 +109,9 @@ class FrameHeader:
     bpm: tuple[int, int] | None
     averaged: int
     loop_s: float
+    subframe: int = field(default=0, kw_only=True)
+    subframes: int = field(default=1, kw_only=True)
+    delay_s: float = field(default=0.0, kw_only=True)
 
     @property
     def start_hz(self) -> float:

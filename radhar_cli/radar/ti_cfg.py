@@ -6,8 +6,9 @@ that repeat within a loop are further loops, as the firmware counts them (`mmwde
 """
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import accumulate
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import Detection, Firmware
@@ -61,6 +62,8 @@ class FrameTiming:
         frames: Number of frames of a recording; 0 is as many as there is time for.
         period_ms: Time from frame to frame.
         place: Line or key that messages name.
+        chirps_name: Arguments of the chirps, which messages name.
+        period_name: Argument of the time between frames.
     """
 
     first: int
@@ -69,6 +72,8 @@ class FrameTiming:
     frames: int
     period_ms: float
     place: str
+    chirps_name: str = "chirpStartIdx chirpEndIdx"
+    period_name: str = "framePeriodicity"
 
 
 @dataclass(frozen=True)
@@ -157,7 +162,9 @@ class BoardHeader(FrameHeader):
 
 
 @lru_cache(maxsize=16)
-def parse_ti_cfg(text: str, where: str = "radar.cfg", device: str | None = None) -> BoardHeader:
+def parse_ti_cfg(
+    text: str, where: str = "radar.cfg", device: str | None = None, subframe: int = 0
+) -> BoardHeader:
     """Parse the .cfg of a board that is to be simulated.
 
     Args:
@@ -165,6 +172,7 @@ def parse_ti_cfg(text: str, where: str = "radar.cfg", device: str | None = None)
         where: File or key that messages name.
         device: Board that the file runs on, which says how fast xWRL boards sample; None for the
             likely one.
+        subframe: Number of the subframe that counts, or the last if there are fewer.
 
     Raises:
         CaptureError: A line cannot be read, or asks for what boards of radhar cannot do.
@@ -172,18 +180,22 @@ def parse_ti_cfg(text: str, where: str = "radar.cfg", device: str | None = None)
     lines = _Lines(text, where)
     for line in lines.with_effect(Effect.NOT_SIMULATED):
         raise CaptureError(f"{line.place}: {line.name}: {line.command and line.command.reason}")
-    header = _read_frames(lines, device)
+    headers = _read_subframes(lines, device)
     if lines.family is not Family.L_SDK:
-        _require_simulated(header, lines)
+        for one in headers:
+            _require_simulated(one, lines)
+    header = headers[min(subframe, len(headers) - 1)]
     channels, bins = len(header.masks) * len(header.receivers), header.bins
     family = lines.family
     missing = missing_commands(lines.lines, family)
     return BoardHeader(
         **vars(header),
         family=family,
-        detection=read_detection(lines.lines, channels, bins),
+        detection=read_detection(lines.lines, channels, bins, header.subframe),
         has_cfar=any("thresholdScale" in line.numbers for line in lines.of_name("cfarCfg")),
-        people=None if missing else read_people(lines.lines, family, channels, bins),
+        people=None
+        if missing
+        else read_people(lines.lines, family, channels, bins, header.subframe),
         missing=missing,
         pose=_read_pose(lines.with_effect(Effect.POSE)),
         unknown=tuple(dict.fromkeys(line.name[:40] for line in lines.lines if not line.command)),
@@ -205,7 +217,12 @@ def parse_frames(text: str, where: str) -> tuple[FrameHeader, Sequence[CfgLine]]
         CaptureError: A line on chirps, frames or samples cannot be read.
     """
     lines = _Lines(text, where)
-    return _read_frames(lines), lines.lines
+    headers = _read_subframes(lines, None)
+    if len(headers) > 1:
+        (*_, line) = lines.all("advFrameCfg", "")
+        right = "1: captures of several subframes are not read"
+        raise line.refusal("numOfSubFrames", len(headers), right)
+    return headers[0], lines.lines
 
 
 def frame_header(
@@ -235,7 +252,7 @@ def frame_header(
     busy_s = timing.loops * len(loop) * profile.slot_s
     if busy_s > timing.period_ms * 1e-3 * ROUNDING:
         raise CaptureError(
-            f"{timing.place} framePeriodicity = {timing.period_ms:g}: should be at least "
+            f"{timing.place} {timing.period_name} = {timing.period_ms:g}: should be at least "
             f"{busy_s * 1e3:.6g} ms, {timing.loops} loops of {len(loop)} chirps of "
             f"{profile.slot_s * 1e6:g} us"
         )
@@ -284,7 +301,7 @@ def _chirps_of_loop(chirps: Sequence[ChirpRange], timing: FrameTiming) -> list[C
     loop = [by_index[index] for index in indices if index in by_index]
     if not loop or len(loop) < len(indices):
         raise CaptureError(
-            f"{timing.place} chirpStartIdx chirpEndIdx = {timing.first} {timing.last}: should be "
+            f"{timing.place} {timing.chirps_name} = {timing.first} {timing.last}: should be "
             f"chirps that are all defined (chirpCfg), at most {MAX_CHIRPS}"
         )
     return loop
@@ -324,7 +341,7 @@ def _single_profile(
         if profiles[chirp.profile] != profile:
             raise CaptureError(
                 f"{chirp.place} profileId = {chirp.profile}: should be {loop[0].profile}: a frame "
-                "has chirps of one profile, or of equal ones"
+                "has chirps of one profile, or of equal ones; subFrameCfg has one each"
             )
     return profile
 
@@ -353,36 +370,98 @@ class _Lines:
         return lines
 
 
-def _read_frames(lines: _Lines, device: str | None = None) -> FrameHeader:
-    """Read all that the lines say of chirps, frames and samples."""
+def _read_subframes(lines: _Lines, device: str | None) -> list[FrameHeader]:
+    """Read all that the lines say of chirps, frames and samples, of each subframe."""
     if lines.family is Family.L_SDK:
-        return read_l_sdk(lines.lines, lines.where, device)
-    modes = [line.numbers for line in lines.lines if line.name == "dfeDataOutputMode"]
+        return [read_l_sdk(lines.lines, lines.where, device)]
     for line in lines.with_effect(Effect.NOT_READ):
-        if modes and line.name in ("advFrameCfg", "subFrameCfg"):  # with mode 1 frameCfg counts
-            continue
         raise CaptureError(f"{line.place}: {line.name}: {line.command and line.command.reason}")
     receivers = lines.all("channelCfg", "channelCfg 15 7 0")[-1]
     adc = lines.all("adcCfg", "adcCfg 2 1")[-1]
     profiles = lines.all("profileCfg", "profileCfg 0 77 10 6 48 0 0 70 1 128 3200 0 0 30")
     chirps = lines.all("chirpCfg", "chirpCfg 0 0 0 0 0 0 0 1")
-    frame = lines.all("frameCfg", "frameCfg 0 0 64 0 50 1 0")[-1]
+    timings = _read_timings(lines)
     for line in lines.with_effect(Effect.SIGNAL):
         _ = line.numbers  # lines that do not hold must be right, too
     adc_numbers = adc.numbers
     bits = 12 + 2 * int(adc_numbers["numADCBits"])
-    header = frame_header(
-        dict(map(_read_profile, profiles)),
-        [_read_chirp(line) for line in chirps],
-        _read_frame(frame),
-        int(receivers.numbers["rxChannelEn"]),
-        (Sampling(int(adc_numbers["adcOutputFmt"])), bits),
-        _read_pair(lines.lines),
+    headers = [
+        frame_header(
+            dict(map(_read_profile, profiles)),
+            [_read_chirp(line) for line in chirps],
+            timing,
+            int(receivers.numbers["rxChannelEn"]),
+            (Sampling(int(adc_numbers["adcOutputFmt"])), bits),
+            _read_pair(lines.lines, subframe),
+        )
+        for subframe, timing in enumerate(timings)
+    ]
+    _require_stated_samples(headers[0], lines)
+    return _one_after_the_other(headers)
+
+
+def _require_stated_samples(header: FrameHeader, lines: _Lines) -> None:
+    """Raise CaptureError where frameCfg has another number of samples than the profile."""
+    for frame in lines.lines:
+        samples = frame.numbers.get("numAdcSamples") if frame.name == "frameCfg" else None
+        if samples not in (None, header.samples):
+            right = f"{header.samples}, as profileCfg has it"
+            raise frame.refusal("numAdcSamples", samples or 0, right)
+
+
+def _one_after_the_other(headers: Sequence[FrameHeader]) -> list[FrameHeader]:
+    """Put subframes one after the other; a frame lasts as long as all of them."""
+    if len(headers) == 1:
+        return [*headers]
+    begins = [0.0, *accumulate(header.period_s for header in headers)]
+    return [
+        replace(
+            header,
+            subframe=subframe,
+            subframes=len(headers),
+            delay_s=begins[subframe],
+            period_s=begins[-1],
+        )
+        for subframe, header in enumerate(headers)
+    ]
+
+
+def _read_timings(lines: _Lines) -> list[FrameTiming]:
+    """Read the chirps of a frame, or of each of its subframes."""
+    modes = [line.numbers["modeType"] for line in lines.lines if line.name == "dfeDataOutputMode"]
+    names = {line.name for line in lines.lines}
+    if modes[-1:] != [3] and (modes or "frameCfg" in names or "advFrameCfg" not in names):
+        return [_read_frame(lines.all("frameCfg", "frameCfg 0 0 64 0 50 1 0")[-1])]
+    (*_, advanced) = lines.all("advFrameCfg", "advFrameCfg 2 0 0 1 0")
+    count, frames = (int(advanced.numbers[name]) for name in ("numOfSubFrames", "numFrames"))
+    example = "subFrameCfg {} 0 0 1 64 50 0 1 1 50"
+    by_number = {
+        int(line.numbers["subFrameNum"]): line
+        for line in lines.all("subFrameCfg", example.format(0))
+    }
+    for number in range(count):
+        if number not in by_number:
+            raise CaptureError(
+                f"{lines.where}: subFrameCfg subFrameNum = {number} is missing; a line that would "
+                f"do: {example.format(number)}"
+            )
+    return [_read_subframe(by_number[number], frames) for number in range(count)]
+
+
+def _read_subframe(line: CfgLine, frames: int) -> FrameTiming:
+    """Read a line subFrameCfg of so many frames."""
+    numbers = line.numbers
+    first = int(numbers["chirpStartIdx"])
+    return FrameTiming(
+        first=first,
+        last=first + int(numbers["numOfChirps"]) - 1,
+        loops=int(numbers["numLoops"]),
+        frames=frames,
+        period_ms=numbers["subFramePeriodicity"],
+        place=f"{line.place}: {line.name}",
+        chirps_name="first and last chirp",
+        period_name="subFramePeriodicity",
     )
-    samples = frame.numbers.get("numAdcSamples", header.samples)
-    if samples != header.samples:
-        raise frame.refusal("numAdcSamples", samples, f"{header.samples}, as profileCfg has it")
-    return header
 
 
 def _read_profile(line: CfgLine) -> tuple[int, ChirpProfile]:
@@ -427,11 +506,11 @@ def _read_frame(line: CfgLine) -> FrameTiming:
     )
 
 
-def _read_pair(lines: Sequence[CfgLine]) -> ChirpPair | None:
-    """Read the last of lines bpmCfg; None where it is not enabled."""
+def _read_pair(lines: Sequence[CfgLine], subframe: int) -> ChirpPair | None:
+    """Read the last of lines bpmCfg that holds for a subframe; None where it is not enabled."""
     pair = None
     for line in lines:
-        if line.name == "bpmCfg" and line.numbers[SUBFRAME.name] in (ALL_SUBFRAMES, 0):
+        if line.name == "bpmCfg" and line.numbers[SUBFRAME.name] in (ALL_SUBFRAMES, subframe):
             numbers = line.numbers
             first, second = int(numbers["chirp0Idx"]), int(numbers["chirp1Idx"])
             place = f"{line.place}: {line.name}"

@@ -298,7 +298,18 @@ _SIGNAL = (
     Command(
         "dfeDataOutputMode",
         Effect.SIGNAL,
-        (Argument("modeType", 1, 1, True, "frames of frameCfg; others are not read"),),
+        (
+            Argument(
+                *(
+                    "modeType",
+                    1,
+                    3,
+                    True,
+                    "frames of frameCfg, of advFrameCfg; others are not read",
+                ),
+                choices=(1, 3),
+            ),
+        ),
     ),
     Command(
         "channelCfg",
@@ -373,6 +384,34 @@ _SIGNAL = (
             Argument("frameTriggerDelay"),
         ),
         Family.MCU_PLUS,
+    ),
+    Command(
+        "advFrameCfg",
+        Effect.SIGNAL,
+        (
+            *_wholes("numOfSubFrames", low=1, high=4),
+            Argument(
+                "forceProfile", 0, 0, meaning="profiles of chirpCfg; forced ones are not read"
+            ),
+            *_wholes("numFrames"),
+            *_optional("triggerSelect", "frameTrigDelay"),
+        ),
+    ),
+    Command(
+        "subFrameCfg",
+        Effect.SIGNAL,
+        (
+            *_wholes("subFrameNum", high=3),
+            *_wholes("forceProfileIdx", "chirpStartIdx"),
+            *_wholes("numOfChirps", "numLoops", low=1),
+            _positive("burstPeriodicity", "ms"),
+            Argument("chirpStartIdxOffset"),
+            *(
+                Argument(name, 1, 1, meaning="a burst; several are not read")
+                for name in ("numOfBurst", "numOfBurstLoops")
+            ),
+            _positive("subFramePeriodicity", "ms"),
+        ),
     ),
     Command(
         "bpmCfg",
@@ -732,11 +771,8 @@ _SILENT = {
         "dopplerCfarCfg",  # of a search for Doppler that is not the largest peak's
     ),
 }
-_ADVANCED_FRAMES = "advanced frames are not read; should be frameCfg"
 _DDMA = "DDMA is not simulated; should be one transmitter a chirp (the TDM demo's profile)"
 _REFUSED = (
-    Command("advFrameCfg", Effect.NOT_READ, reason=_ADVANCED_FRAMES),
-    Command("subFrameCfg", Effect.NOT_READ, reason=_ADVANCED_FRAMES),
     *(
         Command(
             name, Effect.NOT_READ, reason="is not read; should be profileCfg, chirpCfg, frameCfg"

@@ -30,25 +30,7 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
         board: board that the frames are of.
         config: config of the scene, or of the processing of a recording.
     """
-    for name, product in frames.items():
-        if isinstance(product, FrameMaps):
-            _write_maps(file, name, product)
-        elif isinstance(product, Cloud):
-            _write_cloud(file, product, board)
-        elif isinstance(product, Skeletons):
-            _write_skeletons(file, product)
-        elif name == "cube":
-            file["cube"] = in_single(product)
-            file["cube"].attrs["axes"] = ["frame", "loop", "virtual", "sample"]
-            file["cube"].attrs["meaning"] = "raw samples for unit transmit power"
-            if board.bpm is not None:
-                file["cube"].attrs["bpm"] = board.bpm
-        elif name == "points_kind":
-            file[name] = product
-            file[name].attrs["kinds"] = kinds_of(config)
-        else:
-            file[name] = product
-            file[name].attrs["meaning"] = "number of the person, -1 of none"
+    write_subframe(file, frames, board, config)
     radar = config.radar
     assert isinstance(radar, BoardRadar)
     file.attrs.update(
@@ -67,6 +49,38 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
     )
 
 
+def write_subframe(
+    file: h5py.File, frames: Mapping[str, Any], board: Board, config: Config, end: str = ""
+) -> None:
+    """Write the products of a board's frames, or of a subframe, with an end to each name.
+
+    Arguments are those of `write_frames`.
+    """
+    for key, product in frames.items():
+        name = key + end
+        if isinstance(product, FrameMaps):
+            _write_maps(file, name, product)
+        elif isinstance(product, Cloud):
+            _write_cloud(file, product, end)
+        elif isinstance(product, Skeletons):
+            _write_skeletons(file, product, end)
+        elif key == "cube":
+            file[name] = in_single(product)
+            file[name].attrs["axes"] = ["frame", "loop", "virtual", "sample"]
+            file[name].attrs["meaning"] = "raw samples for unit transmit power"
+            if board.bpm is not None:
+                file[name].attrs["bpm"] = board.bpm
+        elif key == "points_kind":
+            file[name] = product
+            file[name].attrs["kinds"] = kinds_of(config)
+        else:
+            file[name] = product
+            file[name].attrs["meaning"] = "number of the person, -1 of none"
+    if end:
+        file.attrs[f"frame_times{end}"] = board.middles
+        file.attrs[f"virtual_elements{end}"] = board.places
+
+
 def _write_maps(file: h5py.File, name: str, maps: FrameMaps) -> None:
     """Write the maps of all frames to /<name>, and their axes to /axes/<name>."""
     dataset = file.create_dataset(name, data=in_single(maps.power), compression="gzip")
@@ -78,21 +92,24 @@ def _write_maps(file: h5py.File, name: str, maps: FrameMaps) -> None:
     file.create_dataset(f"axes/{name}/time", data=maps.times).attrs["unit"] = "s"
 
 
-def _write_cloud(file: h5py.File, cloud: Cloud, board: Board) -> None:
+def _write_cloud(file: h5py.File, cloud: Cloud, end: str) -> None:
     """Write the points of all frames to /points, and where each frame begins to /points_start."""
-    file["points"], file["points_start"] = cloud.points, cloud.start
-    file["points"].attrs["columns"] = COLUMNS
-    file["points"].attrs["units"] = ["m", "m", "m", "m/s", "1", "dB", "bin", "bin"]
-    file["points"].attrs["axes"] = AXES
-    file["points"].attrs["doppler_sign"] = DOPPLER_SIGN
-    file["points_start"].attrs["meaning"] = "frame f has the points start[f] to start[f + 1] - 1"
+    points, start = f"points{end}", f"points_start{end}"
+    file[points], file[start] = cloud.points, cloud.start
+    file[points].attrs["columns"] = COLUMNS
+    file[points].attrs["units"] = ["m", "m", "m", "m/s", "1", "dB", "bin", "bin"]
+    file[points].attrs["axes"] = AXES
+    file[points].attrs["doppler_sign"] = DOPPLER_SIGN
+    file[start].attrs["meaning"] = "frame f has the points start[f] to start[f + 1] - 1"
 
 
-def _write_skeletons(file: h5py.File, skeletons: Skeletons) -> None:
+def _write_skeletons(file: h5py.File, skeletons: Skeletons, end: str) -> None:
     """Write joints to /skeleton, their velocities to /skeleton_velocity, their names."""
-    file["skeleton"], file["skeleton_velocity"] = skeletons.positions, skeletons.velocities
-    for name, unit in (("skeleton", "m"), ("skeleton_velocity", "m/s")):
+    position, velocity = f"skeleton{end}", f"skeleton_velocity{end}"
+    file[position], file[velocity] = skeletons.positions, skeletons.velocities
+    for name, unit in ((position, "m"), (velocity, "m/s")):
         file[name].attrs["unit"] = unit
         file[name].attrs["axes"] = ["frame", "person", "joint", "ahead left up"]
         file[name].attrs["meaning"] = "in the middle of the chirps of a frame; NaN if absent"
-    file["joint_names"] = [*skeletons.names]
+    if not end:
+        file["joint_names"] = [*skeletons.names]

@@ -102,7 +102,8 @@ class SceneRequest:
         others += ["accuracy"] if config.engine.kind == "direct" else []
         others += ["raw_echo"] if self.raw and not is_board else []
         names_of_maps = tuple(name for name in maps if name not in FRAMES)
-        return ProductNames(names_of_maps, signals, tuple(frames), tuple(others))
+        ends = config.radar.other_subframes if isinstance(config.radar, BoardRadar) else ()
+        return ProductNames(names_of_maps, signals, tuple(frames), tuple(others), tuple(ends))
 
 
 @dataclass(frozen=True)
@@ -114,17 +115,20 @@ class ProductNames:
         signals: slow-time signals {treatment: product}.
         frames: products of a board's frames.
         others: radar, wall, board, accuracy, raw echo.
+        ends: ends of the names of the same products of a board's other subframes.
     """
 
     maps: tuple[str, ...]
     signals: dict[str, str]
     frames: tuple[str, ...]
     others: tuple[str, ...]
+    ends: tuple[str, ...] = ()
 
     @property
     def together(self) -> list[str]:
         """Every name, signals first."""
-        return [*self.signals.values(), *self.maps, *self.frames, *self.others]
+        of_subframes = [name + end for end in self.ends for name in (*self.frames, "board")]
+        return [*self.signals.values(), *self.maps, *self.frames, *self.others, *of_subframes]
 
 
 def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> Scene:

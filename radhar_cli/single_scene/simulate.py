@@ -48,6 +48,18 @@ class OtherPerson(NamedTuple):
     truth: Truth
 
 
+class Subframe(NamedTuple):
+    """Products of the frames of another subframe than the chosen one.
+
+    Attributes:
+        board: the board with the chirps of the subframe.
+        frames: the same products as of the chosen one.
+    """
+
+    board: Board
+    frames: dict[str, Any]
+
+
 @dataclass(frozen=True)
 class Simulation:
     """One simulated scene.
@@ -68,6 +80,7 @@ class Simulation:
         board: the board, or None.
         frames: of a board: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
             `points_person` if asked for.
+        subframes: {end of names: products} of the other subframes of a board.
         others: other people in the scene.
         paths: every path, if there are several people or a room with faces; else None.
     """
@@ -87,6 +100,7 @@ class Simulation:
     beat: Complex | Float | None = None
     board: Board | None = None
     frames: dict[str, Any] = field(default_factory=dict)
+    subframes: dict[str, Subframe] = field(default_factory=dict)
     others: list[OtherPerson] = field(default_factory=list)
     paths: PathTruth | None = None
 
@@ -209,6 +223,12 @@ def _simulation_of(
         beat=results["raw_echo"] if "raw_echo" in names.others else None,
         board=results["board"] if "board" in names.others else None,
         frames={name: results[name] for name in names.frames},
+        subframes={
+            end: Subframe(
+                results[f"board{end}"], {name: results[name + end] for name in names.frames}
+            )
+            for end in names.ends
+        },
         paths=_evaluate_paths(scene, motions, results) if has_paths else None,
     )
 

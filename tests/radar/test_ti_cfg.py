@@ -180,7 +180,7 @@ WRONG = [
         "9: frameCfg has 3 numbers: should be frameCfg",
     ),
     ("frameCfg 0 2 32 0 100 1 0", "", "frameCfg is missing; a line that would do: frameCfg 0 0"),
-    ("frameCfg 0 2 32 0 100 1 0", "advFrameCfg 2 0 0 1 0", "9: advFrameCfg: advanced frames"),
+    ("frameCfg 0 2 32 0 100 1 0", "advFrameCfg 2 0 0 1 0", "board.cfg: subFrameCfg is missing"),
     (
         "clutterRemoval 1",
         "bpmCfg -1 1 0 2",

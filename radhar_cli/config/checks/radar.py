@@ -97,6 +97,9 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
         )
         yield Problem("radar.device", radar.device, right)
         return
+    if radar.subframe >= board.subframes:
+        right = f"should be below {board.subframes}, the number of subframes of radar.cfg"
+        yield Problem("radar.subframe", radar.subframe, right)
     device = DEVICES.get(str(radar.device))
     if device is not None and board.family not in (Family.ANY, *device.families):
         others = [name for name, other in DEVICES.items() if board.family in other.families]
@@ -122,6 +125,9 @@ def _frame_problems(c: Request, board: "BoardHeader") -> Iterator[Problem]:
     clutter = c.processing.clutter
     if support(c.duration_s)[0] < board.period_s:
         right = f"should hold a frame of {board.period_s:g} s"
+        yield Problem("duration_s", c.duration_s, right)
+    elif board.loops == 1 and support(c.duration_s)[0] < 2 * board.period_s:
+        right = f"should hold two frames of a loop, {2 * board.period_s:g} s"
         yield Problem("duration_s", c.duration_s, right)
     chirps = support(c.duration_s)[1] / board.period_s * board.loops * len(board.order)
     samples = chirps * len(board.receivers) * board.samples

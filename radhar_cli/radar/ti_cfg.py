@@ -182,8 +182,8 @@ def parse_ti_cfg(
         raise CaptureError(f"{line.place}: {line.name}: {line.command and line.command.reason}")
     headers = _read_subframes(lines, device)
     if lines.family is not Family.L_SDK:
-        for one in headers:
-            _require_simulated(one, lines)
+        for subframe_header in headers:
+            _require_simulated(subframe_header, lines)
     header = headers[min(subframe, len(headers) - 1)]
     channels, bins = len(header.masks) * len(header.receivers), header.bins
     family = lines.family

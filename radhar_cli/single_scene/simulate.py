@@ -48,7 +48,7 @@ class OtherPerson(NamedTuple):
     truth: Truth
 
 
-class Subframe(NamedTuple):
+class OtherSubframe(NamedTuple):
     """Products of the frames of another subframe than the chosen one.
 
     Attributes:
@@ -100,7 +100,7 @@ class Simulation:
     beat: Complex | Float | None = None
     board: Board | None = None
     frames: dict[str, Any] = field(default_factory=dict)
-    subframes: dict[str, Subframe] = field(default_factory=dict)
+    subframes: dict[str, OtherSubframe] = field(default_factory=dict)
     others: list[OtherPerson] = field(default_factory=list)
     paths: PathTruth | None = None
 
@@ -224,7 +224,7 @@ def _simulation_of(
         board=results["board"] if "board" in names.others else None,
         frames={name: results[name] for name in names.frames},
         subframes={
-            end: Subframe(
+            end: OtherSubframe(
                 results[f"board{end}"], {name: results[name + end] for name in names.frames}
             )
             for end in names.ends

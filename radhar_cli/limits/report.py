@@ -1,7 +1,7 @@
 """limits.md and limits.json of a study, and its lines on the terminal."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,7 @@ from radhar_cli.limits.margins import Margin
 from radhar_cli.limits.study import SLOW, Study
 
 FILES = TEXT, JSON = "limits.md", "limits.json"
+MOST_LISTED = 20  # keys in a sentence
 HEAD = "| key | now | from | to | below | beyond |\n| --- | --- | --- | --- | --- | --- |"
 
 
@@ -107,9 +108,16 @@ def _sentence(limits: list[Limit | None]) -> str:
 def unfinished_lines(study: Study) -> Iterator[str]:
     """Lines that name what there was no time for."""
     if unfinished := dict.fromkeys(key for key, _ in study.unfinished):
-        yield f"not finished: {', '.join(unfinished)} (--minutes, --key)"
+        yield f"not finished: {_listed(unfinished)} (--minutes, --key)"
     if waiting := dict.fromkeys(key for key, _ in study.not_simulated):
-        yield f"no sample was simulated at a limit of {', '.join(waiting)} (--minutes, --key)"
+        yield f"no sample was simulated at a limit of {_listed(waiting)} (--minutes, --key)"
+
+
+def _listed(keys: Mapping[str, None]) -> str:
+    """Keys in a sentence, the first of many."""
+    more = len(keys) - MOST_LISTED
+    names = ", ".join([*keys][:MOST_LISTED])
+    return f"{names} and {more} more ({JSON})" if more > 0 else names
 
 
 def markdown(title: str, command: str, study: Study) -> str:

@@ -1,7 +1,7 @@
 """Search for the end of what is fine: outward from a number that is, then between two."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log10
 from typing import NamedTuple
 
@@ -106,8 +106,12 @@ def find_end(
         fine: whether a judgement counts as fine.
     """
     at_bound = judge(path.bound)
-    if fine(at_bound) and (path.start == path.bound or fine(judge(path.number(0.5)))):
-        return End(path.bound, None, at_bound)
+    if fine(at_bound):
+        middle = path.number(0.5)
+        at_middle = at_bound if path.start == path.bound else judge(middle)
+        if fine(at_middle):
+            return End(path.bound, None, at_bound)
+        path, at_bound = replace(path, bound=middle), at_middle  # as of angles, which come round
     inside, outside, judgement = 0.0, 1.0, at_bound
     step = path.first_step
     while inside + step < 1:
@@ -117,16 +121,16 @@ def find_end(
             break
         inside, step = inside + step, step * GROWTH
     for _ in range(MOST_HALVINGS):
-        middle = 0.5 * (inside + outside)
-        number = path.number(middle)
+        half = 0.5 * (inside + outside)
+        number = path.number(half)
         near, far = path.number(inside), path.number(outside)
         if number in (near, far) or abs(far - near) <= GAP * max(abs(far), abs(near)):
             break
         tried = judge(number)
         if fine(tried):
-            inside = middle
+            inside = half
         else:
-            outside, judgement = middle, tried
+            outside, judgement = half, tried
     end = End(path.number(inside), path.number(outside), judgement)
     return _nearest_gap(judge, path, fine, end) if path.is_of_distances else end
 

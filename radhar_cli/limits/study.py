@@ -1,5 +1,6 @@
 """Find the limits of a config: every number that acts, both sides, within a time."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -30,6 +31,7 @@ from radhar_cli.scene_checks.drawing import draw_valid_scene
 SLOW = 10.0  # times the work of a sample of the config, from which on it counts as slower
 SHARE = 0.1  # of the time, that one simulated sample may take
 FEW = 3  # samples that stand for all on the way to a limit; all are drawn at its end
+COORDINATE_KEY = re.compile(r"_m\.\d$")
 REFUSING = (Consequence.REFUSED, Consequence.REDRAWN)
 FIRST_SHARE = 0.75  # of the time, in which limits are looked for without simulating
 REPAIRS = 3  # how often a way is gone again because another sample fails at its end
@@ -87,7 +89,7 @@ def study_limits(
     study = Study(chosen_numbers(trial.config, keys), troubled=trial.troubled)
     end = monotonic() + seconds
     places = [(number, side) for number in study.keys for side in RangeSide]
-    places.sort(key=lambda place: place[0].key.rpartition(".")[2].isdecimal())  # places last
+    places.sort(key=lambda place: bool(COORDINATE_KEY.search(place[0].key)))  # which take longest
     search: _Search | None = None
     with time_limit(FIRST_SHARE * seconds):
         search = _Search(trial, study, end)
@@ -177,8 +179,8 @@ class _Search:
         end = find_end_at_zero(cache(lambda number: self._judge(key, number, [])), path)
         farthest = self._farthest(key, end, path)
         path = replace(path, bound=end.inside)
-        if not judge(end.inside).is_clean:
-            end = find_end_at_zero(judge, path)
+        drawn = find_end_at_zero(judge, path)
+        end = end if drawn.outside is None else drawn
         others = [place for place in places if place not in few and place[1] == 0]
         for _ in range(REPAIRS):
             failing = self._failing(key, end.inside, others)

@@ -76,3 +76,9 @@ def test_a_gap_on_the_way_of_a_place_is_the_end() -> None:
     end = find_end(lambda x: BEYOND if abs(x - 0.4) < 0.3 or x < -7 else CLEAN, Path(2.5, -1e6))
     assert end.outside < 0.7 <= end.inside
     assert end.inside < 0.72
+
+
+def test_what_comes_round_ends_at_the_first_angle() -> None:
+    end = find_end(lambda x: BEYOND if 80 < x < 280 else CLEAN, Path(0.0, 360.0))
+    assert end.inside <= 80 < end.outside
+    assert end.judgement is BEYOND

@@ -72,7 +72,7 @@ def find_in_row(
     power = spectrum(whitener, vectors).T
     power[:, :near] = power[:, len(signals) - far :] = 0
     cells = detect_moving(power, settings.cfar)
-    order = np.argsort(_turn(len(vectors))[cells.angle], kind="stable")[:MAX_POINTS]
+    order = np.argsort(order_of_angles(len(vectors))[cells.angle], kind="stable")[:MAX_POINTS]
     cells = cells.where(order)
     looking = weights(whitener[cells.bin], vectors[cells.angle])
     beams = (looking.conj()[:, None] @ signals[cells.bin])[:, 0]
@@ -86,7 +86,7 @@ def find_in_row(
     )
 
 
-def _turn(angles: int) -> Index:
+def order_of_angles(angles: int) -> Index:
     """When each angle is looked at: the first, the last, the second, the last but one, ..."""
     number = np.arange(angles)
     turn: Index = np.minimum(2 * number, 2 * (angles - 1 - number) + 1)

@@ -12,6 +12,7 @@ from matplotlib.transforms import Bbox
 
 from radhar_cli.figures.page import page, png_bytes
 
+DEFAULT_NAME = "default"
 LEAST_LEVELS = 0.003  # which the axis shows; less is "none"
 COLOURS = {"error": "#0072B2", "picture": "#E69F00", "default": "#D55E00"}
 MAX_NAME = 34  # characters
@@ -30,6 +31,7 @@ class SettingMark:
         levels: rms difference of the map that differs most, grey levels.
         is_error: whether the difference is an error of computation.
         has_all_maps: whether it shows all that the default shows.
+        saves: whether it saves time beyond doubt.
     """
 
     name: str
@@ -37,6 +39,7 @@ class SettingMark:
     levels: float
     is_error: bool
     has_all_maps: bool = True
+    saves: bool = False
 
 
 def tradeoff_png(marks: Sequence[SettingMark], title: str) -> bytes:
@@ -55,7 +58,7 @@ def tradeoff_png(marks: Sequence[SettingMark], title: str) -> bytes:
     axes.set_yscale("log")
     drawn = [mark for mark in marks if mark.ratio > 0]
     for mark in drawn:
-        kind = "default" if mark.name == "default" else "error" if mark.is_error else "picture"
+        kind = "default" if mark.name == DEFAULT_NAME else "error" if mark.is_error else "picture"
         shape = {"default": "D", "error": "o", "picture": "^"}[kind]
         colour = COLOURS[kind]
         inner, rim = (colour, "0.2") if mark.has_all_maps else ("none", colour)
@@ -76,13 +79,16 @@ def tradeoff_png(marks: Sequence[SettingMark], title: str) -> bytes:
 
 
 def frontier(marks: Sequence[SettingMark]) -> list[SettingMark]:
-    """Settings that save time, of which no other both takes less and differs less; by time."""
+    """Settings that save time, of which no other both takes less and differs less; by time.
+
+    The default is its end.
+    """
     edge = list[SettingMark]()
-    complete = [mark for mark in marks if mark.has_all_maps]
-    for mark in sorted(complete, key=lambda mark: (mark.ratio, mark.levels)):
-        if mark.ratio <= 1.0 and (not edge or mark.levels < edge[-1].levels):
+    candidates = [mark for mark in marks if mark.has_all_maps and mark.saves]
+    for mark in sorted(candidates, key=lambda mark: (mark.ratio, mark.levels)):
+        if not edge or mark.levels < edge[-1].levels:
             edge.append(mark)
-    return edge
+    return [*edge, *(mark for mark in marks if mark.name == DEFAULT_NAME)]
 
 
 def _height(mark: SettingMark) -> float:
@@ -136,7 +142,7 @@ def place_names(axes: Axes, marks: Sequence[SettingMark]) -> list[Annotation]:
     centres = axes.transData.transform([(mark.ratio, _height(mark)) for mark in marks])
     boxes += [Bbox.from_bounds(x - 5, y - 5, 10, 10) for x, y in centres]
     placed = list[Annotation]()
-    for mark in sorted(marks, key=lambda mark: mark.name != "default"):
+    for mark in sorted(marks, key=lambda mark: mark.name != DEFAULT_NAME):
         text = axes.annotate(
             _short(mark.name),
             (mark.ratio, _height(mark)),
@@ -145,7 +151,7 @@ def place_names(axes: Axes, marks: Sequence[SettingMark]) -> list[Annotation]:
             fontsize=FONT,
             va="center",
             arrowprops={"arrowstyle": "-", "lw": 0.4, "color": "0.6", "shrinkA": 0, "shrinkB": 2},
-            weight="bold" if mark.name == "default" else "normal",
+            weight="bold" if mark.name == DEFAULT_NAME else "normal",
         )
         box = _free_place(text, boxes, inside)
         if box is None:

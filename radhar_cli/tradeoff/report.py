@@ -12,11 +12,11 @@ from typing import Any
 from radhar_cli.dataset.files import write_result
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.errors import FolderError
-from radhar_cli.figures.tradeoff import SettingMark, tradeoff_png
+from radhar_cli.figures.tradeoff import DEFAULT_NAME, SettingMark, tradeoff_png
 from radhar_cli.files.plain_json import plain
 from radhar_cli.files.untrusted import read_json
 from radhar_cli.learning.report_folder import csv_text
-from radhar_cli.tradeoff.recommendation import drops_map, recommend, sentences_as_list
+from radhar_cli.tradeoff.recommendation import drops_map, recommend, saves, sentences_as_list
 from radhar_cli.tradeoff.row import Row
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.setting import DEFAULT
@@ -133,11 +133,12 @@ def marks_of(sweep: Sweep) -> list[SettingMark]:
             continue
         marks.append(
             SettingMark(
-                "default" if row.is_default else row.name,
-                row.ratio,
+                DEFAULT_NAME if row.is_default else row.name,
+                1.0 if row.is_default else row.ratio,
                 share,
                 row.is_error,
                 has_all_maps=not drops_map(row),
+                saves=saves(row, sweep.blur),
             )
         )
     return marks

@@ -310,6 +310,8 @@ def reason_of(error: RadharError) -> str:
     lines: Sequence[str] = str(error).splitlines() or [""]
     reason = re.split(r"(?:^|: )should be ", lines[0], maxsplit=1)[-1]
     reason = re.sub(r"^\S+:\d+: ", "", reason)
-    if reason != lines[0]:
+    if reason.startswith("some of ") and ": " in reason:  # a list of names, and then why
+        reason = reason.rpartition(": ")[2]
+    elif reason != lines[0]:
         reason = f"should be {reason}" if "should be " in lines[0] else reason
     return reason if len(reason) <= MAX_REASON else f"{reason[:MAX_REASON].rsplit(' ', 1)[0]} ..."

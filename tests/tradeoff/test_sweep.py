@@ -135,6 +135,35 @@ class TestGate:
             assert measured_db == error_db or measured_db > -20
 
 
+def test_networks_are_trained_for_what_saves_time(tmp_path, monkeypatch):
+    """The config as it is comes first; what saves nothing is not learned."""
+    from radhar_cli.tradeoff import accuracy, networks
+
+    scenes = Scenes(write(tmp_path, "fmcw"), (), quick=True)
+    times = {"sample_ms": 8.0, "rounds": 5}
+    default = Row("default", DEFAULT, (), DEFAULT, Change.ERROR, is_default=True)
+    fast, slow = (
+        Row(
+            *("body", name, (name,), DEFAULT, Change.PICTURE),
+            **{**times, "ratio": ratio, "ratio_low": ratio, "ratio_high": ratio},
+        )
+        for name, ratio in (("fast", 0.5), ("slow", 1.5))
+    )
+    learned = []
+
+    def learn(path, overrides, setting, *more):
+        learned.append(setting)
+        return accuracy.SettingAccuracy((0.8, 0.9), (0.8, 0.9), "default", 10)
+
+    monkeypatch.setattr(accuracy, "measure_accuracy", learn)
+    sweep = Sweep([default, fast, slow])
+    networks.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
+    assert learned == [(), ("fast",)]
+    assert [row.accuracy is not None for row in sweep.rows] == [True, True, False]
+    networks.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
+    assert len(learned) == 2  # what is there is not made again
+
+
 class TestStops:
     def test_what_is_measured_is_kept_and_the_same_command_goes_on(
         self, few, tmp_path, monkeypatch

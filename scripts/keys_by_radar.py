@@ -57,6 +57,11 @@ chirpCfg 2 2 0 0 0 0 0 2
 frameCfg 0 2 12 0 50 1 0
 cfarCfg 0 2 8 4 3 0 1130
 """
+FOR_ANY_DEVICE = CFG.replace("cfarCfg 0 2 8 4 3 0 1130\n", "")
+SUBFRAMES = CFG.replace(
+    "frameCfg 0 2 12 0 50 1 0",
+    "advFrameCfg 2 0 0 1 0\nsubFrameCfg 0 0 0 3 12 25 0 1 1 25\nsubFrameCfg 1 0 0 3 16 25 0 1 1 25",
+)
 RADARS: dict[str, dict[str, Any]] = {
     "fmcw": {
         **{"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 200},
@@ -102,6 +107,9 @@ BACK_AND_MORE = {"back": "concrete", "left": "concrete", "ceiling": "concrete"}
 SMALL_CFAR = {"image.kind": "cfar", "image.cfar": {"guard": [1, 1], "training": [3, 3]}}
 # Situations in which a key matters, beside what its annotations say: {key: {other key: value}}.
 SITUATIONS: dict[str, dict[str, Any]] = {
+    "radar.device": {"radar.cfg": FOR_ANY_DEVICE},
+    "radar.subframe": {"radar.cfg": SUBFRAMES},
+    "cloud.boundary_box": {"radar.cfg": f"{CFG}boundaryBox -1 1 0.5 2 0 0.2\n"},
     "engine.fallback": {"engine.tolerance_db": -400.0},
     "on_invalid": {"wall": {"center_m": [2.5, 0, 1.25]}},
     "snr_reference": {"wall": {"center_m": [1, 0, 1.25]}},

@@ -165,5 +165,8 @@ class CloudConfig(Section):
     """Rate of false alarms of a range-Doppler cell."""
     quantise: Annotated[Flag, ActsIf("cloud.chain", "board", "sdk1", "sdk3")] = True
     """Whether numbers are rounded as the firmware's fixed-point ones."""
+    boundary_box: Flag = False
+    """Whether points outside boundaryBox of the .cfg (SceneryParam of people counting), a box in
+    the room, are left out; boards send them, and their trackers leave them out."""
     doppler_carrier: Literal["centre", "start"] = "centre"
     """Frequency that the points' speeds refer to; TI's software takes that at which ramps start."""

@@ -26,6 +26,7 @@ from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.numerics.randomness import NOISE, stream
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
+from radhar_cli.processing.cloud_limits import keep_in_box, keep_in_view
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, FrameMapKind, FrameMaps
 from radhar_cli.processing.frame_sheets import cloud_sheet, maps_sheet
 from radhar_cli.processing.frames import Frames
@@ -61,6 +62,7 @@ from radhar_cli.products.signal_power import (
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.chirp_window import RECTANGULAR, ChirpWindow
 from radhar_cli.radar.detection import Detection, Firmware
+from radhar_cli.radar.frame_header import RoomBox
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
 from radhar_cli.radar.wall import Wall
 from radhar_cli.receiver.noise import WhiteNoise
@@ -96,6 +98,7 @@ class CloudChain:
         pfa: rate of false alarms of a cell, where not the firmware finds them.
         quantises: whether numbers are rounded as the firmware's are.
         refers_to_start: whether speeds refer to the frequency at which ramps start.
+        box: box of the room whose points alone are kept; None for all points.
     """
 
     firmware: Firmware | None
@@ -104,6 +107,7 @@ class CloudChain:
     pfa: float
     quantises: bool
     refers_to_start: bool
+    box: RoomBox | None = None
 
     @classmethod
     def of(cls, config: Config) -> "CloudChain":
@@ -117,6 +121,7 @@ class CloudChain:
             cloud.pfa,
             cloud.quantise,
             cloud.doppler_carrier == "start",
+            header.box if cloud.boundary_box else None,
         )
 
 
@@ -406,7 +411,19 @@ def make_frame_maps(
 
 
 def find_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:
-    """Find the points of the frames of a cube.
+    """Find the points of the frames of a cube, in a box of the room if so chosen.
+
+    Args:
+        cube: raw samples [frame, loop, virtual, sample].
+        board: board of the cube.
+        chain: how they are found.
+    """
+    cloud = find_all_points(cube, board, chain)
+    return cloud if chain.box is None else keep_in_box(cloud, chain.box, board)
+
+
+def find_all_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:
+    """Find the points of the frames of a cube, by a chain.
 
     Args:
         cube: raw samples [frame, loop, virtual, sample].
@@ -416,7 +433,9 @@ def find_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:
     carrier = board.start if chain.refers_to_start else None
     detection = chain.detection
     if chain.firmware is None:
-        return best_points(cube, board, detection.remove_mean, chain.pfa, carrier, detection.bias)
+        bias, removes_mean = detection.bias, detection.remove_mean
+        cloud = best_points(cube, board, removes_mean, chain.pfa, carrier, bias)
+        return keep_in_view(cloud, detection)
     match chain.people:
         case PeopleTracking():
             return track_people(cube, board, chain.people, carrier)

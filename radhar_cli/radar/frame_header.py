@@ -169,3 +169,18 @@ class FrameHeader:
     def prf_hz(self) -> float:
         """Chirps of one transmitter per second, within a frame."""
         return 1 / self.loop_s
+
+
+@dataclass(frozen=True)
+class RoomBox:
+    """Box in the axes of the room, from the floor point below a board.
+
+    Attributes:
+        ahead_m: Limits along the x axis of scenes, m.
+        left_m: Limits along the y axis, m.
+        up_m: Limits of heights above the floor, m.
+    """
+
+    ahead_m: tuple[float, float]
+    left_m: tuple[float, float]
+    up_m: tuple[float, float]

@@ -9,10 +9,11 @@ from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import accumulate
+from math import inf
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import Detection, Firmware
-from radhar_cli.radar.frame_header import ROUNDING, ChirpProfile, FrameHeader, Sampling
+from radhar_cli.radar.frame_header import ROUNDING, ChirpProfile, FrameHeader, RoomBox, Sampling
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
 from radhar_cli.radar.ti_commands import (
     ALL_SUBFRAMES,
@@ -118,6 +119,7 @@ class BoardHeader(FrameHeader):
         missing: Commands that the chain of the family needs and the file lacks, with lines that
             would do.
         pose: Place and direction by sensorPosition; None without that line.
+        box: Box of the room by boundaryBox, or by SceneryParam; None without either.
         unknown: Commands that radhar does not know.
         not_simulated: Commands that switch on what is not simulated.
     """
@@ -128,6 +130,7 @@ class BoardHeader(FrameHeader):
     people: PeopleTracking | PeopleCounting | None
     missing: tuple[str, ...]
     pose: BoardPose | None
+    box: RoomBox | None
     unknown: tuple[str, ...]
     not_simulated: tuple[str, ...]
 
@@ -198,6 +201,7 @@ def parse_ti_cfg(
         else read_people(lines.lines, family, channels, bins, header.subframe),
         missing=missing,
         pose=_read_pose(lines.with_effect(Effect.POSE)),
+        box=_read_box(lines.with_effect(Effect.BOX)),
         unknown=tuple(dict.fromkeys(line.name[:40] for line in lines.lines if not line.command)),
         not_simulated=tuple(dict.fromkeys(filter(None, map(_name_if_said, lines.lines)))),
     )
@@ -516,6 +520,21 @@ def _read_pair(lines: Sequence[CfgLine], subframe: int) -> ChirpPair | None:
             place = f"{line.place}: {line.name}"
             pair = ChirpPair(first, second, place) if numbers["enabled"] else None
     return pair
+
+
+def _read_box(lines: Sequence[CfgLine]) -> RoomBox | None:
+    """Read the last of lines of a box, whose x is to the right."""
+    if not lines:
+        return None
+    numbers = [line.numbers for line in lines][-1]
+    if "near" in numbers:
+        right, ahead = (numbers["left"], numbers["right"]), (numbers["near"], numbers["far"])
+        return RoomBox(ahead, (0.0 - right[1], 0.0 - right[0]), (-inf, inf))
+    return RoomBox(
+        (numbers["Ymin"], numbers["Ymax"]),
+        (0.0 - numbers["Xmax"], 0.0 - numbers["Xmin"]),
+        (numbers["Zmin"], numbers["Zmax"]),
+    )
 
 
 def _read_pose(lines: Sequence[CfgLine]) -> BoardPose | None:

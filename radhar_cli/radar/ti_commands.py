@@ -26,6 +26,7 @@ class Effect(Enum):
     SIGNAL = "describes the chirps, frames and samples: simulated, and read of captures"
     POINTS = "sets the detection of points: simulated"
     POSE = "sets the pose of the board, where the config does not"
+    BOX = "keeps the points in a box of the room, with `cloud.boundary_box: true`"
     SAID = "is not simulated, which is said"
     SILENT = "changes nothing here"
     NOT_SIMULATED = "is refused as radar.cfg"
@@ -584,6 +585,12 @@ _POINTS = (
         ),
         subframe=Subframe.OPTIONAL,
     ),
+    Command(
+        "rangeSelCfg",
+        Effect.POINTS,
+        (Argument("min", meaning="m"), Argument("max", meaning="m")),
+        Family.L_SDK,
+    ),
 )
 _GAMMA = Argument("mvdr_alpha", 1e-6, 1, meaning="loading over the mean power")
 _RATIOS = tuple(
@@ -717,6 +724,24 @@ _POSE = (
         Family.L_SDK,
     ),
 )
+_BOX = (
+    Command(
+        "boundaryBox",
+        Effect.BOX,
+        tuple(
+            Argument(name, -1000, 1000, meaning="m")
+            for name in ("Xmin", "Xmax", "Ymin", "Ymax", "Zmin", "Zmax")
+        ),
+    ),
+    Command(
+        "SceneryParam",
+        Effect.BOX,
+        tuple(
+            Argument(name, -1000, 1000, meaning="m") for name in ("left", "right", "near", "far")
+        ),
+        Family.PEOPLE,
+    ),
+)
 _SAID = (
     Command("extendedMaxVelocity", Effect.SAID, _wholes("enabled"), subframe=Subframe.OPTIONAL),
     Command(
@@ -760,11 +785,11 @@ _SILENT = {
         "antGeometryBoard",
     ),
     Family.PEOPLE: (
-        *("SceneryParam", "GatingParam", "StateParam", "AllocationParam", "VariationParam"),
+        *("GatingParam", "StateParam", "AllocationParam", "VariationParam"),
         *("AccelerationParam", "PointCloudEn"),
     ),
     Family.PEOPLE_3D: (
-        *("boundaryBox", "staticBoundaryBox", "presenceBoundaryBox", "gatingParam", "stateParam"),
+        *("staticBoundaryBox", "presenceBoundaryBox", "gatingParam", "stateParam"),
         *("allocationParam", "maxAcceleration", "trackingCfg", "classifierCfg", "vitalsign"),
         *("VSRangeIdxCfg", "VSTargetId", "mpdBoundaryBox", "clusterCfg", "majorStateCfg"),
         *("minorStateCfg", "microDopplerCfg", "profileSwitchCfg"),
@@ -812,7 +837,7 @@ def _by_name() -> Mapping[str, tuple[Command, ...]]:
     commands = dict[str, tuple[Command, ...]]()
     points = *_POINTS, *_PEOPLE_TRACKING, _DOA
     signal = *_SIGNAL, *_SIGNAL_OF_L_SDK
-    for command in (*signal, *points, *_POSE, *_SAID, *_CAPTURES, *silent, *_REFUSED):
+    for command in (*signal, *points, *_POSE, *_BOX, *_SAID, *_CAPTURES, *silent, *_REFUSED):
         commands[command.name] = (*commands.get(command.name, ()), command)
     return MappingProxyType(commands)
 

@@ -117,6 +117,11 @@ def _set_angle_limits(detection: Detection, numbers: Numbers) -> Detection:
     )
 
 
+def _set_range(detection: Detection, numbers: Numbers) -> Detection:
+    """Set the limits of range (m) of points."""
+    return replace(detection, range_m=(numbers["min"], numbers["max"]))
+
+
 def _set_cfar_limits(detection: Detection, numbers: Numbers) -> Detection:
     """Set the limits of range (m) or of speed (m/s) of points."""
     limits = numbers["min"], numbers["max"]
@@ -132,4 +137,5 @@ _SETTERS: Mapping[str, Callable[[Detection, Numbers], Detection]] = {
     "dynamicRACfarCfg": _remove_mean,
     "aoaFovCfg": _set_angle_limits,
     "cfarFovCfg": _set_cfar_limits,
+    "rangeSelCfg": _set_range,
 }

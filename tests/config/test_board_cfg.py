@@ -10,6 +10,8 @@ from helpers.scatterers import ISK_CFG
 from radhar_cli.config import Config
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.config.starting_file import of_board
+from radhar_cli.products.board import CloudChain
+from radhar_cli.radar.frame_header import RoomBox
 from radhar_cli.scene_checks.warnings import config_warnings
 
 TRACKING = f"{CFG}sensorPosition 2 10 15\n"
@@ -160,3 +162,12 @@ def test_wrong_numbers_of_people_tracking_are_refused(written: str, wrong: str, 
     assert written in ISK_CFG
     with pytest.raises(ValueError, match=words):
         board(ISK_CFG.replace(written, wrong), device="IWR6843ISK")
+
+
+def test_a_box_of_the_room_is_kept_to_on_demand() -> None:
+    with pytest.raises(ValueError, match=r"radar\.cfg has no boundaryBox"):
+        board(CFG, cloud={"boundary_box": True})
+    lines = f"{CFG}boundaryBox -1 2 0.5 6 0 2\n"
+    assert CloudChain.of(board(lines)).box is None
+    box = CloudChain.of(board(lines, cloud={"boundary_box": True})).box
+    assert box == RoomBox((0.5, 6), (-2, 1), (0, 2))

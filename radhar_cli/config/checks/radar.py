@@ -138,6 +138,9 @@ def _frame_problems(c: Request, board: "BoardHeader") -> Iterator[Problem]:
     if clutter not in ("mean", "none"):
         right = "should be mean (of each frame) or none with radar.cfg"
         yield Problem("processing.clutter", clutter, right)
+    if c.cloud.boundary_box and board.box is None:
+        right = "should be false: radar.cfg has no boundaryBox"
+        yield Problem("cloud.boundary_box", True, right)
     firmware, chain = board.firmware, c.cloud.chain
     if firmware is None and chain != "best":
         missing = (*board.missing, "cfarCfg is missing")[0]

@@ -174,7 +174,9 @@ def rows(rounds: int) -> dict[str, Any]:
 
         def direct(turn: int) -> None:
             p = plan_images(config)
-            sink.write([synthesise(scene(config, turn * SHARD + i), p) for i in range(SHARD)])
+            sink.write(
+                [synthesise(scene(config, turn * SHARD + i), p, config) for i in range(SHARD)]
+            )
 
         def synthesis(turn: int) -> None:
             p = plan(products(config), ["signal"], ["scene"])
@@ -184,7 +186,7 @@ def rows(rounds: int) -> dict[str, Any]:
         def cube(turn: int) -> None:
             p = plan_images(cube_config)
             for number in (turn, turn + 6):
-                sink.write([synthesise(scene(cube_config, number), p)])
+                sink.write([synthesise(scene(cube_config, number), p, cube_config)])
 
         def naive(turn: int) -> None:
             there = ready[turn % 12]
@@ -245,7 +247,7 @@ def ready_for(scene: Scene, name: str) -> dict[str, Any]:
     results = record(scene, [*names, *(["torso_track"] if "compensated" in name else [])]).products
     w, canceller, paths = results["waveform"], results["canceller"], results.pop("paths")
     shown = shown_pulses(w.n_pulses - canceller.lost, scene.config.image.size_px[1])
-    return results | {"beat": beat_at(paths, w, shown, canceller.taps)}
+    return results | {"scene": scene, "beat": beat_at(paths, w, shown, canceller.taps)}
 
 
 def maps(rounds: int) -> dict[str, Any]:
@@ -264,7 +266,9 @@ def maps(rounds: int) -> dict[str, Any]:
 
             def whole(config: Config) -> Callable[[int], None]:
                 p, sink = plan_images(config), Sink(config, Path(place))
-                return lambda turn: sink.write([synthesise(scene(config, i), p) for i in range(12)])
+                return lambda turn: sink.write(
+                    [synthesise(scene(config, i), p, config) for i in range(12)]
+                )
 
             def own(turn: int, ready=ready, image=image, sink=sink) -> None:
                 sink.write([image.sample(there) for there in ready])
@@ -652,7 +656,7 @@ ESTIMATED = {  # what is estimated and built: config, settings beside it
     "paper, free space": ("paper/free_space", ("samples_per_class=50",)),
     "Glasgow, gate": ("measured/glasgow_5p8GHz", ("samples_per_class=30",)),
     "IWR1443": ("boards/iwr1443", ("samples_per_class=2",)),
-    "streams": ("human/streams", ("stream.count=8",)),
+    "streams": ("human/streams", ("stream.count=8", "split.subjects=8")),
 }
 
 
@@ -679,6 +683,9 @@ def estimates(rounds: int) -> dict[str, Any]:
                 dry_wall, _, said = run_timed(*command, "--dry-run")
                 wall, processor, _ = run_timed(*command)
             estimate = json.loads(said)
+            if estimate["seconds"] is None:
+                print(f"  {label:<20}load {load:4.1f}: no sample in {dry_wall:.0f} s", flush=True)
+                continue
             row = {
                 "load": load,
                 "samples": estimate["samples"],

@@ -21,3 +21,14 @@ def test_the_naive_sample_shows_the_same() -> None:
     )
     assert np.abs(naive - direct).max() <= 1
     assert naive.any()
+
+
+def test_a_further_map_can_be_measured(monkeypatch, capsys) -> None:
+    """The sections that make whole samples run, on a scene that is soon made."""
+    load = bench.load_config
+    quick = ["duration_s=0.2", "image.size_px=32"]
+    monkeypatch.setattr(bench, "load_config", lambda path, more=(): load(path, [*more, *quick]))
+    monkeypatch.setattr(bench, "MAP_NAMES", ("stft", "rtm"))
+    assert bench.maps(1)["rtm"]["own_ms"] > 0
+    assert bench.rows(1)["ms"].keys() == {"naive", "cube", "direct", "synthesis", "floor"}
+    assert "a further map" in capsys.readouterr().out

@@ -102,7 +102,8 @@ def _label_axes(axes: Axes, marks: Sequence[SettingMark], title: str) -> None:
     span = log10(high / low)
     axes.set_xlim(low * 10 ** (-0.08 * span - 0.03), high * 10 ** (0.28 * span + 0.03))
     axes.set_ylim(LEAST_LEVELS * 0.5, 400)
-    fine = [0.05 * n for n in range(2, 20)] + [1, 1.1, 1.2, 1.3, 1.5] if span < 0.7 else []
+    step = 0.05 if span < 0.3 else 0.1
+    fine = [step * n for n in range(2, round(1.6 / step))] if span < 0.7 else []
     steps = [0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1000]
     ticks = [tick for tick in fine or steps if low <= tick <= high]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])

@@ -45,9 +45,9 @@ def board_settings(radar: BoardRadar, config: Config) -> Iterator[Setting]:
 def _point_settings(config: Config) -> Iterator[Setting]:
     """Yield other ways to find points."""
     cloud = config.cloud
-    other_chain = "best" if cloud.chain == "board" else "board"
+    other_chain = "board" if cloud.chain == "best" else "best"
     yield keyed("points", f"cloud.chain={other_chain}", Worth.SAVES)
-    if cloud.chain == "board":
+    if cloud.chain != "best":
         quantise = str(not cloud.quantise).lower()
         yield keyed("points", f"cloud.quantise={quantise}", Worth.PROCESSING)
     else:

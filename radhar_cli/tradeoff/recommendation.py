@@ -102,10 +102,10 @@ def _engine_sentences(sweep: Sweep) -> Iterator[str]:
         visible = _shown_error(row)
         is_same = row.name.startswith(TOLERANCE) and row.error_db == default_db
         if is_same:
-            yield (
-                f"`{row.name}` is the same signal as the default's and saves nothing "
-                f"({_times(row)} the time)."
-            )
+            time = f" ({_times(row)} the time)" if row.rounds >= LEAST_ROUNDS else ""
+            yield f"`{row.name}` is the same signal as the default's and saves nothing{time}."
+        elif row.rounds < LEAST_ROUNDS:
+            yield f"{_quoted(row)} was timed too seldom to say what it takes; {visible}."
         elif _costs(row, sweep.blur):
             yield f"{_quoted(row)} takes {_times(row)} the time; {visible}."
         else:

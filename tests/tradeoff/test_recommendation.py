@@ -124,6 +124,11 @@ def test_the_cube_is_slower_and_shows_nothing_more():
     )
 
 
+def test_an_engine_setting_that_was_timed_once_is_not_called_as_fast():
+    tried = row("engine.precision: double", 1.5, effect=Change.ERROR, error_db=-107.0, rounds=1)
+    assert "`engine.precision: double` was timed too seldom to say" in text(tried)
+
+
 def test_points_that_move_are_counted():
     moved = PointDifference(0.5, 0.03, 20.0, 40.0)
     lines = text(row("1 transmitter", 0.5, maps={}, points=moved))

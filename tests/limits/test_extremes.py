@@ -23,7 +23,8 @@ from radhar_cli.limits.trial import ConfigTrial
 from radhar_cli.processes.progress import NO_PROGRESS
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.scene_checks.warnings import scene_warnings
+from radhar_cli.scene_checks.visibility import CHEST_M
+from radhar_cli.scene_checks.warnings import config_warnings, scene_warnings
 
 FAULT = re.compile(r"^extreme\.yaml: [\w.]+ = .+: .+")
 BLACK = "black"
@@ -159,3 +160,10 @@ def test_every_class_of_setting_is_there() -> None:
         for outcome, group in groupby(sorted(one.outcome for one in EXTREMES))
     }
     assert min(by_outcome.values()) > 30
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_an_antenna_in_somebody_divides_by_nothing() -> None:
+    """A search for limits asks for what is warned of before any scene is drawn."""
+    place = {"radar.position_m": [2.5, 0.0, CHEST_M], "motion.range_m": 2.5}
+    assert isinstance(config_warnings(config_of(Extreme("board", place))), list)

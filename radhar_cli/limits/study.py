@@ -13,6 +13,7 @@ from radhar_cli.limits.keys import NumberKey, acting_numbers
 from radhar_cli.limits.limit import (
     CLEAN,
     KEY_ENDS,
+    NOTED,
     Consequence,
     Judgement,
     Limit,
@@ -278,7 +279,7 @@ class _Search:
         """
         base_s = self.study.sample_s or 1.0
         judgement, seconds = self.trial.simulate(key.key, number, place)
-        if judgement.is_clean and seconds > SLOW * base_s:
+        if judgement.is_clean and seconds > NOTED * base_s:
             seconds = min(seconds, self.trial.simulate(key.key, number, place)[1])
         if judgement.is_clean and seconds > SLOW * base_s:
             reason = f"a sample takes {seconds / base_s:.2g} times as long"

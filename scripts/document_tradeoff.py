@@ -1,10 +1,11 @@
-"""Put results of `radhar tradeoff` into docs/results/tradeoff.md, their figures into docs/images.
+"""Put results of `radhar tradeoff` into docs/results/tradeoff.md and a page of their tables.
 
     python scripts/document_tradeoff.py OUT [OUT ...]
 
-Each OUT is a folder that the command wrote; its part of the page is the one between the markers
-`<!-- begin NAME -->` and `<!-- end NAME -->`, NAME being that of the config. Parts of which no
-folder is named stay.
+Each OUT is a folder that the command wrote. Its recommendation and figure go into the first page,
+its tables into the second, between the markers `<!-- begin NAME -->` and `<!-- end NAME -->`, NAME
+being that of the config; the figure itself goes into docs/images. Parts of which no folder is named
+stay.
 """
 
 import argparse
@@ -12,19 +13,22 @@ import re
 import shutil
 from pathlib import Path
 
-from radhar_cli.tradeoff.report import FIGURE, TEXT
+from radhar_cli.tradeoff.report import FIGURE, SETTINGS, TEXT
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-PAGE = DOCS / "results/tradeoff.md"
+PAGE, TABLES = DOCS / "results/tradeoff.md", DOCS / "records/tradeoff_tables.md"
 IMAGES = DOCS / "images/tradeoff"
 
 
-def part(out: Path) -> tuple[str, str]:
-    """Name of a result, and its text one heading lower, with the figure of the documents."""
+def part(out: Path) -> tuple[str, str, str]:
+    """Name of a result, what it recommends with the figure of the documents, and its tables."""
     text = (out / TEXT).read_text().replace(str(out.parent), "out")
-    name = text.partition("\n")[0].rpartition(": ")[2]
-    text = text.replace(f"({FIGURE})", f"(../images/tradeoff/{name}.png)")
-    return name, re.sub(r"^#", "##", text, flags=re.MULTILINE)
+    said, _, tables = text.partition(SETTINGS)
+    title, _, said = said.partition("\n")
+    name = title.rpartition(": ")[2]
+    said = said.replace(f"({FIGURE})", f"(../images/tradeoff/{name}.png)")
+    tables = re.sub(r"^###", "####", tables, flags=re.MULTILINE)
+    return name, f"## {name}\n{said}", f"## {name}\n{tables}"
 
 
 def with_part(page: str, name: str, text: str) -> str:
@@ -37,7 +41,7 @@ def with_part(page: str, name: str, text: str) -> str:
     head, opened, rest = page.partition(begin)
     _, closed, tail = rest.partition(end)
     if not opened or not closed:
-        raise ValueError(f"{PAGE}: has no markers for {name}")
+        raise ValueError(f"has no markers for {name}")
     return f"{head}{begin}\n\n{text.strip()}\n\n{end}{tail}"
 
 
@@ -46,15 +50,17 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     parser.add_argument("out", type=Path, nargs="+")
-    page = PAGE.read_text()
+    pages = {path: path.read_text() for path in (PAGE, TABLES)}
     for out in parser.parse_args().out:
-        name, text = part(out)
-        try:
-            page = with_part(page, name, text)
-        except ValueError as error:
-            parser.error(str(error))
+        name, *texts = part(out)
+        for path, text in zip(pages, texts, strict=True):
+            try:
+                pages[path] = with_part(pages[path], name, text)
+            except ValueError as error:
+                parser.error(f"{path}: {error}")
         shutil.copyfile(out / FIGURE, IMAGES / f"{name}.png")
-    PAGE.write_text(page)
+    for path, text in pages.items():
+        path.write_text(text)
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ from radhar_cli.tradeoff.sweep import Sweep, omissions_text
 FILES = CSV, JSON, TEXT, FIGURE, PAGE = (
     *("tradeoff.csv", "tradeoff.json", "tradeoff.md", "tradeoff.png", "tradeoff.html"),
 )
+SETTINGS = "## Settings"  # heading of the tables
 HEADER = "setting", "ms a sample", "time", "over", "error dB", "shown"
 _STYLE = (
     "body{font:15px/1.5 system-ui,sans-serif;color:#1f2328;max-width:70rem;margin:2rem auto;"
@@ -174,7 +175,7 @@ def markdown(title: str, command: str, sweep: Sweep, cores: int) -> str:
 
 ![time against difference]({FIGURE})
 
-## Settings
+{SETTINGS}
 
 {_about_times(sweep)}
 

@@ -17,14 +17,20 @@ def test_a_page_without_its_markers_is_refused():
         with_part("page", "c", "new")
 
 
-def test_headings_go_one_down_and_the_figure_is_that_of_the_documents(tmp_path):
+def test_what_is_recommended_goes_with_its_figure_and_tables_apart(tmp_path):
     out = tmp_path / "x"
     out.mkdir()
-    text = f"# What accuracy costs: x\n\n`-o {out}`\n\n![a](tradeoff.png)\n\n## Settings\n"
+    text = (
+        f"# What accuracy costs: x\n\n`-o {out}`\n\n- Take it.\n\n![a](tradeoff.png)\n\n"
+        "## Settings\n\nTimes.\n\n### Error\n\n| a |\n"
+    )
     (out / "tradeoff.md").write_text(text)
-    name, placed = part(out)
+    name, said, tables = part(out)
     assert name == "x"
-    assert "## What accuracy costs: x" in placed
-    assert "### Settings" in placed
-    assert "`-o out/x`" in placed
-    assert "(../images/tradeoff/x.png)" in placed
+    assert said.startswith("## x\n")
+    assert "`-o out/x`" in said
+    assert "(../images/tradeoff/x.png)" in said
+    assert "Times" not in said
+    assert tables.startswith("## x\n")
+    assert "#### Error\n\n| a |" in tables
+    assert "Take it" not in tables

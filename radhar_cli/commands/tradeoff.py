@@ -46,7 +46,7 @@ def tradeoff(
     set_: Overrides = None,
     overwrite: ReplaceResults = False,
 ) -> None:
-    """Measure what accuracy costs: time of each setting, error of what it shows, and what to take.
+    """Measure what accuracy costs: time and error of settings.
 
     Example:
 

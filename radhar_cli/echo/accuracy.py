@@ -172,6 +172,8 @@ def choose_probes(powers: Float, pulses: int, roughness: Roughness = EVEN, lost:
     total = float(powers.sum())
     if total == 0:
         return Probes(np.empty(0, np.intp), np.empty(0), 0.0)
+    if isnan(total):  # the error is no number at any pulse
+        return Probes(np.zeros(1, np.intp), np.ones(1), total)
     lengths = np.diff(starts, append=pulses)
     share = powers * (0.5 / total) + lengths * (0.5 / pulses)
     rough = roughness.squares[: starts.size]

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -265,6 +266,7 @@ CHANGES: dict[str, object] = {
     "processing.savgol.frame": 13,
     "processing.fsst_hop_pulses": 1,
     "processing.fsst_threshold": 0.0,
+    "cloud.boundary_box": True,
     "cloud.chain": "board",
     "cloud.pfa": 1e-3,
     "cloud.quantise": False,
@@ -327,7 +329,8 @@ def base_with(key: str) -> Config:
 
 
 def test_the_table_of_changes_knows_every_key() -> None:
-    assert set(CHANGES) == {key for base in BASES for key in _keys(base)} - {"radar.waveform"}
+    keys = {key for base in BASES for key in _keys(base)}
+    assert set(CHANGES) == keys - {"radar.waveform", "radar.subframe"}
 
 
 @pytest.mark.parametrize("key", list(CHANGES))
@@ -339,6 +342,12 @@ def test_the_identity_is_every_key_that_decides_bytes(key: str) -> None:
 
 def test_the_identity_tells_radars_apart() -> None:
     assert len({config_hash(base) for base in BASES}) == len(BASES)
+
+
+def test_the_identity_tells_subframes_apart() -> None:
+    cfg = (Path(__file__).parents[1] / "radar/cfg/advframe.cfg").read_text()
+    radars = [{"device": "IWR1443BOOST", "cfg": cfg, "subframe": number} for number in (0, 1)]
+    assert len({config_hash(Config(radar=radar)) for radar in radars}) == 2
 
 
 def test_the_identity_tells_a_wall_from_none() -> None:

@@ -18,7 +18,7 @@ from radhar_cli.config.identity import resolved
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import build as build_module
 from radhar_cli.dataset import folder as folder_module
-from radhar_cli.dataset.build import build
+from radhar_cli.dataset.build import build, choose_batch_size
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
@@ -58,7 +58,7 @@ def test_no_more_processes_than_batches_are_started(config, small_set, tmp_path,
 
 def test_batch_size_by_number_of_rows():
     def size(left, jobs, one=10**4):
-        return build_module._batch_size(left, jobs, one)
+        return choose_batch_size(left, jobs, one)
 
     assert [size(left, 2) for left in (1, 9, 100, 3600)] == [1, 2, 13, 32]
     assert [size(10**5, jobs) for jobs in (1, 16, 64)] == [1024, 97, 32]

@@ -92,7 +92,7 @@ def test_doppler_is_positive_approaching_and_ends_at_the_highest_speed() -> None
     assert _peak(range_doppler(receding, board, False))[1] == pytest.approx(-1, abs=step / 2)
 
 
-@pytest.mark.parametrize("loops", [1, 2, 7, 32])
+@pytest.mark.parametrize("loops", [2, 7, 32])
 def test_of_what_stands_still_a_mean_leaves_nothing_at_all(loops: int) -> None:
     """And not rounding, which maps would show at full brightness."""
     board = replace(MARS, loops=loops, frames=3)

@@ -16,7 +16,7 @@ class Consequence(Enum):
 
     REFUSED = "refused"
     WARNED = "warned"
-    REDRAWN = "drawn again, in the end refused"
+    REDRAWN = "drawn again, in vain"
     SLOWER = "slower"
     EXACT_ENGINE = "computed by the exact engine"
     BLACK = "a map is black"

@@ -20,7 +20,9 @@ def time_limit(seconds: float) -> Iterator[None]:
     """Leave the block quietly after so many seconds; what it has put aside by then counts.
 
     A call of a library is finished first. HDF5 should not be called in the block: what is raised
-    while it writes crashes it. There is no limit in a thread, which no signal reaches.
+    while it writes crashes it. There is no limit in a thread, which no signal reaches. A library
+    that calls Python back, as a compiler does, may swallow what leaves the block and fail for want
+    of what it called for: an error after the end of the time is the end.
 
     Args:
         seconds: duration, s; inf for no limit.
@@ -29,10 +31,12 @@ def time_limit(seconds: float) -> Iterator[None]:
     if seconds == inf or not main or not hasattr(signal, "setitimer"):
         yield
         return
-    over = False
+    over = has_ended = False
 
     def leave(number: int, frame: Any) -> None:
+        nonlocal has_ended
         if not over:
+            has_ended = True
             raise _OutOfTime
 
     hook = sys.unraisablehook  # which would print it
@@ -44,6 +48,9 @@ def time_limit(seconds: float) -> Iterator[None]:
         yield
     except _OutOfTime:
         pass
+    except Exception:
+        if not has_ended:
+            raise
     finally:
         over = True
         signal.setitimer(signal.ITIMER_REAL, remaining, interval)

@@ -1,6 +1,7 @@
 """What a sweep recommends, in sentences that follow from its rows and their uncertainty."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import inf, isfinite
 
 from radhar_cli.tradeoff.floor import VISIBLE
@@ -10,6 +11,7 @@ from radhar_cli.tradeoff.setting import DEFAULT
 from radhar_cli.tradeoff.sweep import Sweep
 
 MOST_SAVINGS, MOST_COSTS = 6, 3
+MOST_LOST = 0.02  # of accuracy, that may be lost by what is recommended
 LEAST_ROUNDS = 3  # of timing, without which nothing is concluded
 COSTLY = 1.5  # times the time, from which on a setting is named as costly
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
@@ -44,6 +46,12 @@ def saves(row: Row, blur: float) -> bool:
     """
     is_comparable = row.base_name == DEFAULT and not row.is_default and row.rounds >= LEAST_ROUNDS
     return is_comparable and row.ratio_high is not None and row.ratio_high < 1 - blur
+
+
+def _may_save(row: Row, blur: float) -> bool:
+    """Whether a row took less time, in fewer rounds than a conclusion needs."""
+    is_timed = row.ratio_high is not None and 0 < row.rounds < LEAST_ROUNDS
+    return is_timed and saves(replace(row, rounds=LEAST_ROUNDS), blur)
 
 
 def _costs(row: Row, blur: float) -> bool:
@@ -143,6 +151,10 @@ def _saving_sentences(sweep: Sweep) -> Iterator[str]:
         )
     else:
         yield "Recommended: the config as it is; nothing that was tried saves time beyond the blur."
+    undecided = [row for row in sweep.rows if _may_save(row, sweep.blur)]
+    if undecided:
+        listed = ", ".join(_quoted(row) for row in undecided)
+        yield f"Timed too seldom to say that it saves time: {listed}; more --minutes decide."
     if found_rows and not any(row.accuracy for row in found_rows):
         yield (
             "The effect on a network was not measured; `--accuracy 5` trains networks on data of "
@@ -151,9 +163,9 @@ def _saving_sentences(sweep: Sweep) -> Iterator[str]:
 
 
 def _is_free(row: Row, default: Row | None) -> bool:
-    """Whether a row that saves time costs nothing that is shown, or no accuracy."""
+    """Whether a row that saves time costs nothing that is shown, or surely little accuracy."""
     if row.accuracy is not None and default is not None and default.accuracy is not None:
-        return _lost(row, default)[1] <= 0
+        return _lost(row, default)[2] <= MOST_LOST
     return bool(row.maps or row.points) and (row.over_one or 0) <= VISIBLE and not drops_map(row)
 
 
@@ -165,14 +177,16 @@ def drops_map(row: Row) -> bool:
 def _price(row: Row, default: Row | None) -> str:
     """What a row that saves time changes, as the end of a sentence."""
     if row.accuracy is not None and default is not None and default.accuracy is not None:
-        lost, low, _ = _lost(row, default)
+        lost, low, high = _lost(row, default)
         seeds = _counted(len(row.accuracy.by_seed), "seed")
         means = f"{100 * default.accuracy.mean:.0f} to {100 * row.accuracy.mean:.0f}, {seeds}"
         if row.accuracy.tested_on == "own":
             means += ", tested on its own images"
         if low > 0:
             return f" and costs {_counted(round(100 * lost), 'point')} of accuracy ({means})"
-        return f" and costs no accuracy that is beyond chance ({means})"
+        if high <= MOST_LOST:
+            return f" and costs at most {100 * MOST_LOST:.0f} points of accuracy ({means})"
+        return f" and may cost up to {100 * high:.0f} points of accuracy, or none ({means})"
     if not row.maps and row.points is None:
         return f"; {row.note}" if row.note else ""
     if (row.over_one or 0) == 0:

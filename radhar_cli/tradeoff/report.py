@@ -223,7 +223,8 @@ def _about_times(sweep: Sweep) -> str:
     return (
         f"A sample is everything from drawing a scene to grey levels and entropy, without files. "
         f"Times are of one process, ratios medians over rounds in turns with what they are over, "
-        f"with intervals; {scenes} scene{'s' * (scenes != 1)}. What is shown is that of each map: "
+        f"with intervals (trust these: ms of different rows are of different moments); {scenes} "
+        f"scene{'s' * (scenes != 1)}. What is shown is that of each map: "
         "the share of pixels more than a level apart, rms, SSIM."
     )
 

@@ -4,6 +4,7 @@ import signal
 import sys
 import threading
 import time
+from contextlib import suppress
 from math import inf
 
 import pytest
@@ -36,6 +37,14 @@ def test_work_is_left_although_python_swallows_the_signal_once(
     with time_limit(0.05):
         Slow()
         time.sleep(LONG)
+
+
+def test_a_library_that_swallows_the_end_may_fail_of_it() -> None:
+    """As numba does, whose compiler calls Python back."""
+    with time_limit(0.05):
+        with suppress(BaseException):
+            time.sleep(LONG)
+        raise RuntimeError("no compiled object yet")
 
 
 def test_errors_of_the_work_pass_and_short_work_is_not_disturbed() -> None:

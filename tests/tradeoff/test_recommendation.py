@@ -98,12 +98,28 @@ def test_accuracy_that_is_lost_beyond_chance_is_a_price():
     assert "not measured" not in lines
 
 
-def test_accuracy_that_chance_explains_is_none():
-    tried = row("body.scatterers: points", 0.4, accuracy=accuracy(0.70, 0.88, 0.81))
+def lines_with_accuracies(*shares: float) -> str:
+    """Sentences on a body of points whose networks have these accuracies."""
+    tried = row("body.scatterers: points", 0.4, accuracy=accuracy(*shares))
     default = replace(AS_IT_IS, accuracy=accuracy(0.80, 0.81, 0.82))
-    lines = "\n".join(recommend(replace(sweep(), rows=[default, tried])))
-    assert "costs no accuracy that is beyond chance (81 to 80, three seeds)" in lines
+    return "\n".join(recommend(replace(sweep(), rows=[default, tried])))
+
+
+def test_accuracy_that_is_the_same_for_sure_is_recommended():
+    lines = lines_with_accuracies(0.80, 0.812, 0.82)
+    assert "costs at most 2 points of accuracy (81 to 81, three seeds)" in lines
     assert "Recommended: `body.scatterers: points`." in lines
+
+
+def test_accuracy_of_which_little_is_known_is_not_recommended():
+    lines = lines_with_accuracies(0.70, 0.88, 0.81)
+    assert "may cost up to" in lines
+    assert "Recommended: the config as it is" in lines
+
+
+def test_what_was_timed_too_seldom_is_named():
+    lines = text(replace(row("maps without fsst", 0.6, over_one=0.0), rounds=1))
+    assert "Timed too seldom to say that it saves time: `maps without fsst`" in lines
 
 
 def test_maps_that_are_left_out_are_no_free_saving():

@@ -30,7 +30,7 @@ def limits(
     set_: Overrides = None,
     overwrite: ReplaceResults = False,
 ) -> None:
-    """Find how far each number of a config may go, and what happens beyond.
+    """Find how far each number of a config may go.
 
     Each number is put in place of what is drawn, farther and farther, until the config is refused,
     something new is warned of, scenes can no longer be drawn, the fast engine misses its

@@ -14,7 +14,7 @@ import numpy as np
 from radhar_cli.activities.activity import Activity
 from radhar_cli.config.checks.doubts import timing_warnings
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.reading import config_of_values, read_values
+from radhar_cli.config.reading import config_of_values, load_config, read_values
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import ConfigError, RadharError
 from radhar_cli.limits.keys import OF_PEOPLE, with_number
@@ -60,9 +60,11 @@ class ConfigTrial:
         """Read a config file and draw its scenes.
 
         Raises:
-            ConfigError: it is no config.
+            ConfigError: it is no config; the message names file and line.
             SceneError: no class of it has a scene that can be drawn.
         """
+        overrides = tuple(overrides)
+        load_config(path, overrides)
         return cls.of_values(read_values(path, overrides), path.parent)
 
     @classmethod

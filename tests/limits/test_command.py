@@ -87,6 +87,21 @@ def test_a_config_that_is_refused_is_refused_as_ever(small: Path) -> None:
     done = radhar("limits", small, "--set", "radar.prf_hz=1e9")
     assert done.returncode == 2
     assert "radar.prf_hz = 1000000000.0: should be from 0.001 to 1e+07 Hz" in done.stderr
+    assert "--set radar.prf_hz = " in done.stderr
+
+
+@pytest.mark.parametrize(
+    "command", [["limits"], ["tradeoff", "-o", "out"], ["generate", "-o", "out"]], ids=" ".join
+)
+def test_a_mistake_in_a_config_is_named_with_its_file_and_line(
+    command: list[str], small: Path
+) -> None:
+    name, *options = command
+    small.write_text(small.read_text().replace("snr_db: 20", "snr_db: loud"))
+    options = [str(small.parent / word) if word == "out" else word for word in options]
+    done = radhar(name, small, *options)
+    assert done.returncode == 2
+    assert f'{small}:7: snr_db = "loud": should be ' in done.stderr
 
 
 @pytest.mark.parametrize("name", [*FAST, *slow((one,) for one in CONFIGS if one not in FAST)])

@@ -79,9 +79,7 @@ def tradeoff(
     seconds = QUICK_S if quick and minutes is None else 60 * (minutes or float("inf"))
     _measure(files, sweep, seconds, accuracy)
     written = files.write(sweep)
-    from radhar_cli.tradeoff.recommendation import recommend
-
-    sentences = recommend(sweep, files.cores)
+    sentences = files.recommendation(sweep)
     for sentence in sentences:
         tell(sentence)
     report(files=written, recommendation=sentences)

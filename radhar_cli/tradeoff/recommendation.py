@@ -4,6 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import inf, isfinite
 
+from radhar_cli.config.engine import EngineConfig
+from radhar_cli.echo.accuracy import goal
 from radhar_cli.tradeoff.floor import VISIBLE
 from radhar_cli.tradeoff.intervals import paired_difference
 from radhar_cli.tradeoff.row import Row
@@ -15,10 +17,10 @@ MOST_LOST = 0.02  # of accuracy, that may be lost by what is recommended
 LEAST_ROUNDS = 3  # of timing, without which nothing is concluded
 COSTLY = 1.5  # times the time, from which on a setting is named as costly
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
-TOLERANCE = "engine.tolerance_db: "
+TOLERANCE = "engine.tolerance_db"
 
 
-def recommend(sweep: Sweep, cores: int = 0) -> list[str]:
+def recommend(sweep: Sweep, engine: EngineConfig, cores: int = 0) -> list[str]:
     """Sentences about what a config may save, at which price, and how sure that is.
 
     A setting saves or costs time only where the whole interval of its ratio lies beyond what the
@@ -26,11 +28,12 @@ def recommend(sweep: Sweep, cores: int = 0) -> list[str]:
 
     Args:
         sweep: rows, floors and pairs of a sweep.
+        engine: engine of the config as it is.
         cores: cores of the machine, for the sentence on its load; 0 where nobody knows.
     """
     return [
         *_floor_sentences(sweep),
-        *_engine_sentences(sweep),
+        *_engine_sentences(sweep, engine),
         *_saving_sentences(sweep),
         *_cost_sentences(sweep),
         *_blur_sentences(sweep, cores),
@@ -98,18 +101,15 @@ def _floor_sentences(sweep: Sweep) -> Iterator[str]:
         )
 
 
-def _engine_sentences(sweep: Sweep) -> Iterator[str]:
+def _engine_sentences(sweep: Sweep, engine: EngineConfig) -> Iterator[str]:
     """Yield what other computations of the same physics cost, and whether they show."""
-    default = sweep.row_of(DEFAULT)
-    default_db = None if default is None else default.error_db
     for row in sweep.rows:
         if not row.is_error or row.is_default or row.ratio is None:
             continue
         if saves(row, sweep.blur):
             continue  # named among what saves
         visible = _shown_error(row)
-        is_same = row.name.startswith(TOLERANCE) and row.error_db == default_db
-        if is_same:
+        if _is_same_signal(row, engine):
             time = f" ({_times(row)} the time)" if row.rounds >= LEAST_ROUNDS else ""
             yield f"`{row.name}` is the same signal as the default's and saves nothing{time}."
         elif row.rounds < LEAST_ROUNDS:
@@ -118,6 +118,16 @@ def _engine_sentences(sweep: Sweep) -> Iterator[str]:
             yield f"{_quoted(row)} takes {_times(row)} the time; {visible}."
         else:
             yield f"{_quoted(row)} takes the same time within the blur; {visible}."
+
+
+def _is_same_signal(row: Row, engine: EngineConfig) -> bool:
+    """Whether a row has another tolerance, for which the engine computes as for the config's.
+
+    Scenes that miss one tolerance and not the other are refused, unless the cube takes them over.
+    """
+    key, _, value = row.name.partition(": ")
+    is_tolerance = key == TOLERANCE and engine.fallback == "refuse"
+    return is_tolerance and goal(float(value)) == goal(engine.tolerance_db)
 
 
 def _shown_error(row: Row) -> str:

@@ -84,6 +84,10 @@ class TradeoffReport:
             )
         return sweep
 
+    def recommendation(self, sweep: Sweep) -> list[str]:
+        """Sentences on what the config may save, as `recommend` has them."""
+        return recommend(sweep, self.scenes.config().engine, self.cores)
+
     def keep(self, sweep: Sweep) -> None:
         """Write tradeoff.json, from which the same command goes on.
 
@@ -92,7 +96,7 @@ class TradeoffReport:
         """
         numbers = {
             "command": self.command,
-            "recommendation": recommend(sweep, self.cores),
+            "recommendation": self.recommendation(sweep),
             **sweep.numbers(),
             "identity": self._identity(),
         }
@@ -107,11 +111,12 @@ class TradeoffReport:
         """
         self.keep(sweep)
         figure = tradeoff_png(marks_of(sweep), self.title)
+        sentences = self.recommendation(sweep)
         files = {
             CSV: _csv(sweep.rows).encode(),
-            TEXT: markdown(self.title, self.command, sweep, self.cores).encode(),
+            TEXT: markdown(self.title, self.command, sweep, sentences).encode(),
             FIGURE: figure,
-            PAGE: page(self.title, self.command, sweep, self.cores, figure).encode(),
+            PAGE: page(self.title, self.command, sweep, sentences, figure).encode(),
         }
         for name, data in files.items():
             write_result(self.folder, self.folder / name, data)
@@ -153,14 +158,14 @@ def _largest_difference(row: Row) -> float | None:
     return None if row.points is None else 255 * row.points.moved
 
 
-def markdown(title: str, command: str, sweep: Sweep, cores: int) -> str:
+def markdown(title: str, command: str, sweep: Sweep, sentences: Sequence[str]) -> str:
     """Text of tradeoff.md.
 
     Args:
         title: name of the config.
         command: command line.
         sweep: what was measured.
-        cores: cores of the machine.
+        sentences: its recommendation.
     """
     sections = "\n\n".join(
         f"### {heading}\n\n{about}\n\n{_markdown_table(rows)}"
@@ -171,7 +176,7 @@ def markdown(title: str, command: str, sweep: Sweep, cores: int) -> str:
 
 `{command}`
 
-{sentences_as_list(recommend(sweep, cores))}
+{sentences_as_list(sentences)}
 
 ![time against difference]({FIGURE})
 
@@ -183,17 +188,17 @@ def markdown(title: str, command: str, sweep: Sweep, cores: int) -> str:
 {_omitted(sweep)}"""
 
 
-def page(title: str, command: str, sweep: Sweep, cores: int, figure: bytes) -> str:
+def page(title: str, command: str, sweep: Sweep, sentences: Sequence[str], figure: bytes) -> str:
     """Text of tradeoff.html, a page that needs no other file.
 
     Args:
         title: name of the config.
         command: command line.
         sweep: what was measured.
-        cores: cores of the machine.
+        sentences: its recommendation.
         figure: its figure, PNG.
     """
-    sentences = "".join(f"<li>{_code(sentence)}</li>" for sentence in recommend(sweep, cores))
+    items = "".join(f"<li>{_code(sentence)}</li>" for sentence in sentences)
     tables = "".join(
         f"<h3>{heading}</h3><p>{_code(about)}</p>{_html_table(rows)}"
         for heading, about, rows in _sections(sweep)
@@ -204,7 +209,7 @@ def page(title: str, command: str, sweep: Sweep, cores: int, figure: bytes) -> s
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         f"<title>What accuracy costs: {name}</title><style>{_STYLE}</style></head><body>"
         f"<h1>What accuracy costs: {name}</h1><p><code>{html.escape(command)}</code></p>"
-        f'<ul>{sentences}</ul><img alt="time against difference" '
+        f'<ul>{items}</ul><img alt="time against difference" '
         f'src="data:image/png;base64,{image}"><h2>Settings</h2>'
         f"<p>{_code(_about_times(sweep))}</p>{tables}<p>{_code(_omitted(sweep))}</p></body></html>\n"
     )

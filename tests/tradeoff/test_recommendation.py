@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from radhar_cli.config.engine import EngineConfig
 from radhar_cli.tradeoff.differences import PointDifference
 from radhar_cli.tradeoff.recommendation import recommend, saves
 from radhar_cli.tradeoff.row import AccuracyNumbers, MapNumbers, Row
@@ -11,6 +12,7 @@ from radhar_cli.tradeoff.setting import DEFAULT, Change
 from radhar_cli.tradeoff.sweep import Omission, Sweep
 from radhar_cli.tradeoff.timing import Ratio
 
+ENGINE = EngineConfig()
 AS_IT_IS = Row(
     *("default", DEFAULT, (), DEFAULT, Change.ERROR),
     is_default=True,
@@ -38,7 +40,7 @@ def sweep(*rows, blur=0.03, **more):
 
 
 def text(*rows, **more):
-    return "\n".join(recommend(sweep(*rows, **more), cores=2))
+    return "\n".join(recommend(sweep(*rows, **more), ENGINE, cores=2))
 
 
 def accuracy(*by_seed):
@@ -53,7 +55,7 @@ def test_the_floor_of_the_image_and_the_error_of_the_config():
 
 
 def test_an_error_that_shows_is_said():
-    sentences = recommend(replace(sweep(), rows=[replace(AS_IT_IS, error_db=-40.0)]))
+    sentences = recommend(replace(sweep(), rows=[replace(AS_IT_IS, error_db=-40.0)]), ENGINE)
     assert any("shows in stft" in sentence for sentence in sentences)
 
 
@@ -91,7 +93,7 @@ def test_another_picture_is_named_and_not_recommended_unmeasured():
 def test_accuracy_that_is_lost_beyond_chance_is_a_price():
     tried = row("body.scatterers: points", 0.4, accuracy=accuracy(0.76, 0.77, 0.78, 0.77, 0.77))
     default = replace(AS_IT_IS, accuracy=accuracy(0.8, 0.81, 0.82, 0.81, 0.81))
-    lines = "\n".join(recommend(replace(sweep(), rows=[default, tried])))
+    lines = "\n".join(recommend(replace(sweep(), rows=[default, tried]), ENGINE))
     assert "saves 60 % (59 to 61) of the time and costs four points of accuracy" in lines
     assert "(81 to 77, five seeds)" in lines
     assert "Recommended: the config as it is" in lines
@@ -102,7 +104,7 @@ def lines_with_accuracies(*shares: float) -> str:
     """Sentences on a body of points whose networks have these accuracies."""
     tried = row("body.scatterers: points", 0.4, accuracy=accuracy(*shares))
     default = replace(AS_IT_IS, accuracy=accuracy(0.80, 0.81, 0.82))
-    return "\n".join(recommend(replace(sweep(), rows=[default, tried])))
+    return "\n".join(recommend(replace(sweep(), rows=[default, tried]), ENGINE))
 
 
 def test_accuracy_that_is_the_same_for_sure_is_recommended():
@@ -131,6 +133,25 @@ def test_maps_that_are_left_out_are_no_free_saving():
 def test_a_looser_tolerance_that_is_the_same_says_so():
     tried = row("engine.tolerance_db: -60", 1.0, over_one=0.0, effect=Change.ERROR, error_db=-107.0)
     assert "`engine.tolerance_db: -60` is the same signal as the default's" in text(tried)
+
+
+@pytest.mark.parametrize(
+    ("tolerance_db", "engine", "is_same"),
+    [
+        (-60, ENGINE, True),
+        (-100, ENGINE, False),
+        (-80, EngineConfig(tolerance_db=-60.0), True),
+        (-60, EngineConfig(tolerance_db=-100.0), False),
+        (-60, EngineConfig(fallback="cube"), False),  # which is for fewer scenes at -60 dB
+    ],
+)
+def test_the_same_signal_follows_from_the_config_whatever_scenes_were_compared(
+    tolerance_db, engine, is_same
+):
+    name = f"engine.tolerance_db: {tolerance_db}"
+    tried = row(name, 1.0, over_one=0.0, effect=Change.ERROR, error_db=-111.0, scenes=2)
+    lines = "\n".join(recommend(sweep(tried), engine))
+    assert (f"`{name}` is the same signal as the default's" in lines) is is_same
 
 
 def test_the_cube_is_slower_and_shows_nothing_more():

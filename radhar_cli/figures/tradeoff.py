@@ -63,16 +63,9 @@ def tradeoff_png(marks: Sequence[SettingMark], title: str) -> bytes:
         colour = COLOURS[kind]
         inner, rim = (colour, "0.2") if mark.has_all_maps else ("none", colour)
         axes.plot(mark.ratio, _height(mark), shape, ms=6, mew=0.6, mfc=inner, mec=rim)
-    edge = frontier(drawn)
-    if len(edge) > 1:
-        axes.plot(
-            *([mark.ratio for mark in edge], [_height(mark) for mark in edge]),
-            *("--",),
-            color="0.6",
-            lw=1,
-            zorder=0,
-        )
     _label_axes(axes, drawn, title)
+    _draw_frontier(axes, drawn)
+    axes.legend(loc="upper right", fontsize=7.5, framealpha=0.9)
     figure.canvas.draw()
     place_names(axes, drawn)
     return png_bytes(figure)
@@ -89,6 +82,15 @@ def frontier(marks: Sequence[SettingMark]) -> list[SettingMark]:
         if not edge or mark.levels < edge[-1].levels:
             edge.append(mark)
     return [*edge, *(mark for mark in marks if mark.name == DEFAULT_NAME)]
+
+
+def _draw_frontier(axes: Axes, marks: Sequence[SettingMark]) -> None:
+    """Draw a line along the frontier, with its entry in the legend, where it has two marks."""
+    edge = frontier(marks)
+    if len(edge) > 1:
+        ratios, heights = [mark.ratio for mark in edge], [_height(mark) for mark in edge]
+        label = "saves time; no other is both faster and nearer"
+        axes.plot(ratios, heights, "--", color="0.6", lw=1, zorder=-1, label=label)
 
 
 def _height(mark: SettingMark) -> float:
@@ -125,10 +127,6 @@ def _label_axes(axes: Axes, marks: Sequence[SettingMark], title: str) -> None:
     ):
         rim = COLOURS["picture"] if kind == "none" else "0.2"
         axes.plot([], [], shape, mfc=COLOURS.get(kind, "none"), mec=rim, mew=0.6, label=words)
-    axes.plot(
-        [], [], "--", color="0.6", lw=1, label="saves time; no other is both faster and nearer"
-    )
-    axes.legend(loc="upper right", fontsize=7.5, framealpha=0.9)
 
 
 def place_names(axes: Axes, marks: Sequence[SettingMark]) -> list[Annotation]:

@@ -2,6 +2,8 @@
 
 from itertools import combinations
 
+import pytest
+
 from radhar_cli.figures.page import page
 from radhar_cli.figures.tradeoff import SettingMark, frontier, place_names, tradeoff_png
 
@@ -17,6 +19,17 @@ def test_only_what_saves_time_and_shows_all_maps_is_on_the_frontier():
     fewer = SettingMark("maps without x", 0.4, 0, False, has_all_maps=False, saves=True)
     marks = [DEFAULT, near, far, worse, doubtful, fewer]
     assert frontier(marks) == [far, near, DEFAULT]
+
+
+@pytest.mark.parametrize("has_saving", [True, False])
+def test_the_legend_has_the_frontier_only_where_it_is_drawn(monkeypatch, has_saving):
+    figures = []
+    monkeypatch.setattr("radhar_cli.figures.tradeoff.png_bytes", figures.append)
+    tradeoff_png([DEFAULT, SettingMark("a", 0.8, 2, False, saves=has_saving)], "x")
+    (axes,) = figures[0].axes
+    texts = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert len(texts) == 4 + has_saving
+    assert any("no other is both faster" in text for text in texts) is has_saving
 
 
 def test_names_lie_beside_each_other():

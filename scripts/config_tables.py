@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
 from annotated_types import Ge, Gt, Le, Lt
+from page_parts import replace_part
 from pydantic import BaseModel
 
 from radhar_cli.config.annotations import (
@@ -32,18 +33,16 @@ from radhar_cli.config.starting_file import as_text
 
 REFERENCE = Path(__file__).resolve().parents[1] / "docs/reference"
 PAGES = ("config.md", "config_signal.md", "limits.md")
-PLACE = re.compile(r"(<!-- (keys: [^>]*|limits) -->\n).*?(<!-- end -->)", re.DOTALL)
+MARKER = re.compile(r"<!-- (keys: [^>]*|limits) -->")
 
 
-def written(page: str) -> str:
-    """A page with its tables as the schema has them."""
-
-    def table(place: re.Match[str]) -> str:
-        kind, _, names = place[2].partition(": ")
-        lines = _limits() if kind == "limits" else _keys(names.split())
-        return f"{place[1]}{chr(10).join(lines)}\n{place[3]}"
-
-    return PLACE.sub(table, page)
+def fill_tables(page: str) -> str:
+    """Return a page with its tables as the schema has them."""
+    for marker in MARKER.finditer(page):
+        kind, _, names = marker[1].partition(": ")
+        table = "\n".join(_limits() if kind == "limits" else _keys(names.split()))
+        page = replace_part(page, marker[1], table, marker[0], "<!-- end -->")
+    return page
 
 
 def _keys(names: list[str]) -> Iterator[str]:
@@ -177,7 +176,7 @@ def _range(about: tuple[Any, ...]) -> str:
 def main() -> None:
     """Write the pages."""
     for page in map(REFERENCE.joinpath, PAGES):
-        page.write_text(written(page.read_text()))
+        page.write_text(fill_tables(page.read_text()))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,8 @@ import argparse
 import re
 from pathlib import Path
 
+from page_parts import replace_part
+
 from radhar_cli.limits.report import HEAD, TEXT
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/results/extremes.md"
@@ -22,8 +24,8 @@ def _without_noise(line: str) -> str:
     return re.sub(r"; there [12](?:\.\d+)? times as slow", "", line)
 
 
-def part(out: Path, commit: str) -> tuple[str, str]:
-    """Name of a result, and its text one heading lower."""
+def read_result(out: Path, commit: str) -> tuple[str, str]:
+    """Read a result: its name, and its part of the page."""
     lines = (out / TEXT).read_text().replace(str(out), f"out/{out.name}").splitlines()
     lines = [_without_noise(line) for line in lines]
     margins = [line for line in lines if line.startswith("| ") and not ROW.match(line)]
@@ -52,9 +54,11 @@ def main() -> None:
     arguments = parser.parse_args()
     page = PAGE.read_text()
     for out in arguments.out:
-        name, text = part(out, arguments.commit)
-        place = re.compile(rf"(<!-- begin {name} -->\n).*?(<!-- end {name} -->)", re.DOTALL)
-        page = place.sub(lambda match, text=text: f"{match[1]}{text}\n{match[2]}", page)
+        name, text = read_result(out, arguments.commit)
+        try:
+            page = replace_part(page, name, text)
+        except ValueError as error:
+            parser.error(f"{PAGE}: {error}")
     PAGE.write_text(page)
 
 

@@ -13,6 +13,8 @@ import re
 import shutil
 from pathlib import Path
 
+from page_parts import replace_part
+
 from radhar_cli.tradeoff.report import FIGURE, SETTINGS, TEXT
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
@@ -20,42 +22,30 @@ PAGE, TABLES = DOCS / "results/tradeoff.md", DOCS / "records/tradeoff_tables.md"
 IMAGES = DOCS / "images/tradeoff"
 
 
-def part(out: Path) -> tuple[str, str, str]:
-    """Name of a result, what it recommends with the figure of the documents, and its tables."""
+def read_result(out: Path) -> tuple[str, str, str]:
+    """Read a result: its name, its recommendation with the figure of the documents, its tables."""
     text = (out / TEXT).read_text().replace(str(out.parent), "out")
-    said, _, tables = text.partition(SETTINGS)
-    title, _, said = said.partition("\n")
+    recommendation, _, tables = text.partition(SETTINGS)
+    title, _, recommendation = recommendation.partition("\n")
     name = title.rpartition(": ")[2]
-    said = said.replace(f"({FIGURE})", f"(../images/tradeoff/{name}.png)")
+    figure = f"(../images/tradeoff/{name}.png)"
+    recommendation = recommendation.replace(f"({FIGURE})", figure)
     tables = re.sub(r"^###", "####", tables, flags=re.MULTILINE)
-    return name, f"## {name}\n{said}", f"## {name}\n{tables}"
-
-
-def with_part(page: str, name: str, text: str) -> str:
-    """Page in which the part of a name has a text.
-
-    Raises:
-        ValueError: the page has no markers for it.
-    """
-    begin, end = f"<!-- begin {name} -->", f"<!-- end {name} -->"
-    head, opened, rest = page.partition(begin)
-    _, closed, tail = rest.partition(end)
-    if not opened or not closed:
-        raise ValueError(f"has no markers for {name}")
-    return f"{head}{begin}\n\n{text.strip()}\n\n{end}{tail}"
+    return name, f"## {name}\n{recommendation}", f"## {name}\n{tables}"
 
 
 def main() -> None:
+    """Write the parts of both pages, and the figures."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     parser.add_argument("out", type=Path, nargs="+")
     pages = {path: path.read_text() for path in (PAGE, TABLES)}
     for out in parser.parse_args().out:
-        name, *texts = part(out)
+        name, *texts = read_result(out)
         for path, text in zip(pages, texts, strict=True):
             try:
-                pages[path] = with_part(pages[path], name, text)
+                pages[path] = replace_part(pages[path], name, f"\n{text.strip()}\n")
             except ValueError as error:
                 parser.error(f"{path}: {error}")
         shutil.copyfile(out / FIGURE, IMAGES / f"{name}.png")

@@ -30,6 +30,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from page_parts import replace_part
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -880,12 +881,12 @@ def page_text(scales: tuple[str, ...], results: Path) -> str:
     return "\n".join(lines)
 
 
-def write_page(path: Path, text: str, begin: str = BEGIN) -> None:
+def write_page(path: Path, text: str) -> None:
     """Replace what stands between the markers of a page; the words around it stay."""
-    page = path.read_text() if path.exists() else f"# Results\n\n{begin}\n{END}\n"
-    before, _, rest = page.partition(begin)
-    after = rest.partition(END)[2]
-    path.write_text(f"{before}{begin}\n{text}\n{END}{after}")
+    page = path.read_text() if path.exists() else "# Results\n\n"
+    if BEGIN not in page:
+        page += f"{BEGIN}\n{END}\n"
+    path.write_text(replace_part(page, "tables", text, BEGIN, END))
 
 
 def wanted(scale: Scale, words: list[str], results: Path, again: bool) -> list[Training]:

@@ -6,19 +6,20 @@ The table stands between `<!-- commands -->` and `<!-- end -->`; what stands aro
 hand.
 """
 
-import re
 from collections.abc import Iterator
 from pathlib import Path
+
+from page_parts import replace_part
 
 from radhar_cli.radar.ti_commands import COMMANDS, Argument, Command, Effect
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/reference/ti_commands.md"
-PLACE = re.compile(r"(<!-- commands -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 def fill_table(page: str) -> str:
     """Return a page with its table as the parser has it."""
-    return PLACE.sub(lambda place: f"{place[1]}{chr(10).join(_sections())}\n{place[2]}", page)
+    table = "\n".join(_sections())
+    return replace_part(page, "commands", table, "<!-- commands -->", "<!-- end -->")
 
 
 def _sections() -> Iterator[str]:

@@ -76,14 +76,14 @@ def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Set
     )
 
 
-def goal(tolerance_db: float) -> float:
-    """Error (dB) that sums are made for: a tolerance (dB), or the default where that is looser."""
+def target_error_db(tolerance_db: float) -> float:
+    """Error (dB) that sums are made for: the tolerance (dB), or the default where it is looser."""
     return min(tolerance_db, LOOSEST_DB)
 
 
 def first_aim(tolerance_db: float) -> float:
     """Error (dB) for which settings are first chosen, below a tolerance (dB)."""
-    return max(goal(tolerance_db) - MARGIN_DB, MIN_AIM_DB)
+    return max(target_error_db(tolerance_db) - MARGIN_DB, MIN_AIM_DB)
 
 
 class AccuracyError(ValueError):

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.echo.accuracy import GOLDEN, SPARE_DB, AccuracyError, Probes, goal
+from radhar_cli.echo.accuracy import GOLDEN, SPARE_DB, AccuracyError, Probes, target_error_db
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.chebyshev import coefficients
 from radhar_cli.echo.interpolation import lagrange_basis
@@ -150,7 +150,7 @@ def fast_cube(
     Raises:
         AccuracyError: The tolerance is missed all the same.
     """
-    attempts = _attempts(channels, board, goal(tolerance_db))
+    attempts = _attempts(channels, board, target_error_db(tolerance_db))
     cube, power, error = min(attempts, key=lambda attempt: attempt[2])
     if error > tolerance_db - SPARE_DB:
         raise AccuracyError(error + SPARE_DB)
@@ -158,15 +158,15 @@ def fast_cube(
 
 
 def _attempts(
-    channels: Sequence[PathSource], board: Board, goal_db: float
+    channels: Sequence[PathSource], board: Board, target_db: float
 ) -> Iterator[tuple[Complex, float, float]]:
     """Samples, P_s and the measured error of ever finer settings, until one will do."""
-    precise = goal_db < SINGLE_DB
+    precise = target_db < SINGLE_DB
     for count, double in ((NODES, precise), (MORE_NODES, True), (board.loops, True)):
-        cube, power, roughness = _summed(channels, board, goal_db, count, double)
+        cube, power, roughness = _summed(channels, board, target_db, count, double)
         error = measured_db(cube, channels, board, roughness)
         yield cube, power, error
-        if not error > goal_db - SPARE_DB:  # NaN of a signal that is no number
+        if not error > target_db - SPARE_DB:  # NaN of a signal that is no number
             return
 
 

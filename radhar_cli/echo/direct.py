@@ -22,9 +22,9 @@ from radhar_cli.echo.accuracy import (
     AccuracyError,
     Settings,
     first_aim,
-    goal,
     measured_db,
     settings,
+    target_error_db,
 )
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.half_band_sum import half_band_table
@@ -97,7 +97,8 @@ class DirectEcho:
 
         It is within the tolerance or, where that is looser, the default.
         """
-        goal_db, aim = goal(self.tolerance_db), first_aim(self.tolerance_db)
+        target_db = target_error_db(self.tolerance_db)
+        aim = first_aim(self.tolerance_db)
         chosen, motion = self._settings(aim), self._motion
         while True:
             chosen = chosen._replace(single=chosen.single and self._single_will_do(motion))
@@ -107,9 +108,9 @@ class DirectEcho:
             y *= unit
             yield y, Accuracy(motion.step, chosen.table_oversampling, chosen.single, error)
             # NaN is that of a signal that is no number
-            if not error > goal_db - SPARE_DB or aim == MIN_AIM_DB:
+            if not error > target_db - SPARE_DB or aim == MIN_AIM_DB:
                 return
-            aim = max(aim - max(REFINE_DB, error - goal_db), MIN_AIM_DB)
+            aim = max(aim - max(REFINE_DB, error - target_db), MIN_AIM_DB)
             chosen = self._settings(aim)._replace(single=False)
             motion = self._resolved(chosen.spacing)
 
@@ -154,7 +155,7 @@ class DirectEcho:
         amplitude = paths.amplitude[:, sampled] * summed[:, None]
         taps = enumerate(self.canceller.taps)
         left = sum(c * unit_phasor(k * turn, np.complex64) for k, c in taps)
-        rounding_db = SINGLE_ROUNDING_DB + ROUNDING_SPARE_DB - goal(self.tolerance_db)
+        rounding_db = SINGLE_ROUNDING_DB + ROUNDING_SPARE_DB - target_error_db(self.tolerance_db)
         least = 10 ** (rounding_db / 10) * np.sum(amplitude**2)
         return bool(np.sum(np.abs(left * amplitude) ** 2) > least)
 

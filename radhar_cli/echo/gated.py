@@ -33,7 +33,7 @@ from radhar_cli.echo.interpolation import (
 from radhar_cli.echo.knots import Knots, PathsAtKnots
 from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.phase_recurrence import phasors_between_knots
-from radhar_cli.numerics.arrays import Complex, Float, Index
+from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Fir
 from radhar_cli.processing.look import Look, RangeBins
@@ -115,6 +115,19 @@ class GatedEcho(DirectEcho):
         every = np.ones(self.waveform.n_pulses, np.intp)
         return self.bins.start * every, self.bins.stop * every
 
+    def counted_bins(self) -> Bool:
+        """Which bins count at which pulses [bins, M - lost] after the canceller.
+
+        A bin counts there if it counts at all pulses that the canceller combines.
+        """
+        low, high = self._needed()
+        window = self.canceller.lost + 1
+        combined = np.lib.stride_tricks.sliding_window_view
+        k = np.arange(self.bins.start, self.bins.stop)[:, None]
+        counted: Bool = combined(low, window).max(axis=1) <= k
+        counted &= k < combined(high, window).min(axis=1)
+        return counted
+
     def _sum(self, chosen: Settings, motion: PathsAtKnots, unit: float) -> Complex:
         numbers, w = np.flatnonzero(self._summed(motion)), self.waveform
         y = np.zeros((self.bins.stop - self.bins.start, w.n_pulses), dtype=complex)
@@ -187,13 +200,8 @@ class GatedEcho(DirectEcho):
         """Relative L2 error (dB) of all bins that count, together, after the canceller."""
         w = self.waveform
         fir = self.canceller if isinstance(self.canceller, Fir) else NO_CANCELLER
-        low, high = self._needed()
-        lags = np.lib.stride_tricks.sliding_window_view
-        low = lags(low, fir.lost + 1).max(axis=1)
-        high = lags(high, fir.lost + 1).min(axis=1)
-        k = np.arange(self.bins.start, self.bins.stop)[:, None]
-        inside = (low <= k) & (k < high)
-        pairs = np.where(inside, self.canceller(y), 0).view(float)
+        counted = self.counted_bins()
+        pairs = np.where(counted, self.canceller(y), 0).view(float)
         power = np.einsum("km,km->m", pairs, pairs).reshape(-1, 2).sum(axis=1)
         step = motion.roughness.step
         powers = np.add.reduceat(power, np.arange(0, power.size, step))
@@ -209,7 +217,7 @@ class GatedEcho(DirectEcho):
         )
         for lag, c in enumerate(fir.taps):
             right -= c * y[:, probes.pulses + lag]
-        right *= inside[:, probes.pulses]
+        right *= counted[:, probes.pulses]
         return probes.bound_db((right.real**2 + right.imag**2).sum(axis=0))
 
 

@@ -42,7 +42,7 @@ def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Com
     such; else the pulses that they need are drawn and cancelled.
     """
     fast, rank, reach = look.fast, look.fast.rank, len(look.taps) - 1
-    if reach == 0 and isinstance(fast, RangeBins) and _are_few_and_correlated(fast, look):
+    if reach == 0 and isinstance(fast, RangeBins) and _draws_bins(fast, look):
         return _correlated_noise(fast, look, rng, sigma)
     if look.spans is not None and fast.white:
         v = np.zeros((rank, look.count), complex)
@@ -59,19 +59,23 @@ def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Com
     return fast.colour(v, sigma)
 
 
-def _are_few_and_correlated(bins: RangeBins, look: Look) -> bool:
-    """Whether noise is correlated over fewer bins than there are samples, at many pulses."""
-    many = look.spans is not None or bins.bins is not None
-    return many and not bins.white and bins.rows < bins.waveform.n_adc
+def _draws_bins(bins: RangeBins, look: Look) -> bool:
+    """Whether correlated noise is drawn in the bins themselves, not as raw samples.
+
+    So it is of a part of the bins, or of bins that count at a part of the pulses, that are fewer
+    than the samples of a chirp.
+    """
+    is_partial = look.spans is not None or bins.bins is not None
+    return is_partial and not bins.white and bins.rows < bins.waveform.n_adc
 
 
 def _correlated_noise(
     bins: RangeBins, look: Look, rng: np.random.Generator, sigma: float
 ) -> Complex:
-    """White noise in range bins that it is not independent in [K, M].
+    """White noise of raw samples in range bins [K, M], correlated from bin to bin.
 
-    Stretch by stretch of the pulses, in the bins that count there, in single precision, as it is
-    drawn.
+    It is drawn in single precision for one stretch of pulses after the other, in the bins that
+    count there; elsewhere it is 0.
     """
     spans = look.spans or [slice(0, look.count)] * bins.rows
     begin, end = np.array([(span.start, span.stop) for span in spans]).T
@@ -98,15 +102,16 @@ class WhiteNoise(Impairment):
     def apply(self, x: Complex, look: Look) -> Complex:
         """Add sigma v to x [K, M], v of covariance W W^H.
 
-        Blocks of any length have the same raw samples. Of pulses that count by their sum alone one
-        gets the noise of all.
+        Blocks of any length have the same raw samples. Where a look names its columns, the other
+        pulses count by their sum alone: the first of them gets the noise of all.
         """
         rng = look.state_of(self, self.stream)
-        if look.columns is not None and (others := look.count - look.columns.size):
-            columns = np.append(look.columns, np.setdiff1d(np.arange(look.count), look.columns)[0])
-            v = circular_gaussian(rng, (columns.size, look.fast.rank)).T
-            v[:, -1] *= np.sqrt(others)
-            x[:, columns] += look.fast.colour(v, self.sigma)
+        if look.columns is not None and look.columns.size < look.count:
+            summed = np.setdiff1d(np.arange(look.count), look.columns)
+            noisy_pulses = np.append(look.columns, summed[0])
+            v = circular_gaussian(rng, (noisy_pulses.size, look.fast.rank)).T
+            v[:, -1] *= np.sqrt(summed.size)
+            x[:, noisy_pulses] += look.fast.colour(v, self.sigma)
             return x
         noisy = white_noise(look, rng, self.sigma)
         noisy += x

@@ -44,13 +44,13 @@ def draw_valid_scene(
     """
     misses = list[tuple[str, float]]()
     draws = DRAWS_OF[redrawn(config, activity)]
+    limit = MAX_ATTEMPTS if attempts is None else attempts
     while True:
         scene = draw_scene(config, activity, index, len(misses))
         check = check_people(scene, scene.people[:1])
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
             return _add_others(config, scene, check.flags)
         misses.append(check.miss)
-        limit = MAX_ATTEMPTS if attempts is None else attempts
         if len(misses) >= limit or config.on_invalid != "redraw" or is_hopeless(misses, draws):
             break
     reason = f"{check.invalid}{_describe_place(scene.people[0])}"

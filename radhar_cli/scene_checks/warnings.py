@@ -45,7 +45,7 @@ def warnings_of_signal(config: Config) -> list[str]:
 
 
 def _loose_tolerance(config: Config) -> Iterator[str]:
-    """Say that a tolerance looser than the default has its effect."""
+    """Say that a tolerance looser than the default runs as the default."""
     tolerance_db = config.engine.tolerance_db
     computed = config.engine.kind == "direct" and not isinstance(config.radar, ImpulseRadar)
     if computed and tolerance_db > LOOSEST_DB:
@@ -84,13 +84,14 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
 
 
 def _describe_chain(chain: Chain, header: BoardHeader) -> str:
-    """Say by which chain points are found where the config does not."""
+    """Say which chain finds the points where the config names none, and why it is that one."""
     if chain != "best":
         return f"cloud.chain: {chain}, the firmware whose commands radar.cfg has"
-    why = (*header.missing, "radar.cfg has no detection of a firmware that is simulated")[0]
     if header.firmware is not None:
-        why = f"the elements of the board do not fit {header.firmware}"
-    return f"cloud.chain: best, as {why}"
+        return f"cloud.chain: best, as the elements of the board do not fit {header.firmware}"
+    if header.missing:
+        return f"cloud.chain: best, as {header.missing[0]}"
+    return "cloud.chain: best, as radar.cfg has no detection of a firmware that is simulated"
 
 
 def _gives_window(config: Config) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import inf, isfinite
 
 from radhar_cli.config.engine import EngineConfig
-from radhar_cli.echo.accuracy import goal
+from radhar_cli.echo.accuracy import target_error_db
 from radhar_cli.tradeoff.floor import VISIBLE
 from radhar_cli.tradeoff.intervals import paired_difference
 from radhar_cli.tradeoff.row import Row
@@ -127,7 +127,8 @@ def _is_same_signal(row: Row, engine: EngineConfig) -> bool:
     """
     key, _, value = row.name.partition(": ")
     is_tolerance = key == TOLERANCE and engine.fallback == "refuse"
-    return is_tolerance and goal(float(value)) == goal(engine.tolerance_db)
+    target_db = target_error_db(engine.tolerance_db)
+    return is_tolerance and target_error_db(float(value)) == target_db
 
 
 def _shown_error(row: Row) -> str:

@@ -21,7 +21,7 @@ from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.exact import exact_echo
 from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.errors import SceneError
-from radhar_cli.numerics.arrays import Bool, Complex
+from radhar_cli.numerics.arrays import Complex
 from radhar_cli.products.run import record
 from radhar_cli.scene import Scene, draw_scene
 
@@ -32,17 +32,17 @@ BOARDS = Path(__file__).resolve().parents[2] / "configs" / "boards"
 CHUNK = 2**12  # pulses whose exact paths are in memory at once
 
 
-class Compared(NamedTuple):
-    """One scene."""
+class ErrorsOfScene(NamedTuple):
+    """Relative error (dB) of a scene after the canceller: what was allowed, stated and is true."""
 
     label: str
     tolerance_db: float
     stated_db: float
-    true_db: float  # after the canceller
+    true_db: float
 
 
-def random_config(rng: np.random.Generator, kind: str) -> dict[str, object]:
-    """A radar of 2 to 81 GHz, or a board, and a person of some kind of body and surroundings."""
+def draw_config(rng: np.random.Generator, kind: str) -> dict[str, object]:
+    """Draw a radar of 2 to 81 GHz, or a board, and a person of some body and surroundings."""
     body = kind if kind in ("points", "segments", "surfaces") else "points"
     if kind in ("room", "stepped", "board"):
         body = str(rng.choice(["points", "segments", "surfaces"]))
@@ -81,25 +81,27 @@ def random_config(rng: np.random.Generator, kind: str) -> dict[str, object]:
     return drawn | {"room": {"faces": {"floor": "concrete"} if rng.random() < 0.2 else None}}
 
 
-def compared(scenes: int, seed: int) -> Iterator[Compared]:
-    """Random scenes that the direct engine makes."""
+def compare_errors(scenes: int, seed: int) -> Iterator[ErrorsOfScene]:
+    """Draw scenes and compare the errors of those that the direct engine makes."""
     rng = np.random.default_rng(seed)
     for number in range(scenes):
         kind, activity = KINDS[number % len(KINDS)], ACTIVITIES[number // len(KINDS) % 12]
-        drawn, tolerance_db = random_config(rng, kind), float(rng.choice(TOLERANCES_DB))
+        drawn = draw_config(rng, kind)
+        tolerance_db = float(rng.choice(TOLERANCES_DB))
         config = Config.model_validate(drawn | {"engine": {"tolerance_db": tolerance_db}})
         try:
             scene = draw_scene(config, activity, 0)
-            errors_db = (of_board if kind == "board" else of_pulses)(scene, tolerance_db)
+            errors_of = errors_of_board if kind == "board" else errors_of_signal
+            stated_db, true_db = errors_of(scene, tolerance_db)
         except (AccuracyError, SceneError) as error:
             print(f"{kind}, {activity.slug}, seed {drawn['seed']}: {error}", flush=True)
             continue
-        if np.isfinite(errors_db).all():
-            name = f"{kind}, {activity.slug}, seed {drawn['seed']}"
-            yield Compared(name, tolerance_db, *errors_db)
+        if np.isfinite([stated_db, true_db]).all():
+            label = f"{kind}, {activity.slug}, seed {drawn['seed']}"
+            yield ErrorsOfScene(label, tolerance_db, stated_db, true_db)
 
 
-def of_board(scene: Scene, tolerance_db: float) -> tuple[float, float]:
+def errors_of_board(scene: Scene, tolerance_db: float) -> tuple[float, float]:
     """Stated and true error (dB) of the cube of a board."""
     made = record(scene, ["channels", "board"])
     cube, _, stated_db = fast_cube(made["channels"], made["board"], tolerance_db)
@@ -107,20 +109,21 @@ def of_board(scene: Scene, tolerance_db: float) -> tuple[float, float]:
     return stated_db, relative_db(cube - exact, exact)
 
 
-def of_pulses(scene: Scene, tolerance_db: float) -> tuple[float, float]:
+def errors_of_signal(scene: Scene, tolerance_db: float) -> tuple[float, float]:
     """Stated and true error (dB) of a signal, or of the bins of a gate, after the canceller."""
-    gated = scene.config.processing.range_sum == "gated"
-    made = record(scene, ["paths", "waveform", "canceller", *["gated"] * gated])
-    echo = (
-        made["gated"]
-        if gated
-        else DirectEcho(made["paths"], made["waveform"], tolerance_db, canceller=made["canceller"])
-    )
+    if scene.config.processing.range_sum == "gated":
+        echo: DirectEcho = record(scene, ["gated"])["gated"]
+    else:
+        made = record(scene, ["paths", "waveform", "canceller"])
+        echo = DirectEcho(
+            made["paths"], made["waveform"], tolerance_db, canceller=made["canceller"]
+        )
     y, stated = echo.rows()
     exact = exact_rows(echo)
     error, x = echo.canceller(y - exact), echo.canceller(exact)
     if isinstance(echo, GatedEcho):
-        error, x = (np.where(counted_bins(echo), part, 0) for part in (error, x))
+        counted = echo.counted_bins()
+        error, x = np.where(counted, error, 0), np.where(counted, x, 0)
     return stated.error_db, relative_db(error, x)
 
 
@@ -137,16 +140,6 @@ def exact_rows(echo: DirectEcho) -> Complex:
     return np.concatenate(parts)[None]
 
 
-def counted_bins(echo: GatedEcho) -> Bool:
-    """Which bins count at which pulses after the canceller [K, pulses]."""
-    low, high = echo._needed()
-    lost = echo.canceller.lost
-    lags = np.lib.stride_tricks.sliding_window_view
-    k = np.arange(echo.bins.start, echo.bins.stop)[:, None]
-    counted: Bool = (lags(low, lost + 1).max(axis=1) <= k) & (k < lags(high, lost + 1).min(axis=1))
-    return counted
-
-
 def relative_db(error: Complex, x: Complex) -> float:
     """Relative L2 error, dB."""
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -159,20 +152,20 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=144)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
-    better, over = list[float](), 0
-    for one in compared(arguments.scenes, arguments.seed):
-        better.append(one.true_db - one.stated_db)
-        over += one.true_db > one.tolerance_db
+    scenes = list[ErrorsOfScene]()
+    for scene in compare_errors(arguments.scenes, arguments.seed):
+        scenes.append(scene)
         print(
-            f"{one.label}: tolerance {one.tolerance_db:.0f}, stated {one.stated_db:.1f}, "
-            f"true {one.true_db:.1f} dB",
+            f"{scene.label}: tolerance {scene.tolerance_db:.0f}, stated {scene.stated_db:.1f}, "
+            f"true {scene.true_db:.1f} dB",
             flush=True,
         )
-    gaps = np.array(better)
+    excess_db = np.array([scene.true_db - scene.stated_db for scene in scenes])
+    beyond = sum(scene.true_db > scene.tolerance_db for scene in scenes)
     print(
-        f"{gaps.size} scenes: stated at most {gaps.max():.1f} dB better than true, "
-        f"{-gaps.min():.1f} dB worse; standard deviation {gaps.std():.1f} dB; "
-        f"{over} beyond their tolerance"
+        f"{len(scenes)} scenes: stated at most {excess_db.max():.1f} dB better than true, "
+        f"{-excess_db.min():.1f} dB worse; standard deviation {excess_db.std():.1f} dB; "
+        f"{beyond} beyond their tolerance"
     )
 
 

@@ -32,8 +32,8 @@ def test_a_burst_of_errors_in_a_few_milliseconds_is_measured() -> None:
 @pytest.mark.slow
 def test_random_scenes() -> None:
     """Other scenes than those of the documentation."""
-    found = list(stated_errors.compared(48, seed=2))
-    assert len(found) > 40
-    for one in found:
-        assert one.true_db < one.tolerance_db, one
-        assert one.true_db <= one.stated_db, one
+    scenes = list(stated_errors.compare_errors(48, seed=2))
+    assert len(scenes) > 40
+    for scene in scenes:
+        assert scene.true_db < scene.tolerance_db, scene
+        assert scene.true_db <= scene.stated_db, scene

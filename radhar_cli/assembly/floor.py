@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from math import radians
-from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from radhar_cli.motion.human.kneeling import GetDown, Kneel, RiseFromKnees
 from radhar_cli.motion.human.lying import Lie, Rest, TurnOver
 from radhar_cli.motion.human.motion import Movement
 from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.repertoire import FloorMovements
 from radhar_cli.motion.human.sitting import Rise
 from radhar_cli.motion.human.transfer import GoToBed, LeaveBed, LieStill, RiseFromRest, Settle
 from radhar_cli.scene import Person
@@ -24,19 +24,6 @@ IN_BED = "in_bed"
 Lies = Lie | TurnOver | GoToBed
 MISSES = 397  # how many footholds of who crawls are drawn, before they come again
 SOMEBODY = Physique(1.7)  # states and rolls are the same of every stature
-
-
-class FloorMovements(NamedTuple):
-    """Movements of a person on the floor and in bed."""
-
-    crawl: Crawl
-    kneel: Kneel
-    kneel_down: GetDown
-    get_on_fours: GetDown
-    lie: Lie
-    turn_over: TurnOver
-    go_to_bed: GoToBed
-    leave_bed: LeaveBed
 
 
 def draw_floor_movements(

@@ -2,13 +2,13 @@
 
 from dataclasses import replace
 from math import pi, radians
-from typing import NamedTuple
 
 import numpy as np
 
 from radhar_cli.config.motion import GesturesConfig
 from radhar_cli.motion.human.gesturing import AT_TABLE, Clap, Drink, Wave, Write
 from radhar_cli.motion.human.idle import Waves
+from radhar_cli.motion.human.repertoire import Gestures
 from radhar_cli.motion.human.sitting import Seat
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene import Person
@@ -19,17 +19,6 @@ STROKES_UP, STROKES_ACROSS = (0.53, 1.0, 1.27), (0.41, 0.79, 1.11)
 # cup and returning, medians of de los Reyes-Guzman et al. (2010).
 CUP_IN_HAND = 0.65
 ON_BOARD = 0.7  # rate of strokes at a board, where letters are larger, over that on paper
-
-
-class Gestures(NamedTuple):
-    """How a person moves the arms, by fields of `repertoire.Repertoire`."""
-
-    drink: Drink
-    drink_seated: Drink
-    write: Write
-    write_seated: Write
-    wave: Wave
-    clap: Clap
 
 
 def draw_gestures(person: Person, seat: Seat, paces: Float, sizes: Float, place: int) -> Gestures:

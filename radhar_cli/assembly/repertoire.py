@@ -8,17 +8,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from radhar_cli.assembly.floor import FloorMovements, draw_floor_movements
+from radhar_cli.assembly.floor import draw_floor_movements
 from radhar_cli.assembly.gaits import jogging_gait, other_gaits, running_gait
-from radhar_cli.assembly.gestures import Gestures, draw_gestures
-from radhar_cli.config.motion import (
-    FallName,
-    Falls,
-    GrabbingConfig,
-    MotionConfig,
-    StrikingConfig,
-)
-from radhar_cli.motion.human.crawling import Crawl
+from radhar_cli.assembly.gestures import draw_gestures
+from radhar_cli.config.motion import FallName, Falls, MotionConfig
 from radhar_cli.motion.human.falling import (
     FallBackward,
     FallForward,
@@ -29,23 +22,19 @@ from radhar_cli.motion.human.falling import (
 )
 from radhar_cli.motion.human.falling_from_seat import FallFromSeat
 from radhar_cli.motion.human.falling_sideways import FallSideways
-from radhar_cli.motion.human.gesturing import Clap, Drink, Wave, Write
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import Waves, spread_phases
 from radhar_cli.motion.human.kicking import Kick
-from radhar_cli.motion.human.kneeling import GetDown, Kneel
 from radhar_cli.motion.human.lane import Lane
-from radhar_cli.motion.human.lying import Lie, TurnOver
 from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.planted import ELBOWS, LEGS_AND_TRUNK, SHOULDERS
 from radhar_cli.motion.human.punching import Punch
-from radhar_cli.motion.human.repertoire import AROUND, Repertoire
+from radhar_cli.motion.human.repertoire import AROUND, FloorMovements, Gestures, Repertoire
 from radhar_cli.motion.human.running import RunningGait
 from radhar_cli.motion.human.sitting import Rise, Seat, SitDown, StandUp
 from radhar_cli.motion.human.stepping import STUMBLES, StepTo
-from radhar_cli.motion.human.transfer import GoToBed, LeaveBed
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait
 from radhar_cli.numerics.arrays import Float
@@ -76,11 +65,9 @@ class DrawnRepertoire(Repertoire):
             duration: Duration of a movement that has one, s; None for the usual one.
             place: Place of the movement in its sequence, which names its random streams.
         """
-        vars(self).update(_person=person, _duration=duration, _place=place)
-
-    _person: Person
-    _duration: float | None
-    _place: int
+        self._person = person
+        self._duration = duration
+        self._place = place
 
     @property
     def _motion(self) -> MotionConfig[float]:
@@ -119,16 +106,35 @@ class DrawnRepertoire(Repertoire):
 
     @property
     def punch(self) -> Punch:
-        return _punch(self._motion.striking, *self._repetitions)
+        striking, (paces, sizes) = self._motion.striking, self._repetitions
+        return Punch(
+            frequency=striking.strike_scale * striking.punch_hz,
+            paces=_nonzero_tuple(striking.strike_scale * paces),
+            sizes=_nonzero_tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
+        )
 
     @property
     def kick(self) -> Kick:
-        return _kick(self._motion.striking, *self._repetitions)
+        striking, (paces, sizes) = self._motion.striking, self._repetitions
+        return Kick(
+            frequency=striking.strike_scale * striking.kick_hz,
+            paces=_nonzero_tuple(striking.strike_scale * paces),
+            sizes=_nonzero_tuple(sizes),
+        )
 
     @property
     def grab(self) -> Grab:
         duration = 2.5 if self._duration is None else self._duration
-        return _grab(self._motion.grabbing, duration, self._lags)
+        grabbing, (lowering, rising) = self._motion.grabbing, self._lags
+        return Grab(
+            down=duration * 1.2 / 2.5,
+            dwell=grabbing.dwell_s,
+            up=duration * 1.3 / 2.5,
+            thigh=radians(-62) * grabbing.bend_deg / 72,
+            trunk=radians(grabbing.bend_deg),
+            lowering=lowering,
+            rising=rising,
+        )
 
     @property
     def sit_down(self) -> SitDown:
@@ -201,68 +207,12 @@ class DrawnRepertoire(Repertoire):
         return _with_duration(self._duration, AROUND)
 
     @cached_property
-    def _floor(self) -> FloorMovements:
+    def floor(self) -> FloorMovements:
         return draw_floor_movements(self._person, self._duration, self._rise, self._place)
 
-    @property
-    def crawl(self) -> Crawl:
-        return self._floor.crawl
-
-    @property
-    def kneel(self) -> Kneel:
-        return self._floor.kneel
-
-    @property
-    def kneel_down(self) -> GetDown:
-        return self._floor.kneel_down
-
-    @property
-    def get_on_fours(self) -> GetDown:
-        return self._floor.get_on_fours
-
-    @property
-    def lie(self) -> Lie:
-        return self._floor.lie
-
-    @property
-    def turn_over(self) -> TurnOver:
-        return self._floor.turn_over
-
-    @property
-    def go_to_bed(self) -> GoToBed:
-        return self._floor.go_to_bed
-
-    @property
-    def leave_bed(self) -> LeaveBed:
-        return self._floor.leave_bed
-
     @cached_property
-    def _gestures(self) -> Gestures:
+    def gestures(self) -> Gestures:
         return draw_gestures(self._person, self._seat, *self._repetitions, self._place)
-
-    @property
-    def drink(self) -> Drink:
-        return self._gestures.drink
-
-    @property
-    def drink_seated(self) -> Drink:
-        return self._gestures.drink_seated
-
-    @property
-    def write(self) -> Write:
-        return self._gestures.write
-
-    @property
-    def write_seated(self) -> Write:
-        return self._gestures.write_seated
-
-    @property
-    def wave(self) -> Wave:
-        return self._gestures.wave
-
-    @property
-    def clap(self) -> Clap:
-        return self._gestures.clap
 
     @property
     def exercise_period(self) -> float:
@@ -275,39 +225,6 @@ class DrawnRepertoire(Repertoire):
     @property
     def exercise_sizes(self) -> tuple[float, ...]:
         return _nonzero_tuple(self._motion.exercises.size * np.minimum(self._repetitions[1], 1.05))
-
-
-def _punch(striking: StrikingConfig[float], paces: Float, sizes: Float) -> Punch:
-    """Punches of a person, whose times and sizes vary from one to the next."""
-    scale = striking.strike_scale
-    return Punch(
-        frequency=scale * striking.punch_hz,
-        paces=_nonzero_tuple(scale * paces),
-        sizes=_nonzero_tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
-    )
-
-
-def _kick(striking: StrikingConfig[float], paces: Float, sizes: Float) -> Kick:
-    """Kicks of a person, whose times and sizes vary from one to the next."""
-    scale = striking.strike_scale
-    return Kick(
-        frequency=scale * striking.kick_hz,
-        paces=_nonzero_tuple(scale * paces),
-        sizes=_nonzero_tuple(sizes),
-    )
-
-
-def _grab(grabbing: GrabbingConfig[float], duration: float, lags: tuple[Lags, Lags]) -> Grab:
-    """Picking something up, which takes so many seconds without the time at the floor."""
-    return Grab(
-        down=duration * 1.2 / 2.5,
-        dwell=grabbing.dwell_s,
-        up=duration * 1.3 / 2.5,
-        thigh=radians(-62) * grabbing.bend_deg / 72,
-        trunk=radians(grabbing.bend_deg),
-        lowering=lags[0],
-        rising=lags[1],
-    )
 
 
 def _with_duration(duration: float | None, movement: M) -> M:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, pi, radians
+from typing import NamedTuple
 
 from radhar_cli.motion.human.crawling import Crawl
 from radhar_cli.motion.human.exercises import EXERCISES, Exercise
@@ -33,6 +34,30 @@ RUNNING, ON_THE_SPOT = RunningGait(3.3), RunningGait(0.0)
 AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
 
 
+class FloorMovements(NamedTuple):
+    """How a person moves on the floor and in bed."""
+
+    crawl: Crawl = Crawl()
+    kneel: Kneel = Kneel()
+    kneel_down: GetDown = GetDown(Kneel())
+    get_on_fours: GetDown = GetDown()
+    lie: Lie = Lie()
+    turn_over: TurnOver = TurnOver()
+    go_to_bed: GoToBed = GoToBed()
+    leave_bed: LeaveBed = LeaveBed()
+
+
+class Gestures(NamedTuple):
+    """How a person moves the arms, standing or seated."""
+
+    drink: Drink = Drink()
+    drink_seated: Drink = Drink(seat=Seat())
+    write: Write = Write()
+    write_seated: Write = AT_TABLE
+    wave: Wave = Wave()
+    clap: Clap = Clap()
+
+
 @dataclass(frozen=True)
 class Repertoire:
     """How a person makes each movement."""
@@ -58,20 +83,8 @@ class Repertoire:
     get_up: GetUp = field(default_factory=GetUp)
     try_to_get_up: TryToGetUp = field(default_factory=TryToGetUp)
     turn_around: StepTo = AROUND
-    crawl: Crawl = field(default_factory=Crawl)
-    kneel: Kneel = field(default_factory=Kneel)
-    kneel_down: GetDown = field(default_factory=lambda: GetDown(Kneel()))
-    get_on_fours: GetDown = field(default_factory=GetDown)
-    lie: Lie = field(default_factory=Lie)
-    turn_over: TurnOver = field(default_factory=TurnOver)
-    go_to_bed: GoToBed = field(default_factory=GoToBed)
-    leave_bed: LeaveBed = field(default_factory=LeaveBed)
-    drink: Drink = field(default_factory=Drink)
-    drink_seated: Drink = field(default_factory=lambda: Drink(seat=Seat()))
-    write: Write = field(default_factory=Write)
-    write_seated: Write = AT_TABLE
-    wave: Wave = field(default_factory=Wave)
-    clap: Clap = field(default_factory=Clap)
+    floor: FloorMovements = field(default_factory=FloorMovements)
+    gestures: Gestures = field(default_factory=Gestures)
     # period of every exercise over the usual one; time and size of each repetition over the usual
     exercise_period: float = 1.0
     exercise_paces: tuple[float, ...] = ()
@@ -118,7 +131,8 @@ class Repertoire:
         )
 
 
-# What is made of a repertoire, of which nothing else is worked out.
+# How a person makes each bout, and the movements of S1 to S12, from a repertoire. Entries are
+# functions, so that a repertoire works out only the movements that are asked for.
 BOUTS: dict[str, Callable[[Repertoire], Walk | Punch | Kick | Turn]] = {
     "punching": lambda person: person.punch,
     "kicking": lambda person: person.kick,
@@ -169,20 +183,24 @@ MOVEMENTS: dict[str, Callable[[Repertoire, float], Movement]] = {
     "trying_to_get_up": lambda person, duration: person.try_to_get_up,
     "turning_around": lambda person, duration: person.turn_around,
     "sitting": lambda person, duration: Sit(duration, person.sit_down.seat),
-    "kneeling": lambda person, duration: replace(person.kneel, duration=duration),
-    "kneeling_down": lambda person, duration: person.kneel_down,
-    "getting_on_fours": lambda person, duration: person.get_on_fours,
-    "crawling": lambda person, duration: replace(person.crawl, duration=duration),
-    "lying": lambda person, duration: replace(person.lie, duration=duration),
-    "turning_over": lambda person, duration: person.turn_over,
-    "lying_down": lambda person, duration: person.go_to_bed,
-    "getting_up_from_bed": lambda person, duration: person.leave_bed,
-    "drinking": lambda person, duration: replace(person.drink, duration=duration),
-    "drinking_seated": lambda person, duration: replace(person.drink_seated, duration=duration),
-    "writing": lambda person, duration: replace(person.write, duration=duration),
-    "writing_seated": lambda person, duration: replace(person.write_seated, duration=duration),
-    "waving": lambda person, duration: replace(person.wave, duration=duration),
-    "clapping": lambda person, duration: replace(person.clap, duration=duration),
+    "kneeling": lambda person, duration: replace(person.floor.kneel, duration=duration),
+    "kneeling_down": lambda person, duration: person.floor.kneel_down,
+    "getting_on_fours": lambda person, duration: person.floor.get_on_fours,
+    "crawling": lambda person, duration: replace(person.floor.crawl, duration=duration),
+    "lying": lambda person, duration: replace(person.floor.lie, duration=duration),
+    "turning_over": lambda person, duration: person.floor.turn_over,
+    "lying_down": lambda person, duration: person.floor.go_to_bed,
+    "getting_up_from_bed": lambda person, duration: person.floor.leave_bed,
+    "drinking": lambda person, duration: replace(person.gestures.drink, duration=duration),
+    "drinking_seated": lambda person, duration: replace(
+        person.gestures.drink_seated, duration=duration
+    ),
+    "writing": lambda person, duration: replace(person.gestures.write, duration=duration),
+    "writing_seated": lambda person, duration: replace(
+        person.gestures.write_seated, duration=duration
+    ),
+    "waving": lambda person, duration: replace(person.gestures.wave, duration=duration),
+    "clapping": lambda person, duration: replace(person.gestures.clap, duration=duration),
     **{
         name: lambda person, duration, name=name: person.exercise(name, duration)  # type: ignore[misc]
         for name in EXERCISES

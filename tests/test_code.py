@@ -195,6 +195,12 @@ def test_building_maps_needs_no_slow_parts_of_scipy() -> None:
     assert run(sys.executable, "-c", code).stdout.strip() == "[]"
 
 
+def test_radars_that_are_no_boards_need_no_table_of_commands() -> None:
+    code = "import sys, radhar_cli.dataset.build;"
+    code += "print([m for m in sys.modules if m.endswith(('.ti_commands', '.ti_cfg'))])"
+    assert run(sys.executable, "-c", code).stdout.strip() == "[]"
+
+
 # Each kind of file from elsewhere is opened in one place, and one place writes to the terminal.
 ONE_PLACE = [
     ("yaml", {"config/yaml_reader.py"}, {"dump", "safe_dump", "YAMLError", "MarkedYAMLError"}),

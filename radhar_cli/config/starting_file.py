@@ -31,7 +31,7 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
-from radhar_cli.radar.ti_commands import Family
+from radhar_cli.radar.ti_family import Family
 from radhar_cli.radar.ti_l_sdk import TWO_BITS
 
 WIDTH = 100

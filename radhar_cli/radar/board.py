@@ -18,7 +18,7 @@ from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.radar.ti_commands import Family
+from radhar_cli.radar.ti_family import Family
 from radhar_cli.radar.waveform import Waveform
 
 Places: TypeAlias = tuple[tuple[float, float], ...]  # (left, up) in half wavelengths

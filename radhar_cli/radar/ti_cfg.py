@@ -21,11 +21,11 @@ from radhar_cli.radar.ti_commands import (
     SUBFRAME,
     CfgLine,
     Effect,
-    Family,
     find_family,
     split_lines,
 )
 from radhar_cli.radar.ti_detection import read_detection
+from radhar_cli.radar.ti_family import Family
 from radhar_cli.radar.ti_l_sdk import read_l_sdk
 from radhar_cli.radar.ti_people import is_short_fine_motion, missing_commands, read_people
 

@@ -14,6 +14,7 @@ from math import isfinite
 from types import MappingProxyType
 
 from radhar_cli.errors import CaptureError
+from radhar_cli.radar.ti_family import Family
 
 ALL_SUBFRAMES = -1
 COUNT = 2**32 - 1  # largest whole number
@@ -39,20 +40,6 @@ class Subframe(Enum):
     NEVER = ""
     OPTIONAL = "[subFrameIdx]"
     ALWAYS = "subFrameIdx"
-
-
-class Family(Enum):
-    """Software whose .cfg has a command; `ANY` where all that have it agree."""
-
-    ANY = "all"
-    SDK_1_TO_3 = "SDK 1 to 3"
-    SDK_1 = "SDK 1"
-    SDK_2 = "SDK 2"
-    SDK_3 = "SDK 3"
-    MCU_PLUS = "MCU+ SDK"
-    L_SDK = "MMWAVE-L-SDK"
-    PEOPLE = "people counting"
-    PEOPLE_3D = "3D people tracking"
 
 
 @dataclass(frozen=True)

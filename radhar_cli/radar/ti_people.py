@@ -13,7 +13,8 @@ from radhar_cli.radar.people_tracking import (
     TwoPassCfar,
     Zoom,
 )
-from radhar_cli.radar.ti_commands import ALL_SUBFRAMES, SUBFRAME, CfgLine, Effect, Family
+from radhar_cli.radar.ti_commands import ALL_SUBFRAMES, SUBFRAME, CfgLine, Effect
+from radhar_cli.radar.ti_family import Family
 
 Lines: TypeAlias = Mapping[str, CfgLine]  # {command: its last line}
 MAX_ANGLES = 20_000  # directions of a map

@@ -1,7 +1,7 @@
 """What is said of a config or a scene before anything is computed."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import ways_of
@@ -14,14 +14,16 @@ from radhar_cli.processing.map_kind import MAP_KINDS
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.propagation import leg
-from radhar_cli.radar.ti_cfg import BoardHeader
-from radhar_cli.radar.ti_commands import Family
+from radhar_cli.radar.ti_family import Family
 from radhar_cli.scene import Scene, nominal_scene
 from radhar_cli.scene_checks.drawing import CROWDED, describe_crowd, find_crowded, suggest_cure
 from radhar_cli.scene_checks.flags import Flags, describe_flag, describe_flags
 from radhar_cli.scene_checks.unused_keys import unused_keys
 from radhar_cli.scene_checks.validity import check_scene
 from radhar_cli.scene_checks.visibility import chest_point, noise_alone
+
+if TYPE_CHECKING:
+    from radhar_cli.radar.ti_cfg import BoardHeader
 
 MAX_COMMANDS = 20  # of a .cfg, in a warning
 
@@ -83,7 +85,7 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
         yield f"radar.cfg: sensorPosition yields to the config's {', '.join(config_keys)}"
 
 
-def _describe_chain(chain: Chain, header: BoardHeader) -> str:
+def _describe_chain(chain: Chain, header: "BoardHeader") -> str:
     """Say which chain finds the points where the config names none, and why it is that one."""
     if chain != "best":
         return f"cloud.chain: {chain}, the firmware whose commands radar.cfg has"

@@ -11,7 +11,7 @@ from helpers.command_line import radhar
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
 from radhar_cli.errors import ConfigError
-from radhar_cli.radar.ti_commands import Family
+from radhar_cli.radar.ti_family import Family
 from radhar_cli.single_scene.scene_file import write_scene
 from radhar_cli.single_scene.simulate import simulate
 

@@ -8,7 +8,7 @@ from helpers.boards import CFG, MARS
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import CA, CASO, Cfar
 from radhar_cli.radar.ti_cfg import BoardPose, parse_ti_cfg
-from radhar_cli.radar.ti_commands import Family
+from radhar_cli.radar.ti_family import Family
 
 
 def test_what_a_cfg_says() -> None:

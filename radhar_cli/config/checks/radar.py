@@ -14,7 +14,7 @@ from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
-from radhar_cli.radar.ti_commands import Family
+from radhar_cli.radar.ti_family import Family
 
 if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader

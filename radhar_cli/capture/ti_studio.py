@@ -15,7 +15,7 @@ from radhar_cli.config.section import Section
 from radhar_cli.errors import CaptureError, ConfigError
 from radhar_cli.files.untrusted import read_json
 from radhar_cli.radar.frame_header import ChirpProfile, FrameHeader, Sampling
-from radhar_cli.radar.ti_cfg import ChirpRange, FrameTiming, frame_header
+from radhar_cli.radar.ti_cfg import ChirpRange, FrameTiming, make_frame_header
 
 
 def _parse_hexadecimal(value: object) -> object:
@@ -118,7 +118,7 @@ def read_studio(path: Path) -> tuple[FrameHeader, LvdsFormat]:
     if device.lanes.bit_count() not in (2, 4):
         raise CaptureError(f"{path}: laneEn = {device.lanes:#x}: should enable 2 or 4 lanes")
     place = f"{path}:"
-    header = frame_header(
+    header = make_frame_header(
         {each.number: each.profile(f"{place} numAdcSamples") for each in device.profiles},
         [
             ChirpRange(each.first, each.last, each.profile, each.transmitters, place)
@@ -128,7 +128,8 @@ def read_studio(path: Path) -> tuple[FrameHeader, LvdsFormat]:
             device.first, device.last, device.loops, device.frames, device.period_ms, place
         ),
         device.receivers,
-        (Sampling(device.output), 12 + 2 * device.bits),
+        Sampling(device.output),
+        12 + 2 * device.bits,
     )
     stream = LvdsFormat(device.lanes.bit_count(), device.interleave == 0, device.swap == 1)
     return header, stream

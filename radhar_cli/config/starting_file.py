@@ -32,7 +32,7 @@ from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
 from radhar_cli.radar.ti_family import Family
-from radhar_cli.radar.ti_l_sdk import TWO_BITS
+from radhar_cli.radar.ti_l_sdk import IWRL6844
 
 WIDTH = 100
 MAPS_OF_BOARDS = ("stft", "range_doppler", "range_azimuth", "points")
@@ -236,7 +236,7 @@ def _likely_device(board: BoardHeader) -> str:
     if board.start_hz < 70e9 and board.family is not Family.L_SDK:
         return "IWR6843ISK"
     by_family = {
-        Family.L_SDK: TWO_BITS if len(board.receivers) > 3 else "IWRL6432BOOST",
+        Family.L_SDK: IWRL6844 if len(board.receivers) > 3 else "IWRL6432BOOST",
         Family.MCU_PLUS: "AWR2944EVM",
         Family.SDK_3: "IWR1843BOOST",  # which xWR14xx does not have
         Family.PEOPLE_3D: "IWR1843BOOST",

@@ -16,18 +16,22 @@ from radhar_cli.radar.detection import Detection, Firmware
 from radhar_cli.radar.frame_header import ROUNDING, ChirpProfile, FrameHeader, RoomBox, Sampling
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
 from radhar_cli.radar.ti_commands import (
-    ALL_SUBFRAMES,
     COUNT,
-    SUBFRAME,
     CfgLine,
     Effect,
+    describe_missing,
     find_family,
     split_lines,
 )
 from radhar_cli.radar.ti_detection import read_detection
 from radhar_cli.radar.ti_family import Family
 from radhar_cli.radar.ti_l_sdk import read_l_sdk
-from radhar_cli.radar.ti_people import is_short_fine_motion, missing_commands, read_people
+from radhar_cli.radar.ti_people import (
+    is_short_fine_motion,
+    last_lines,
+    missing_commands,
+    read_people,
+)
 
 MAX_CFG = 2**16  # characters
 MAX_CHIRPS = 512  # of a frame
@@ -181,8 +185,7 @@ def parse_ti_cfg(
         CaptureError: A line cannot be read, or asks for what boards of radhar cannot do.
     """
     lines = _Lines(text, where)
-    for line in lines.with_effect(Effect.NOT_SIMULATED):
-        raise CaptureError(f"{line.place}: {line.name}: {line.command and line.command.reason}")
+    lines.require_none(Effect.NOT_SIMULATED)
     headers = _read_subframes(lines, device)
     if lines.family is not Family.L_SDK:
         for subframe_header in headers:
@@ -190,20 +193,23 @@ def parse_ti_cfg(
     header = headers[min(subframe, len(headers) - 1)]
     channels, bins = len(header.masks) * len(header.receivers), header.bins
     family = lines.family
-    missing = missing_commands(lines.lines, family)
+    detection = read_detection(lines.lines, channels, bins, header.subframe)
+    line_of = last_lines(lines.lines, header.subframe)
+    missing = missing_commands(line_of, family)
     return BoardHeader(
         **vars(header),
         family=family,
-        detection=read_detection(lines.lines, channels, bins, header.subframe),
-        has_cfar=any("thresholdScale" in line.numbers for line in lines.of_name("cfarCfg")),
-        people=None
-        if missing
-        else read_people(lines.lines, family, channels, bins, header.subframe),
+        detection=detection,
+        has_cfar=any(
+            line.name == "cfarCfg" and "thresholdScale" in line.numbers
+            for line in lines.with_effect(Effect.POINTS)
+        ),
+        people=None if missing else read_people(line_of, family, channels, bins),
         missing=missing,
         pose=_read_pose(lines.with_effect(Effect.POSE)),
         box=_read_box(lines.with_effect(Effect.BOX)),
         unknown=tuple(dict.fromkeys(line.name[:40] for line in lines.lines if not line.command)),
-        not_simulated=tuple(dict.fromkeys(filter(None, map(_name_if_said, lines.lines)))),
+        not_simulated=tuple(dict.fromkeys(filter(None, map(_name_if_not_simulated, lines.lines)))),
     )
 
 
@@ -223,18 +229,19 @@ def parse_frames(text: str, where: str) -> tuple[FrameHeader, Sequence[CfgLine]]
     lines = _Lines(text, where)
     headers = _read_subframes(lines, None)
     if len(headers) > 1:
-        (*_, line) = lines.all("advFrameCfg", "")
+        line = lines.of_name("advFrameCfg")[-1]
         right = "1: captures of several subframes are not read"
         raise line.refusal("numOfSubFrames", len(headers), right)
     return headers[0], lines.lines
 
 
-def frame_header(
+def make_frame_header(
     profiles: Mapping[int, ChirpProfile],
     chirps: Sequence[ChirpRange],
     timing: FrameTiming,
     receiver_mask: int,
-    samples: tuple[Sampling, int],
+    sampling: Sampling,
+    adc_bits: int,
     pair: ChirpPair | None = None,
 ) -> FrameHeader:
     """Make a header of what a file states.
@@ -244,7 +251,8 @@ def frame_header(
         chirps: Chirps; of those with the same index the last holds.
         timing: Chirps of a frame and time between frames.
         receiver_mask: Receivers that are on, bit n for receiver n.
-        samples: Kind of the samples, and number of bits of each.
+        sampling: Kind of the samples.
+        adc_bits: Number of bits of a sample.
         pair: Chirps in which two transmitters send together; None for none.
 
     Raises:
@@ -271,8 +279,8 @@ def frame_header(
         frames=timing.frames,
         period_s=timing.period_ms * 1e-3,
         receivers=tuple(n for n in range(4) if receiver_mask >> n & 1),
-        sampling=samples[0],
-        adc_bits=samples[1],
+        sampling=sampling,
+        adc_bits=adc_bits,
         bpm=bpm,
         averaged=1,
         loop_s=turns * profile.slot_s,
@@ -363,58 +371,64 @@ class _Lines:
         return [line for line in self.lines if line.command and line.command.effect is effect]
 
     def of_name(self, name: str) -> list[CfgLine]:
-        """Return the lines of a command that sets the detection of points."""
-        return [line for line in self.with_effect(Effect.POINTS) if line.name == name]
+        """Return the lines of a command."""
+        return [line for line in self.lines if line.name == name]
 
-    def all(self, name: str, example: str) -> list[CfgLine]:
-        """Return the lines of a command that cannot be missing, such as `example`."""
-        lines = [line for line in self.lines if line.name == name]
+    def require(self, name: str, example: str) -> list[CfgLine]:
+        """Return the lines of a command; raise CaptureError without any, with one that would do."""
+        lines = self.of_name(name)
         if not lines:
-            raise CaptureError(f"{self.where}: {name} is missing; a line that would do: {example}")
+            raise CaptureError(f"{self.where}: {describe_missing(name, example)}")
         return lines
+
+    def require_none(self, effect: Effect) -> None:
+        """Raise CaptureError for the first line of a command that is refused."""
+        for line in self.with_effect(effect):
+            assert line.command is not None
+            raise CaptureError(f"{line.place}: {line.command.reason}")
 
 
 def _read_subframes(lines: _Lines, device: str | None) -> list[FrameHeader]:
     """Read all that the lines say of chirps, frames and samples, of each subframe."""
     if lines.family is Family.L_SDK:
         return [read_l_sdk(lines.lines, lines.where, device)]
-    for line in lines.with_effect(Effect.NOT_READ):
-        raise CaptureError(f"{line.place}: {line.name}: {line.command and line.command.reason}")
-    receivers = lines.all("channelCfg", "channelCfg 15 7 0")[-1]
-    adc = lines.all("adcCfg", "adcCfg 2 1")[-1]
-    profiles = lines.all("profileCfg", "profileCfg 0 77 10 6 48 0 0 70 1 128 3200 0 0 30")
-    chirps = lines.all("chirpCfg", "chirpCfg 0 0 0 0 0 0 0 1")
+    lines.require_none(Effect.NOT_READ)
+    receivers = lines.require("channelCfg", "channelCfg 15 7 0")[-1]
+    adc = lines.require("adcCfg", "adcCfg 2 1")[-1]
+    profiles = lines.require("profileCfg", "profileCfg 0 77 10 6 48 0 0 70 1 128 3200 0 0 30")
+    chirps = lines.require("chirpCfg", "chirpCfg 0 0 0 0 0 0 0 1")
     timings = _read_timings(lines)
     for line in lines.with_effect(Effect.SIGNAL):
         _ = line.numbers  # lines that do not hold must be right, too
     adc_numbers = adc.numbers
     bits = 12 + 2 * int(adc_numbers["numADCBits"])
     headers = [
-        frame_header(
+        make_frame_header(
             dict(map(_read_profile, profiles)),
             [_read_chirp(line) for line in chirps],
             timing,
             int(receivers.numbers["rxChannelEn"]),
-            (Sampling(int(adc_numbers["adcOutputFmt"])), bits),
-            _read_pair(lines.lines, subframe),
+            Sampling(int(adc_numbers["adcOutputFmt"])),
+            bits,
+            _read_pair(lines, subframe),
         )
         for subframe, timing in enumerate(timings)
     ]
     _require_stated_samples(headers[0], lines)
-    return _one_after_the_other(headers)
+    return _place_subframes(headers)
 
 
 def _require_stated_samples(header: FrameHeader, lines: _Lines) -> None:
     """Raise CaptureError where frameCfg has another number of samples than the profile."""
-    for frame in lines.lines:
-        samples = frame.numbers.get("numAdcSamples") if frame.name == "frameCfg" else None
+    for frame in lines.of_name("frameCfg"):
+        samples = frame.numbers.get("numAdcSamples")
         if samples not in (None, header.samples):
             right = f"{header.samples}, as profileCfg has it"
             raise frame.refusal("numAdcSamples", samples or 0, right)
 
 
-def _one_after_the_other(headers: Sequence[FrameHeader]) -> list[FrameHeader]:
-    """Put subframes one after the other; a frame lasts as long as all of them."""
+def _place_subframes(headers: Sequence[FrameHeader]) -> list[FrameHeader]:
+    """Set the times of subframes, which follow each other; a frame lasts as long as all."""
     if len(headers) == 1:
         return [*headers]
     begins = [0.0, *accumulate(header.period_s for header in headers)]
@@ -432,23 +446,21 @@ def _one_after_the_other(headers: Sequence[FrameHeader]) -> list[FrameHeader]:
 
 def _read_timings(lines: _Lines) -> list[FrameTiming]:
     """Read the chirps of a frame, or of each of its subframes."""
-    modes = [line.numbers["modeType"] for line in lines.lines if line.name == "dfeDataOutputMode"]
+    modes = [line.numbers["modeType"] for line in lines.of_name("dfeDataOutputMode")]
     names = {line.name for line in lines.lines}
     if modes[-1:] != [3] and (modes or "frameCfg" in names or "advFrameCfg" not in names):
-        return [_read_frame(lines.all("frameCfg", "frameCfg 0 0 64 0 50 1 0")[-1])]
-    (*_, advanced) = lines.all("advFrameCfg", "advFrameCfg 2 0 0 1 0")
+        return [_read_frame(lines.require("frameCfg", "frameCfg 0 0 64 0 50 1 0")[-1])]
+    advanced = lines.require("advFrameCfg", "advFrameCfg 2 0 0 1 0")[-1]
     count, frames = (int(advanced.numbers[name]) for name in ("numOfSubFrames", "numFrames"))
     example = "subFrameCfg {} 0 0 1 64 50 0 1 1 50"
     by_number = {
         int(line.numbers["subFrameNum"]): line
-        for line in lines.all("subFrameCfg", example.format(0))
+        for line in lines.require("subFrameCfg", example.format(0))
     }
     for number in range(count):
         if number not in by_number:
-            raise CaptureError(
-                f"{lines.where}: subFrameCfg subFrameNum = {number} is missing; a line that would "
-                f"do: {example.format(number)}"
-            )
+            name = f"subFrameCfg subFrameNum = {number}"
+            raise CaptureError(f"{lines.where}: {describe_missing(name, example.format(number))}")
     return [_read_subframe(by_number[number], frames) for number in range(count)]
 
 
@@ -462,7 +474,7 @@ def _read_subframe(line: CfgLine, frames: int) -> FrameTiming:
         loops=int(numbers["numLoops"]),
         frames=frames,
         period_ms=numbers["subFramePeriodicity"],
-        place=f"{line.place}: {line.name}",
+        place=line.place,
         chirps_name="first and last chirp",
         period_name="subFramePeriodicity",
     )
@@ -481,7 +493,7 @@ def _read_profile(line: CfgLine) -> tuple[int, ChirpProfile]:
         samples=int(numbers["numAdcSamples"]),
         rate_ksps=numbers["digOutSampleRate"],
         backoff_db=tuple(float(code) for code in codes.to_bytes(4, "little")) if codes else (),
-        place=f"{line.place}: {line.name} numAdcSamples",
+        place=f"{line.place} numAdcSamples",
     )
 
 
@@ -493,7 +505,7 @@ def _read_chirp(line: CfgLine) -> ChirpRange:
         last=int(numbers["endIdx"]),
         profile=int(numbers["profileId"]),
         mask=int(numbers["txEnable"]),
-        place=f"{line.place}: {line.name}",
+        place=line.place,
     )
 
 
@@ -506,20 +518,22 @@ def _read_frame(line: CfgLine) -> FrameTiming:
         loops=int(numbers["numLoops"]),
         frames=int(numbers["numFrames"]),
         period_ms=numbers["framePeriodicity"],
-        place=f"{line.place}: {line.name}",
+        place=line.place,
     )
 
 
-def _read_pair(lines: Sequence[CfgLine], subframe: int) -> ChirpPair | None:
-    """Read the last of lines bpmCfg that holds for a subframe; None where it is not enabled."""
-    pair = None
-    for line in lines:
-        if line.name == "bpmCfg" and line.numbers[SUBFRAME.name] in (ALL_SUBFRAMES, subframe):
-            numbers = line.numbers
-            first, second = int(numbers["chirp0Idx"]), int(numbers["chirp1Idx"])
-            place = f"{line.place}: {line.name}"
-            pair = ChirpPair(first, second, place) if numbers["enabled"] else None
-    return pair
+def _lines_of_pair(lines: _Lines, subframe: int) -> list[CfgLine]:
+    """Lines bpmCfg of a subframe, of which the last holds."""
+    return [line for line in lines.of_name("bpmCfg") if line.holds_for(subframe)]
+
+
+def _read_pair(lines: _Lines, subframe: int) -> ChirpPair | None:
+    """Read the chirps in which two transmitters of a subframe send together; None for none."""
+    pair_lines = _lines_of_pair(lines, subframe)
+    if not pair_lines or not pair_lines[-1].numbers["enabled"]:
+        return None
+    numbers = pair_lines[-1].numbers
+    return ChirpPair(int(numbers["chirp0Idx"]), int(numbers["chirp1Idx"]), pair_lines[-1].place)
 
 
 def _read_box(lines: Sequence[CfgLine]) -> RoomBox | None:
@@ -553,12 +567,12 @@ def _read_pose(lines: Sequence[CfgLine]) -> BoardPose | None:
 
 def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
     """Raise CaptureError for chirps and samples that boards of radhar do not have."""
-    channels = lines.all("channelCfg", "")[-1]
+    channels = lines.of_name("channelCfg")[-1]
     if not header.receivers:
         raise channels.refusal("rxChannelEn", channels.words[0], "1 to 15: a receiver that is on")
     transmitters = int(channels.numbers.get("txChannelEn", COUNT))
     shared = None if header.bpm is None else header.masks[header.bpm[0]]
-    for line in lines.all("chirpCfg", ""):
+    for line in lines.of_name("chirpCfg"):
         mask = _read_chirp(line).mask
         if mask in header.masks and mask.bit_count() != 1 and mask != shared:
             right = (
@@ -570,9 +584,9 @@ def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
             right = f"of transmitters that are on (channelCfg txChannelEn = {transmitters})"
             raise line.refusal("txEnable", mask, right)
     if header.bpm is not None:
-        _require_known_pair(header, [line for line in lines.lines if line.name == "bpmCfg"][-1])
+        _require_known_pair(header, _lines_of_pair(lines, header.subframe)[-1])
     elif len(set(header.masks)) < len(header.masks):
-        raise lines.all("chirpCfg", "")[-1].refusal(
+        raise lines.of_name("chirpCfg")[-1].refusal(
             "txEnable",
             " ".join(map(str, header.masks[:8])) + " ..." * (len(header.masks) > 8),
             "each transmitter once, and again in the same order",
@@ -594,7 +608,7 @@ def _require_known_pair(header: FrameHeader, line: CfgLine) -> None:
         )
 
 
-def _name_if_said(line: CfgLine) -> str | None:
+def _name_if_not_simulated(line: CfgLine) -> str | None:
     """Name of a line's command if it switches on what neither a cube nor its points have."""
     command = line.command
     if command is None:
@@ -605,7 +619,7 @@ def _name_if_said(line: CfgLine) -> str | None:
         return command.name if line.numbers["numADCBits"] != 2 else None
     if command.name == "fineMotionCfg":
         return command.name if is_short_fine_motion(line) else None
-    if command.effect is not Effect.SAID:
+    if command.effect is not Effect.WARNING:
         return None
     is_readable = bool(command.arguments) and len(line.words) in command.counts
     is_on = line.numbers.get("enabled", 1) if is_readable else 1

@@ -6,7 +6,7 @@ docs/reference/ti_commands.md is made of this table.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
@@ -28,7 +28,7 @@ class Effect(Enum):
     POINTS = "sets the detection of points: simulated"
     POSE = "sets the pose of the board, where the config does not"
     BOX = "keeps the points in a box of the room, with `cloud.boundary_box: true`"
-    SAID = "is not simulated, which is said"
+    WARNING = "is not simulated, and a warning says so"
     SILENT = "changes nothing here"
     NOT_SIMULATED = "is refused as radar.cfg"
     NOT_READ = "is refused"
@@ -147,7 +147,7 @@ class Command:
 
         Args:
             words: As many as `counts` has.
-            place: FILE:LINE, which messages name.
+            place: FILE:LINE and command, which messages name.
 
         Returns:
             {argument: number} of those that are there, and subFrameIdx, -1 for all subframes.
@@ -163,7 +163,7 @@ class Command:
             arguments = (SUBFRAME, *arguments)
         numbers = {SUBFRAME.name: float(ALL_SUBFRAMES)}
         for argument, word in zip(arguments, words, strict=False):
-            numbers[argument.name] = argument.parse(word, f"{place}: {self.name}")
+            numbers[argument.name] = argument.parse(word, place)
         return numbers
 
 
@@ -174,7 +174,7 @@ class CfgLine:
     Attributes:
         name: Its command.
         words: The words behind it.
-        place: FILE:LINE, which messages name.
+        place: FILE:LINE and command, which messages name.
         family: Software that the file is for.
     """
 
@@ -217,15 +217,21 @@ class CfgLine:
             usages = " or ".join(
                 one.usage + f" ({one.family.value})" * (len(families) > 1) for one in families
             )
-            raise CaptureError(
-                f"{self.place}: {self.name} has {len(self.words)} numbers: should be {usages}"
-            )
+            raise CaptureError(f"{self.place} has {len(self.words)} numbers: should be {usages}")
         return command.parse(self.words, self.place)
+
+    def holds_for(self, subframe: int) -> bool:
+        """Whether the line is of a subframe, or of all.
+
+        Raises:
+            CaptureError: There are too few or too many numbers, or one is wrong.
+        """
+        return self.numbers[SUBFRAME.name] in (ALL_SUBFRAMES, subframe)
 
     def refusal(self, argument: str, value: float | str, right: str) -> CaptureError:
         """Error that names the line, an argument, its value and what would be right."""
         value = value if isinstance(value, str) else f"{value:.10g}"
-        return CaptureError(f"{self.place}: {self.name} {argument} = {value}: should be {right}")
+        return CaptureError(f"{self.place} {argument} = {value}: should be {right}")
 
 
 COMMENT = re.compile("%|//|#")
@@ -244,9 +250,26 @@ def split_lines(text: str, where: str) -> tuple[CfgLine, ...]:
     for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), 1):
         name, *words = COMMENT.split(line, maxsplit=1)[0].split() or [""]
         if name:
-            lines.append(CfgLine(name, tuple(words), f"{where}:{number}"))
+            lines.append(CfgLine(name, tuple(words), f"{where}:{number}: {name}"))
     family = find_family(lines)
     return tuple(replace(line, family=family) for line in lines)
+
+
+def lines_of_detection(lines: Iterable[CfgLine], subframe: int) -> Iterator[CfgLine]:
+    """Yield the lines that set the detection of points of a subframe.
+
+    Raises:
+        CaptureError: A line of the detection cannot be read.
+    """
+    for line in lines:
+        sets_points = line.command is not None and line.command.effect is Effect.POINTS
+        if sets_points and line.holds_for(subframe):
+            yield line
+
+
+def describe_missing(name: str, example: str) -> str:
+    """Say that a command is missing, and which line would do."""
+    return f"{name} is missing; a line that would do: {example}"
 
 
 def find_family(lines: Sequence[CfgLine]) -> Family:
@@ -280,7 +303,7 @@ def _positive(name: str, meaning: str) -> Argument:
     return Argument(name, 1e-3, 1e6, meaning=meaning)
 
 
-_TDM = (0, 1, 4)
+_MIMO_PATTERNS = (0, 1, 4)
 SUBFRAME = Argument("subFrameIdx", -1, 3, True, "-1 for all subframes")
 _SIGNAL = (
     Command(
@@ -288,13 +311,8 @@ _SIGNAL = (
         Effect.SIGNAL,
         (
             Argument(
-                *(
-                    "modeType",
-                    1,
-                    3,
-                    True,
-                    "frames of frameCfg, of advFrameCfg; others are not read",
-                ),
+                "modeType",
+                meaning="frames of frameCfg, of advFrameCfg; others are not read",
                 choices=(1, 3),
             ),
         ),
@@ -426,7 +444,11 @@ _SIGNAL_OF_L_SDK = (
             *_wholes("digOutputSampRate", low=1, high=1000),
             *_wholes("digOutputBitsSel", "dfeFirSel"),
             *_wholes("numOfAdcSamples", low=2, high=2**16),
-            Argument("chirpTxMimoPatSel", meaning="0, 1: in turns; 4: two together", choices=_TDM),
+            Argument(
+                "chirpTxMimoPatSel",
+                meaning="0, 1: in turns; 4: two together",
+                choices=_MIMO_PATTERNS,
+            ),
             _positive("chirpRampEndTime", "us"),
             *_wholes("chirpRxHpfSel"),
         ),
@@ -524,7 +546,7 @@ _POINTS = (
         "cfarCfg", Effect.POINTS, (*_CFAR, *_flags("peakGroupingEn")), Family.SDK_3, Subframe.ALWAYS
     ),
     Command("cfarCfg", Effect.POINTS, _CFAR_OF_PEOPLE, Family.PEOPLE),
-    Command("cfarCfg", Effect.SAID, _CFAR_OF_L_SDK, Family.L_SDK),
+    Command("cfarCfg", Effect.WARNING, _CFAR_OF_L_SDK, Family.L_SDK),
     Command("cfarCfg", Effect.POINTS, _CFAR_OF_MCU_PLUS, Family.MCU_PLUS, Subframe.ALWAYS),
     Command(
         "peakGrouping",
@@ -729,17 +751,17 @@ _BOX = (
         Family.PEOPLE,
     ),
 )
-_SAID = (
-    Command("extendedMaxVelocity", Effect.SAID, _wholes("enabled"), subframe=Subframe.OPTIONAL),
+_WITH_WARNING = (
+    Command("extendedMaxVelocity", Effect.WARNING, _wholes("enabled"), subframe=Subframe.OPTIONAL),
     Command(
         "nearFieldCfg",
-        Effect.SAID,
+        Effect.WARNING,
         _wholes("enabled", "startRangeIdx", "endRangeIdx"),
         subframe=Subframe.OPTIONAL,
     ),
     Command(
         "calibDcRangeSig",
-        Effect.SAID,
+        Effect.WARNING,
         (
             *_wholes("enabled"),
             Argument("negativeBinIdx"),
@@ -748,12 +770,12 @@ _SAID = (
         subframe=Subframe.OPTIONAL,
     ),
     *(
-        Command(name, Effect.SAID, family=Family.L_SDK)
+        Command(name, Effect.WARNING, family=Family.L_SDK)
         for name in ("sigProcChainCfg", "cfarProcCfg", "aoaProcCfg")
     ),
     Command(
         "measureRangeBiasAndRxChanPhase",
-        Effect.SAID,
+        Effect.WARNING,
         (*_wholes("enabled"), Argument("targetDistance"), Argument("searchWin")),
     ),
 )
@@ -824,7 +846,16 @@ def _by_name() -> Mapping[str, tuple[Command, ...]]:
     commands = dict[str, tuple[Command, ...]]()
     points = *_POINTS, *_PEOPLE_TRACKING, _DOA
     signal = *_SIGNAL, *_SIGNAL_OF_L_SDK
-    for command in (*signal, *points, *_POSE, *_BOX, *_SAID, *_CAPTURES, *silent, *_REFUSED):
+    for command in (
+        *signal,
+        *points,
+        *_POSE,
+        *_BOX,
+        *_WITH_WARNING,
+        *_CAPTURES,
+        *silent,
+        *_REFUSED,
+    ):
         commands[command.name] = (*commands.get(command.name, ()), command)
     return MappingProxyType(commands)
 

@@ -1,11 +1,11 @@
 """Detection of points as the lines of a TI .cfg set it."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TypeAlias
 
 from radhar_cli.radar.detection import CASO, Cfar, Detection, demo_of_sdk3, ti_threshold_db
-from radhar_cli.radar.ti_commands import ALL_SUBFRAMES, SUBFRAME, CfgLine, Effect
+from radhar_cli.radar.ti_commands import CfgLine, lines_of_detection
 
 Numbers: TypeAlias = Mapping[str, float]
 NO_CFAR = Cfar(CASO, 8, 4, False, 15.0)  # along range, where no line sets it
@@ -26,12 +26,8 @@ def read_detection(
         CaptureError: A line cannot be read.
     """
     detection = Detection(along_range=NO_CFAR)
-    for line in lines:
-        if line.command is None or line.command.effect is not Effect.POINTS:
-            continue
+    for line in lines_of_detection(lines, subframe):
         numbers = line.numbers
-        if numbers[SUBFRAME.name] not in (ALL_SUBFRAMES, subframe):
-            continue
         if line.name == "cfarCfg" and "thresholdScale" in numbers:
             detection = _set_cfar(detection, line, numbers, channels, bins)
         elif line.name == "compRangeBiasAndRxChanPhase":
@@ -70,16 +66,30 @@ def _set_cfar(
 
 def _set_bias(detection: Detection, line: CfgLine, numbers: Numbers, channels: int) -> Detection:
     """Set range bias and a complex factor of each virtual channel; all 1 are none."""
-    parts: Sequence[float] = [value for name, value in numbers.items() if name[:2] in ("Re", "Im")]
+    coefficients = read_coefficients(line, channels)
+    has_effect = set(coefficients) != {1 + 0j}
+    return replace(
+        detection, bias=numbers["rangeBias"], coefficients=coefficients if has_effect else ()
+    )
+
+
+def read_coefficients(line: CfgLine, channels: int) -> tuple[complex, ...]:
+    """Read the phase and gain corrections of the virtual channels.
+
+    Args:
+        line: Line compRangeBiasAndRxChanPhase.
+        channels: Number of virtual channels.
+
+    Raises:
+        CaptureError: There are fewer corrections than channels.
+    """
+    parts = [value for name, value in line.numbers.items() if name[:2] in ("Re", "Im")]
     pairs = zip(parts[::2], parts[1::2], strict=False)
     coefficients = tuple(complex(*pair) for pair in pairs)[:channels]
     if len(coefficients) < channels or len(parts) % 2:
         right = f"{channels} pairs of Re and Im at least, one a virtual channel"
         raise line.refusal("Re Im", f"{len(parts)} numbers", right)
-    has_effect = set(coefficients) != {1 + 0j}
-    return replace(
-        detection, bias=numbers["rangeBias"], coefficients=coefficients if has_effect else ()
-    )
+    return coefficients
 
 
 def _set_grouping(detection: Detection, numbers: Numbers) -> Detection:

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.frame_header import ROUNDING, ChirpProfile, FrameHeader, Sampling
-from radhar_cli.radar.ti_commands import CfgLine
+from radhar_cli.radar.ti_commands import CfgLine, describe_missing
 
-TWO_BITS = "IWRL6844EVM"  # whose masks have two bits an antenna
-_CLOCK_KSPS = {TWO_BITS: 200e3}
+IWRL6844 = "IWRL6844EVM"  # whose masks have two bits an antenna
+_CLOCK_KSPS = {IWRL6844: 200e3}
 _EXAMPLES = {
     "channelCfg": "channelCfg 7 3 0",
     "chirpComnCfg": "chirpComnCfg 15 5 0 128 1 34 3",
@@ -35,7 +35,7 @@ def read_l_sdk(lines: Sequence[CfgLine], where: str, device: str | None) -> Fram
     last = {line.name: line for line in lines}
     for name, example in _EXAMPLES.items():
         if name not in last:
-            raise CaptureError(f"{where}: {name} is missing; a line that would do: {example}")
+            raise CaptureError(f"{where}: {describe_missing(name, example)}")
     channels, frame = last["channelCfg"].numbers, last["frameCfg"]
     device = device or likely_l_device(int(channels["rxChCtrlBitMask"]))
     receivers = _antennas(last["channelCfg"], "rxChCtrlBitMask", device)
@@ -68,13 +68,13 @@ def read_l_sdk(lines: Sequence[CfgLine], where: str, device: str | None) -> Fram
 
 def likely_l_device(receiver_mask: int) -> str:
     """Name the xWRL board that a mask of receivers is for."""
-    return TWO_BITS if receiver_mask > 7 else "IWRL6432BOOST"
+    return IWRL6844 if receiver_mask > 7 else "IWRL6432BOOST"
 
 
 def _antennas(line: CfgLine, argument: str, device: str) -> tuple[int, ...]:
     """Numbers of the antennas that are on, from 0 on."""
     mask = int(line.numbers[argument])
-    width = 2 if device == TWO_BITS else 1
+    width = 2 if device == IWRL6844 else 1
     antennas = tuple(n for n in range(4) if mask >> n * width & (1 << width) - 1)
     if not antennas:
         raise line.refusal(argument, mask, "a mask of antennas of which one is on")
@@ -97,7 +97,7 @@ def _read_profile(last: dict[str, CfgLine], device: str) -> ChirpProfile:
         samples=int(common.numbers["numOfAdcSamples"]),
         rate_ksps=rate_ksps,
         backoff_db=(backoff_db,) * 4 if backoff_db else (),
-        place=f"{common.place}: {common.name} numOfAdcSamples",
+        place=f"{common.place} numOfAdcSamples",
     )
 
 

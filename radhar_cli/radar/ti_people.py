@@ -1,6 +1,6 @@
 """Detection of people as the lines of a TI .cfg set it: 3D people tracking, and people counting."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -13,7 +13,8 @@ from radhar_cli.radar.people_tracking import (
     TwoPassCfar,
     Zoom,
 )
-from radhar_cli.radar.ti_commands import ALL_SUBFRAMES, SUBFRAME, CfgLine, Effect
+from radhar_cli.radar.ti_commands import SUBFRAME, CfgLine, describe_missing, lines_of_detection
+from radhar_cli.radar.ti_detection import read_coefficients
 from radhar_cli.radar.ti_family import Family
 
 Lines: TypeAlias = Mapping[str, CfgLine]  # {command: its last line}
@@ -35,117 +36,96 @@ NEEDED: Mapping[Family, Mapping[str, str]] = {
         "doaCfg": "doaCfg 600 1875 30 1",
     },
 }
-_SKIPS = ("leftSkipSize", "rightSkipSize"), ("leftSkipSizeAzimuth", "rightSkipSizeAngle")
-_COUNTING_SKIPS = (
-    ("cfarDiscardRangeLeft", "cfarDiscardRangeRight"),
-    ("cfarDiscardAngleLeft", "cfarDiscardAngleRight"),
-)
 
 
-def lines_of_subframe(lines: Iterable[CfgLine], subframe: int) -> Lines:
-    """Find the last line of each command of detection that holds for a subframe."""
-    held = dict[str, CfgLine]()
-    for line in lines:
-        if line.command is None or line.command.effect is not Effect.POINTS:
-            continue
-        if line.numbers[SUBFRAME.name] in (ALL_SUBFRAMES, subframe):
-            held[line.name] = line
-    return held
+def last_lines(lines: Iterable[CfgLine], subframe: int = 0) -> Lines:
+    """Find the last line of each command that sets the detection of a subframe."""
+    return {line.name: line for line in lines_of_detection(lines, subframe)}
 
 
-def missing_commands(lines: Iterable[CfgLine], family: Family) -> tuple[str, ...]:
-    """Commands that the chain of a family needs and lines lack, each with a line that would do."""
-    names = {line.name for line in lines}
-    needed = NEEDED.get(family, {}).items()
+def missing_commands(line_of: Lines, family: Family) -> tuple[str, ...]:
+    """Commands that the chain of a family needs and lacks, each with a line that would do.
+
+    Args:
+        line_of: Line of each command that sets the detection; other families' do not count.
+        family: Software that the file is for.
+    """
+    names = {
+        name for name, line in line_of.items() if line.command and line.command.family is family
+    }
     return tuple(
-        f"{name} is missing; a line that would do: {example}"
-        for name, example in needed
+        describe_missing(name, example)
+        for name, example in NEEDED.get(family, {}).items()
         if name not in names
     )
 
 
 def read_people(
-    lines: Iterable[CfgLine], family: Family, channels: int, bins: int, subframe: int = 0
+    line_of: Lines, family: Family, channels: int, bins: int
 ) -> PeopleTracking | PeopleCounting | None:
     """Read the detection of people of a family of software that has one; None for others.
 
     Args:
-        lines: Lines of a .cfg that has all of NEEDED.
-        family: Software that it is for.
+        line_of: Line of each command that sets the detection, of all of NEEDED.
+        family: Software that the file is for.
         channels: Number of virtual channels.
         bins: Number of range bins.
-        subframe: Number of the subframe, from 0 on.
 
     Raises:
         CaptureError: A line cannot be read.
     """
     if family is Family.PEOPLE_3D:
-        return read_people_tracking(lines, channels, bins, subframe)
+        return read_people_tracking(line_of, channels, bins)
     if family is Family.PEOPLE:
-        return read_people_counting(lines, channels, bins, subframe)
+        return read_people_counting(line_of, channels, bins)
     return None
 
 
-def read_people_tracking(
-    lines: Iterable[CfgLine], channels: int, bins: int, subframe: int = 0
-) -> PeopleTracking:
+def read_people_tracking(line_of: Lines, channels: int, bins: int) -> PeopleTracking:
     """Read the detection of 3D people tracking.
 
     Args:
-        lines: Lines of a .cfg that has all of NEEDED.
+        line_of: Line of each command that sets the detection, of all of NEEDED.
         channels: Number of virtual channels.
         bins: Number of range bins.
-        subframe: Number of the subframe, from 0 on.
 
     Raises:
         CaptureError: A line cannot be read.
     """
-    held = lines_of_subframe(lines, subframe)
-    search, view = held["dynamicRangeAngleCfg"].numbers, held["fovCfg"].numbers
+    search, view = line_of["dynamicRangeAngleCfg"].numbers, line_of["fovCfg"].numbers
     geometry = [
-        _read_elements(held[name], channels)
+        _read_elements(line_of[name], channels)
         for name in ("antGeometry0", "antGeometry1", "antPhaseRot")
     ]
     settings = PeopleTracking(
         right=geometry[0],
         up=geometry[1],
         rotation=geometry[2],
-        coefficients=_read_corrections(held, channels),
+        coefficients=_read_corrections(line_of, channels),
         half_view_deg=(view["azimFoV"], view["elevFoV"]),
         step_deg=search["searchStep"],
         gamma=search["mvdr_alpha"],
-        refinement=_read_refinement(held),
-        dynamic=_read_cfar(held["dynamicRACfarCfg"]),
-        static=_read_static(held),
-        fine_motion=_read_fine_motion(held),
+        refinement=_read_refinement(line_of),
+        dynamic=_read_cfar(line_of["dynamicRACfarCfg"]),
+        static=_read_static(line_of),
+        fine_motion=_read_fine_motion(line_of),
     )
-    _require_fitting(settings, held, bins)
+    _require_fitting(settings, line_of, bins)
     return settings
 
 
-def read_people_counting(
-    lines: Iterable[CfgLine], channels: int, bins: int, subframe: int = 0
-) -> PeopleCounting:
-    """Read the detection of people counting, of two lines.
+def read_people_counting(line_of: Lines, channels: int, bins: int) -> PeopleCounting:
+    """Read the detection of people counting.
 
-    Args:
-        lines: Lines of a .cfg that has all of NEEDED.
-        channels: Number of virtual channels.
-        bins: Number of range bins.
-        subframe: Number of the subframe, from 0 on.
-
-    Raises:
-        CaptureError: A line cannot be read.
+    Arguments and errors are those of `read_people_tracking`.
     """
-    held = lines_of_subframe(lines, subframe)
-    line, search = held["cfarCfg"], held["doaCfg"].numbers
+    line, search = line_of["cfarCfg"], line_of["doaCfg"].numbers
     numbers = line.numbers
-    skip = _pairs(numbers, _COUNTING_SKIPS)
     cfar = TwoPassCfar(
-        skip_range=skip[0],
-        skip_angle=skip[1],
-        window=(int(numbers["refWinSize0"]), int(numbers["refWinSize1"])),
-        guard=(int(numbers["guardWinSize0"]), int(numbers["guardWinSize1"])),
+        skip_range=_pair(line, "cfarDiscardRangeLeft", "cfarDiscardRangeRight"),
+        skip_angle=_pair(line, "cfarDiscardAngleLeft", "cfarDiscardAngleRight"),
+        window=_pair(line, "refWinSize0", "refWinSize1"),
+        guard=_pair(line, "guardWinSize0", "guardWinSize1"),
         threshold=(numbers["rangeThre"] / 10, numbers["azimuthThre"] / 10),
         sidelobe=None,
         second_pass=True,
@@ -154,7 +134,7 @@ def read_people_counting(
         half_view_deg=search["estAngleRange"] / 10,
         step_deg=search["estAngleResolution"] / 1000,
         gamma=search["gamma"] / 1000,
-        coefficients=_read_corrections(held, channels),
+        coefficients=_read_corrections(line_of, channels),
         cfar=cfar,
     )
     _require_cfar_within(cfar, line, ("refWinSize0", "refWinSize1"), bins, settings.angles_deg.size)
@@ -173,20 +153,15 @@ def _read_elements(line: CfgLine, channels: int) -> tuple[float, ...]:
     return values
 
 
-def _read_corrections(held: Lines, channels: int) -> tuple[complex, ...]:
+def _read_corrections(line_of: Lines, channels: int) -> tuple[complex, ...]:
     """Read the phase and gain corrections of the virtual channels; () without such a line."""
-    line = held.get("compRangeBiasAndRxChanPhase")
-    if line is None:
-        return ()
-    parts: Sequence[float] = [
-        value for name, value in line.numbers.items() if name[:2] in ("Re", "Im")
-    ]
-    return tuple(complex(*pair) for pair in zip(parts[::2], parts[1::2], strict=True))[:channels]
+    line = line_of.get("compRangeBiasAndRxChanPhase")
+    return () if line is None else read_coefficients(line, channels)
 
 
-def _read_refinement(held: Lines) -> ElevationSearch | Zoom:
+def _read_refinement(line_of: Lines) -> ElevationSearch | Zoom:
     """Read how a cell of the map becomes a direction; the method tells which numbers are right."""
-    line, method = held["dynamic2DAngleCfg"], held["dynamicRangeAngleCfg"].numbers
+    line, method = line_of["dynamic2DAngleCfg"], line_of["dynamicRangeAngleCfg"].numbers
     numbers, is_wall = line.numbers, method["detectionMethod"] == WALL
     if is_wall != ("elevSearchStep" in numbers):
         count = 9 if is_wall else 7
@@ -209,43 +184,41 @@ def _read_refinement(held: Lines) -> ElevationSearch | Zoom:
 def _read_cfar(line: CfgLine) -> TwoPassCfar:
     """Read a line dynamicRACfarCfg or staticRACfarCfg."""
     numbers = line.numbers
-    skip = _pairs(numbers, _SKIPS)
     return TwoPassCfar(
-        skip_range=skip[0],
-        skip_angle=skip[1],
-        window=(int(numbers["searchWinSizeRange"]), int(numbers["searchWinSizeAngle"])),
-        guard=(int(numbers["guardSizeRange"]), int(numbers["guardSizeAngle"])),
+        skip_range=_pair(line, "leftSkipSize", "rightSkipSize"),
+        skip_angle=_pair(line, "leftSkipSizeAzimuth", "rightSkipSizeAngle"),
+        window=_pair(line, "searchWinSizeRange", "searchWinSizeAngle"),
+        guard=_pair(line, "guardSizeRange", "guardSizeAngle"),
         threshold=(numbers["threRange"], numbers["threAngle"]),
         sidelobe=numbers["threSidelob"],
         second_pass=bool(numbers["enSecondPass"]),
     )
 
 
-def _pairs(numbers: Mapping[str, float], names: Sequence[tuple[str, str]]) -> list[tuple[int, int]]:
-    """Pairs of whole numbers by the names of their arguments."""
-    return [(int(numbers[low]), int(numbers[high])) for low, high in names]
+def _pair(line: CfgLine, first: str, second: str) -> tuple[int, int]:
+    """Two whole numbers of a line, by the names of their arguments."""
+    return int(line.numbers[first]), int(line.numbers[second])
 
 
-def _read_static(held: Lines) -> StaticSearch | None:
+def _read_static(line_of: Lines) -> StaticSearch | None:
     """Read the search for what stands still; None where it is off."""
-    line = held.get("staticRangeAngleCfg")
+    line = line_of.get("staticRangeAngleCfg")
     if line is None or not line.numbers["staticProcEnabled"]:
         return None
-    if "staticRACfarCfg" not in held:
+    if "staticRACfarCfg" not in line_of:
         raise line.refusal("staticProcEnabled", 1, "0 without a line staticRACfarCfg")
-    numbers = line.numbers
-    decimation = (
-        int(numbers["staticAzimStepDeciFactor"]),
-        int(numbers["staticElevStepDeciFactor"]),
+    # As in the firmware, the ranges of the moving points are skipped, and no pass is along angle.
+    skip_range = _read_cfar(line_of["dynamicRACfarCfg"]).skip_range
+    cfar = _read_cfar(line_of["staticRACfarCfg"])
+    return StaticSearch(
+        cfar=replace(cfar, skip_range=skip_range, second_pass=False),
+        decimation=_pair(line, "staticAzimStepDeciFactor", "staticElevStepDeciFactor"),
     )
-    skip_range = _read_cfar(held["dynamicRACfarCfg"]).skip_range  # which its own yield to
-    cfar = replace(_read_cfar(held["staticRACfarCfg"]), skip_range=skip_range)
-    return StaticSearch(cfar, decimation)
 
 
-def _read_fine_motion(held: Lines) -> FineMotion | None:
+def _read_fine_motion(line_of: Lines) -> FineMotion | None:
     """Read the frames of slow movements; None where they are off, or where numbers lack."""
-    line = held.get("fineMotionCfg")
+    line = line_of.get("fineMotionCfg")
     if line is None or not line.numbers["fineMotionProcEnabled"] or is_short_fine_motion(line):
         return None
     numbers = line.numbers
@@ -265,9 +238,9 @@ def is_short_fine_motion(line: CfgLine) -> bool:
     return is_on and "fineMotionDopplerThrIdx" not in line.numbers
 
 
-def _require_fitting(settings: PeopleTracking, held: Lines, bins: int) -> None:
+def _require_fitting(settings: PeopleTracking, line_of: Lines, bins: int) -> None:
     """Raise CaptureError where a view is too narrow for its steps, or a window for its map."""
-    view, search = held["fovCfg"], held["dynamicRangeAngleCfg"]
+    view, search = line_of["fovCfg"], line_of["dynamicRangeAngleCfg"]
     if isinstance(settings.refinement, Zoom) and settings.step_deg >= min(settings.half_view_deg):
         right = f"below azimFoV and elevFoV, {min(settings.half_view_deg):g} (fovCfg)"
         raise search.refusal("searchStep", settings.step_deg, right)
@@ -277,7 +250,7 @@ def _require_fitting(settings: PeopleTracking, held: Lines, bins: int) -> None:
     if angles > MAX_ANGLES:
         raise view.refusal("azimFoV", settings.half_view_deg[0], f"less: {angles} directions")
     names = ("searchWinSizeRange", "searchWinSizeAngle")
-    _require_cfar_within(settings.dynamic, held["dynamicRACfarCfg"], names, bins, angles)
+    _require_cfar_within(settings.dynamic, line_of["dynamicRACfarCfg"], names, bins, angles)
     if settings.static is not None:
         looked_at = [
             axis.values[::every].size
@@ -285,8 +258,8 @@ def _require_fitting(settings: PeopleTracking, held: Lines, bins: int) -> None:
                 (settings.nu, settings.mu), settings.static.decimation, strict=True
             )
         ]
-        cfar, line = settings.static.cfar, held["staticRACfarCfg"]
-        _require_cfar_within(cfar, line, names, bins, looked_at[0] * looked_at[1], is_static=True)
+        cfar, line = settings.static.cfar, line_of["staticRACfarCfg"]
+        _require_cfar_within(cfar, line, names, bins, looked_at[0] * looked_at[1])
 
 
 def _require_cfar_within(
@@ -295,7 +268,6 @@ def _require_cfar_within(
     names: tuple[str, str],
     bins: int,
     angles: int,
-    is_static: bool = False,
 ) -> None:
     """Raise CaptureError where windows and ends that are left out do not fit a map.
 
@@ -305,11 +277,10 @@ def _require_cfar_within(
         names: Names of its windows along range and angle.
         bins: Number of range bins.
         angles: Number of angles.
-        is_static: Whether there is no pass along angle.
     """
     if not cfar.fits_bins(bins):
         right = f"less: both windows, guards and ends that are left out do not fit {bins} bins"
         raise line.refusal(names[0], cfar.window[0], right)
-    if sum(cfar.skip_angle) >= angles or not (is_static or cfar.fits_angles(angles)):
+    if sum(cfar.skip_angle) >= angles or not cfar.fits_angles(angles):
         right = f"less: both windows, guards and ends that are left out do not fit {angles} angles"
         raise line.refusal(names[1], cfar.window[1], right)

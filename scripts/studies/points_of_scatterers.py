@@ -22,7 +22,7 @@ from radhar_cli.processing.points import Cloud, board_points
 from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.ti_commands import split_lines
 from radhar_cli.radar.ti_detection import read_detection
-from radhar_cli.radar.ti_people import read_people_tracking
+from radhar_cli.radar.ti_people import last_lines, read_people_tracking
 
 ISK = Board(
     array=DEVICES["IWR6843ISK"].array,
@@ -175,7 +175,7 @@ def row_of(
 def chains() -> Mapping[str, tuple[Board, Callable[[Complex, Board], Cloud]]]:
     """The rows: {name: board and function}."""
     isk, ods = (
-        read_people_tracking(split_lines(TRACKING + elements, "table"), 12, ISK.n_fft)
+        read_people_tracking(last_lines(split_lines(TRACKING + elements, "table")), 12, ISK.n_fft)
         for elements in (OF_ISK, OF_ODS)
     )
     demo = read_detection(split_lines(OUT_OF_BOX, "table"), 12, ISK.n_fft)

@@ -4,11 +4,15 @@ from dataclasses import replace
 
 import pytest
 from helpers.boards import CFG, MARS
+from helpers.scatterers import ISK_CFG
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.detection import CA, CASO, Cfar
 from radhar_cli.radar.ti_cfg import BoardPose, parse_ti_cfg
 from radhar_cli.radar.ti_family import Family
+
+PEOPLE = CFG.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0")
+PEOPLE = PEOPLE.replace("clutterRemoval 1", "doaCfg 600 1875 30 1")
 
 
 def test_what_a_cfg_says() -> None:
@@ -52,8 +56,7 @@ def test_text_is_read_as_boards_read_it() -> None:
 
 
 def test_family_decides_what_twelve_numbers_of_cfarCfg_are() -> None:
-    people = CFG.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0")
-    header = parse_ti_cfg(people.replace("clutterRemoval 1", "doaCfg 600 1875 30 1"))
+    header = parse_ti_cfg(PEOPLE)
     assert (header.family, header.detection.remove_mean) == (Family.PEOPLE, True)
     assert (header.not_simulated, header.firmware) == ((), "people_counting")
     newer = CFG.replace("frameCfg 0 2 32 0 100 1 0", "frameCfg 0 2 32 0 80 100 1 0")
@@ -80,6 +83,22 @@ def test_family_decides_what_twelve_numbers_of_cfarCfg_are() -> None:
 def test_family_is_known_by_its_commands(lines: str, family: Family) -> None:
     without_cfar = CFG.replace("cfarCfg 0 2 8 4 3 0 1130\n", "")
     assert parse_ti_cfg(f"{without_cfar}{lines}\n").family is family
+
+
+@pytest.mark.parametrize(
+    ("cfg", "missing", "firmware"),
+    [
+        (ISK_CFG.replace("fovCfg -1", "fovCfg 1"), "fovCfg", None),  # of another subframe
+        (PEOPLE.replace("cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0", ""), "cfarCfg", None),
+        (f"{PEOPLE}cfarCfg 0 2 8 4 3 0 1130\n", "cfarCfg", "sdk1"),  # of another family
+    ],
+)
+def test_commands_that_a_chain_of_people_needs_may_be_missing(
+    cfg: str, missing: str, firmware: str | None
+) -> None:
+    header = parse_ti_cfg(cfg)
+    assert (header.people, header.firmware) == (None, firmware)
+    assert [words.split()[0] for words in header.missing] == [missing]
 
 
 def test_frameCfg_counts_in_mode_1_whatever_stands_beside_it() -> None:

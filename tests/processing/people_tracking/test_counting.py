@@ -13,7 +13,7 @@ from radhar_cli.processing.people_tracking.counting import count_people, order_o
 from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.people_tracking import PeopleCounting
 from radhar_cli.radar.ti_commands import split_lines
-from radhar_cli.radar.ti_people import read_people_counting
+from radhar_cli.radar.ti_people import last_lines, read_people_counting
 
 IWR1642 = Board(
     array=DEVICES["IWR1642BOOST"].array,
@@ -30,7 +30,7 @@ IWR1642 = Board(
     period=0.05,
 )
 LINES = "cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0\ndoaCfg 600 1875 30 1\n"
-SETTINGS: PeopleCounting = read_people_counting(split_lines(LINES, "cfg"), 8, 128)
+SETTINGS: PeopleCounting = read_people_counting(last_lines(split_lines(LINES, "cfg")), 8, 128)
 
 
 def points_of(*scatterers: Mapping[str, Any], settings: PeopleCounting = SETTINGS) -> Float:

@@ -14,7 +14,7 @@ from radhar_cli.processing.points import Cloud
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.people_tracking import PeopleTracking
 from radhar_cli.radar.ti_commands import split_lines
-from radhar_cli.radar.ti_people import read_people_tracking
+from radhar_cli.radar.ti_people import last_lines, read_people_tracking
 
 BPM = (0, 2)
 BPM_MASKS = (5, 2, 5)
@@ -22,7 +22,7 @@ BPM_MASKS = (5, 2, 5)
 
 def settings_of(board: Board, more: str = "") -> PeopleTracking:
     """Settings of TI's file for an ISK, with other lines behind it that hold."""
-    return read_people_tracking(split_lines(ISK_CFG + more, "isk"), 12, board.n_fft)
+    return read_people_tracking(last_lines(split_lines(ISK_CFG + more, "isk")), 12, board.n_fft)
 
 
 def scatterer(

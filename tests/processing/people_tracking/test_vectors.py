@@ -30,7 +30,7 @@ from radhar_cli.processing.people_tracking.two_pass_cfar import (
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.people_tracking import PeopleTracking
 from radhar_cli.radar.ti_commands import split_lines
-from radhar_cli.radar.ti_people import read_people_tracking
+from radhar_cli.radar.ti_people import last_lines, read_people_tracking
 
 VECTORS = json.loads((Path(__file__).parent / "vectors.json").read_text())
 CASES: Mapping[str, Any] = {case["name"]: case for case in VECTORS["cases"]}
@@ -55,7 +55,9 @@ class Case:
         self.bpm = (int(words["bpmCfg"][2]), int(words["bpmCfg"][3])) if "bpmCfg" in words else None
         device = ISK if self.case["board"] == "ISK" else ODS
         self.board: Board = replace(device, samples=48, loops=24, bpm=self.bpm)
-        self.settings: PeopleTracking = read_people_tracking(lines, 12, self.board.n_fft)
+        self.settings: PeopleTracking = read_people_tracking(
+            last_lines(lines), 12, self.board.n_fft
+        )
         cube = echo_of(self.board, self.case["scatterers"], self.masks, self.bpm)
         noise = self.case["noise"]
         self.cube = cube + repeatable_noise(cube.shape, noise["power"], noise["seed"])
@@ -86,7 +88,8 @@ def cfar_map() -> tuple[Float, Any]:
     vector = VECTORS["cfar"]
     lines = [line for line in CASES["walker_1"]["cfg"] if not line.startswith("dynamicRAC")]
     text = "\n".join([*lines, vector["line"]])
-    return np.array(vector["map"]), read_people_tracking(split_lines(text, "cfar"), 12, 64).dynamic
+    settings = read_people_tracking(last_lines(split_lines(text, "cfar")), 12, 64)
+    return np.array(vector["map"]), settings.dynamic
 
 
 def test_noise_of_the_cfar_at_its_edges() -> None:

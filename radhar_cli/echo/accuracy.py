@@ -184,25 +184,39 @@ def choose_probes(powers: Float, pulses: int, roughness: Roughness = EVEN, lost:
     ends = np.cumsum(share)
     segment = np.searchsorted(ends, place).clip(max=starts.size - 1)
     within = ((place - ends[segment]) / share[segment] + 1).clip(0, 1 - 1e-9)
-    length = lengths[segment]
-    offset, density = (within * length).astype(np.intp), 1 / length
-    order, seams = _seams_first(roughness.step, lost)
-    if seams < SEAMS * order.size:  # else as many lie there anyway
-        at_seam, full = within < SEAMS, length == order.size
-        rank = np.where(
-            at_seam,
-            within * (seams / SEAMS),
-            seams + (within - SEAMS) * ((order.size - seams) / (1 - SEAMS)),
-        ).astype(np.intp)
-        offset = np.where(full, order[rank], offset)
-        shares = np.where(at_seam, SEAMS / seams, (1 - SEAMS) / (order.size - seams))
-        density = np.where(full, shares, density)
+    offset, density = _choose_pulses(within, lengths[segment], roughness.step, lost)
     return Probes(starts[segment] + offset, share[segment] * density * PROBES, total)
 
 
+def _choose_pulses(within: Float, lengths: Index, step: int, lost: int) -> tuple[Index, Float]:
+    """Choose a pulse in each of some segments, a share SEAMS or more of them at ends of runs.
+
+    Args:
+        within: Uniform numbers u [P], 0 <= u < 1, which choose the pulses.
+        lengths: Number of pulses of each segment [P]: `step`, or fewer of the last.
+        step: Number of pulses of a segment.
+        lost: Number of pulses by which the canceller shortens a signal.
+
+    Returns:
+        Number of each pulse within its segment [P], and its probability there [P].
+    """
+    offset, density = (within * lengths).astype(np.intp), 1 / lengths
+    order, seams = _order_seams_first(step, lost)
+    if seams >= SEAMS * step:  # as many lie there anyway
+        return offset, density
+    at_seam, is_full = within < SEAMS, lengths == step
+    rank = np.where(
+        at_seam,
+        within * (seams / SEAMS),
+        seams + (within - SEAMS) * ((step - seams) / (1 - SEAMS)),
+    ).astype(np.intp)
+    shares = np.where(at_seam, SEAMS / seams, (1 - SEAMS) / (step - seams))
+    return np.where(is_full, order[rank], offset), np.where(is_full, shares, density)
+
+
 @lru_cache(maxsize=128)
-def _seams_first(step: int, lost: int) -> tuple[Index, int]:
-    """Pulses of a segment [step] by order: those at the end of a run before others; and how many.
+def _order_seams_first(step: int, lost: int) -> tuple[Index, int]:
+    """Order the pulses of a segment [step], seams first: those at ends of runs; and count these.
 
     Rounding grows along a run, and a canceller sees the jump to the next.
     """

@@ -107,11 +107,18 @@ def _add_squeezed_power(total: Float, v: Complex, slope: Complex, least: float) 
 def _add_squeezed_power_compiled(total: Float, v: Complex, slope: Complex, least: float) -> None:
     """Do as `_add_squeezed_power`, of complex64, in one pass over the coefficients."""
     least_power = np.float32(max(least**2, float(np.finfo(np.float32).tiny)))
-    machine_code(_fill_in)(total, v, slope, least_power)
+    machine_code(_add_squeezed_rows)(total, v, slope, least_power)
 
 
-def _fill_in(total: Float, v: Complex, slope: Complex, least_power: np.float32) -> None:
-    """Add |T|^2 [frames, L], row by row, compiled by numba."""
+def _add_squeezed_rows(total: Float, v: Complex, slope: Complex, least_power: np.float32) -> None:
+    """Loops of `_add_squeezed_power_compiled`, for numba to compile.
+
+    Args:
+        total: Sum of |T|^2, frequencies rising [frames, L], float32, which is added to.
+        v: Transform V [frames, L], complex64.
+        slope: Transform V' with the slope of the window [frames, L], complex64.
+        least_power: |V|^2 below which coefficients are dropped.
+    """
     length = v.shape[1]
     bins, farthest = np.float32(length / (2 * np.pi)), np.float32(_OF_SINGLE[0])
     shift, squeezed = np.empty(length, np.int32), np.empty((length, 2), np.float32)

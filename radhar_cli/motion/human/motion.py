@@ -32,7 +32,7 @@ from radhar_cli.motion.human.running import GoRunning
 from radhar_cli.motion.human.transfer import Transfer
 from radhar_cli.motion.human.walking import Walking
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
-from radhar_cli.numerics.arrays import Float
+from radhar_cli.numerics.arrays import Float, Index
 
 HIPS, TOES = ("right_hip", "left_hip"), ("right_toes", "left_toes")
 KNOWS_TOES = (Lying, Transfer)  # parts that say where the toes are
@@ -192,13 +192,10 @@ class HumanMotion:
                 if is_under_way.all():
                     self._fill(self.parts[number], t[block], p[..., block], fill)
                 elif is_under_way.any():
-                    places = np.flatnonzero(is_under_way)
-                    points = np.empty((3, count, places.size))
-                    self._fill(self.parts[number], t[block][places], points, fill)
-                    ends = np.flatnonzero(np.diff(places) > 1) + 1
-                    for run in np.split(np.arange(places.size), ends):
-                        start = first + places[run[0]]
-                        p[..., start : start + run.size] = points[..., run[0] : run[-1] + 1]
+                    columns = np.flatnonzero(is_under_way)
+                    points = np.empty((3, count, columns.size))
+                    self._fill(self.parts[number], t[block][columns], points, fill)
+                    _copy_into_columns(p[..., block], columns, points)
         return p
 
     @cached_property
@@ -226,6 +223,17 @@ class HumanMotion:
             y += across
         x += place.ahead
         y += place.left
+
+
+def _copy_into_columns(p: Float, columns: Index, points: Float) -> None:
+    """Copy points [3, I, N] into the rising columns [N] of p [3, I, M].
+
+    Runs of adjacent columns are copied as slices, which takes less time than an index does.
+    """
+    gaps = np.flatnonzero(np.diff(columns) > 1) + 1
+    for run in np.split(np.arange(columns.size), gaps):
+        start = columns[run[0]]
+        p[..., start : start + run.size] = points[..., run[0] : run[-1] + 1]
 
 
 def _join_overlapping(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Place], Part]:

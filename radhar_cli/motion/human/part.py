@@ -40,7 +40,7 @@ def place_after(place: Place, end: Place) -> Place:
 
 
 def origin_seen_from(place: Place) -> Place:
-    """Place of the point from which `place` is seen, as it is seen from there."""
+    """Inverse of a place: where the point that it is relative to lies, seen from the place."""
     c, s = cos(place.turn), sin(place.turn)
     x, y = -place.ahead, -place.left
     return Place(c * x + s * y, c * y - s * x, -place.turn)

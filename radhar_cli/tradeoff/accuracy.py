@@ -40,7 +40,7 @@ from radhar_cli.learning.run_folder import Epoch, load_best
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import train
 from radhar_cli.learning.training_set import open_training_set
-from radhar_cli.processes.progress import Progress
+from radhar_cli.processes.progress import NoProgress, Progress
 from radhar_cli.products.plan import Product
 from radhar_cli.tradeoff.intervals import Interval, mean_interval
 
@@ -100,17 +100,11 @@ class SettingAccuracy:
         return self.interval.high
 
 
-class _Quiet:
+class _Quiet(NoProgress):
     """Progress of a part: silent, but its work can be interrupted."""
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
-
-    def say(self, message: str) -> None:
-        """Nobody reads it."""
-
-    def stage(self, name: str, total: int, done: int, unit: str | None = None) -> None:
-        """Nobody sees it."""
 
     def advance(self, count: int) -> None:
         """Give the user's interrupt its turn."""

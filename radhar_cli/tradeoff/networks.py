@@ -8,7 +8,7 @@ from pathlib import Path
 
 from radhar_cli.processes.progress import Progress
 from radhar_cli.tradeoff.recommendation import saves
-from radhar_cli.tradeoff.row import AccuracyNumbers, Row
+from radhar_cli.tradeoff.row import AccuracyNumbers
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.sweep import Sweep
 
@@ -47,13 +47,6 @@ def measure_accuracies(
             if row.is_default:
                 return
             continue
-        numbers = AccuracyNumbers(
-            *(measured.by_seed, measured.mean, measured.low, measured.high, measured.tested_on)
-        )
-        sweep.rows[number] = with_accuracy(row, numbers)
+        numbers = AccuracyNumbers(measured.by_seed, *measured.interval, measured.tested_on)
+        sweep.rows[number] = replace(row, accuracy=numbers)
         save()
-
-
-def with_accuracy(row: Row, numbers: AccuracyNumbers) -> Row:
-    """Row with the accuracy of its networks."""
-    return replace(row, accuracy=numbers)

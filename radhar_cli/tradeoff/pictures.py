@@ -30,7 +30,7 @@ from radhar_cli.tradeoff.setting import Overrides
 NO_NOISE = ("snr_db=null", "receiver.noise_figure_db=null")
 POINTS, CLOUD, CUBE, BINS = "points", "cloud", "cube", "range_signals"
 SIGNALS = (BINS, "signal", "range_profiles")
-# What the error of a signal is that of, for people.
+# Names of the raw products in sentences.
 WORDS = {
     CUBE: "the cube",
     BINS: "the gate's bins",

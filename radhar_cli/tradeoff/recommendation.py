@@ -11,10 +11,10 @@ from radhar_cli.tradeoff.intervals import paired_difference
 from radhar_cli.tradeoff.row import Row
 from radhar_cli.tradeoff.setting import DEFAULT
 from radhar_cli.tradeoff.sweep import Sweep
+from radhar_cli.tradeoff.timing import LEAST_ROUNDS
 
 MOST_SAVINGS, MOST_COSTS = 6, 3
 MOST_LOST = 0.02  # of accuracy, that may be lost by what is recommended
-LEAST_ROUNDS = 3  # of timing, without which nothing is concluded
 COSTLY = 1.5  # times the time, from which on a setting is named as costly
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 TOLERANCE = "engine.tolerance_db"
@@ -214,8 +214,8 @@ def _picture_words(row: Row) -> str:
     if row.maps:
         name, worst = max(row.maps.items(), key=lambda item: item[1].over_one_median)
         size = f"{worst.rms_levels_median:.0f} levels"
-        if worst.rms_db is not None and worst.rms_levels > 0:
-            size = f"{worst.rms_db * worst.rms_levels_median / worst.rms_levels:.1f} dB rms"
+        if worst.rms_median_db is not None:
+            size = f"{worst.rms_median_db:.1f} dB rms"
         words.append(f"{name}: {_percent(worst.over_one_median)} of the pixels, {size}")
     if row.points is not None:
         words.append(

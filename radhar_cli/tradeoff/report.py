@@ -282,14 +282,14 @@ def _error_text(row: Row) -> str:
 def _shown_cells(row: Row) -> Iterable[str]:
     """What each map and the points show."""
     for name, numbers in row.maps.items():
-        over_one = numbers.over_one if row.is_error else numbers.over_one_median
-        rms = numbers.rms_levels if row.is_error else numbers.rms_levels_median
-        size = f"{rms:.2g} levels"
-        if numbers.rms_db is not None and numbers.rms_levels > 0:
-            size = f"{rms * numbers.rms_db / numbers.rms_levels:.2g} dB"
         if numbers.changed == 0:
             yield f"{name}: the same"
             continue
+        over_one, rms_levels, rms_db = numbers.over_one, numbers.rms_levels, numbers.rms_db
+        if not row.is_error:
+            over_one, rms_levels = numbers.over_one_median, numbers.rms_levels_median
+            rms_db = numbers.rms_median_db
+        size = f"{rms_levels:.2g} levels" if rms_db is None else f"{rms_db:.2g} dB"
         similar = "" if numbers.ssim is None else f", SSIM {numbers.ssim:.3f}"
         yield f"{name}: {100 * over_one:.2g} %, {size}{similar}"
     if row.points is not None:

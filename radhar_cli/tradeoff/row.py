@@ -67,6 +67,13 @@ class MapNumbers:
             median(difference.rms_levels for difference in differences),
         )
 
+    @property
+    def rms_median_db(self) -> float | None:
+        """`rms_levels_median` in dB; None of pictures that show no decibels, or the same ones."""
+        if self.rms_db is None or self.rms_levels == 0:
+            return None
+        return self.rms_db * self.rms_levels_median / self.rms_levels
+
 
 @dataclass(frozen=True)
 class AccuracyNumbers:
@@ -192,16 +199,10 @@ class Row:
     @property
     def over_one(self) -> float | None:
         """Largest share of the pixels of a map that differ by more than a level, or of points."""
-        return max(self._shares(), default=None)
-
-    def _shares(self) -> list[float]:
         shares = [numbers.over_one for numbers in self.maps.values()]
-        return shares + ([] if self.points is None else [self.points.moved])
-
-    @property
-    def rms_levels(self) -> float | None:
-        """Largest rms difference of a map, levels; None where no map is compared."""
-        return max((numbers.rms_levels for numbers in self.maps.values()), default=None)
+        if self.points is not None:
+            shares.append(self.points.moved)
+        return max(shares, default=None)
 
     def numbers(self) -> dict[str, Any]:
         """Plain values for JSON; an error of -inf is "exact"."""

@@ -50,8 +50,8 @@ class Scenes:
         if self.quick or isinstance(self.config().radar, BoardRadar):
             slugs = [slug for slug in slugs if slug in QUICK] or slugs[:QUICK_SCENES]
         samples = [SweepSample(slug) for slug in slugs]
+        counts = {a.slug: self.config().samples_of(a) for a in activities}
         for number in range(1, QUICK_SCENES):
-            counts = {a.slug: self.config().samples_of(a) for a in activities}
             further = [SweepSample(slug, number) for slug in slugs if number < counts[slug]]
             samples += further[: max(0, QUICK_SCENES - len(samples))]
         return samples

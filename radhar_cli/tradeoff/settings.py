@@ -6,10 +6,9 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import nominal
 from radhar_cli.config.radar import BoardRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
 from radhar_cli.config.room import WallConfig
-from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import MAP_KINDS
 from radhar_cli.tradeoff.board_settings import board_settings
-from radhar_cli.tradeoff.setting import Change, Setting, Worth, keyed
+from radhar_cli.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth, keyed
 
 TOLERANCES_DB = (-60, -80, -100, -120)
 CLUTTER = ("difference", "mean", "highpass", "none")
@@ -69,21 +68,26 @@ def map_settings(config: Config) -> Iterator[Setting]:
     """Yield fewer maps, an FSST more, and other sizes of images."""
     for name in config.maps:
         if len(config.maps) > 1:
-            kept_maps = [other for other in config.maps if other != name]
-            overrides = (f"maps=[{', '.join(kept_maps)}]",)
+            remaining_maps = [other for other in config.maps if other != name]
+            overrides = (f"maps=[{', '.join(remaining_maps)}]",)
             yield Setting("maps", f"maps without {name}", overrides, worth=Worth.SAVES)
     is_other = isinstance(config.radar, BoardRadar | ImpulseRadar)
-    has_fsst = not is_other and config.processing.range_sum == "coherent"
-    if has_fsst and not any(name.startswith("fsst") for name in config.maps):
+    allows_fsst = not is_other and config.processing.range_sum == "coherent"
+    if allows_fsst and not _has_fsst(config):
         overrides = (f"maps=[{', '.join((*config.maps, 'fsst'))}]",)
         yield Setting("maps", "maps with fsst", overrides)
-    if any(name.startswith("fsst") for name in config.maps):
+    if _has_fsst(config):
         yield keyed("maps", "processing.fsst_hop_pulses=1", Worth.SLOW)
     height, width = config.image.size_px
     for parts, worth in ((2, Worth.SAVES), (4, Worth.PROCESSING)):
         if min(height, width) // parts >= LEAST_PX and config.stream is None:
             size = f"[{height // parts}, {width // parts}]"
             yield keyed("maps", f"image.size_px={size}", worth)
+
+
+def _has_fsst(config: Config) -> bool:
+    """Whether an FSST is among the maps, compensated or not."""
+    return any(name.startswith("fsst") for name in config.maps)
 
 
 def body_settings(config: Config) -> Iterator[Setting]:
@@ -148,17 +152,11 @@ def processing_settings(config: Config) -> Iterator[Setting]:
     if "stft" not in config.maps or isinstance(config.radar, CwRadar):
         return
     kind = "gated" if processing.range_sum == "coherent" else "coherent"
-    overrides: tuple[str, ...] = (f"processing.range_sum={kind}",)
-    base: tuple[str, ...] = ()
-    if any(name.startswith("fsst") for name in config.maps):
-        base = ("maps=[stft]",)  # a gate has no fsst
-    name = f"processing.range_sum: {kind}"
+    base: Overrides = ("maps=[stft]",) if _has_fsst(config) else ()  # a gate has no fsst
+    base_name = "maps: [stft]" if base else DEFAULT
+    name, overrides = f"processing.range_sum: {kind}", (*base, f"processing.range_sum={kind}")
     worth = Worth.PROCESSING if kind == "gated" else Worth.SAVES
-    yield Setting(
-        *("processing", name, (*base, *overrides), base),
-        base_name="maps: [stft]" if base else Setting.base_name,
-        worth=worth,
-    )
+    yield Setting("processing", name, overrides, base, base_name, worth=worth)
 
 
 def people_settings(config: Config) -> Iterator[Setting]:
@@ -208,8 +206,8 @@ def wall_settings(config: Config) -> Iterator[Setting]:
         if fresnel != wall.fresnel:
             yield keyed("wall", f"wall.fresnel={fresnel}", Worth.PHYSICS)
     is_impulse = isinstance(config.radar, ImpulseRadar)
-    base: tuple[str, ...] = () if is_impulse else ("engine.kind=cube", "wall.rays=plane")
-    base_name = Setting.base_name if is_impulse else "engine.kind: cube, plane rays"
+    base: Overrides = () if is_impulse else ("engine.kind=cube", "wall.rays=plane")
+    base_name = DEFAULT if is_impulse else "engine.kind: cube, plane rays"
     overrides = (*base, "wall.echoes=exact")
     yield Setting("wall", "wall.echoes: exact", overrides, base, base_name, worth=Worth.SLOW)
 
@@ -245,8 +243,3 @@ def receiver_settings(config: Config) -> Iterator[Setting]:
     else:
         tone = f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"
         yield Setting("receiver", "an interference line at PRF/8", (tone,), is_noisy=True)
-
-
-def are_points_alone(config: Config) -> bool:
-    """Whether a config shows points, and no maps."""
-    return not any(name in MAP_KINDS or name in FRAME_MAP_KINDS for name in config.maps)

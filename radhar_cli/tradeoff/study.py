@@ -21,17 +21,16 @@ from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth
 from radhar_cli.tradeoff.settings import settings_of
 from radhar_cli.tradeoff.sweep import Omission, Sweep
-from radhar_cli.tradeoff.timing import Ratio, Times, time_setting
+from radhar_cli.tradeoff.timing import LEAST_ROUNDS, Ratio, Times, time_setting
 
 AS_IT_IS = Setting("default", DEFAULT, effect=Change.ERROR, worth=Worth.SAVES)
 EXACT = ("engine.kind=cube", "engine.precision=double")
-LEAST_ROUNDS, MOST_ROUNDS, FULL_ROUNDS = 3, 7, 9
+MOST_ROUNDS, FULL_ROUNDS = 7, 9  # with --quick, and without
 ROUNDS_S = 2.0  # of the rounds of a setting with --quick, beyond the least number
 PAIRS_EVERY = 6  # settings between two timings of the config against itself
 LEAST_PAIRS = 4
 FLOOR_SHARE = 0.12  # of the budget
 SHARES = 3.0  # of its equal part of the time left that a setting may take
-RESERVE_S = 8.0  # of the budget, for report and figure
 MAX_REASON = 100  # characters
 
 
@@ -58,7 +57,7 @@ class SceneComparison:
             is_exact: whether the config as it is has no error of computation.
         """
         self._recorder, self._is_exact = recorder, is_exact
-        self._base = cache(self._draw_base)
+        self._base = cache(self._draw)
 
     @cached_property
     def raw(self) -> Raw:
@@ -86,8 +85,10 @@ class SceneComparison:
             base_raw, base = self._exact
             if setting.overrides == EXACT[:1]:
                 raw = base_raw
+            elif setting.overrides:
+                raw = self._recorder.simulate(setting.overrides)
             else:
-                raw = self._recorder.simulate(setting.overrides) if setting.overrides else self.raw
+                raw = self.raw
             return _difference(raw, draw_shown(raw, self.raw.noise), base_raw, base)
         if self._recorder.draw(setting.overrides).attempt != self._recorder.attempt:
             return None
@@ -98,9 +99,6 @@ class SceneComparison:
     def _draw(self, overrides: Overrides, is_noisy: bool) -> tuple[Raw, Shown]:
         raw = self._recorder.simulate(overrides, is_noisy) if overrides else self.raw
         return raw, draw_shown(raw, raw.noise if is_noisy else None)
-
-    def _draw_base(self, overrides: Overrides, is_noisy: bool) -> tuple[Raw, Shown]:
-        return self._draw(overrides, is_noisy)
 
 
 def _difference(raw: Raw, visible: Shown, base_raw: Raw, base: Shown) -> SceneDifference:

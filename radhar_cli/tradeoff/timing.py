@@ -12,6 +12,7 @@ from radhar_cli.tradeoff.setting import Overrides, Setting
 
 # Length of a round of a setting at which no further scene is begun, s.
 SECONDS = 0.6
+LEAST_ROUNDS = 3  # without which nothing is concluded
 # From so many rounds on, the interval leaves out the outermost ones.
 MANY_ROUNDS = 6
 

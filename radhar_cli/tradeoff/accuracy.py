@@ -122,7 +122,7 @@ class _Quiet(NoProgress):
 
 
 @contextmanager
-def products_added(products: Iterable[Product]) -> Iterator[None]:
+def add_products(products: Iterable[Product]) -> Iterator[None]:
     """Have the table of products hold further ones, as `add_product` does, within the block."""
     before = own_products()
     know_products((*before, *products))
@@ -152,7 +152,7 @@ class AccuracyStudy:
         """
         return load_config(self.path, (*self.overrides, *setting))
 
-    def why_not(self, setting: Overrides) -> str | None:
+    def obstacle(self, setting: Overrides) -> str | None:
         """Why no network of classes can learn from a setting, in a few words; None if one can."""
         config = self.config(setting)
         if config.stream is not None:
@@ -173,7 +173,7 @@ class AccuracyStudy:
         Raises:
             RadharError: the data set cannot be made, or the network cannot be trained.
         """
-        recorded = self.recorded(setting, number)
+        recorded = self.read_record(setting, number)
         if recorded is not None:
             return recorded
         parts = self._parts(setting, number)
@@ -187,8 +187,8 @@ class AccuracyStudy:
         write_result(self.folder, self._record_path(setting, number), data.encode())
         return accuracy
 
-    def recorded(self, setting: Overrides, number: int) -> SeedAccuracy | None:
-        """Accuracies of a setting and a seed that the folder has; None if they are to be made."""
+    def read_record(self, setting: Overrides, number: int) -> SeedAccuracy | None:
+        """Accuracies of a setting and a seed as the folder has them; None where it does not yet."""
         record = self._record_path(setting, number)
         if not record.exists():
             return None
@@ -274,7 +274,7 @@ class StudyData:
     def __init__(self, folder: Path, config: Config, products: tuple[Product, ...]) -> None:
         self.config = config
         self._products = products
-        with products_added(products):
+        with add_products(products):
             self.folder = folder / identity_hash(identity(config))[:24]
 
     def __len__(self) -> int:
@@ -283,7 +283,7 @@ class StudyData:
     def build(self, progress: Progress) -> None:
         """Make the data set, unless it is there."""
         if not (self.folder / DATASET).exists():
-            with products_added(self._products):
+            with add_products(self._products):
                 build(self.config, self.folder, 1, _Quiet(progress))
 
 
@@ -336,7 +336,7 @@ def measure_accuracy(
     """
     study = AccuracyStudy(path, overrides, folder, progress, SIZES)
     name = " ".join(setting) or "the config as it is"
-    why = study.why_not(setting)
+    why = study.obstacle(setting)
     results: list[SeedAccuracy] = []
     if why is None:
         progress.stage(f"accuracy, {name}", seeds, 0, "network")

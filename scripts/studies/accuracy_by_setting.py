@@ -118,18 +118,20 @@ def main() -> None:
     parser.add_argument("--epochs", type=int, default=20)
     parser.add_argument("--only", default="", help="rows whose names have this, and the default")
     parser.add_argument("--table", action="store_true", help="make no network")
-    given = parser.parse_args()
-    sizes = Sizes(given.learned, given.tested, given.epochs)
-    rows = [row for row in ROWS if given.only in row.name or row.name == DEFAULT]
+    options = parser.parse_args()
+    sizes = Sizes(options.learned, options.tested, options.epochs)
+    rows = [row for row in ROWS if options.only in row.name or row.name == DEFAULT]
     prepare_process()
     results: Results = {row.name: {} for row in rows}
     with BarProgress("network") as progress:
-        for number in given.seeds:
+        for number in options.seeds:
             for row in rows:
-                study = AccuracyStudy(given.config, (), given.out, progress, sizes, row.products)
-                if not given.table:
+                study = AccuracyStudy(
+                    options.config, (), options.out, progress, sizes, row.products
+                )
+                if not options.table:
                     study.measure_seed(row.overrides, number)
-                recorded = study.recorded(row.overrides, number)
+                recorded = study.read_record(row.overrides, number)
                 if recorded is not None:
                     results[row.name][number] = recorded
     print(f"commit {commit()}", "", *lines_of(results), sep="\n")

@@ -51,6 +51,7 @@ def board_of(radar: BoardRadar[float], seconds: float = 0.0) -> Board:
         position=radar.position_m,
         yaw=radians(radar.yaw_deg),
         tilt=radians(radar.tilt_deg),
+        roll=radians(radar.roll_deg),
         half_power_deg=radar.half_power_deg,
         half_wavelength=radar.half_wavelength_m,
         gain=10 ** (radar.antenna_gain_dbi / 10),

@@ -5,6 +5,7 @@ which maps it makes, and why not the others.
 """
 
 from itertools import pairwise
+from math import radians
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, TypeAlias
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, field_validator
@@ -17,6 +18,7 @@ from radhar_cli.config.number import (
     NOT_NEGATIVE,
     POSITIVE,
     Real,
+    support,
     value_error,
     within,
 )
@@ -30,6 +32,7 @@ from radhar_cli.radar.board import (
     MAX_SIDELOBE,
     Array,
     Places,
+    axis_after_roll,
     longest_rows,
     sidelobe,
 )
@@ -310,6 +313,9 @@ class BoardRadar(_Emission[N], Generic[N]):
     """Angle of the board's boresight from the x axis, positive to the left."""
     tilt_deg: Annotated[N, ANGLE] = default_draw(0.0)
     """Angle of the board's boresight below the horizontal, positive down."""
+    roll_deg: Annotated[N, ANGLE] = default_draw(0.0)
+    """Angle by which the board is turned about its boresight, positive where its left side, looking
+    out of it, goes up."""
     antenna_gain_dbi: Annotated[N, DECIBEL, within(-150, 150, "dBi")] = default_draw(9.0)
     """Gain of each antenna at its boresight."""
     subframe: Annotated[int, Field(ge=0, le=3, strict=True)] = 0
@@ -421,8 +427,10 @@ class BoardRadar(_Emission[N], Generic[N]):
         axis = None if kind is None else kind.array_axis
         if axis is None:
             return None
-        if len({round(place[axis], 6) for place in self.virtual_places}) == 1:
-            return f"all elements of the array lie in one {('column', 'row')[axis]}"
+        for own in {axis_after_roll(axis, radians(end)) for end in support(self.roll_deg)}:
+            if len({round(place[own], 6) for place in self.virtual_places}) == 1:
+                rolled = " of the board that is rolled (radar.roll_deg)" if own != axis else ""
+                return f"all elements of the array lie in one {('column', 'row')[own]}{rolled}"
         return None
 
     @property

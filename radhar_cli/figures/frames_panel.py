@@ -39,7 +39,7 @@ class BoardFrames:
 def of_simulation(simulation: Simulation) -> BoardFrames:
     """Content of the page of a simulated scene with a board."""
     assert simulation.board is not None
-    p = simulation.board.aim.to_radar(simulation.truth.positions.transpose(2, 1, 0))
+    p = simulation.board.upright.to_radar(simulation.truth.positions.transpose(2, 1, 0))
     return BoardFrames(
         simulation.frames,
         simulation.board,

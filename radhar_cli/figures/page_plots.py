@@ -116,7 +116,7 @@ def _with_gaps(body: MovingBody, times: int) -> Float:
 
 def _in_scene(points: Float, board: Board) -> Float:
     """Points (x, y, z, approaching) in the axes of the scene, of those in a board's axes."""
-    xyz = points[:, :3] @ np.array(board.aim.axes) + board.position
+    xyz = points[:, :3] @ np.array(board.upright.axes) + board.position
     return np.concatenate([xyz, points[:, 3:4]], axis=1)
 
 

@@ -27,7 +27,7 @@ def keep_in_view(cloud: Cloud, detection: Detection) -> Cloud:
 
 def keep_in_box(cloud: Cloud, box: RoomBox, board: Board) -> Cloud:
     """Keep the points of a cloud within a box of the room, by the pose of the board."""
-    ahead, left, up = (cloud.points[:, :3] @ np.array(board.aim.axes)).T
+    ahead, left, up = (cloud.points[:, :3] @ np.array(board.upright.axes)).T
     height = up + board.position[2]
     is_inside = np.ones(len(cloud.points), bool)
     for value, limits in ((ahead, box.ahead_m), (left, box.left_m), (height, box.up_m)):

@@ -13,7 +13,7 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.power_map import Axis
-from radhar_cli.radar.board import Board, longest_rows
+from radhar_cli.radar.board import Board
 
 BLOCK_FRAMES = 16
 
@@ -217,7 +217,7 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     positive left, 1 elevation, positive up.
     """
     angles = angles_of_beams(board)
-    rows = longest_rows(board.places, axis)
+    rows, places = board.rows_along(axis)
     taper = np.sin(np.pi * np.arange(1, len(rows[0]) + 1) / (len(rows[0]) + 1)) ** 2
     sines = np.sin(np.radians(angles))[:, None]
     window = hann(board.loops)
@@ -228,7 +228,7 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
         for row in rows:
             element = np.ascontiguousarray(x[:, :, row].transpose(0, 3, 2, 1))  # Doppler last
             covariance = np.matmul(element, element.conj().swapaxes(2, 3))
-            steering = np.exp(-1j * np.pi * sines * board.places[row, axis]) * taper / taper.sum()
+            steering = np.exp(-1j * np.pi * sines * places[row]) * taper / taper.sum()
             pairs = (steering[:, :, None] * steering[:, None].conj()).reshape(len(angles), -1)
             flat = covariance.reshape(*covariance.shape[:2], -1)
             power[frames] += (flat @ pairs.T.astype(flat.dtype)).real

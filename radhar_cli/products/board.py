@@ -419,11 +419,19 @@ def find_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:
         chain: how they are found.
     """
     cloud = find_all_points(cube, board, chain)
+    cloud = Cloud(turn_points(cloud.points, board), cloud.start)
     return cloud if chain.box is None else keep_in_box(cloud, chain.box, board)
 
 
+def turn_points(points: Float, board: Board) -> Float:
+    """Turn points [N, 8] from the axes of a board that is rolled to those before the roll."""
+    if board.roll == 0:
+        return points
+    return np.hstack([board.without_roll(points[:, :3]), points[:, 3:]])
+
+
 def find_all_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:
-    """Find the points of the frames of a cube, by a chain.
+    """Find the points of the frames of a cube, by a chain, in the axes of the board.
 
     Args:
         cube: raw samples [frame, loop, virtual, sample].

@@ -63,7 +63,7 @@ def locate_skeletons(scene: Scene, motions: tuple[Motion, ...], board: Board) ->
         return Skeletons(positions, velocities, names)
     for number, motion in zip(numbers, motions, strict=True):
         before, now, after = (
-            board.aim.to_radar(motion.positions(t + step))
+            board.upright.to_radar(motion.positions(t + step))
             for step in (-VELOCITY_STEP_S, 0.0, VELOCITY_STEP_S)
         )
         joints = slice(min(len(names), now.shape[1]))
@@ -125,11 +125,11 @@ def _mirror_joints(skeletons: Skeletons, board: Board, legs: tuple[Leg, Leg]) ->
     transmitter: the azimuth is about that of the receiver's leg, the elevation the transmitter's.
     """
     radar_position, axes = np.array(board.position), np.array(board.aim.axes)
-    p = (skeletons.positions @ axes + radar_position).T
+    p = (skeletons.positions @ np.array(board.upright.axes) + radar_position).T
     images = [leg.image(p).T - radar_position for leg in legs]
     lengths = [np.linalg.norm(image, axis=-1, keepdims=True) for image in images]
     tx, rx = (image / length @ axes.T for image, length in zip(images, lengths, strict=True))
     left, up = rx[..., 1], tx[..., 2]
     ahead = np.sqrt(np.maximum(1 - left**2 - up**2, 0))
     mirrored: Float = 0.5 * (lengths[0] + lengths[1]) * np.stack([ahead, left, up], axis=-1)
-    return mirrored
+    return board.without_roll(mirrored)

@@ -9,6 +9,7 @@ geometries of its people tracking demos.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import pi
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -16,7 +17,7 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
-from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
+from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes, roll_matrix
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.ti_family import Family
 from radhar_cli.radar.waveform import Waveform
@@ -138,6 +139,16 @@ def longest_rows(places: Sequence[Sequence[float]] | Float, axis: int) -> list[l
     ]
 
 
+def axis_after_roll(axis: int, roll: float) -> int:
+    """Axis of a board, 0 to its left or 1 upwards, that is nearest to one before the roll.
+
+    Args:
+        axis: the axis before the roll, likewise.
+        roll: angle about boresight by which the left side goes up, rad.
+    """
+    return (axis + round(roll / (pi / 2))) % 2
+
+
 def sidelobe(row: Sequence[float] | Float) -> float:
     """Power of the highest sidelobe over the main lobe of a row of elements that looks ahead.
 
@@ -173,6 +184,7 @@ class Board:
         position: Position of the array's origin, m.
         yaw: Angle of boresight from the x axis to the left, rad.
         tilt: Angle of boresight below the horizontal, rad.
+        roll: Angle about boresight by which the left side goes up, rad.
         half_power_deg: Half-power half-widths in place of the array's; None for the array's.
         half_wavelength: Unit of the elements' places, m; None is c/(2 f_c).
         gain: Linear gain of each antenna.
@@ -202,6 +214,7 @@ class Board:
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     yaw: float = 0.0
     tilt: float = 0.0
+    roll: float = 0.0
     half_power_deg: tuple[float, float] | None = None
     half_wavelength: float | None = None
     gain: float = 1.0
@@ -256,8 +269,21 @@ class Board:
     @cached_property
     def aim(self) -> Aim:
         """Position, axes and beam of the antennas."""
-        axes = boresight_axes(self.yaw, self.tilt)
+        axes = boresight_axes(self.yaw, self.tilt, self.roll)
         return Aim(self.position, axes, self.half_power_deg or self.array.half_power_deg)
+
+    @cached_property
+    def upright(self) -> Aim:
+        """Position and axes (ahead, left, up) before the roll: those of points and skeletons."""
+        return self.aim._replace(axes=boresight_axes(self.yaw, self.tilt))
+
+    def without_roll(self, p: Float) -> Float:
+        """Coordinates [..., (ahead, left, up)] before the roll, of those after it."""
+        if self.roll == 0:
+            return p
+        turned: Float = p.copy()
+        turned[..., 1:] = p[..., 1:] @ roll_matrix(self.roll).astype(p.dtype)
+        return turned
 
     @property
     def unit(self) -> float:
@@ -289,6 +315,24 @@ class Board:
         tx, rx = np.array(self.array.tx, float), np.array(self.array.rx, float)
         sums = np.array([tx[self.order[k]] + rx[r] for k, r in self.pairs])
         return sums * (self.unit * 2 * self.centre / SPEED_OF_LIGHT)
+
+    def rows_along(self, axis: int) -> tuple[list[list[int]], Float]:
+        """Longest rows of virtual elements that tell angles apart, and their places.
+
+        Of a board that is rolled the rows are those of its columns where these are nearer to the
+        axis.
+
+        Args:
+            axis: 0 for angles to the left, 1 upwards, both before the roll.
+
+        Returns:
+            Numbers of the elements of each row, and places of all elements along the axis [V],
+            half wavelengths at f_c.
+        """
+        if self.roll == 0:
+            return longest_rows(self.places, axis), self.places[:, axis]
+        rows = longest_rows(self.places, axis_after_roll(axis, self.roll))
+        return rows, (self.places @ roll_matrix(self.roll))[:, axis]
 
     @cached_property
     def turns(self) -> Float:

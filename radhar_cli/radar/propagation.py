@@ -34,10 +34,31 @@ class Aim(NamedTuple):
         return np.maximum(pattern, self.least)
 
 
-def boresight_axes(yaw: float, tilt: float) -> tuple[Point, ...]:
-    """Unit vectors ahead, left and up of a radar turned by yaw to the left and tilt down (rad)."""
+def boresight_axes(yaw: float, tilt: float, roll: float = 0.0) -> tuple[Point, ...]:
+    """Unit vectors ahead, left and up of a radar that is turned.
+
+    Args:
+        yaw: Angle of boresight to the left, rad.
+        tilt: Angle of boresight below the horizontal, rad.
+        roll: Angle about boresight by which the left side goes up, rad.
+
+    Returns:
+        Unit vectors ahead, left and up of the radar in the scene, [3] of [3].
+    """
     cy, sy, ct, st = cos(yaw), sin(yaw), cos(tilt), sin(tilt)
-    return (cy * ct, sy * ct, -st), (-sy, cy, 0.0), (cy * st, sy * st, ct)
+    ahead, left, up = (cy * ct, sy * ct, -st), (-sy, cy, 0.0), (cy * st, sy * st, ct)
+    if roll == 0:
+        return ahead, left, up
+    turned = roll_matrix(roll) @ np.array([left, up])
+    return ahead, *((float(x), float(y), float(z)) for x, y, z in turned)
+
+
+def roll_matrix(roll: float) -> Float:
+    """Left and up of a radar [2, 2] in those before it rolled, the left side up, by an angle (rad).
+
+    Rows are the turned unit vectors; coordinates before the roll are those after it times it.
+    """
+    return np.array([[cos(roll), sin(roll)], [-sin(roll), cos(roll)]])
 
 
 @dataclass(frozen=True)

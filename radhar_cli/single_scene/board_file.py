@@ -44,6 +44,7 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
             "position_m": np.array(board.position),
             "yaw_deg": np.degrees(board.yaw),
             "tilt_deg": np.degrees(board.tilt),
+            "roll_deg": np.degrees(board.roll),
             "virtual_elements": board.places,
         }
     )

@@ -180,6 +180,7 @@ CHANGES: dict[str, object] = {
     "radar.position_m": (0.0, 0.0, 1.5),
     "radar.yaw_deg": 5.0,
     "radar.tilt_deg": 5.0,
+    "radar.roll_deg": 5.0,
     "radar.half_power_deg": (20.0, 10.0),
     "radar.half_wavelength_m": 1.9e-3,
     "radar.transmit_power_dbm": 10.0,

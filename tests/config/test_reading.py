@@ -380,9 +380,9 @@ BROKEN = [
         "at most samples_per_class = 300",
     ),
     Broken(
-        "radar:\n  chirp_s: 2e-4\n  prf_hz: 5000",
-        "2: radar.chirp_s = 0.0002",
-        "shorter than the pulse interval 1/prf_hz = 0.0002 s",
+        "radar:\n  chirp_s: 2.1e-4\n  prf_hz: 5000",
+        "2: radar.chirp_s = 0.00021",
+        "at most the pulse interval 1/prf_hz = 0.0002 s",
     ),
     Broken(
         "radar:\n  prf_hz: {uniform: [100, 1e5]}\n  chirp_s: 40e-6",

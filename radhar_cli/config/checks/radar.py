@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 MAX_CUBE = 2**27  # samples of all channels
 MAX_PADDING = 64
+ROUNDING = 1 + 1e-9  # of a sweep without a pause, whose length is 1/prf_hz
 
 
 BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, "points_kind", *OF_FRAMES, "cube")
@@ -197,8 +198,8 @@ def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
     smallest_count, largest_count = waveform_at(c).n_adc, waveform_at(c, *ENDS).n_adc
     shortest_interval = 1 / support(radar.prf_hz)[1]
     samples = "ADC samples per chirp (adc_rate_hz * chirp_s is"
-    if not support(radar.chirp_s)[1] < shortest_interval:
-        right = f"should be shorter than the pulse interval 1/prf_hz = {shortest_interval:g} s"
+    if support(radar.chirp_s)[1] > shortest_interval * ROUNDING:
+        right = f"should be at most the pulse interval 1/prf_hz = {shortest_interval:g} s"
         if isinstance(radar, SfcwRadar):
             right = f"{right} (steps * dwell_s is {radar.chirp_s:g} s)"
             yield Problem("radar.steps", radar.steps, right)

@@ -17,6 +17,7 @@ from radhar_cli.config.number import (
     DECIBEL,
     NOT_NEGATIVE,
     POSITIVE,
+    Number,
     Real,
     support,
     value_error,
@@ -427,7 +428,8 @@ class BoardRadar(_Emission[N], Generic[N]):
         axis = None if kind is None else kind.array_axis
         if axis is None:
             return None
-        for own in {axis_after_roll(axis, radians(end)) for end in support(self.roll_deg)}:
+        roll: Number = self.roll_deg  # type: ignore[assignment]  # of a config or a scene
+        for own in {axis_after_roll(axis, radians(end)) for end in support(roll)}:
             if len({round(place[own], 6) for place in self.virtual_places}) == 1:
                 rolled = " of the board that is rolled (radar.roll_deg)" if own != axis else ""
                 return f"all elements of the array lie in one {('column', 'row')[own]}{rolled}"

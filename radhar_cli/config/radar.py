@@ -429,10 +429,10 @@ class BoardRadar(_Emission[N], Generic[N]):
         if axis is None:
             return None
         roll: Number = self.roll_deg  # type: ignore[assignment]  # of a config or a scene
-        for own in {axis_after_roll(axis, radians(end)) for end in support(roll)}:
-            if len({round(place[own], 6) for place in self.virtual_places}) == 1:
-                rolled = " of the board that is rolled (radar.roll_deg)" if own != axis else ""
-                return f"all elements of the array lie in one {('column', 'row')[own]}{rolled}"
+        for side in {axis_after_roll(axis, radians(end)) for end in support(roll)}:
+            if len({round(place[side], 6) for place in self.virtual_places}) == 1:
+                rolled = " of the board that is rolled (radar.roll_deg)" if side != axis else ""
+                return f"all elements of the array lie in one {('column', 'row')[side]}{rolled}"
         return None
 
     @property

@@ -1,9 +1,9 @@
-"""Write the table of TI's commands into docs/reference/ti_commands.md, out of the parser's.
+"""Write the tables of docs/reference/ti_commands.md: TI's commands, and what comes of real files.
 
     python scripts/ti_command_table.py
 
-The table stands between `<!-- commands -->` and `<!-- end -->`; what stands around it is written by
-hand.
+The table of commands is the parser's. It stands between `<!-- commands -->` and `<!-- end -->`,
+that of files between `<!-- files -->` and `<!-- end of files -->`; the rest is written by hand.
 """
 
 from collections.abc import Iterator
@@ -11,15 +11,61 @@ from pathlib import Path
 
 from page_parts import replace_part
 
+from radhar_cli.assembly.radar import board_of
+from radhar_cli.config.radar import BoardRadar
+from radhar_cli.errors import CaptureError
+from radhar_cli.radar.ti_cfg import parse_ti_cfg
 from radhar_cli.radar.ti_commands import COMMANDS, Argument, Command, Effect
 
-PAGE = Path(__file__).resolve().parents[1] / "docs/reference/ti_commands.md"
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs/reference/ti_commands.md"
+BOARDS = {  # that the files of tests/radar/cfg run on
+    "people_isk_bpm": "IWR6843ISK",
+    "chirp_range": "IWR1443BOOST",
+    "two_profiles": "IWR1443BOOST",
+    "advframe": "IWR1443BOOST",
+    "iwr1642_pc": "IWR1642BOOST",
+    "level_1tx1rx": "IWR1443BOOST",
+    "xwrl6432": "IWRL6432BOOST",
+}
 
 
 def fill_table(page: str) -> str:
-    """Return a page with its table as the parser has it."""
+    """Return a page with its tables as the parser has them."""
+    files = "\n".join(_rows_of_files())
+    page = replace_part(page, "files", files, "<!-- files -->", "<!-- end of files -->")
     table = "\n".join(_sections())
     return replace_part(page, "commands", table, "<!-- commands -->", "<!-- end -->")
+
+
+def _rows_of_files() -> Iterator[str]:
+    """Lines of the table of files."""
+    yield "| file, device | software | chain | frames | /cube | /range_doppler |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    for name, device in BOARDS.items():
+        text = (ROOT / f"tests/radar/cfg/{name}.cfg").read_text()
+        try:
+            header = parse_ti_cfg(text, f"{name}.cfg", device)
+        except CaptureError as error:
+            yield f"| {name}, {device} | refused: `{error}` | | | | |"
+            continue
+        chain, period_ms = header.firmware or "best, said", header.period_s * 1e3
+        cubes, maps = zip(*_shapes(text, device, header.subframes), strict=True)
+        software = header.family.value
+        yield (
+            f"| {name}, {device} | {software if software != 'all' else 'any'} | {chain} "
+            f"| {period_ms:g} ms | {'; '.join(cubes)} | {'; '.join(maps)} |"
+        )
+
+
+def _shapes(text: str, device: str, subframes: int) -> Iterator[tuple[str, str]]:
+    """Shapes of the cube and of the range-Doppler maps of each subframe of a file."""
+    for subframe in range(subframes):
+        numbers = {"cfg": text, "device": device, "subframe": subframe}
+        board = board_of(BoardRadar[float].model_validate(numbers))
+        end = f"_sf{subframe}: " if subframe else ""
+        cube = f"[f, {board.loops}, {board.channels}, {board.samples}]"
+        yield f"{end}{cube}", f"{end}[f, {board.n_bins}, {board.n_doppler}]"
 
 
 def _sections() -> Iterator[str]:

@@ -382,17 +382,19 @@ class _Lines:
         return lines
 
     def require_none(self, effect: Effect) -> None:
-        """Raise CaptureError for the first line of a command that is refused."""
+        """Raise CaptureError for the first line that is refused by its command or its numbers."""
         for line in self.with_effect(effect):
             assert line.command is not None
-            raise CaptureError(f"{line.place}: {line.command.reason}")
+            if line.command.reason:
+                raise CaptureError(f"{line.place}: {line.command.reason}")
+            _ = line.numbers
 
 
 def _read_subframes(lines: _Lines, device: str | None) -> list[FrameHeader]:
     """Read all that the lines say of chirps, frames and samples, of each subframe."""
+    lines.require_none(Effect.NOT_READ)
     if lines.family is Family.L_SDK:
         return [read_l_sdk(lines.lines, lines.where, device)]
-    lines.require_none(Effect.NOT_READ)
     receivers = lines.require("channelCfg", "channelCfg 15 7 0")[-1]
     adc = lines.require("adcCfg", "adcCfg 2 1")[-1]
     profiles = lines.require("profileCfg", "profileCfg 0 77 10 6 48 0 0 70 1 128 3200 0 0 30")
@@ -619,8 +621,9 @@ def _name_if_not_simulated(line: CfgLine) -> str | None:
         return command.name if line.numbers["numADCBits"] != 2 else None
     if command.name == "fineMotionCfg":
         return command.name if is_short_fine_motion(line) else None
+    if command.name == "cfarCfg" and command.family is Family.MCU_PLUS:
+        return command.name  # for what stands behind the numbers of SDK 3
     if command.effect is not Effect.WARNING:
         return None
-    is_readable = bool(command.arguments) and len(line.words) in command.counts
-    is_on = line.numbers.get("enabled", 1) if is_readable else 1
+    is_on = line.numbers.get("enabled", 1) if command.arguments else 1
     return command.name if is_on else None

@@ -198,10 +198,11 @@ class CfgLine:
     @property
     def _candidates(self) -> tuple[Command, ...]:
         """Commands of the line's name that the file's family may have."""
-        commands = COMMANDS.get(self.name, ())
-        if self.family is Family.L_SDK:
-            return tuple(one for one in commands if one.family is self.family) or commands
-        return commands
+        is_measurement = self.name.startswith(POWER_MEASUREMENT.rstrip("*"))
+        commands = COMMANDS.get(POWER_MEASUREMENT if is_measurement else self.name, ())
+        is_l_sdk = self.family is Family.L_SDK
+        fitting = (one for one in commands if (one.family is Family.L_SDK) is is_l_sdk)
+        return tuple(fitting) or commands
 
     @cached_property
     def numbers(self) -> Mapping[str, float]:
@@ -217,8 +218,20 @@ class CfgLine:
             usages = " or ".join(
                 one.usage + f" ({one.family.value})" * (len(families) > 1) for one in families
             )
-            raise CaptureError(f"{self.place} has {len(self.words)} numbers: should be {usages}")
+            raise CaptureError(
+                f"{self.place} has {len(self.words)} numbers: should be {self._right_counts}: "
+                f"{usages}"
+            )
         return command.parse(self.words, self.place)
+
+    @property
+    def _right_counts(self) -> str:
+        """How many numbers the line may have, as words."""
+        counts = sorted({count for one in self._candidates for count in one.counts})
+        if len(counts) > MAX_COUNTS:
+            return f"{counts[0]} to {counts[-1]}"
+        *fewer, most = map(str, counts)
+        return f"{', '.join(fewer)} or {most}" if fewer else most
 
     def holds_for(self, subframe: int) -> bool:
         """Whether the line is of a subframe, or of all.
@@ -234,6 +247,8 @@ class CfgLine:
         return CaptureError(f"{self.place} {argument} = {value}: should be {right}")
 
 
+MAX_COUNTS = 6  # of numbers of a line, that a message lists one by one
+POWER_MEASUREMENT = "powerMeas*"  # all commands whose names begin so
 COMMENT = re.compile("%|//|#")
 
 
@@ -322,8 +337,8 @@ _SIGNAL = (
         Effect.SIGNAL,
         (
             Argument("rxChannelEn", 0, COUNT, True, "a mask of receivers"),
-            Argument("txChannelEn", 0, COUNT, True, "a mask of transmitters", True),
-            Argument("cascading", 0, 0, True, "a single device; cascades are not read", True),
+            Argument("txChannelEn", 0, COUNT, True, "a mask of transmitters"),
+            Argument("cascading", 0, 0, True, "a single device; cascades are not read"),
             *_optional("ethOscClkEn", "driveStrength"),
         ),
     ),
@@ -350,7 +365,7 @@ _SIGNAL = (
             Argument("txStartTime", meaning="us"),
             *_wholes("numAdcSamples", low=2, high=2**16),
             _positive("digOutSampleRate", "ksps"),
-            *_optional("hpfCornerFreq1", "hpfCornerFreq2", "rxGain"),
+            *(Argument(name) for name in ("hpfCornerFreq1", "hpfCornerFreq2", "rxGain")),
         ),
     ),
     Command(
@@ -373,7 +388,8 @@ _SIGNAL = (
             *_wholes("numLoops", low=1),
             *_wholes("numFrames"),
             _positive("framePeriodicity", "ms"),
-            *_optional("triggerSelect", "frameTriggerDelay"),
+            Argument("triggerSelect"),
+            *_optional("frameTriggerDelay"),
         ),
         Family.SDK_1_TO_3,
     ),
@@ -400,7 +416,8 @@ _SIGNAL = (
                 "forceProfile", 0, 0, meaning="profiles of chirpCfg; forced ones are not read"
             ),
             *_wholes("numFrames"),
-            *_optional("triggerSelect", "frameTrigDelay"),
+            Argument("triggerSelect"),
+            Argument("frameTrigDelay"),
         ),
     ),
     Command(
@@ -423,7 +440,7 @@ _SIGNAL = (
         "bpmCfg",
         Effect.SIGNAL,
         (*_flags("enabled"), *_wholes("chirp0Idx", "chirp1Idx", high=511)),
-        subframe=Subframe.OPTIONAL,
+        subframe=Subframe.ALWAYS,
     ),
 )
 _SIGNAL_OF_L_SDK = (
@@ -535,7 +552,7 @@ _CFAR_OF_L_SDK = tuple(
 _CFAR_OF_MCU_PLUS = (
     *_CFAR,
     *_flags("peakGroupingEn"),
-    *_wholes("osKvalue", "osEdgeKscaleEn", "isEnabled"),
+    *(Argument(name) for name in ("osKvalue", "osEdgeKscaleEn", "isEnabled")),
     *_optional("variableThresholdMode"),
 )
 CHANNELS = 16  # most virtual channels of compRangeBiasAndRxChanPhase
@@ -788,6 +805,7 @@ _SILENT = {
         *("gpAdcMeasConfig", "apllFreqShiftEn", "runtimeCalibCfg", "adcDataSource", "adcLogging"),
         *("lowPowerCfg", "compressionCfg", "intfMitigCfg", "localMaxCfg", "rangeProcCfg"),
         *("antennaCalibParams", "enetStreamCfg", "spreadSpectrumConfig", "subDataFrameCfg"),
+        POWER_MEASUREMENT,
     ),
     Family.L_SDK: (
         *("antGeometryCfg", "antGeometryTX", "antGeometryRx", "antGeometryDist"),
@@ -819,6 +837,18 @@ _REFUSED = (
         Effect.NOT_SIMULATED,
         reason="is not simulated; should be one transmitter a chirp",
     ),
+)
+_PROCESSING = tuple(
+    Command(
+        name,
+        Effect.NOT_SIMULATED,
+        (
+            Argument("procChain", 0, 0, meaning="TDM; DDMA is not simulated"),
+            *_optional(*(f"argument{number}" for number in range(2, 9))),
+        ),
+        Family.MCU_PLUS,
+    )
+    for name in ("procChain", "procChainCfg")
 )
 _CAPTURES = (  # of the words of a raw capture
     Command(
@@ -855,6 +885,7 @@ def _by_name() -> Mapping[str, tuple[Command, ...]]:
         *_CAPTURES,
         *silent,
         *_REFUSED,
+        *_PROCESSING,
     ):
         commands[command.name] = (*commands.get(command.name, ()), command)
     return MappingProxyType(commands)

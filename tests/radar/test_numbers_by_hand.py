@@ -95,6 +95,14 @@ BY_HAND = {
         *(text_of("level_1tx1rx"), "IWR1443BOOST", 77.12824, 79.002376, 3751.936, 39.9517),
         *(1024, 40.9105, 1, 219.8, 1, 1, 8.632, 4.31611, 0.220, 1),
     ),
+    "advframe, subframe 0": (
+        *(text_of("advframe"), "IWR1443BOOST", 77.49, 79.203381, 3440.200, 43.5720, 256, 11.1544),
+        *(1, 64.14, 64, 64, 0.461039, 14.75326, 4.105, 4),
+    ),
+    "advframe, subframe 1": (
+        *(text_of("advframe"), "IWR1443BOOST", 77.21, 77.944306, 1474.371, 101.6679, 256, 26.0270),
+        *(1, 71.14, 64, 64, 0.422389, 13.51644, 4.553, 4),
+    ),
     "6432": (
         *(LOW_POWER, "IWRL6432BOOST", 60.187005, 60.643729, 920.640, 162.8174, 64, 10.4203),
         *(2, 600, 64, 64, 0.064369, 2.05979, 38.4, 6),
@@ -106,7 +114,8 @@ BY_HAND = {
 def test_axes_are_those_computed_by_hand(case: str) -> None:
     cfg, device, *line = BY_HAND[case]
     numbers = Numbers(*map(float, line))
-    radar = BoardRadar[float].model_validate({"cfg": cfg, "device": device})
+    subframe = int(case.endswith("subframe 1"))
+    radar = BoardRadar[float].model_validate({"cfg": cfg, "device": device, "subframe": subframe})
     board = board_of(radar, 1.0)
     speed_step = board.doppler_step()
     highest = speed_step * board.n_doppler / 2
@@ -119,6 +128,37 @@ def test_axes_are_those_computed_by_hand(case: str) -> None:
     assert values == pytest.approx(numbers, rel=6e-5, abs=6e-4)
     assert board.waveform.n_bins == numbers.bins
     assert board.waveform.half_band_range == pytest.approx(numbers.farthest_m, rel=1e-4)
+
+
+def test_subframes_follow_each_other() -> None:
+    headers = [parse_ti_cfg(text_of("advframe"), subframe=number) for number in (0, 1)]
+    assert [header.delay_s for header in headers] == [0.0, pytest.approx(0.05)]
+    assert [header.period_s for header in headers] == [pytest.approx(0.1)] * 2
+    assert [header.order for header in headers] == [(0,), (2,)]
+
+
+DDMA = """
+channelCfg 15 15 0
+adcCfg 2 0
+profileCfg 0 77 10 6 26.7 0 0 32 0 384 30000 0 0 30
+chirpCfg 0 0 0 0 0 0 0 15
+frameCfg 0 0 768 0 384 50 1 0
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("", "board.cfg:5: chirpCfg txEnable = 15: should be one transmitter a chirp (the TDM"),
+        ("ddmPhaseShiftAntOrder 0 1 2 3\n", "board.cfg:7: ddmPhaseShiftAntOrder: DDMA is not"),
+    ],
+)
+def test_transmitters_that_all_send_at_once_are_refused(line: str, words: str) -> None:
+    with pytest.raises(CaptureError) as caught:
+        parse_ti_cfg(DDMA + line, "board.cfg")
+    assert words in str(caught.value)
+    assert "DDMA is not simulated" in str(caught.value)
+    assert "should be one transmitter a chirp (the TDM demo's profile)" in str(caught.value)
 
 
 def test_the_likely_board_of_low_power_has_as_many_receivers() -> None:
@@ -176,7 +216,11 @@ WRONG_OF_LOW_POWER = [
         "",
         "board.cfg: frameCfg is missing; a line that would do: frameCfg",
     ),
-    ("channelCfg 7 3 0", "channelCfg 7 3", "2: channelCfg has 2 numbers: should be channelCfg rx"),
+    (
+        "channelCfg 7 3 0",
+        "channelCfg 7 3",
+        "2: channelCfg has 2 numbers: should be 3: channelCfg rx",
+    ),
 ]
 
 

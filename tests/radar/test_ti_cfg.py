@@ -62,7 +62,7 @@ def test_family_decides_what_twelve_numbers_of_cfarCfg_are() -> None:
     newer = CFG.replace("frameCfg 0 2 32 0 100 1 0", "frameCfg 0 2 32 0 80 100 1 0")
     newer = newer.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg -1 0 2 16 4 4 1 12 1 0 0 1")
     header = parse_ti_cfg(newer)
-    assert (header.family, header.not_simulated) == (Family.MCU_PLUS, ())
+    assert (header.family, header.not_simulated) == (Family.MCU_PLUS, ("cfarCfg",))
     assert header.detection.along_range == Cfar(CASO, 16, 4, True, 12.0)
 
 
@@ -165,7 +165,11 @@ def test_turned_phases_are_named() -> None:
 WRONG = [
     ("adcCfg 2 1", "adcCfg 2 3", "3: adcCfg adcOutputFmt = 3: should be 0, 1 or 2 (real, complex"),
     ("adcCfg 2 1", "adcCfg 3 1", "numADCBits = 3: should be 0, 1 or 2 (12, 14"),
-    ("adcCfg 2 1", "adcCfg 2", "3: adcCfg has 1 numbers: should be adcCfg numADCBits adcOutputFmt"),
+    (
+        "adcCfg 2 1",
+        "adcCfg 2",
+        "3: adcCfg has 1 numbers: should be 2: adcCfg numADCBits adcOutputFmt",
+    ),
     (
         "chirpCfg 1 1 0 0 0 0 0 4",
         "chirpCfg 1 1 0 0 0 0 0 5",
@@ -196,7 +200,7 @@ WRONG = [
     (
         "frameCfg 0 2 32 0 100 1 0",
         "frameCfg 0 2 32",
-        "9: frameCfg has 3 numbers: should be frameCfg",
+        "9: frameCfg has 3 numbers: should be 6, 7 or 8: frameCfg",
     ),
     ("frameCfg 0 2 32 0 100 1 0", "", "frameCfg is missing; a line that would do: frameCfg 0 0"),
     ("frameCfg 0 2 32 0 100 1 0", "advFrameCfg 2 0 0 1 0", "board.cfg: subFrameCfg is missing"),
@@ -212,7 +216,7 @@ WRONG = [
     (
         "cfarCfg 0 2 8 4 3 0 1130",
         "cfarCfg 0 2 8",
-        "10: cfarCfg has 3 numbers: should be cfarCfg proc",
+        "10: cfarCfg has 3 numbers: should be 7, 8, 9, 12 or 13: cfarCfg proc",
     ),
     (
         "cfarCfg 0 2 8 4 3 0 1130",

@@ -201,8 +201,8 @@ class CfgLine:
         is_measurement = self.name.startswith(POWER_MEASUREMENT.rstrip("*"))
         commands = COMMANDS.get(POWER_MEASUREMENT if is_measurement else self.name, ())
         is_l_sdk = self.family is Family.L_SDK
-        fitting = (one for one in commands if (one.family is Family.L_SDK) is is_l_sdk)
-        return tuple(fitting) or commands
+        of_kind = (one for one in commands if (one.family is Family.L_SDK) is is_l_sdk)
+        return tuple(of_kind) or commands
 
     @cached_property
     def numbers(self) -> Mapping[str, float]:
@@ -230,8 +230,8 @@ class CfgLine:
         counts = sorted({count for one in self._candidates for count in one.counts})
         if len(counts) > MAX_COUNTS:
             return f"{counts[0]} to {counts[-1]}"
-        *fewer, most = map(str, counts)
-        return f"{', '.join(fewer)} or {most}" if fewer else most
+        *fewer, largest = map(str, counts)
+        return f"{', '.join(fewer)} or {largest}" if fewer else largest
 
     def holds_for(self, subframe: int) -> bool:
         """Whether the line is of a subframe, or of all.

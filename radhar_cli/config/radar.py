@@ -31,6 +31,7 @@ from radhar_cli.radar.board import (
     DEVICES,
     EVEN,
     MAX_SIDELOBE,
+    NOISE_FIGURE_DB,
     Array,
     Places,
     axis_after_roll,
@@ -377,6 +378,12 @@ class BoardRadar(_Emission[N], Generic[N]):
     def place_keys(self) -> tuple[str, ...]:
         """Key of the place of the board."""
         return ("position_m",)
+
+    @property
+    def usual_noise_figure_db(self) -> float:
+        """Noise figure of the device, or of boards whose elements `array` gives, dB."""
+        device = None if self.device is None else DEVICES[self.device]
+        return NOISE_FIGURE_DB if device is None else device.noise_figure_db
 
     @property
     def elements(self) -> Array | None:

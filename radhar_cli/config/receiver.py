@@ -49,7 +49,8 @@ class ReceiverConfig(Section, Generic[N]):
         Annotated[N, NOT_NEGATIVE, within(0, 100, "dB")] | None, ActsIf("snr_db", None)
     ] = None
     """F of thermal noise, k T0 fs F in a raw sample, where snr_db is null; null is no noise. Left
-    out, it is 15 dB of a board; given, it makes snr_db null unless that is given, too."""
+    out, it is 15 dB of an xWR1443 and 30 dB of other boards; given, it makes snr_db null unless
+    that is given, too."""
     channel_gain_db: Annotated[N, NOT_NEGATIVE, within(0, 20, "dB"), BOARD] = default_draw(0.0)
     """Standard deviation of the virtual channels' gains."""
     channel_phase_deg: Annotated[N, NOT_NEGATIVE, within(0, 180, "degree"), BOARD] = default_draw(
@@ -65,6 +66,3 @@ class ReceiverConfig(Section, Generic[N]):
         ),
     ] = "data_set"
     """How often gains and phases of the channels are drawn: once a data set, or once a sample."""
-
-
-BOARD_NOISE_FIGURE_DB = 15.0

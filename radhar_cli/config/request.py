@@ -54,7 +54,7 @@ from radhar_cli.config.people import BodyConfig, OneOf, PersonConfig, SubjectCon
 from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
 from radhar_cli.config.radar import BoardRadar, FmcwRadar, Radar
 from radhar_cli.config.range_zone import range_zone
-from radhar_cli.config.receiver import BOARD_NOISE_FIGURE_DB, ReceiverConfig
+from radhar_cli.config.receiver import ReceiverConfig
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.section import By, PerActivity, S, Section, defaults_of, for_activity
@@ -568,7 +568,7 @@ def _fill_for_board(c: Request, radar: BoardRadar, changed: dict[str, dict[str, 
     if "snr_db" not in c.model_fields_set:
         changed.setdefault("", {})["snr_db"] = None
     if "noise_figure_db" not in c.receiver.model_fields_set:
-        changed.setdefault("receiver", {})["noise_figure_db"] = BOARD_NOISE_FIGURE_DB
+        changed.setdefault("receiver", {})["noise_figure_db"] = radar.usual_noise_figure_db
     if "clutter" not in c.processing.model_fields_set:
         clutter = "mean" if header.detection.remove_mean else "none"
         changed.setdefault("processing", {})["clutter"] = clutter

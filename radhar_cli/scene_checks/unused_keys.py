@@ -74,6 +74,7 @@ def _left_out(config: Config) -> Config:
     radar = config.radar
     needed = {
         "waveform",
+        *({"device"} & type(radar).model_fields.keys()),  # which the noise figure follows
         *(name for name, f in type(radar).model_fields.items() if f.is_required()),
     }
     required = {name: getattr(radar, name) for name in needed}

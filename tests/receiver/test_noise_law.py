@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from helpers.boards import CFG
+from helpers.command_line import ROOT
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.products.noise import noise_law_of
@@ -19,6 +20,7 @@ from radhar_cli.single_scene.raw_echo import RAW_ECHO
 BOLTZMANN, T0 = 1.380649e-23, 290.0
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 250}
 SFCW = {"waveform": "sfcw", "steps": 100, "dwell_s": 1e-5, "prf_hz": 250}
+ISK_CFG = (ROOT / "radhar_cli/config/radars/iwr6843isk.cfg").read_text()
 BOARD = {"radar": {"device": "IWR1443BOOST", "cfg": CFG}, "duration_s": 0.3}
 # {radar: (config, samples a second in which the receiver has its noise)}
 RADARS: dict[str, tuple[dict[str, Any], float]] = {
@@ -94,6 +96,11 @@ def test_more_power_is_less_noise() -> None:
         ({"snr_db": None, "receiver": {"noise_figure_db": 8}}, Thermal(8, 12)),
         ({"snr_db": 20, "receiver": {"noise_figure_db": 8}}, Snr(20)),
         (BOARD, Thermal(15, 12)),
+        (BOARD | {"radar": {"device": "IWR6843ISK", "cfg": ISK_CFG}}, Thermal(30, 12)),
+        (
+            BOARD | {"radar": {"array": {"tx": [[0, 0], [4, 0], [2, 1]]}, "cfg": CFG}},
+            Thermal(30, 12),
+        ),
         (BOARD | {"snr_db": None}, Thermal(15, 12)),
         (BOARD | {"snr_db": 20}, Snr(20)),
         (BOARD | {"snr_db": None, "receiver": {"noise_figure_db": None}}, Silent()),

@@ -204,10 +204,11 @@ def frame_labels_of(
 def storable_array(value: Any, name: str, dynamic_range_db: float) -> NDArray[Any]:
     """Array of a product as it is stored: the power of a map, the samples of a signal, or an array.
 
-    Frame maps are stored as grey levels, in decibels below the peak of the sample.
+    Frame maps are stored as images are: grey levels, in decibels below the peak of the sample, of
+    the ranges that images show.
     """
     if isinstance(value, FrameMaps):
-        return levels(value.power, dynamic_range_db)
+        return levels(value.shown.power, dynamic_range_db)
     value = getattr(value, "power", getattr(value, "x", value))
     array = np.asarray(None if isinstance(value, (tuple, list, dict)) else value)
     if array.ndim == 0 or array.dtype.kind not in "iufc":

@@ -52,7 +52,9 @@ def of_simulation(simulation: Simulation) -> BoardFrames:
 
 def draw_frames(content: BoardFrames, path: Path) -> None:
     """Write frames.png: maps in dB below the peak of all frames, and the cloud from the radar."""
-    maps = {name: map_ for name, map_ in content.products.items() if isinstance(map_, FrameMaps)}
+    maps = {
+        name: map_.shown for name, map_ in content.products.items() if isinstance(map_, FrameMaps)
+    }
     cloud, middles = content.products.get("cloud"), content.board.middles
     chosen = np.linspace(0, content.board.frames - 1, COLUMNS).round().astype(int).tolist()
     rows = len(maps) + (cloud is not None)

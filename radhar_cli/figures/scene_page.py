@@ -49,6 +49,7 @@ def _maps_of(simulation: Simulation, view: SceneView) -> Iterator[MapLevels]:
         yield _map_levels(name, power_map, image, view.farthest)
     for name, maps in simulation.frames.items():
         if isinstance(maps, FrameMaps):
+            maps = maps.shown
             grey, scale = (
                 levels(maps.power, image.dynamic_range_db),
                 LevelScale.of(image, "decibel"),

@@ -6,7 +6,7 @@ of a bin reads a^2 in all of them.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Protocol
 
 import numpy as np
@@ -29,13 +29,14 @@ class FrameMaps:
     # outer edges of the rows of their images, in their unit; None for those of the rows
     limits: tuple[float, float] | None = None
 
-    def within(self, limits: tuple[float, float] | None) -> "FrameMaps":
-        """Maps of the rows within limits, which are the edges of images; None for all rows."""
-        if limits is None:
+    @cached_property
+    def shown(self) -> "FrameMaps":
+        """Maps of the rows that images show, with the edges of images."""
+        if self.limits is None:
             return self
-        rows = self.rows.cells_within(limits)
+        rows = self.rows.cells_within(self.limits)
         axis = self.rows.only(rows)
-        edges = axis.within_edges(limits)
+        edges = axis.within_edges(self.limits)
         return FrameMaps(self.power[:, rows], axis, self.columns, self.times, edges)
 
     @property
@@ -144,15 +145,18 @@ class FrameAxis:
         quantity: what the axis shows.
         unit: unit of its values.
         values_of: values of every row or column of a board's map, even, lowest first.
+        cell_of: width of a cell of a board's map, where it may have a single one; None elsewhere.
     """
 
     quantity: str
     unit: str
     values_of: Callable[[Board], Float]
+    cell_of: Callable[[Board], float] | None = None
 
     def of(self, board: Board) -> Axis:
         """Axis of the maps of a board."""
-        return Axis(self.quantity, self.unit, self.values_of(board))
+        cell = 0.0 if self.cell_of is None else self.cell_of(board)
+        return Axis(self.quantity, self.unit, self.values_of(board), cell)
 
 
 def ranges_of_bins(board: Board) -> Float:
@@ -175,7 +179,7 @@ def angles_of_beams(board: Board) -> Float:
 
 
 RANGE = FrameAxis("range", "m", ranges_of_bins)
-SPEED = FrameAxis("radial speed", "m/s", speeds_of_bins)
+SPEED = FrameAxis("radial speed", "m/s", speeds_of_bins, Board.doppler_step)
 # Positive left, positive up.
 ANGLES = tuple(FrameAxis(name, "degree", angles_of_beams) for name in ("azimuth", "elevation"))
 

@@ -34,6 +34,7 @@ def _tiles(frames: int, size: Size) -> tuple[Index, list[tuple[slice, slice]]]:
 
 def maps_sheet(maps: FrameMaps, size: Size, dynamic_range_db: float) -> MapImage:
     """Sheet of frames side by side, in decibels below their common peak; row 0 is the farthest."""
+    maps = maps.shown
     chosen, places = _tiles(len(maps.power), size)
     cells = np.zeros(size, np.float32)
     scaled = np.ldexp(maps.power[chosen].astype(float), -binary_exponent(maps.power))

@@ -397,17 +397,18 @@ def make_frame_maps(
     remove_mean: bool,
     limits_m: tuple[float, float] | None = None,
 ) -> FrameMaps:
-    """Make the maps of a cube's frames, of the ranges that images show.
+    """Make the maps of a cube's frames, of all ranges.
 
     Args:
         cube: raw samples [frame, loop, virtual, sample].
         board: board of the cube.
         kind: which maps.
         remove_mean: whether the mean over the loops of a frame is taken out.
-        limits_m: nearest and farthest range, m; None for all. Rows of other quantities are kept.
+        limits_m: nearest and farthest range that images show, m; None for all. Those of other
+            quantities show all rows.
     """
     maps = kind.make(cube, board, remove_mean=remove_mean)
-    return maps.within(limits_m if maps.rows.name == "range" else None)
+    return replace(maps, limits=limits_m if maps.rows.name == "range" else None)
 
 
 def find_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:

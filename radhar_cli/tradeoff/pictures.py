@@ -223,6 +223,7 @@ def draw_shown(
 def _picture(results: MapImage | FrameMaps, config: Config) -> ShownMap:
     """Picture of an image, or of all frames of a board's map."""
     if isinstance(results, FrameMaps):
+        results = results.shown
         axes = (results.times, results.rows.values, results.columns.values)
         return ShownMap(levels(results.power, config.image.dynamic_range_db), axes)
     left, right, low, high = results.extent

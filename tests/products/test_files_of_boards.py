@@ -1,12 +1,13 @@
 """What comes of .cfg files that boards are given: products, families, refusals."""
 
+from math import ceil
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 import pytest
-from helpers.command_line import radhar
+from helpers.command_line import ok, radhar
 
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
@@ -23,7 +24,7 @@ motion: {{range_m: 4}}
 duration_s: {seconds}
 samples_per_class: 1
 maps: [{maps}]
-image: {{size_px: 16, range_limits_m: [0, 1000]}}
+image: {{size_px: 16}}
 """
 
 
@@ -71,11 +72,22 @@ def test_a_file_gives_the_cube_and_the_maps_of_its_board(name: str, tmp_path: Pa
     assert radar.header.family is outcome.family
     assert radar.header.period_s == pytest.approx(outcome.period_s)
     assert config.cloud.chain == outcome.chain
-    frames = simulate(config, raw=True).frames
-    assert frames["cube"].shape[1:] == outcome.cube
-    assert frames["range_doppler"].power.shape[1:] == outcome.range_doppler
-    assert np.isfinite(frames["range_doppler"].power).all()
-    assert frames["range_doppler"].power.any()
+    command = ("simulate", tmp_path / "config.yaml", "-o", tmp_path / "out", "--raw")
+    result = ok(*command, "--maps", "range_doppler,points")
+    chains = [line for line in result.stderr.splitlines() if "cloud.chain: " in line]
+    assert len(chains) == 1
+    assert f"cloud.chain: {outcome.chain}, " in chains[0]
+    frames = int(seconds / outcome.period_s + 1e-9)
+    with h5py.File(tmp_path / "out/scene.h5") as file:
+        ends = ("", "_sf1") if name == "advframe" else ("",)
+        for end in ends:
+            assert file[f"cube{end}"].shape == (frames, *outcome.cube)
+            power = file[f"range_doppler{end}"]
+            assert power.shape == (frames, *outcome.range_doppler)
+            assert np.isfinite(power[:]).all()
+            assert power[:].any()
+            periods = np.diff(file.attrs[f"frame_times{end}"])
+            assert periods == pytest.approx(outcome.period_s)
 
 
 def test_people_files_set_the_pose_and_the_removal_of_the_mean(tmp_path: Path) -> None:
@@ -140,7 +152,10 @@ def test_a_data_set_holds_the_frames_of_every_subframe(tmp_path: Path) -> None:
     assert result.returncode == 0, result.stderr
     with h5py.File(tmp_path / "set/dataset.h5") as file:
         products = file["products"]
-        assert products["range_doppler_sf1"].shape == products["range_doppler"].shape
+        steps = 0.0435720, 0.1016679  # of the cells that lie within the ranges of images, 0 to 6 m
+        for end, step in zip(("", "_sf1"), steps, strict=True):
+            bins = ceil(6 / step + 0.5)
+            assert products[f"range_doppler{end}"].shape[1:] == (bins, 64)
         assert [*products["points_sf1"].attrs["columns"]] == [*products["points"].attrs["columns"]]
         assert products["skeleton_sf1"].shape == products["skeleton"].shape
     assert "/products/range_doppler_sf1" in (tmp_path / "set/README.md").read_text()

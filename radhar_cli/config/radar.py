@@ -444,14 +444,39 @@ class BoardRadar(_Emission[N], Generic[N]):
 
     @property
     def likely_chain(self) -> Chain:
-        """The firmware's chain whose commands the file has, unless the elements do not fit it."""
+        """The firmware's chain whose commands the file has, unless elements or masks do not fit."""
         firmware = self.header.firmware
         if firmware is None or self.why_no_points(firmware) is not None:
             return "best"
         return firmware
 
     def why_no_points(self, chain: Chain) -> str | None:
-        """Say why the elements of the board do not tell where points are; None if they do.
+        """Say why a chain does not find points on the board; None if it does."""
+        return self._why_no_pair(chain) or self._why_no_azimuths(chain)
+
+    def _why_no_pair(self, chain: Chain) -> str | None:
+        """Say why a demo does not take the chirps in which two transmitters send together.
+
+        The out-of-box firmware takes two chirps alone, of TX1 and TX3, on a 1642 of TX1 and TX2.
+        """
+        header = self.header
+        firmware = header.firmware if chain == "board" else chain
+        if header.bpm is None or firmware not in ("sdk1", "sdk3"):
+            return None
+        masks = {"16": (3,), "18": (5,), "68": (5,)}.get(str(self.device)[3:5], (3, 5, 6))
+        right = "two chirps of the same two transmitters"
+        if len(header.masks) == 2:
+            if header.masks[0] in masks:
+                return None
+            right = f"the mask {masks[0]}"
+        masks_given = " ".join(map(str, header.masks))
+        return (
+            f"bpmCfg with the masks {masks_given} (chirpCfg txEnable): the out-of-box firmware "
+            f"takes {right} (cloud.chain: {chain})"
+        )
+
+    def _why_no_azimuths(self, chain: Chain) -> str | None:
+        """Say why the elements of the board do not tell azimuths apart; None if they do.
 
         Firmware takes the elements of a row for neighbours, but for people tracking, whose .cfg has
         their places. `best` knows them, but takes high sidelobes of a sparse row for targets.

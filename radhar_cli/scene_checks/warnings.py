@@ -76,7 +76,13 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
         names = ", ".join(header.not_simulated)
         yield f"radar.cfg: {names}: what is set there is not simulated"
     if "chain" not in config.cloud.model_fields_set and "points" in config.stored:
-        yield _describe_chain(config.cloud.chain, header)
+        yield _describe_chain(config.cloud.chain, radar)
+    is_6843 = str(radar.device).startswith("IWR6843") and "points" in config.stored
+    if is_6843 and _counts_people(config.cloud.chain, header):
+        yield (
+            "cloud.chain: people_counting: of the Doppler CFAR of an IWR6843, which makes several "
+            "points of a cell, the largest Doppler alone is modelled"
+        )
     if header.sampling is Sampling.REAL and header.family not in (Family.MCU_PLUS, Family.L_SDK):
         yield "radar.cfg: adcCfg has real samples, which firmware of SDK 1 to 3 does not take"
     pose = {} if header.pose is None else vars(header.pose)
@@ -85,12 +91,18 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
         yield f"radar.cfg: sensorPosition yields to the config's {', '.join(config_keys)}"
 
 
-def _describe_chain(chain: Chain, header: "BoardHeader") -> str:
+def _counts_people(chain: Chain, header: "BoardHeader") -> bool:
+    """Whether people counting finds the points."""
+    return "people_counting" in (chain, header.firmware if chain == "board" else None)
+
+
+def _describe_chain(chain: Chain, radar: BoardRadar) -> str:
     """Say which chain finds the points where the config names none, and why it is that one."""
+    header = radar.header
     if chain != "best":
         return f"cloud.chain: {chain}, the firmware whose commands radar.cfg has"
     if header.firmware is not None:
-        return f"cloud.chain: best, as the elements of the board do not fit {header.firmware}"
+        return f"cloud.chain: best, as {radar.why_no_points(header.firmware)}"
     if header.missing:
         return f"cloud.chain: best, as {header.missing[0]}"
     return "cloud.chain: best, as radar.cfg has no detection of a firmware that is simulated"

@@ -171,3 +171,44 @@ def test_a_box_of_the_room_is_kept_to_on_demand() -> None:
     assert CloudChain.of(board(lines)).box is None
     box = CloudChain.of(board(lines, cloud={"boundary_box": True})).box
     assert box == RoomBox((0.5, 6), (-2, 1), (0, 2))
+
+
+TOGETHER = """
+channelCfg 15 7 0
+adcCfg 2 1
+bpmCfg -1 1 0 1
+profileCfg 0 60.75 30 25 59.1 0 0 54.71 1 96 2950 2 1 36
+chirpCfg 0 1 0 0 0 0 0 5
+frameCfg 0 1 48 0 55 1 0
+cfarCfg -1 0 2 8 4 3 0 15 1
+"""
+THREE = TOGETHER.replace("frameCfg 0 1", "chirpCfg 1 1 0 0 0 0 0 2\nframeCfg 0 2").replace(
+    "chirpCfg 0 1 ", "chirpCfg 0 2 "
+)
+THREE = THREE.replace("bpmCfg -1 1 0 1", "bpmCfg -1 1 0 2")
+
+
+def test_the_out_of_box_demo_takes_two_chirps_of_two_transmitters() -> None:
+    """TX1 + TX3 on a 6843; three transmitters with BPM it refuses, and so do we for its chain."""
+    assert board(TOGETHER, device="IWR6843ISK", maps=["points"]).cloud.chain == "sdk3"
+    for text, words in (
+        (THREE, "with the masks 5 2 5 (chirpCfg txEnable): the out-of-box firmware takes two ch"),
+        (TOGETHER.replace("0 0 0 0 5", "0 0 0 0 3"), "the out-of-box firmware takes the mask 5 "),
+    ):
+        for chain in ("board", "sdk3"):
+            with pytest.raises(ValueError, match="radar") as caught:
+                board(text, {"chain": chain}, device="IWR6843ISK", maps=["points"])
+            assert words in str(caught.value)
+        config = board(text, device="IWR6843ISK", maps=["points"])
+        assert config.cloud.chain == "best"
+        (said,) = (line for line in config_warnings(config) if "cloud.chain: best" in line)
+        assert words in said
+
+
+def test_what_people_counting_of_a_6843_lacks_is_said() -> None:
+    newer = COUNTING.replace("77 30 7", "60.25 30 7")
+    for chain in ({}, {"chain": "board"}, {"chain": "people_counting"}):
+        said = config_warnings(board(newer, chain, device="IWR6843ISK", maps=["points"]))
+        assert len([line for line in said if "Doppler CFAR of an IWR6843" in line]) == 1
+        said = config_warnings(board(COUNTING, chain, device="IWR1642BOOST", maps=["points"]))
+        assert not [line for line in said if "Doppler CFAR" in line]

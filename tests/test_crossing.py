@@ -66,6 +66,12 @@ FACTORS: dict[str, dict[str, Document]] = {
             "radar": {**BAND, "waveform": "impulse", "profile_m": [0.2, 6], "profile_samples": 500},
             "processing": {"range_sum": "gated"},
         },
+        "impulse iq": {
+            "radar": {
+                **{**BAND, "waveform": "impulse", "output": "iq"},
+                **{"profile_m": [0.2, 6], "profile_samples": 100},
+            },
+        },
         "board": {"radar": BOARD},
         "array": {"radar": {"cfg": CFG, "array": ARRAY, "yaw_deg": 5}},
     },

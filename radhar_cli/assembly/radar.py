@@ -84,7 +84,12 @@ def waveform_of(scene: Scene) -> Waveform:
             waveform = board_of(radar, scene.seconds).waveform
             return replace(waveform, window=chirp_window_of(processing))
         case ImpulseRadar():
-            kind = partial(Impulse, profile=radar.profile_m, samples=radar.profile_samples)
+            kind = partial(
+                Impulse,
+                profile=radar.profile_m,
+                samples=radar.profile_samples,
+                is_iq=radar.output == "iq",
+            )
         case CwRadar():
             centred = False
         case FmcwRadar() | SfcwRadar():

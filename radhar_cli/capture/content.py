@@ -54,7 +54,6 @@ class RangeProfiles:
     """Range profiles: N samples of every pulse over range, real or complex."""
 
     dataset: ClassVar[str] = "profiles"
-    noun: ClassVar[str] = "range profiles"
     axes: ClassVar[tuple[str, ...]] = ("receiver", "range", "pulse")
 
     carrier_hz: float  # frequency of their Doppler, the middle of the band
@@ -63,6 +62,12 @@ class RangeProfiles:
     prf_hz: float  # pulses per second of one receiver, within a segment
     first_range_m: float  # range of the first sample
     range_step_m: float  # from one sample to the next
+    is_iq: bool = False  # whether samples are complex, which their type tells
+
+    @property
+    def noun(self) -> str:
+        """Words for the samples, in messages."""
+        return "complex range profiles" if self.is_iq else "real range profiles"
 
     def waveform(
         self, duration: float, fft_length: int | None = None, centred: bool = True
@@ -71,8 +76,8 @@ class RangeProfiles:
         del fft_length, centred
         last_m = self.first_range_m + self.samples * self.range_step_m
         lowest_hz = self.carrier_hz - self.bandwidth_hz / 2
-        profile_m = (self.first_range_m, last_m)
-        return impulse(lowest_hz, self.bandwidth_hz, self.prf_hz, duration, profile_m, self.samples)
+        pulses = lowest_hz, self.bandwidth_hz, self.prf_hz, duration
+        return impulse(*pulses, (self.first_range_m, last_m), self.samples, self.is_iq)
 
     def range_bins(self, pulses: Complex, w: Waveform) -> Complex:
         """Range bins [K, M] of pulses [N, M]: profiles are their own bins."""
@@ -101,7 +106,7 @@ def numbers_of(content: Content) -> dict[str, Any]:
     """Numbers of the radar behind a content, by the names that they have in a recording's file."""
     if isinstance(content, Beat):
         return asdict(content.timing)
-    return asdict(content)
+    return {name: value for name, value in asdict(content).items() if name != "is_iq"}
 
 
 def describe_difference(content: Content, expected: Content) -> str | None:
@@ -109,7 +114,7 @@ def describe_difference(content: Content, expected: Content) -> str | None:
 
     The text is such as "prf_hz = 200: should be 256".
     """
-    if type(content) is not type(expected):
+    if content.noun != expected.noun:
         return f"holds {content.noun}: should hold {expected.noun}"
     numbers, expected_numbers = numbers_of(content), numbers_of(expected)
     # The number of samples comes first, as the bandwidth follows from it.
@@ -155,6 +160,7 @@ def _radar_keys(content: Content, waveform: str) -> dict[str, Any]:
             w = content.waveform(1.0)
             return {
                 "waveform": "impulse",
+                "output": "iq" if content.is_iq else "rf",
                 "carrier_hz": w.fc,
                 "prf_hz": w.prf,
                 "bandwidth_hz": w.bandwidth,

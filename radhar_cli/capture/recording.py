@@ -318,6 +318,9 @@ class Recording(Closing):
                 )
             if number.str[1:] not in NUMBERS:
                 raise FolderError(f"{where}: is of the type {number}; should be one of {NUMBERS}")
+            if isinstance(self.info.content, RangeProfiles):
+                of_type = replace(self.info.content, is_iq=self.samples.parts == 2)
+                self.info = replace(self.info, content=of_type)
             self.flags: NDArray[np.uint8] = self._file.column("flags", "u1", (info.pulses,))[:]
             self.segments = self._read_segments()
         except BaseException:

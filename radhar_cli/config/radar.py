@@ -258,7 +258,7 @@ class CwRadar(_Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
 
 
 class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
-    """A radar that sends Gaussian pulses; its receiver samples real range profiles."""
+    """A radar that sends Gaussian pulses; its receiver samples range profiles."""
 
     kind: ClassVar[str] = "impulse"
     named: ClassVar[str] = "radar.waveform: impulse"
@@ -266,6 +266,9 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
 
     waveform: Literal["impulse"] = "impulse"
     """Kind of the radar."""
+    output: Literal["rf", "iq"] = "rf"
+    """Samples of a profile: rf are real, of the pulse as it comes; iq are complex, as chips give
+    them that mix it down by the middle of the band."""
     profile_m: tuple[Real, Real]
     """Range axis [from, to] of the profiles, m."""
     profile_samples: Annotated[int, Field(ge=2, le=2**16, strict=True)] = 256
@@ -283,13 +286,15 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
         return value
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map of its real samples."""
+        """Say why the radar does not make a map of its samples; of complex ones it makes all."""
+        if self.output == "iq":
+            return super().why_no_map(kind, gating)
         if kind not in (MapKind.parse("rtm"), MapKind.parse("stft")):
-            return f"{self.named} takes real samples"
+            return f"{self.named} takes real samples; radar.output: iq has complex ones"
         if kind.is_doppler_time and not gating:
             return (
                 f"the real samples of {self.named} have no mean over range; stft needs "
-                "processing.range_sum: gated"
+                "processing.range_sum: gated, or radar.output: iq"
             )
         return super().why_no_map(kind, gating)
 

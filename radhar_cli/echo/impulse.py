@@ -1,7 +1,8 @@
 """The echo of an impulse radar: r[k, m] = sum_i A_i p(2 R_k/c - tau_i).
 
 Through a layered wall it is Re of the integral of P(f) S(f) exp(j 2 pi f t) over f > 0, with the
-echo S(f) of `dispersion.py` at even frequencies.
+echo S(f) of `dispersion.py` at even frequencies. Complex samples are sum_i A_i g(2 R_k/c - tau_i)
+exp(-j 2 pi fm tau_i), or the integral itself, mixed down by exp(-j 2 pi fm t).
 """
 
 from collections.abc import Callable, Iterator
@@ -12,6 +13,7 @@ import numpy as np
 from radhar_cli.echo.dispersion import beat_of, power_of
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.numerics.arrays import Complex, Float, Index
+from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
@@ -19,27 +21,35 @@ CHUNK = 2**10  # pulses at once
 REACH = 9.0  # of a pulse to both sides, in s: exp(-REACH^2/2) is 3e-18
 LONGEST = 2.0  # times the end of the range axis, up to which echoes do not fold
 Transfer: TypeAlias = Callable[[Float], Complex]  # at frequencies, Hz
+Profiles: TypeAlias = Float | Complex  # [samples, M], complex of a radar with IQ samples
 BAND = 64  # frequencies within 10 dB of the middle, over which a wall's loss is averaged
 
 
-def impulse_echo(source: PathSource, waveform: Impulse) -> Float:
+def impulse_echo(source: PathSource, waveform: Impulse) -> Profiles:
     """Range profiles r [samples, M] at all pulses, without noise."""
-    r = np.zeros((waveform.samples, waveform.n_pulses))
+    r = np.zeros((waveform.samples, waveform.n_pulses), complex if waveform.is_iq else float)
     for pulses, paths in _chunks(source, waveform):
         r[:, pulses] = _spectral(paths, waveform) if paths.through else _pulses(paths, waveform)
     return r
 
 
 def impulse_power(source: PathSource, waveform: Impulse) -> float:
-    """Mean P_s over the pulses of sum_i A_i^2/2; through a layered wall also over the band."""
+    """Mean P_s over the pulses of sum_i A_i^2/2; through a layered wall also over the band.
+
+    Of complex samples it is twice that, sum_i A_i^2.
+    """
     band = Waveform(waveform.fc, waveform.bandwidth, 1e-6, BAND * 1e6, 1.0, 1.0)
     chunks = _chunks(source, waveform)
-    return sum(float(power_of(paths, band).sum()) for _, paths in chunks) / 2 / waveform.n_pulses
+    return (
+        sum(float(power_of(paths, band).sum()) for _, paths in chunks)
+        / waveform.n_pulses
+        / waveform.peak_to_power
+    )
 
 
 def steady_profile(
     delay: float, amplitude: float, waveform: Impulse, reflected: Transfer | None = None
-) -> Float:
+) -> Profiles:
     """Range profile r [samples, 1] of a path that does not move.
 
     Args:
@@ -62,29 +72,34 @@ def _chunks(source: PathSource, waveform: Impulse) -> Iterator[tuple[slice, Path
         yield slice(first, first + pulses.size), source(waveform.times(pulses.astype(float)))
 
 
-def _pulses(paths: Paths, waveform: Impulse) -> Float:
+def _pulses(paths: Paths, waveform: Impulse) -> Profiles:
     """Range profiles r [samples, M], each pulse added at its delay."""
     step, (first, _) = 2 * waveform.range_step / SPEED_OF_LIGHT, waveform.profile
     half = int(REACH * waveform.width / step) + 1
     around, pulse = np.arange(-half, half + 1)[:, None], np.arange(paths.delay.shape[1])
-    r = np.zeros((waveform.samples + 2 * half + 1, pulse.size))  # those beyond the axis, too
-    for tau, a in zip(paths.delay - 2 * first / SPEED_OF_LIGHT, paths.amplitude, strict=True):
+    type_ = complex if waveform.is_iq else float
+    r = np.zeros((waveform.samples + 2 * half + 1, pulse.size), type_)  # those beyond the axis, too
+    shape = waveform.envelope if waveform.is_iq else waveform.pulse
+    for delay, a in zip(paths.delay, paths.amplitude, strict=True):
+        tau = delay - 2 * first / SPEED_OF_LIGHT
         middle: Index = np.clip(np.rint(tau / step), -half - 1, waveform.samples + half).astype(int)
         rows = middle + around
         within = (rows >= 0) & (rows < waveform.samples)
-        r[np.where(within, rows, waveform.samples), pulse] += a * waveform.pulse(rows * step - tau)
+        turned = a * unit_phasor(waveform.f0 * delay) if waveform.is_iq else a
+        r[np.where(within, rows, waveform.samples), pulse] += turned * shape(rows * step - tau)
     return r[: waveform.samples]
 
 
-def _spectral(paths: Paths, waveform: Impulse) -> Float:
+def _spectral(paths: Paths, waveform: Impulse) -> Profiles:
     """Range profiles r [samples, M] from the echo at even frequencies."""
     return _summed(beat_of(paths, waveform.stepped(waveform.profile[1] * LONGEST)), waveform)
 
 
-def _summed(echo: Complex, waveform: Impulse) -> Float:
+def _summed(echo: Complex, waveform: Impulse) -> Profiles:
     """Range profiles r [samples, M] of an echo S [N, M] at the frequencies of `stepped`."""
     f = waveform.stepped(waveform.profile[1] * LONGEST).frequencies()
     t = 2 * waveform.range_axis() / SPEED_OF_LIGHT
-    back = np.exp(2j * np.pi * np.outer(t, f)) * (waveform.spectrum(f) * (f[1] - f[0]))
-    r: Float = (back @ echo).real
-    return r
+    mixed_by = waveform.f0 if waveform.is_iq else 0.0
+    back = np.exp(2j * np.pi * np.outer(t, f - mixed_by)) * (waveform.spectrum(f) * (f[1] - f[0]))
+    r: Complex = back @ echo
+    return r if waveform.is_iq else r.real

@@ -17,6 +17,7 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import Waveform
 
 State = TypeVar("State")
@@ -148,7 +149,9 @@ class RangeBins(FastTime):
 
 @dataclass(frozen=True)
 class ProfileSamples(RangeBins):
-    """Real samples over range, as an impulse radar takes them: W is the identity."""
+    """Samples over range, real or complex, as an impulse radar takes them: W is the identity."""
+
+    waveform: Impulse
 
     @property
     def white(self) -> bool:
@@ -158,7 +161,10 @@ class ProfileSamples(RangeBins):
         return s
 
     def colour(self, v: Complex, scale: float = 1.0) -> Complex:
-        """Make real noise of variance scale^2 of v."""
+        """Make noise of variance scale^2 of v: real noise where the samples are real."""
+        if self.waveform.is_iq:
+            v *= scale
+            return v
         v.real *= scale * np.sqrt(2)
         v.imag = 0
         return v

@@ -6,8 +6,7 @@ from math import inf
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.direct import Accuracy
-from radhar_cli.echo.impulse import impulse_echo
-from radhar_cli.numerics.arrays import Float
+from radhar_cli.echo.impulse import Profiles, impulse_echo
 from radhar_cli.processing.canceller import Canceller
 from radhar_cli.processing.look import Look, ProfileSamples
 from radhar_cli.processing.signal import Signal
@@ -20,7 +19,7 @@ from radhar_cli.receiver.impairment import Impairment
 
 def impulse_products(config: Config) -> Iterator[Product]:
     """Rows of an impulse radar."""
-    does = "real samples over range, a pulse at its delay for every path"
+    does = "samples over range, a pulse at its delay for every path"
     yield Product("profiles", ("paths", "waveform"), impulse_echo, does, is_array=True)
     yield power_product(
         config,
@@ -38,12 +37,12 @@ def impulse_products(config: Config) -> Iterator[Product]:
 
 
 def receive_profiles(
-    profiles: Float, waveform: Impulse, canceller: Canceller, receiver: tuple[Impairment, ...]
+    profiles: Profiles, waveform: Impulse, canceller: Canceller, receiver: tuple[Impairment, ...]
 ) -> Signal:
     """Pass noiseless range profiles through receiver and canceller.
 
     Args:
-        profiles: real samples over range [samples, M].
+        profiles: samples over range [samples, M].
         waveform: pulses of the radar.
         canceller: canceller of static echoes.
         receiver: impairments.

@@ -1,7 +1,9 @@
-"""Impulse radar: a Gaussian pulse on a carrier, received in real samples over range.
+"""Impulse radar: a Gaussian pulse on a carrier, received in samples over range.
 
-p(t) = exp(-t^2/(2 s^2)) cos(2 pi fm t), s = sqrt(ln 10)/(pi B), fm = fc + B/2: its spectrum is
-10 dB down at fc and fc + B.
+p(t) = g(t) cos(2 pi fm t), g(t) = exp(-t^2/(2 s^2)), s = sqrt(ln 10)/(pi B), fm = fc + B/2: its
+spectrum is 10 dB down at fc and fc + B. Samples are real, or complex ones of a chip that mixes them
+down by fm and keeps the lower band: an echo of delay tau is g(t - tau) exp(-j 2 pi fm tau), whose
+real part, mixed up again, is p(t - tau).
 """
 
 from dataclasses import dataclass
@@ -19,6 +21,7 @@ class Impulse(Waveform):
 
     profile: tuple[float, float] = (0.0, 1.0)  # where the range axis begins and ends, m
     samples: int = 256  # of a profile
+    is_iq: bool = False  # whether samples are complex, mixed down by fm
 
     @property
     def width(self) -> float:
@@ -28,6 +31,11 @@ class Impulse(Waveform):
     @property
     def n_bins(self) -> int:
         """Number of samples of a profile, all of which are kept."""
+        return self.samples
+
+    @property
+    def raw_samples(self) -> int:
+        """Number of raw samples of a pulse: those of its profile."""
         return self.samples
 
     @property
@@ -50,9 +58,31 @@ class Impulse(Waveform):
         """Ranges R_k = from + k (to - from)/samples [samples], m."""
         return self.profile[0] + np.arange(self.samples) * self.range_step
 
+    @property
+    def peak_to_power(self) -> float:
+        """Power of the highest sample of an echo over P_s: 2 of real samples, 1 of complex ones."""
+        return 1.0 if self.is_iq else 2.0
+
+    @property
+    def coarsest_step(self) -> float:
+        """Widest spacing of samples that holds the band, m.
+
+        Real samples take two a period of fc + 1.5 B, up to where the spectrum is 40 dB down;
+        complex ones may be as far apart as the resolution c/(2 B), which folds what is 10 dB down
+        or more.
+        """
+        if self.is_iq:
+            return SPEED_OF_LIGHT / (2 * self.bandwidth)
+        return SPEED_OF_LIGHT / (4 * (self.fc + 1.5 * self.bandwidth))
+
+    def envelope(self, t: Float) -> Float:
+        """Envelope g(t) of the pulse at times t [...] (s)."""
+        g: Float = np.exp(-((t / self.width) ** 2) / 2)
+        return g
+
     def pulse(self, t: Float) -> Float:
         """Pulse p(t) at times t [...] (s)."""
-        p: Float = np.exp(-((t / self.width) ** 2) / 2) * np.cos(2 * pi * self.f0 * t)
+        p: Float = self.envelope(t) * np.cos(2 * pi * self.f0 * t)
         return p
 
     def spectrum(self, f: Float) -> Float:
@@ -85,6 +115,7 @@ def impulse(
     duration: float,
     profile: tuple[float, float],
     samples: int,
+    is_iq: bool = False,
 ) -> Impulse:
     """An impulse radar, without the chirp that other waveforms have.
 
@@ -95,5 +126,7 @@ def impulse(
         duration: Duration of a recording, s.
         profile: Ranges at which the range axis begins and ends, m.
         samples: Number of samples of a profile.
+        is_iq: Whether samples are complex, mixed down by the middle of the band.
     """
-    return Impulse(fc, bandwidth, 2e-9, 1e9, prf, duration, profile=profile, samples=samples)
+    timing = fc, bandwidth, 2e-9, 1e9, prf, duration
+    return Impulse(*timing, profile=profile, samples=samples, is_iq=is_iq)

@@ -42,6 +42,11 @@ class Waveform:
         """Number of samples of a chirp, N_ADC = round(fs Tp)."""
         return half_up(self.adc_rate, self.chirp)
 
+    @property
+    def raw_samples(self) -> int:
+        """Number of raw samples of a pulse, each with noise of its own."""
+        return self.n_adc
+
     @cached_property
     def n_pulses(self) -> int:
         """Number of pulses, M = round(T PRF)."""

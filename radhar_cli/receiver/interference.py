@@ -35,7 +35,7 @@ class InterferenceLine(Impairment):
     @cached_property
     def code(self) -> Complex:
         """Amplitude and phase a c[n] [N_ADC] of a pulse."""
-        turns: Float = self.stream(self.name).random(self.waveform.n_adc)
+        turns: Float = self.stream(self.name).random(self.waveform.raw_samples)
         code: Complex = self.amplitude * np.exp(2j * np.pi * turns)
         return code
 

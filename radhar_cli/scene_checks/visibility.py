@@ -108,7 +108,8 @@ def cell_gain_db(scene: Scene, name: str) -> float:
     w = waveform_of(scene)
     kind = MAP_KINDS.get(name)
     if kind == RTM:
-        over_range, window = 2.0 if isinstance(w, Impulse) else w.window.gain(w.n_adc), 1.0
+        over_range = w.peak_to_power if isinstance(w, Impulse) else w.window.gain(w.n_adc)
+        window = 1.0
     elif kind is not None:
         over_range = _gate_gain(config, w) if _gated(config) else _sum_gain(w)
         window = HANN * _window_pulses(scene, w)
@@ -122,7 +123,9 @@ def _gated(config: Config) -> bool:
 
 
 def _sum_gain(w: Waveform) -> float:
-    """Gain of the coherent sum over the kept bins, of a beat in their middle."""
+    """Gain of the coherent sum over the kept bins, of a beat, or pulse, in their middle."""
+    if isinstance(w, Impulse):
+        return float((_pulse(w).sum(axis=0) ** 2).max()) / w.samples
     d, beat = weights(w), (w.n_bins // 2) / w.n_fft
     g = (d * np.exp(-2j * np.pi * beat * (np.arange(w.n_adc) - w.n0))).sum()
     return float(abs(g) ** 2 / noise_gain(w))
@@ -134,16 +137,17 @@ def _gate_gain(config: Config, w: Waveform) -> float:
     wide = within[1] - within[0] if isinstance(within, tuple) else 2 * within
     bins = max(float(wide) / w.range_step, 1.0)
     if isinstance(w, Impulse):
-        return 2 * float((_pulse(w) ** 2).sum(axis=0).max()) / sqrt(bins)
+        return w.peak_to_power * float((_pulse(w) ** 2).sum(axis=0).max()) / sqrt(bins)
     # padding makes no more of them
     return w.window.gain(w.n_adc) / sqrt(max(bins * w.n_adc / w.n_fft, 1.0))
 
 
 def _pulse(w: Impulse) -> Float:
-    """Samples [K, offsets] of a pulse of amplitude 1 (of power 1/2) in the middle of a profile."""
+    """Samples [K, offsets] of a pulse of amplitude 1 in the middle of a profile, less its phase."""
     step = 2 * w.range_step / SPEED_OF_LIGHT
     offsets = np.arange(8) / 8
-    return w.pulse((np.arange(w.samples)[:, None] - w.samples // 2 - offsets) * step)
+    shape = w.envelope if w.is_iq else w.pulse
+    return shape((np.arange(w.samples)[:, None] - w.samples // 2 - offsets) * step)
 
 
 def _window_pulses(scene: Scene, w: Waveform) -> int:

@@ -7,7 +7,7 @@ import numpy as np
 from radhar_cli.config.radar import CwRadar
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.exact import beat_blocks
-from radhar_cli.echo.impulse import steady_profile
+from radhar_cli.echo.impulse import Profiles, steady_profile
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.static_returns import StaticReturn, leakage, near_face_distance, wall_echo
 from radhar_cli.errors import SceneError
@@ -65,12 +65,12 @@ def raw_echo(
 
 def raw_profiles(
     scene: Scene,
-    profiles: Float,
+    profiles: Profiles,
     waveform: Impulse,
     antennas: Antennas,
     wall: Wall | None,
     receiver: tuple[Impairment, ...],
-) -> Float:
+) -> Profiles:
     """Compute range profiles as an impulse radar would record them.
 
     Args:
@@ -88,7 +88,8 @@ def raw_profiles(
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
     """
     look = Look.of_all("profiles", ProfileSamples(waveform))
-    r: Float = receive_echo(profiles.astype(complex), look, receiver).x[0].real
+    received = receive_echo(profiles.astype(complex), look, receiver).x[0]
+    r: Profiles = received if waveform.is_iq else received.real
     r = r + steady_profile(*leakage(antennas), waveform)
     if wall is not None:
         _refuse_near_face(scene, antennas, wall)

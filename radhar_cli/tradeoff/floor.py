@@ -51,9 +51,7 @@ def _changed_share(visible: Shown, base: Shown, name: str) -> float:
 def _unit_error(raw: Raw) -> dict[str, Complex]:
     """White error of the same L2 norm as each raw product; real where samples are."""
     rng, radar = np.random.default_rng(SEED), raw.scene.config.radar
-    is_real = isinstance(radar, ImpulseRadar) or (
-        isinstance(radar, CwRadar) and radar.output == "real"
-    )
+    is_real = isinstance(radar, ImpulseRadar | CwRadar) and radar.output in ("rf", "real")
     errors = dict[str, Complex]()
     for name, x in raw.values.items():
         imaginary = np.zeros(x.shape) if is_real else rng.standard_normal(x.shape)

@@ -71,7 +71,7 @@ def map_settings(config: Config) -> Iterator[Setting]:
             remaining_maps = [other for other in config.maps if other != name]
             overrides = (f"maps=[{', '.join(remaining_maps)}]",)
             yield Setting("maps", f"maps without {name}", overrides, worth=Worth.SAVES)
-    is_other = isinstance(config.radar, BoardRadar | ImpulseRadar)
+    is_other = isinstance(config.radar, BoardRadar) or _has_real_samples(config)
     allows_fsst = not is_other and config.processing.range_sum == "coherent"
     if allows_fsst and not _has_fsst(config):
         overrides = (f"maps=[{', '.join((*config.maps, 'fsst'))}]",)
@@ -83,6 +83,11 @@ def map_settings(config: Config) -> Iterator[Setting]:
         if min(height, width) // parts >= LEAST_PX and config.stream is None:
             size = f"[{height // parts}, {width // parts}]"
             yield keyed("maps", f"image.size_px={size}", worth)
+
+
+def _has_real_samples(config: Config) -> bool:
+    """Whether the radar is one of impulses whose samples are real."""
+    return isinstance(config.radar, ImpulseRadar) and config.radar.output == "rf"
 
 
 def _has_fsst(config: Config) -> bool:
@@ -228,7 +233,7 @@ def _wall_without_echoes(config: Config, wall: WallConfig) -> Setting:
 def receiver_settings(config: Config) -> Iterator[Setting]:
     """Yield coloured noise and interference, or none of them."""
     receiver = config.receiver
-    is_other = isinstance(config.radar, BoardRadar | ImpulseRadar)
+    is_other = isinstance(config.radar, BoardRadar) or _has_real_samples(config)
     if not config.has_noise or is_other:  # whose receivers have white noise alone
         return
     prf = nominal(config.radar.prf_hz)

@@ -86,6 +86,7 @@ IMPULSE = [
     "processing.range_sum=gated",
     "maps=[rtm, stft]",
 ]
+IQ = [IMPULSE[0].replace("impulse,", "impulse, output: iq,").replace("600", "60"), IMPULSE[1]]
 LAYERS = "wall={size_m: [null, 5, 2.5], echoes: exact, layers: [{eps_r: 4, thickness_m: 0.1}]}"
 
 
@@ -98,8 +99,10 @@ LAYERS = "wall={size_m: [null, 5, 2.5], echoes: exact, layers: [{eps_r: 4, thick
         ("profiles", IMPULSE),
         ("profiles", [*IMPULSE, "wall={}", "processing.clutter=mean"]),
         ("profiles", [*IMPULSE, LAYERS, "processing.gate_m=[1, 5]"]),
+        ("profiles", [*IQ, "maps=[rtm, stft]"]),
+        ("profiles", [*IQ, LAYERS, "maps=[rtm, stft]"]),
     ],
-    ids=["cw", "cw-wall", "cw-real", "impulse", "impulse-wall", "impulse-layers"],
+    ids=["cw", "cw-wall", "cw-real", "impulse", "impulse-wall", "impulse-layers", "iq", "iq-layers"],
 )
 def test_radars_without_chirps_are_recorded_too(
     tmp_path: Path, holds: str, overrides: list[str]
@@ -113,7 +116,8 @@ def test_radars_without_chirps_are_recorded_too(
     assert done.returncode == 0, done.stderr
     with Recording(tmp_path / "out/recording.h5") as recording:
         assert recording.info.content.dataset == holds
-        assert recording.samples.parts == (2 if CW in overrides else 1)
+        is_complex = CW in overrides or any("output: iq" in text for text in overrides)
+        assert recording.samples.parts == (2 if is_complex else 1)
         static = recording.beat(0, 8).mean(axis=2)
     names = [name for name in possible_maps(config) if "compensated" not in name]
     found = processed(tmp_path / "out/recording.h5", config, *names).maps

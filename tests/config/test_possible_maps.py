@@ -28,6 +28,7 @@ RADARS: dict[str, dict[str, Any]] = {
     "cw, real": {"radar": {"waveform": "cw", "output": "real", "prf_hz": 500}},
     "impulse": {"radar": IMPULSE, "maps": ["rtm"]},
     "impulse, gated": {"radar": IMPULSE} | GATED,
+    "impulse, iq": {"radar": {**IMPULSE, "output": "iq", "profile_samples": 200}},
     "board": {"radar": {"device": "IWR1443BOOST", "cfg": CFG}},
     "board, coherent": {
         "radar": {"device": "IWR1443BOOST", "cfg": CFG},

@@ -89,3 +89,54 @@ def test_echoes_beyond_the_axis_are_not_folded(delay) -> None:
 def test_power_is_half_of_the_squares() -> None:
     assert impulse_power(Fixed(), RADAR) == pytest.approx((1 + 0.16) / 2)
     assert impulse_power(Fixed(layers=AIR), RADAR) == pytest.approx((1 + 0.16) / 2)
+
+
+IQ = replace(RADAR, is_iq=True)
+
+
+def test_complex_samples_are_the_pulse_mixed_down() -> None:
+    """Each echo is g(t - tau) exp(-j 2 pi fm tau); mixed up again its real part is the pulse."""
+    t = 2 * IQ.range_axis()[:, None] / SPEED_OF_LIGHT
+    tau, amplitude = np.array(DELAY), np.array(AMPLITUDE)
+    envelopes = np.exp(-(((t - tau) / IQ.width) ** 2) / 2)
+    right = envelopes @ (amplitude * np.exp(-2j * np.pi * 2e9 * tau))
+    r = impulse_echo(Fixed(), IQ)
+    assert r[:, 2] == pytest.approx(right, abs=1e-12)
+    up = (r * np.exp(2j * np.pi * IQ.f0 * t)).real
+    assert up == pytest.approx(impulse_echo(Fixed(), RADAR), abs=1e-12)
+
+
+def test_complex_samples_may_be_as_sparse_as_the_resolution() -> None:
+    """They are those of a finer axis, at any step."""
+    step = SPEED_OF_LIGHT / (2 * IQ.bandwidth)
+    assert IQ.coarsest_step == pytest.approx(step)
+    sparse = replace(IQ, profile=(0.0, 60 * step), samples=60)
+    finer = replace(sparse, samples=60 * 8)
+    assert impulse_echo(Fixed(), sparse) == pytest.approx(impulse_echo(Fixed(), finer)[::8])
+
+
+def test_complex_samples_through_layers_are_mixed_down_too() -> None:
+    radar = replace(RADAR, fc=2e9, bandwidth=1e9)
+    iq = replace(radar, is_iq=True)
+    t = 2 * iq.range_axis()[:, None] / SPEED_OF_LIGHT
+    wall = Fixed(layers=Layers((Layer(0.24, 6 - 0.18j),), False))
+    up = (impulse_echo(wall, iq) * np.exp(2j * np.pi * iq.f0 * t)).real
+    assert up == pytest.approx(impulse_echo(wall, radar), abs=1e-12)
+
+
+def test_power_of_complex_samples_is_that_of_the_squares() -> None:
+    assert impulse_power(Fixed(), IQ) == pytest.approx(1 + 0.16)
+
+
+def test_the_doppler_of_who_approaches_is_positive() -> None:
+    """The phase of the sum over range rises by 2 v fm/c cycles a second: 13.3 at 1 m/s and 2 GHz."""
+
+    class Approaching(Fixed):
+        """An echo from 2 m, 1 m/s nearer every second."""
+
+        def __call__(self, t: np.ndarray) -> Paths:
+            return Paths(2 * (2 - t)[None] / SPEED_OF_LIGHT, np.ones((1, t.size)))
+
+    slow = impulse_echo(Approaching(), replace(IQ, prf=1000.0)).sum(axis=0)
+    rate = np.diff(np.unwrap(np.angle(slow))).mean() * 1000 / (2 * np.pi)
+    assert rate == pytest.approx(2 * 2e9 / SPEED_OF_LIGHT, rel=1e-3)

@@ -26,6 +26,15 @@ RADARS: dict[str, dict[str, Any]] = {
         "profile_samples": 1200,
         "prf_hz": 200,
     },
+    "impulse, iq": {
+        "waveform": "impulse",
+        "output": "iq",
+        "carrier_hz": 7e9,
+        "bandwidth_hz": 1.5e9,
+        "profile_m": [0, 9],
+        "profile_samples": 180,
+        "prf_hz": 200,
+    },
     "board": {"device": "IWR1443BOOST", "cfg": CFG},
 }
 BACKWARDS = {"radar": K24 | {"beam": {"pan_deg": 180}}}
@@ -49,7 +58,7 @@ def test_an_snr_that_no_processing_makes_up_for_is_warned_of(radar: str) -> None
     assert len(said(config(snr_db=-75, **more))) == 1
     assert not said(config(snr_db=10, **more))
     assert not said(config(snr_db={"uniform": [-75, 75]}, **more))
-    if radar in ("fmcw", "impulse"):
+    if radar in ("fmcw", "impulse", "impulse, iq"):
         assert len(said(config(snr_db=-75, maps=["rtm"], **(more | {"processing": {}})))) == 1
 
 

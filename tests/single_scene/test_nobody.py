@@ -30,6 +30,10 @@ RADARS: dict[str, dict[str, Any]] = {
     "sfcw": {**BAND, "waveform": "sfcw", "steps": 40, "dwell_s": 2e-6},
     "cw": {"carrier_hz": 24e9, "prf_hz": 400, "waveform": "cw"},
     "impulse": {**BAND, "waveform": "impulse", "profile_m": [0.2, 6], "profile_samples": 500},
+    "impulse iq": {
+        **{**BAND, "waveform": "impulse", "output": "iq"},
+        **{"profile_m": [0.2, 6], "profile_samples": 80},
+    },
     "board": {"cfg": boards.CFG, "device": "IWR1443BOOST"},
 }
 
@@ -47,6 +51,7 @@ def config_of(radar: str = "fmcw", **more: Any) -> Config:
     document |= more
     if radar == "impulse":
         document["processing"] = {"range_sum": "gated", **document.get("processing", {})}
+    if radar.startswith("impulse"):
         document.pop("engine", None)
     return Config(**document)
 

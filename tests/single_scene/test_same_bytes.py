@@ -13,6 +13,8 @@ SCENES = {
     "cw": "radar: {waveform: cw, carrier_hz: 10e9, prf_hz: 500}",
     "impulse": "radar: {waveform: impulse, carrier_hz: 4e9, bandwidth_hz: 1e9, prf_hz: 200,"
     " profile_m: [1, 9], profile_samples: 600}\nmaps: [rtm]",
+    "impulse iq": "radar: {waveform: impulse, output: iq, carrier_hz: 4e9, bandwidth_hz: 1e9,"
+    " prf_hz: 200, profile_m: [1, 9], profile_samples: 80}\nmaps: [rtm, stft, fsst_compensated]",
     "board": "radar: {cfg: iwr1443boost, device: IWR1443BOOST}\nmotion: {range_m: 3}\n"
     "maps: [range_doppler, points]",
     "people": FMCW + "people: [{activity: punching}]\nroom: {box_m: {x: [-1, 12], y: [-4, 4]}}",

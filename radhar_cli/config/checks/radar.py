@@ -12,8 +12,8 @@ from radhar_cli.config.offered_maps import why_no_map
 from radhar_cli.config.radar import BoardRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
-from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
+from radhar_cli.radar.impulse import impulse
 from radhar_cli.radar.ti_family import Family
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def radar_problems(c: Request) -> Iterator[Problem]:
         case CwRadar():
             yield from _cw_problems(c)
         case ImpulseRadar():
-            yield from _impulse_problems(c)
+            yield from _impulse_problems(c, c.radar)
         case FmcwRadar() | SfcwRadar():
             pass
         case _:
@@ -56,18 +56,22 @@ def _cw_problems(c: Request) -> Iterator[Problem]:
         yield Problem("engine.motion_in_chirp", True, right)
 
 
-def _impulse_problems(c: Request) -> Iterator[Problem]:
+def _impulse_problems(c: Request, radar: ImpulseRadar) -> Iterator[Problem]:
     of = "with radar.waveform: impulse"
     if c.engine.kind == "cube":
         yield Problem("engine.kind", "cube", f"should be direct {of}, which has no beat")
-    if c.output.slow_time:
-        yield Problem("output.slow_time", True, f"should be false {of}: there is no sum over range")
     if c.snr_db is None and c.receiver.noise_figure_db is not None:
         right = f"should be null {of}: how many pulses its samples are means of is not said; snr_db"
         yield Problem("receiver.noise_figure_db", c.receiver.noise_figure_db, right)
+    if radar.output == "iq":
+        return
+    if c.output.slow_time:
+        right = f"should be false {of} of real samples, which have no sum over range"
+        yield Problem("output.slow_time", True, right)
     for key in ("receiver.noise_corner_hz", "receiver.tones"):
         if at(c, key) not in (0, ()):
-            yield Problem(key, at(c, key), f"should be left out {of}, whose samples are real")
+            right = f"should be left out {of}, whose samples are real unless radar.output is iq"
+            yield Problem(key, at(c, key), right)
 
 
 def profile_problems(c: AnyRequest) -> Iterator[Problem]:
@@ -78,15 +82,28 @@ def profile_problems(c: AnyRequest) -> Iterator[Problem]:
             right = "should be decibel or cfar without radar.waveform: impulse"
             yield Problem("image.kind", "signed", right)
         return
-    fc, band = support(radar.carrier_hz)[1], support(radar.bandwidth_hz)[1]
-    step = (radar.profile_m[1] - radar.profile_m[0]) / radar.profile_samples
-    finest = SPEED_OF_LIGHT / (4 * (fc + 1.5 * band))
-    if step > finest:
-        fewest = ceil((radar.profile_m[1] - radar.profile_m[0]) / finest)
-        right = f"should be {fewest} or more: steps of {step:.3g} m are coarser than {finest:.3g} m"
-        yield Problem("radar.profile_samples", radar.profile_samples, right)
+    yield from _step_problems(radar)
     if c.image.kind == "signed" and c.maps != ("rtm",):
         yield Problem("maps", list(c.maps), "should be [rtm] with image.kind: signed")
+    if c.image.kind == "signed" and radar.output == "iq":
+        right = "should be decibel or cfar with radar.output: iq, whose samples are complex"
+        yield Problem("image.kind", "signed", right)
+
+
+def _step_problems(radar: ImpulseRadar) -> Iterator[Problem]:
+    """Find samples of a profile that are too far apart for the band."""
+    fc, band = support(radar.carrier_hz)[1], support(radar.bandwidth_hz)[1]
+    first, last = radar.profile_m
+    step = (last - first) / radar.profile_samples
+    is_iq = radar.output == "iq"
+    widest = impulse(fc, band, 1.0, 1.0, (first, last), radar.profile_samples, is_iq).coarsest_step
+    if step <= widest * (1 + 1e-9):
+        return
+    fewest = ceil((last - first) / widest * (1 - 1e-9))
+    right = f"should be {fewest} or more: steps of {step:.4g} m are coarser than {widest:.4g} m"
+    if not is_iq:
+        right += ", which real samples need; or radar.output: iq"
+    yield Problem("radar.profile_samples", radar.profile_samples, right)
 
 
 def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:

@@ -19,7 +19,9 @@ def waveform_at(c: AnyRequest, *largest: str) -> Waveform:
     length, centred = processing.range_fft_length, processing.range_reference == "centre"
     parameters = fc, bandwidth, chirp, rate, prf, duration, length, centred
     if isinstance(c.radar, ImpulseRadar):
-        return Impulse(*parameters, profile=c.radar.profile_m, samples=c.radar.profile_samples)
+        radar = c.radar
+        profile, samples, is_iq = radar.profile_m, radar.profile_samples, radar.output == "iq"
+        return Impulse(*parameters, profile=profile, samples=samples, is_iq=is_iq)
     return Waveform(*parameters)
 
 

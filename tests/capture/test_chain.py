@@ -102,7 +102,16 @@ LAYERS = "wall={size_m: [null, 5, 2.5], echoes: exact, layers: [{eps_r: 4, thick
         ("profiles", [*IQ, "maps=[rtm, stft]"]),
         ("profiles", [*IQ, LAYERS, "maps=[rtm, stft]"]),
     ],
-    ids=["cw", "cw-wall", "cw-real", "impulse", "impulse-wall", "impulse-layers", "iq", "iq-layers"],
+    ids=[
+        "cw",
+        "cw-wall",
+        "cw-real",
+        "impulse",
+        "impulse-wall",
+        "impulse-layers",
+        "iq",
+        "iq-layers",
+    ],
 )
 def test_radars_without_chirps_are_recorded_too(
     tmp_path: Path, holds: str, overrides: list[str]

@@ -129,7 +129,7 @@ def test_power_of_complex_samples_is_that_of_the_squares() -> None:
 
 
 def test_the_doppler_of_who_approaches_is_positive() -> None:
-    """The phase of the sum over range rises by 2 v fm/c cycles a second: 13.3 at 1 m/s and 2 GHz."""
+    """The phase of the sum over range rises by 2 v fm/c cycles a second: 13.3 Hz at 1 m/s."""
 
     class Approaching(Fixed):
         """An echo from 2 m, 1 m/s nearer every second."""

@@ -53,9 +53,11 @@ def best_points(
     step = board.doppler_step(carrier)
     angles = Angles.of(board)
     frames = list[Float]()
+    # Means of what moves are a lobe about Doppler 0, in whose middle nothing else is left.
+    empty = slice(0, 1 if remove_mean and board.loops > 1 else 0)
     for _, x in spectra(cube, board, remove_mean):
         for frame in x:  # [Doppler, virtual, range]
-            frames.append(_frame_points(frame, board, angles, pfa, step, bias))
+            frames.append(_frame_points(frame, board, angles, empty, pfa, step, bias))
     return Cloud.of(frames)
 
 
@@ -104,9 +106,18 @@ def _sines(count: int) -> Float:
 
 
 def _frame_points(
-    x: Complex, board: Board, angles: Angles, pfa: float, step: float, bias: float
+    x: Complex,
+    board: Board,
+    angles: Angles,
+    empty: slice,
+    pfa: float,
+    step: float,
+    bias: float,
 ) -> Float:
-    """Points [n, 8] of a spectrum [Doppler, virtual, range]: peaks over range, Doppler, azimuth."""
+    """Points [n, 8] of a spectrum [Doppler, virtual, range]: peaks over range, Doppler, azimuth.
+
+    Doppler bins that are `empty` have none.
+    """
     # Both are slow to import.
     from scipy.ndimage import maximum_filter
     from scipy.special import fdtri
@@ -116,6 +127,7 @@ def _frame_points(
     noise, cells = _noise(power)
     factor = 1 / fdtri(2 * board.channels * cells, 2 * board.channels, pfa)  # F that pfa exceeds
     hit = (power > factor * noise) & (power > 0)
+    hit[:, empty] = False
     ranges = np.flatnonzero(hit.any(axis=1))
     if not ranges.size:
         return np.empty((0, len(COLUMNS)))

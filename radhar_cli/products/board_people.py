@@ -168,16 +168,16 @@ class ApparentPlaces:
         images = [leg.image(joints).T for leg in legs]  # [frame, person, joint, 3]
         row, sines = longest_rows(board.places, 0)[0], np.linspace(-1, 1, BEAMS)
         beams = np.exp(-1j * np.pi * np.outer(board.places[row, 0], sines))
-        there, back = (
+        forward, backward = (
             _echo_of_row(tx, rx, board, row) @ beams for tx, rx in (images, images[::-1])
         )
-        power = np.abs(there + back) ** 2
+        power = np.abs(forward + backward) ** 2
         beside = np.pad(power, [(0, 0)] * 3 + [(1, 1)])
         is_lobe = (power >= beside[..., :-2]) & (power >= beside[..., 2:])
         is_lobe &= power > LEAST_LOBE * power.max(axis=-1, keepdims=True)
         bins = np.argsort(np.where(is_lobe, -power, 0), axis=-1)[..., :LOBES]
         left = np.where(np.take_along_axis(is_lobe, bins, axis=-1), sines[bins], np.nan)
-        is_reversed = np.take_along_axis(np.abs(back) > np.abs(there), bins, axis=-1)
+        is_reversed = np.take_along_axis(np.abs(backward) > np.abs(forward), bins, axis=-1)
         lengths = [np.linalg.norm(image - np.array(board.position), axis=-1) for image in images]
         return cls((lengths[0] + lengths[1]) / 2, left, is_reversed)
 
@@ -213,9 +213,9 @@ def _echo_of_row(tx_images: Float, rx_images: Float, board: Board, row: list[int
     echoes = []
     for k, r in (board.pairs[v] for v in row):
         antennas = board.antennas(k, r)
-        way = np.linalg.norm(tx_images - antennas.tx, axis=-1)
-        way += np.linalg.norm(rx_images - antennas.rx, axis=-1)
-        echoes.append(np.exp(-2j * np.pi * board.centre / SPEED_OF_LIGHT * way))
+        length = np.linalg.norm(tx_images - antennas.tx, axis=-1)
+        length += np.linalg.norm(rx_images - antennas.rx, axis=-1)
+        echoes.append(np.exp(-2j * np.pi * board.centre / SPEED_OF_LIGHT * length))
     return np.stack(echoes, axis=-1)
 
 

@@ -24,7 +24,8 @@ ALIKE = 0.2  # range (m) and speed (m/s) of a stray, beside those of the scatter
 SNR_DB = 20.0
 HEAD = (
     "| board | apart in | frames with a stray | false alarms a frame | both found "
-    "| azimuth, degree, rms | largest | elevation, degree, rms |\n| --- | --- | --- | --- | --- | --- | --- | --- |"
+    "| azimuth, degree, rms | largest | elevation, degree, rms |\n"
+    "| --- | --- | --- | --- | --- | --- | --- | --- |"
 )
 
 

@@ -19,6 +19,8 @@ import numpy as np
 import pytest
 import yaml
 from capture.dca1000_file import Radar, body, echo, words
+from capture.uart_bytes import demo_packet, floats, side_info
+from helpers.boards import CFG
 from helpers.command_line import ROOT, radhar
 from helpers.documents import PAGES, Block, blocks
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
@@ -160,6 +162,27 @@ def idle(path: Path) -> None:
     path.chmod(0o755)
 
 
+def dump(path: Path) -> None:
+    """What a board sends of somebody who walks, in 20 frames of three points."""
+    places = [[(0.1 * k, 3 - 0.1 * n, 0.5 * k, -1.0) for k in range(3)] for n in range(20)]
+    packets = (
+        demo_packet(n, [(1, floats(rows)), (7, side_info([[15, 40]] * 3))], 3)
+        for n, rows in enumerate(places)
+    )
+    path.write_bytes(b"".join(packets))
+
+
+def replay(path: Path) -> None:
+    """Twenty frames of somebody who punches, as the visualizer keeps them."""
+    point = [0.1, 2.0, 0.3, -0.5, 15.0, 40.0, 255]
+    frames = [
+        {"frameData": {"frameNum": n, "pointCloud": [point] * (n % 3)}, "timestamp": 100 * n}
+        for n in range(20)
+    ]
+    cfg = CFG.splitlines(keepends=True)
+    path.write_text(json.dumps({"cfg": cfg, "demo": "Out of Box Demo", "data": frames}))
+
+
 FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     "CONTRIBUTING.md": {
         f".venv/bin/{name}": idle for name in ("python", "ruff", "mypy", "pre-commit")
@@ -177,6 +200,11 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
         "masks.npz": masks,
         "masks": lambda path: tree(path, [*FEW[:2], "picking_up"]),
         "names.yaml": lambda path: path.write_text("picking_up: grabbing"),
+    },
+    "points.md": {
+        "walk.bin": dump,
+        "replay_1.json": replay,
+        "board.cfg": lambda path: path.write_text(CFG),
     },
     "motion_files.md": {
         "wave/one.bvh": movement,

@@ -10,5 +10,8 @@ recording     the recording file itself: docs/guide/measured.md
 importing     converts a capture of any of these formats into a recording
 chain         the maps of a recording; tracking: the torso's track; maps_file: maps.h5
 fitting       a simulation config, estimated from recordings
+importing_points  converts a dump of points, or JSON of TI's visualizer, into a recording of points
+uart_packets  packets of a dump; point_messages: points of their messages; visualizer_json: of JSON
+point_recording  the file of points, of frames as point_frames has them: docs/guide/points.md
 windows       a data set of windows of recordings; images: of existing images
 """

@@ -1,32 +1,41 @@
 """A data set of measured data: windows of the recordings that a manifest lists."""
 
 import csv
-import hashlib
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import nan
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from radhar_cli.activities.activity import TWELVE
 from radhar_cli.capture.chain import maps_of
-from radhar_cli.capture.content import Content, describe_difference, radar_section
+from radhar_cli.capture.content import TOLERANCE, describe_difference, radar_section
 from radhar_cli.capture.images import are_images, is_image, list_images, read_image
+from radhar_cli.capture.point_recording import (
+    NOBODY,
+    PointRecording,
+    PointRecordingInfo,
+    is_point_recording,
+)
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.identity import resolved
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.config.reading import validated
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
+from radhar_cli.dataset.files import digest_of
 from radhar_cli.dataset.recorded import windows
 from radhar_cli.dataset.sample import SampleRow, StoredSample
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import refuse_outside, text_of
 from radhar_cli.processing.entropy import entropy_bits
+from radhar_cli.processing.frame_sheets import cloud_sheet
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.products.images import draw_measured_map
 from radhar_cli.scene import nominal_scene
@@ -105,30 +114,103 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
     """
     if are_images(manifest):
         return _with_images(config, manifest)
-    parts, checksums = read_manifest(manifest), dict[str, str]()
-    lengths = dict[str, float]()
-    radar: Content | None = None
+    parts = read_manifest(manifest)
     document = _shared_document(config)
     section = document["recordings"]
     checked = [{**part, "start_s": part["start_s"] or 0.0, "stop_s": 0.0} for part in parts]
     # Names are checked before any file is opened.
     validated(RecordingsConfig, {**section, "parts": checked}, str(manifest), {})
+    names = [*dict.fromkeys(part["file"] for part in parts)]
+    for name in names:
+        refuse_outside(manifest.parent / name, manifest.parent)
+    of_points = is_point_recording(manifest.parent / names[0])
+    listed = _list_points(manifest, names) if of_points else _list_samples(manifest, names)
+    _set_times(parts, listed.lengths, manifest)
+    checksums = {name: digest_of(manifest.parent / name) for name in names}
+    document["recordings"] = {
+        **section,
+        "frame_s": listed.frame_s,
+        "parts": parts,
+        "sha256": checksums,
+    }
+    document["radar"] = listed.radar_section(document["radar"])
+    return _with_split(config, document, manifest)
+
+
+class Listed(NamedTuple):
+    """Recordings of a manifest.
+
+    Attributes:
+        lengths: Duration of each, s, by name.
+        radar_section: Makes the section `radar` of their data set, of that of a config.
+        frame_s: Time from frame to frame of points, s; None of samples.
+    """
+
+    lengths: dict[str, float]
+    radar_section: Callable[[dict[str, Any]], dict[str, Any]]
+    frame_s: float | None = None
+
+
+def _list_samples(manifest: Path, names: Sequence[str]) -> Listed:
+    """List recordings of samples, all of one radar.
+
+    Raises:
+        ConfigError: they are of different radars.
+    """
+    lengths, radar = dict[str, float](), None
+    for name in names:
+        with Recording(manifest.parent / name) as recording:
+            lengths[name] = round(recording.segments.duration, 9)
+            content = recording.info.content
+        radar = radar or content
+        if (difference := describe_difference(content, radar)) is not None:
+            raise ConfigError(f"{manifest}: {name}: {difference}, as in {names[0]}: one radar")
+    assert radar is not None  # as a manifest lists something
+    return Listed(lengths, partial(radar_section, content=radar))
+
+
+def _list_points(manifest: Path, names: Sequence[str]) -> Listed:
+    """List recordings of points, all of one board.
+
+    Raises:
+        ConfigError: they are of different boards.
+    """
+    lengths, infos, cfg = dict[str, float](), list[PointRecordingInfo](), ""
+    for name in names:
+        with PointRecording(manifest.parent / name) as recording:
+            lengths[name] = round(recording.duration, 9)
+            infos.append(recording.info)
+        first, info = infos[0], infos[-1]
+        if abs(info.frame_s - first.frame_s) > TOLERANCE * first.frame_s:
+            raise ConfigError(
+                f"{manifest}: {name}: frame_s = {info.frame_s:g}: should be {first.frame_s:g}, as "
+                f"in {names[0]}: one radar"
+            )
+        cfg = cfg or info.cfg
+        if info.cfg not in ("", cfg):
+            raise ConfigError(f"{manifest}: {name}: was imported with another .cfg: one radar")
+    return Listed(lengths, partial(_section_of_points, cfg=cfg), infos[0].frame_s)
+
+
+def _section_of_points(radar: dict[str, Any], cfg: str) -> dict[str, Any]:
+    """Section `radar` of a data set of points: the board's, whose .cfg they were imported with.
+
+    Other keys of a board stay as the config has them; without a .cfg all of `radar` does.
+    """
+    if not cfg:
+        return radar
+    board_keys = {key: value for key, value in radar.items() if key in BoardRadar.model_fields}
+    return (board_keys if "cfg" in radar else {}) | {"cfg": cfg}
+
+
+def _set_times(parts: Sequence[dict[str, Any]], lengths: dict[str, float], manifest: Path) -> None:
+    """Fill in where the parts of recordings begin and end.
+
+    Raises:
+        ConfigError: a part does not lie within its recording.
+    """
     for part in parts:
-        name = part["file"]
-        if name not in lengths:
-            path = manifest.parent / name
-            refuse_outside(path, manifest.parent)
-            with Recording(path) as recording:
-                lengths[name] = round(recording.segments.duration, 9)
-                content = recording.info.content
-            radar = radar or content
-            if (difference := describe_difference(content, radar)) is not None:
-                raise ConfigError(
-                    f"{manifest}: {name}: {difference}, as in {parts[0]['file']}: one radar"
-                )
-            with path.open("rb") as file:
-                checksums[name] = hashlib.file_digest(file, "sha256").hexdigest()
-        start, stop = part["start_s"] or 0.0, part["stop_s"]
+        name, start, stop = part["file"], part["start_s"] or 0.0, part["stop_s"]
         stop = lengths[name] if stop is None else stop
         if not 0 <= start < stop <= lengths[name] + 1e-6:
             raise ConfigError(
@@ -136,10 +218,6 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
                 f"{lengths[name]:.6g} s"
             )
         part["start_s"], part["stop_s"] = start, stop
-    document["recordings"] = {**section, "parts": parts, "sha256": checksums}
-    assert radar is not None  # as a manifest lists something
-    document["radar"] = radar_section(document["radar"], radar)
-    return _with_split(config, document, manifest)
 
 
 def _shared_document(config: Config) -> dict[str, Any]:
@@ -223,6 +301,8 @@ class WindowFactory:
         number, part, start = windows(config)[row]
         if is_image(part.file):
             return SampleRow(self._image(config, part.file), np.array([number, start, nan]))
+        if recorded.frame_s is not None:
+            return SampleRow(self._points(config, part.file, start), np.array([number, start, nan]))
         with Recording(self.folder / part.file) as recording:
             results = maps_of(
                 recording, config, config.maps, start, start + recorded.window_s, recorded.receiver
@@ -234,6 +314,18 @@ class WindowFactory:
             images[name] = draw_measured_map(config, replace(power_map, columns=columns))
         confidence = nan if results.track is None else float(results.track.confidence.mean())
         return SampleRow(StoredSample(images), np.array([number, start, confidence]))
+
+    def _points(self, config: MeasuredConfig, file: str, start: float) -> StoredSample:
+        """Read the sample of a window of a recording of points: its points and their sheet."""
+        with PointRecording(self.folder / file) as recording:
+            cloud = recording.window(start, config.recordings.window_s)
+        products = {
+            "points": cloud.points,
+            "points_start": cloud.start,
+            "points_person": np.full(len(cloud.points), NOBODY, np.int16),
+        }
+        images = {"points": cloud_sheet(cloud, config.image.size_px)}
+        return StoredSample(images, products=products)
 
     def _image(self, config: MeasuredConfig, file: str) -> StoredSample:
         """Read the sample of an existing image."""

@@ -19,12 +19,15 @@ def inspect(
 
       radhar inspect datasets/quickstart
     """
+    from radhar_cli.capture.point_recording import is_point_recording, summarise_point_recording
     from radhar_cli.capture.recording import is_recording, summarise_recording
     from radhar_cli.dataset.summary import summarise
     from radhar_cli.learning.images.opening import is_tree, summarise_tree
 
     if path.is_file() and is_recording(path):
         summary = summarise_recording(path)
+    elif path.is_file() and is_point_recording(path):
+        summary = summarise_point_recording(path)
     else:
         foreign = is_tree(path) and not (path / "scene.h5").exists()
         summary = summarise_tree(path) if foreign else summarise(path)

@@ -55,6 +55,8 @@ class RecordingsConfig(Section):
     """Parts of recordings, filled in from the manifest, in its order."""
     sha256: dict[str, str] = {}
     """SHA-256 of each file, filled in; the data set's bytes depend on it."""
+    frame_s: Annotated[float, Field(ge=1e-5, le=1e6)] | None = None
+    """Time from frame to frame of recordings of points, filled in; null of others."""
     rows: tuple[float, float] | None = None
     """Lowest and highest edge of images that exist already, Hz (m of a range-time map)."""
     packed: Flag = False

@@ -432,7 +432,6 @@ class MeasuredRequest(Section):
     stream: ClassVar[None] = None
     snr_db: ClassVar[None] = None
     has_noise: ClassVar[bool] = False
-    stored: ClassVar[tuple[str, ...]] = ()
     engine: ClassVar[EngineConfig] = defaults_of(EngineConfig)
 
     seed: Seed
@@ -449,6 +448,11 @@ class MeasuredRequest(Section):
     def duration_s(self) -> float:
         """Duration of a window, s."""
         return self.recordings.window_s
+
+    @property
+    def stored(self) -> tuple[str, ...]:
+        """Products that a data set holds as arrays: those of recordings of points."""
+        return OF_POINTS if "points" in self.maps else ()
 
     def samples_of(self, activity: Activity) -> int:
         """How many windows of an activity there are."""

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from radhar_cli.activities.meanings import meaning_of_class
-from radhar_cli.config.data_set import Config
+from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.dataset.layout import SEGMENTS, SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
@@ -58,6 +58,8 @@ def describe_arrays(data: Dataset) -> str:
             "Skeletons are the truth of the simulation: what a network should find, never what it "
             "may see. The images of `points` show points alone."
         )
+    if isinstance(data.config, MeasuredConfig):
+        notes.append("Points are as a board sent them: NaN is what its messages do not say.")
     heading = "## Points, skeletons and other arrays"
     return f"{heading}\n\n{table_of(head, lines)}\n\n{' '.join(notes)}"
 

@@ -1,6 +1,7 @@
 """Samples of a data set as entries of the page of `radhar view`."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from radhar_cli.scene import Scene, nominal_scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 
 MOST = 50  # samples of a page
+OF_RADAR = ("ahead (m)", "left (m)", "up of the radar (m)")  # axes of points
 
 
 def choose_rows(data: Dataset, samples: Sequence[str]) -> list[int]:
@@ -84,10 +86,14 @@ def _sample_entry(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> 
         view = SceneView(frame_times(*next(spans, (0.0, 0.0))))
         view = view if board is None else _stored_joints(data, row, board, view)
     plots = [plot_map(view, stored_map) for stored_map in _maps(data, row, extents)]
-    cloud = None
+    cloud, of_points = None, "points" in data.products
     if board is not None:
         plots += [plot_map(view, frames) for frames in _frames(data, row, board)]
-        cloud = _stored_points(data, row, board) if "points" in data.products else None
+        cloud = _stored_points(data, row, partial(_times, board)) if of_points else None
+    elif of_points and isinstance(config, MeasuredConfig):
+        view = view._replace(axes=OF_RADAR)
+        cloud = _stored_points(data, row, partial(_recorded_times, config))
+        view = view._replace(time=frame_times(0.0, float(cloud.times[-1])))
     if view.bodies or cloud is not None:
         plots = [plot_space(view, cloud, board if scene is not None else None), *plots]
     stored = {f.key: data.scene[f.name].rows(row, row + 1)[0] / f.factor for f in data.fields}
@@ -108,10 +114,15 @@ def _maps(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Iterator
             yield MapLevels(name, grey[None, ::-1], scale, columns, rows)
 
 
-def _stored_points(data: Dataset, row: int, board: Board) -> PointFrames:
-    """Read the stored points of a row."""
+def _stored_points(data: Dataset, row: int, times_of: Callable[[int], NDArray[Any]]) -> PointFrames:
+    """Read the stored points of a row, whose frames have times by their number."""
     points, start = _product(data, row, "points", (8,)), _product(data, row, "points_start")
-    return PointFrames(_times(board, len(start) - 1), start.astype(int), points)
+    return PointFrames(times_of(len(start) - 1), start.astype(int), np.nan_to_num(points))
+
+
+def _recorded_times(config: MeasuredConfig, frames: int) -> NDArray[Any]:
+    """Times of `frames` frames of a recording of points, from the start of its window, s."""
+    return np.arange(frames) * (config.recordings.frame_s or 1.0)
 
 
 def _cells(low: float, high: float, cells: int) -> NDArray[Any]:
@@ -157,7 +168,7 @@ def _frames(data: Dataset, row: int, board: Board) -> Iterator[MapLevels]:
 
 def _stored_joints(data: Dataset, row: int, board: Board, view: SceneView) -> SceneView:
     """Add the stored joints, in the axes of the radar, to the view of a scene."""
-    view = view._replace(axes=("ahead (m)", "left (m)", "up of the radar (m)"))
+    view = view._replace(axes=OF_RADAR)
     if "skeleton" not in data.products:
         return view
     joints = _product(data, row, "skeleton", (None, None, 3)).astype(float)

@@ -49,10 +49,13 @@ def maps_sheet(maps: FrameMaps, size: Size, dynamic_range_db: float) -> MapImage
 
 def cloud_sheet(cloud: Cloud, size: Size) -> MapImage:
     """Sheet of front views of the points of frames, as the radar sees them."""
-    sheet, strongest = np.zeros(size, np.uint8), cloud.points[:, 4].max(initial=1e-30)
+    # Measured points may have no intensity.
+    intensity = np.nan_to_num(np.maximum(cloud.points[:, 4], 0))
+    sheet, strongest = np.zeros(size, np.uint8), intensity.max(initial=1e-30)
     for frame, draw, shape in _drawings(sheet, len(cloud.start) - 1):
-        points = cloud.points[cloud.start[frame] : cloud.start[frame + 1]]
-        grey = LEAST + (255 - LEAST) * (points[:, 4] / strongest) ** 0.25
+        rows = slice(cloud.start[frame], cloud.start[frame + 1])
+        points = cloud.points[rows]
+        grey = LEAST + (255 - LEAST) * (intensity[rows] / strongest) ** 0.25
         for (x, y), level in zip(_pixels(points[:, :3], shape), grey.astype(int), strict=True):
             draw.rectangle([x, y, x + 1, y + 1], fill=int(level))
     return MapImage(sheet, entropy_bits(sheet.astype(float)), (*FRONT_M[0], *FRONT_M[1]))

@@ -25,8 +25,11 @@ from radhar_cli.config.section import Problem
 def problems_of_recordings(c: Request) -> Iterator[Problem]:
     """Find what is wrong in a request for recordings, whatever they are."""
     sections = MeasuredRequest.model_fields
+    of_points = c.maps == ("points",)  # which a board has found, whatever `radar` is
     yield from (
-        problem for problem in radar_problems(c) if problem.key.partition(".")[0] in sections
+        problem
+        for problem in radar_problems(c)
+        if problem.key.partition(".")[0] in sections and not (of_points and problem.key == "maps")
     )
 
 
@@ -78,9 +81,28 @@ def measured_problems(c: MeasuredRequest) -> Iterator[Problem]:
     if not c.recordings.counts:
         right = "should be at most as long as the longest part of a recording"
         yield Problem("recordings.window_s", c.recordings.window_s, right)
+    if c.recordings.frame_s is not None:
+        yield from _problems_of_points(c)
+        return
     if others := [name for name in c.maps if name not in MAP_NAMES]:
         right = f"should be some of {', '.join(MAP_NAMES)}; `radhar process` makes those of boards"
         yield Problem("maps", others, right)
+    yield from _problems_of_any_recording(c)
+    yield from profile_problems(c)
+    yield from processing_problems(c)
+
+
+def _problems_of_points(c: MeasuredRequest) -> Iterator[Problem]:
+    """Find what does not go together in a data set of recordings of points."""
+    if c.maps != ("points",):
+        yield Problem("maps", list(c.maps), "should be [points], as the recordings hold points")
+    if c.output.power is not None:
+        yield Problem("output.power", c.output.power, "should be null: points have no power map")
+    yield from _problems_of_any_recording(c)
+
+
+def _problems_of_any_recording(c: MeasuredRequest) -> Iterator[Problem]:
+    """Find what does not go together whatever the recordings hold."""
     for key in ("column_labels", "slow_time", "products"):
         if value := getattr(c.output, key):
             yield Problem(f"output.{key}", value, "should be left out: recordings have none")
@@ -88,5 +110,3 @@ def measured_problems(c: MeasuredRequest) -> Iterator[Problem]:
     if c.split.subjects is not None and (None in named or c.split.subjects != len(named)):
         right = f"should be the number of persons, {len(named - {None})}; every part names one"
         yield Problem("split.subjects", c.split.subjects, right)
-    yield from profile_problems(c)
-    yield from processing_problems(c)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.lib.format import open_memmap
 from numpy.typing import NDArray
 
-from radhar_cli.config.data_set import Config
+from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.dataset.formats.uart import demo_frames, people_frames
@@ -83,11 +83,14 @@ def firmware_of(data: Dataset) -> Firmware | None:
 
 
 def clouds_of(data: Dataset, row: int) -> Clouds:
-    """Read the point clouds of the sample in a row, in TI's axes."""
+    """Read the point clouds of the sample in a row, in TI's axes; measured ones have no joints."""
     products, firmware = data.products, firmware_of(data)
     points, start = products["points"][row], products["points_start"][row]
     snr_db, xyz, doppler = points[:, 5].astype(float), _ti_axes(points), -points[:, 3].astype(float)
-    board = firmware in MAGNITUDES
+    board = firmware in MAGNITUDES or isinstance(data.config, MeasuredConfig)
+    joints: Float = np.empty((len(start) - 1, 0, 3))
+    if "skeleton" in products:
+        joints = _ti_axes(products["skeleton"][row][:, 0])
     if firmware == "people_tracking":
         sent = unpack_points(pack_points(Polar.of_cloud(points)))
         xyz, doppler = sent.places, sent.doppler
@@ -96,11 +99,11 @@ def clouds_of(data: Dataset, row: int) -> Clouds:
         frame=np.repeat(np.arange(len(start) - 1), np.diff(start)),
         xyz=xyz,
         doppler=doppler,
-        bins=-np.round(points[:, 7]).astype(np.intp),
+        bins=-np.round(np.nan_to_num(points[:, 7])).astype(np.intp),
         amplitude=points[:, 4].astype(float) if board else 10 ** (snr_db / 20),
         snr_db=snr_db,
         person=products["points_person"][row].astype(np.intp),
-        joints=_ti_axes(products["skeleton"][row][:, 0]),
+        joints=joints,
     )
 
 
@@ -161,6 +164,8 @@ def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
         FolderError: there are no points, or skeletons are not of the thirteen joints.
     """
     _require_points(data, "mars")
+    if "skeleton" not in data.products:
+        raise FolderError(f"{data.path}: is measured; mars needs true joints, which it lacks")
     counts, joints = data.products["points_start"].counts - 1, data.products["skeleton"].shape[2]
     if joints != len(JOINTS):
         raise FolderError(
@@ -207,7 +212,10 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
     """
     _require_points(data, "ros")
     radar = data.config.radar
-    assert isinstance(radar, BoardRadar)  # no other radar has points
+    if not isinstance(radar, BoardRadar):
+        raise FolderError(
+            f"{data.path}: ros needs bins of Doppler; import the recordings with --radar FILE.cfg"
+        )
     header = radar.header
     middle = 2 ** (header.loops - 1).bit_length() // 2
     rows = Rows.of(data.config)
@@ -304,8 +312,10 @@ def _describe(data: Dataset, folder: Path, reading: str) -> None:
         if data.config.people
         else ""
     )
-    text = f"# Point clouds of {len(data)} simulated samples\n\n{reading}\n\n"
-    text += f"They were simulated by config.yaml.{people}\nLicence: {licence or 'not chosen'}.\n"
+    measured = isinstance(data.config, MeasuredConfig)
+    kind, verb = ("measured", "cut") if measured else ("simulated", "simulated")
+    text = f"# Point clouds of {len(data)} {kind} samples\n\n{reading}\n\n"
+    text += f"They were {verb} by config.yaml.{people}\nLicence: {licence or 'not chosen'}.\n"
     (folder / CARD).write_text(text, encoding="utf-8")
     (folder / CONFIG).write_text(as_yaml(data.config), encoding="utf-8")
 

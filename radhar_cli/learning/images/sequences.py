@@ -54,7 +54,7 @@ def cloud_frames(points: Float, start: Index, count: int) -> NDArray[np.float32]
         if len(rows) > count:
             rows = rows[np.sort(np.argsort(-rows[:, 5], kind="stable")[:count])]
         frame[: len(rows), :4] = rows[:, :4]
-        frame[: len(rows), 4] = rows[:, 5] / 10
+        frame[: len(rows), 4] = np.nan_to_num(rows[:, 5]) / 10  # measured ones may have no SNR
         frame[: len(rows), 5] = 1
     return clouds
 
@@ -145,6 +145,11 @@ def longest_sequence(data: Dataset, product: str) -> int:
 
 
 def joint_names(data: Dataset) -> tuple[str, ...]:
-    """Names of the joints of a data set's skeletons; "joint 0" and so on of another skeleton."""
+    """Names of the joints of a data set's skeletons; "joint 0" and so on of another skeleton.
+
+    Measured data sets have none.
+    """
+    if "skeleton" not in data.products:
+        return ()
     count = data.products["skeleton"].shape[2]
     return JOINTS if count == len(JOINTS) else tuple(f"joint {n}" for n in range(count))

@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from torch import Tensor
 
+from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Targets
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.metrics import NEAR_M
@@ -27,16 +28,30 @@ class Skeleton(Task):
     main_number: ClassVar[str] = "mpjpe_cm"
 
     def targets(self, images: ImageSet) -> Targets:
-        """Joints [T, joint, 3] of each row, m; NaN after the end of a sample."""
+        """Joints [T, joint, 3] of each row, m; NaN after the end of a sample.
+
+        Raises:
+            FolderError: the data set has no true joints.
+        """
+        if not images.joints:
+            raise FolderError(
+                f"{images.where}: is measured, and has no true joints to learn or to compare with"
+            )
         return images.skeletons
 
     def names(self, known: Names) -> tuple[str, ...]:
-        """Names of the joints."""
+        """Names of the joints.
+
+        Raises:
+            FolderError: there are none, as in measured data.
+        """
+        if not known.joints:
+            raise FolderError("target = skeleton: needs true joints, which measured data lack")
         return known.joints
 
     def outputs(self, known: Names) -> Outputs:
         """Three coordinates a joint, in every frame."""
-        return Outputs(3 * len(known.joints), OutputShape.PLACES)
+        return Outputs(3 * len(self.names(known)), OutputShape.PLACES)
 
     def loss(self, outputs: Tensor, targets: Tensor) -> Tensor:
         """Mean absolute error [B] of coordinates, m.

@@ -5,8 +5,9 @@ instant (`radar/ellipsoid.py`). Its echo comes from n points along it, each with
 a fixed share of the power, so that it fills the band between the Dopplers of its ends.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import ceil
 from typing import NamedTuple
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from radhar_cli.bodies.motion_paths import OfMotion
 from radhar_cli.echo.paths import Paths, Through
-from radhar_cli.motion.protocol import Motion
+from radhar_cli.motion.protocol import Motion, cached_result
 from radhar_cli.motion.segments import SOFTNESS, Segment, SegmentPositions, segment_positions
 from radhar_cli.numerics.accelerators import machine_code
 from radhar_cli.numerics.arrays import Bool, Float, Index
@@ -176,7 +177,7 @@ class SegmentPaths(OfMotion):
     shadowing: bool  # whether trunk and thighs hide what is behind them
     # numbers of the segments that scatter; the others hide these all the same
     scattering: tuple[int, ...]
-    compiled: bool = False  # whether numba makes them, in air and where both legs go the same way
+    compiled: bool = False  # whether numba makes them, in air
 
     @property
     def motion(self) -> Motion:  # type: ignore[override]
@@ -219,14 +220,21 @@ class SegmentPaths(OfMotion):
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s), segment by segment."""
-        placed, legs = self.body.at(t), self.antennas.legs
+        placed: SegmentPositions = cached_result(
+            self.motion, "segments", t, lambda: self.body.at(t)
+        )
+        legs = self.antennas.legs
         delay, strength = np.empty((2, self._first[-1], t.size))
-        if self.compiled and self.wall is None and legs[0] == legs[1]:
+        if self.compiled and self.wall is None:
             sizes, hide = self._sizes[:, :, 0].T.copy(), np.array(self._occluders, np.intp)
-            scene, results = self._scene_from(self._middle), (delay, strength)
+            seen_from = (
+                (self._middle,) if legs[0] == legs[1] else (self.antennas.tx, self.antennas.rx)
+            )
+            scene, results = self._scene_from(*seen_from), (delay, strength)
             fill = machine_code(ellipsoid.fill_paths, *ellipsoid.CALLED)
             fill(tuple(placed), scene, sizes, hide, self._first, self._table, results)
-            if (field := self.antennas.field(0.5 * (placed.start + placed.end))) is not None:
+            middles = 0.5 * (placed.start + placed.end)
+            if (field := self.antennas.field(middles, partial(self._remember, t))) is not None:
                 strength *= np.repeat(field, np.diff(self._first), axis=0)
             return Paths(delay, strength)
         # What stands still does so to the last digit only if it is computed once.
@@ -244,15 +252,19 @@ class SegmentPaths(OfMotion):
         through = Through.of(self.wall.layers, cosine) if self.wall is not None else None
         return Paths(delay, strength, through)
 
+    def _remember(self, t: Float, name: object, compute: Callable[[], Float]) -> Float:
+        """Field at the middles of the segments at times t [M] (s), computed once."""
+        return cached_result(self.motion, ("segments", name), t, compute)
+
     @property
     def _middle(self) -> Point:
         """Middle between the antennas, m."""
         x, y, z = (0.5 * np.add(self.antennas.tx, self.antennas.rx)).tolist()
         return x, y, z
 
-    def _scene_from(self, place: Point) -> tuple[Float, float, float]:
-        """Scene of `ellipsoid.fill_products` in which shadows are seen from a place (m)."""
-        places = np.array([self.antennas.tx, self.antennas.rx, place]).T.copy()
+    def _scene_from(self, *seen_from: Point) -> tuple[Float, float, float]:
+        """Scene of `ellipsoid.fill_paths` in which shadows are seen from places (m)."""
+        places = np.array([self.antennas.tx, self.antennas.rx, *seen_from]).T.copy()
         return places, SPEED_OF_LIGHT / self.fc, SOFTNESS
 
     @property

@@ -7,7 +7,9 @@ of its own: as limbs turn, points slide over their surfaces and the echo speckle
 sections were fitted to measured clouds (docs/guide/boards.md).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from math import pi
 from typing import NamedTuple
 
@@ -110,13 +112,24 @@ class SurfacePaths(OfMotion):
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s)."""
-        places = tuple(way.antenna(self._centre()) for way in self.antennas.legs)
-        p, field_ = cached_result(
-            self.motion, ("surface", places), t, lambda: self.scatter(t, *places)
+        # A way and its reverse have the same points, and one leg is part of many ways.
+        tx, rx = sorted(way.antenna(self._centre()) for way in self.antennas.legs)
+
+        def remember(name: object, compute: Callable[[], Float]) -> Float:
+            return cached_result(self.motion, ("surface", tx, rx, name), t, compute)
+
+        p, strength = cached_result(
+            self.motion, ("surface", tx, rx), t, lambda: self.scatter(t, tx, rx)
         )
-        r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
+        r_tx, r_rx = (
+            remember(("leg", antenna), partial(leg, p, antenna))
+            for antenna in (self.antennas.tx, self.antennas.rx)
+        )
         tau = bistatic_delay(r_tx, r_rx)
-        a = amplitude(r_tx, r_rx, field_**2, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
+        field_ = self.antennas.field(p, remember)
+        if field_ is not None:
+            strength = strength * field_
+        a = amplitude(r_tx, r_rx, strength**2, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
         cosine, layers = None, None
         if self.wall is not None:
             cosine = pass_wall(p, self.antennas, self.wall, self.fc, tau, a)
@@ -134,6 +147,8 @@ class SurfacePaths(OfMotion):
 
     def scatter(self, t: Float, tx: Point, rx: Point) -> tuple[Float, Float]:
         """Positions [3, I, M] (m) of the points, and their fields sqrt(sigma) [I, M] (m).
+
+        Patterns of antennas and bounces are not in them.
 
         They face the array, or the direction between those from which its legs come.
         """
@@ -156,8 +171,6 @@ class SurfacePaths(OfMotion):
         normal = np.maximum(cosine * across[s], 0) ** NORMAL_POWER
         strength = normal * across[s] ** ALONG_POWER
         strength *= (np.abs(drawn.weight) * self._facing[s])[:, None]
-        if (field_ := self.antennas.field(p)) is not None:
-            strength *= field_
         return p, strength
 
     def _tremor(self, t: Float) -> Float:

@@ -9,13 +9,15 @@ chirp begins.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil, inf, pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import GOLDEN, SPARE_DB, AccuracyError, Probes, target_error_db
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.chebyshev import coefficients
+from radhar_cli.echo.gridded_sum import POWERS, Chirps, gridded_sum, powers_from_nodes
 from radhar_cli.echo.interpolation import lagrange_basis
 from radhar_cli.echo.paths import Paths, PathSource, Through
 from radhar_cli.echo.phase_recurrence import nodes
@@ -180,15 +182,23 @@ def _summed(
     """
     single, roughness = not precise, np.empty(board.frames)
     dtype = np.complex64 if single else np.complex128
-    cube = np.empty((board.frames, board.loops, board.channels, board.samples), dtype)
-    power = 0.0
-    for frame, (delay, amplitude, rough) in enumerate(_frame_paths(channels, board, count)):
-        power += float(np.einsum("ivl,ivl->", amplitude, amplitude))
+    shape = board.loops, board.channels, board.samples
+    cube = np.empty((board.frames, *shape), dtype)
+    power, nodes_of = 0.0, FrameNodes.of(board, count)
+    for frame, (delay, amplitude, rough) in enumerate(_frame_paths(channels, board, nodes_of)):
         roughness[frame] = rough
-        tau = delay.reshape(len(delay), -1)  # [I, virtual loop]
-        a = (amplitude * board.signs[:, None]).reshape(tau.shape)
-        s = _frame_sum(tau, a.astype(np.float32 if single else float), board, tolerance_db)
-        cube[frame] = s.reshape(board.channels, board.loops, -1).swapaxes(0, 1)
+        a = amplitude * board.signs[:, None]
+        terms = delay.shape[0] * board.frames * board.loops * board.channels
+        if single and nodes_of.instants.size == POWERS and compiled.pays(terms):
+            s, squares = gridded_sum(delay, a, _chirps_of(board, nodes_of))
+        else:
+            tau, between = nodes_of.at_loops(delay), nodes_of.at_loops(a)
+            squares = float(np.einsum("im,im->", between, between))
+            in_precision = between.astype(np.float32 if single else float)
+            s = _frame_sum(tau, in_precision, board, tolerance_db)
+            s = s.reshape(board.channels, board.loops, -1)
+        power += squares
+        cube[frame] = s.swapaxes(0, 1)
         if _still(delay, amplitude):
             cube[frame, 1:] = cube[frame, 0]
     return cube, power / (board.frames * board.loops * board.channels), roughness
@@ -196,31 +206,82 @@ def _summed(
 
 def mean_power(channels: Sequence[PathSource], board: Board) -> float:
     """Mean P_s over frames, loops and channels of sum_i A_i^2, without making the echo."""
-    total = sum(float(np.einsum("ivl,ivl->", a, a)) for _, a, _ in _frame_paths(channels, board))
+    total, nodes_of = 0.0, FrameNodes.of(board, NODES)
+    for _, amplitude, _ in _frame_paths(channels, board, nodes_of):
+        a = nodes_of.at_loops(amplitude)
+        total += float(np.einsum("im,im->", a, a))
     return total / (board.frames * board.loops * board.channels)
 
 
-def _frame_paths(
-    channels: Sequence[PathSource], board: Board, count: int = NODES
-) -> Iterator[tuple[Float, Float, float]]:
-    """Delays (s), amplitudes [I, virtual, loop], and the roughness of each frame.
+class FrameNodes(NamedTuple):
+    """Instants of a frame at which paths are asked for, to be polynomials between them.
 
-    Paths are asked for at so many instants of a frame and are polynomials between them. Roughness
-    is the sum over the paths of the squared coefficients of the highest of their Chebyshev
-    polynomials, of 2 pi fc tau A and of A: the next one is what interpolation leaves out.
+    All channels are asked for the same ones, so that what they share is computed once, unless
+    these are as many as loops: then each is at the chirps of its own transmitter.
+
+    Attributes:
+        instants: Instants [nodes], in loops since the first chirp of the frame, or of the channel.
+        places: Chirps of each channel [V, L] on the same scale.
+        basis: Weights [V, nodes, L] of the values at the nodes.
     """
-    instants = nodes(count - 1, board.loops)
+
+    instants: Float
+    places: Float
+    basis: Float
+
+    @classmethod
+    def of(cls, board: Board, count: int) -> "FrameNodes":
+        """Choose so many instants, or those of all loops where these are as few."""
+        instants, loops = nodes(count - 1, board.loops), np.arange(float(board.loops))
+        later = np.array([k for k, _ in board.pairs]) * (board.slot / board.loop)
+        if instants.size == loops.size:
+            later *= 0
+        else:
+            instants *= (board.loops - 1 + later.max()) / (board.loops - 1)
+        places = loops + later[:, None]
+        basis = [lagrange_basis(instants, of_channel) for of_channel in places]
+        return cls(instants, places, np.array(basis))
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether there is a node at every chirp."""
+        return bool(self.instants.size == self.places.shape[1])
+
+    def at_loops(self, values: Float) -> Float:
+        """Polynomials of values [I, V, nodes] at all loops [I, V L]."""
+        between = np.empty((*values.shape[:2], self.places.shape[1]))
+        for v, basis in enumerate(self.basis):
+            between[:, v] = _between_nodes(values[:, v], basis)
+        return between.reshape(len(values), -1)
+
+
+def _chirps_of(board: Board, nodes_of: FrameNodes) -> Chirps:
+    """Chirps of a frame for `gridded_sum`."""
+    reach, rate = nodes_of.places.max(), board.slope / board.adc_rate
+    instants, places = (2 * part / reach - 1 for part in nodes_of[:2])
+    frequency = board.waveform.fc + rate * (board.samples // 2)
+    return Chirps(places, powers_from_nodes(instants), frequency, rate, board.samples)
+
+
+def _frame_paths(
+    channels: Sequence[PathSource], board: Board, nodes_of: FrameNodes
+) -> Iterator[tuple[Float, Float, float]]:
+    """Delays (s), amplitudes [I, virtual, node], and the roughness of each frame.
+
+    Roughness is the sum over the paths of the squared coefficients of the highest of their
+    Chebyshev polynomials, of 2 pi fc tau A and of A: the next one is what interpolation leaves out.
+    """
+    instants = nodes_of.instants
     order = np.arange(instants.size) + 0.5
     highest = (
-        np.cos((instants.size - 1) * np.pi * order / instants.size)
-        if instants.size < board.loops
-        else 0 * instants
+        0 * instants
+        if nodes_of.is_exact
+        else np.cos((instants.size - 1) * np.pi * order / instants.size)
     )
-    basis = lagrange_basis(instants, np.arange(float(board.loops)))
     for first in range(0, board.frames, BLOCK_FRAMES):
         begin = board.chirp_times(slice(first, first + BLOCK_FRAMES))[:, 0]
         sampled = [
-            source((begin[:, k, None] + board.loop * instants).ravel())
+            source((begin[:, k * nodes_of.is_exact, None] + board.loop * instants).ravel())
             for source, (k, _) in zip(channels, board.pairs, strict=True)
         ]
         shape = (-1, len(begin), instants.size)
@@ -230,7 +291,7 @@ def _frame_paths(
             tau, a = delay[:, frame], amplitude[:, frame]
             bend = 2 * pi * board.waveform.fc * (tau @ highest) * a[..., 0], a @ highest
             rough = sum(float(np.einsum("iv,iv->", part, part)) for part in bend)
-            yield _between_nodes(tau, basis), _between_nodes(a, basis), rough
+            yield tau, a, rough
 
 
 def _between_nodes(values: Float, basis: Float) -> Float:

@@ -7,7 +7,7 @@ from typing import Any, Protocol, TypeVar
 from radhar_cli.numerics.arrays import Float
 
 T = TypeVar("T")
-CACHED_SETS = 8  # sets of times that a cache holds: the chirps of a board's transmitters
+CACHED_SETS = 512  # results that a cache holds: of the ways by the faces of a room, and their legs
 CACHED_INSTANTS = 2**16  # instants of all sets together, or of one that is longer
 
 

@@ -253,8 +253,9 @@ def fill_paths(
 
     Args:
         ends: Starts, ends, and directions beside them [3, S, M], m.
-        scene: Positions (m) of transmitter, receiver and their midpoint [3, 3]; wavelength, m;
-            softness.
+        scene: Positions (m) of transmitter, receiver and of where shadows are seen from [3, 3], or
+            of two such places [3, 4], of whose strengths the echo has the geometric mean;
+            wavelength, m; softness.
         sizes: Radius (m), flatness and number of parts [S, 3].
         occluders: Numbers of the ellipsoids that throw shadows.
         first: Number of the first point of each ellipsoid, and I [S + 1].
@@ -264,7 +265,7 @@ def fill_paths(
     # Loops are over whole blocks, so that every instant is computed in the same way.
     frames = np.empty((first.size - 1, FRAME_ROWS, BLOCK))
     products = np.empty((first.size - 1, PRODUCT_ROWS, BLOCK))
-    block = np.empty((9, BLOCK))
+    block, strength = np.empty((9, BLOCK)), np.empty((first.size - 1, BLOCK))
     for start in range(0, ends[0].shape[2], BLOCK):
         count = min(BLOCK, ends[0].shape[2] - start)
         for s in range(first.size - 1):
@@ -274,15 +275,45 @@ def fill_paths(
             size = sizes[s, 0], sizes[s, 1], sizes[s, 2]
             for m in range(BLOCK):
                 fill_products(block, scene, size, frames[s], products[s], m)
-        for s in range(first.size - 1):
-            for o in occluders:
-                if o != s and first[s] < first[s + 1]:
+        for place in range(2, scene[0].shape[1]):
+            for s in range(first.size - 1):
+                for m in range(BLOCK):
+                    if place == 2:
+                        strength[s, m] = products[s, STRENGTH, m]
+                    else:
+                        products[s, STRENGTH, m], strength[s, m] = (
+                            strength[s, m],
+                            products[s, STRENGTH, m],
+                        )
+                        look_from(frames[s], _vector(scene[0], place), m)
+            for s in range(first.size - 1):
+                for o in occluders:
+                    if o != s and first[s] < first[s + 1]:
+                        for m in range(BLOCK):
+                            shade(frames[s], products[s], frames[o], sizes[o, 0], scene[1], m)
+                if place > 2:
                     for m in range(BLOCK):
-                        shade(frames[s], products[s], frames[o], sizes[o, 0], scene[1], m)
+                        both = products[s, STRENGTH, m] * strength[s, m]
+                        products[s, STRENGTH, m] = np.sqrt(both)
+        for s in range(first.size - 1):
             for i in range(first[s], first[s + 1]):
                 _fill_point(products[s], points[i], block)
                 paths[0][i, start : start + count] = block[0, :count]
                 paths[1][i, start : start + count] = block[1, :count]
+
+
+def look_from(frames: Float, place: Vector, m: int | slice) -> None:
+    """Let shadows on ellipsoids be seen from another place (m), at instants m.
+
+    Args:
+        frames: Frames [FRAME_ROWS, ...] of the ellipsoids.
+        place: Where they are seen from, m.
+        m: Instants.
+    """
+    x, y, z = _vector(frames[CENTRE:], m)
+    sight = x - place[0], y - place[1], z - place[2]
+    frames[SIGHT, m], frames[SIGHT + 1, m], frames[SIGHT + 2, m] = sight
+    frames[SIGHT_LENGTH, m] = np.sqrt(dot(sight, sight) + SMALLEST)
 
 
 def fill_products(
@@ -367,5 +398,5 @@ def _vector(rows: Float, m: int | slice) -> Vector:
 
 
 _SAME: tuple[Any, ...] = (dot, frame_of, line_of_sight, echo_of, square_height, cross_section)
-_SAME += (clearance, shadow, fill_products, shade, _fill_point, _vector)
+_SAME += (clearance, shadow, fill_products, look_from, shade, _fill_point, _vector)
 CALLED = (*zip(_SAME, _SAME, strict=True), (rise, rise_of_number))  # by `fill_paths`

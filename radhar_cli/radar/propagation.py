@@ -1,15 +1,23 @@
 """Bistatic delay and amplitude of a path (paper, "Radar Echo Model"; docs/physics/model.md)."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from math import cos, pi, sin
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.room import DIRECT_LEG, Leg, Point
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+Remember: TypeAlias = Callable[[object, Callable[[], Float]], Float]
+
+
+def compute_anew(_: object, compute: Callable[[], Float]) -> Float:
+    """Compute what has a name, without remembering it."""
+    return compute()
 
 
 class Aim(NamedTuple):
@@ -96,24 +104,41 @@ class Antennas:
         for leg, antenna in zip(self.legs, self.places, strict=True):
             yield leg.image(p), antenna
 
-    def field(self, p: Float) -> Float | None:
-        """Two-way field [...] that pattern and bounces leave at p [3, ...] (m); None for 1."""
+    def field(self, p: Float, remember: Remember = compute_anew) -> Float | None:
+        """Two-way field [...] that pattern and bounces leave at p [3, ...] (m); None for 1.
+
+        Args:
+            p: Positions.
+            remember: Returns what has a name, such as the pattern in the direction of one leg, and
+                computes it only where it does not know it of these positions: the channels of an
+                array have many legs in common. What it returns is not changed.
+        """
         field: Float | None = None
-        images = tuple(self.images(p))
+        ends = list(zip(self.legs, self.places, strict=True))
         if self.aim is not None:
-            (p_tx, tx), (p_rx, rx) = images
-            if self.aim.of_each:
-                aims = self.aim._replace(position=tx), self.aim._replace(position=rx)
-                field = np.sqrt(aims[0].two_way(p_tx) * aims[1].two_way(p_rx))
-            elif self.legs[0] == self.legs[1]:
-                field = self.aim.two_way(p_tx)
+            patterns = [self._pattern(p, leg, antenna, remember) for leg, antenna in ends]
+            if self.legs[0] == self.legs[1] and not self.aim.of_each:
+                field = patterns[0]
             else:
-                field = np.sqrt(self.aim.two_way(p_tx) * self.aim.two_way(p_rx))
-        for leg, (image, antenna) in zip(self.legs, images, strict=True):
+                field = np.sqrt(patterns[0] * patterns[1])
+        for leg, antenna in ends:
             if leg.faces:
-                bounced = leg.field(image, antenna)
+                bounced = remember(
+                    ("bounces", leg, antenna), partial(_field_of_bounces, p, leg, antenna)
+                )
                 field = bounced if field is None else field * bounced
         return field
+
+    def _pattern(self, p: Float, leg: Leg, antenna: Point, remember: Remember) -> Float:
+        """Two-way pattern [...] of one antenna in the direction of its leg to p [3, ...] (m)."""
+        assert self.aim is not None
+        aim = self.aim._replace(position=antenna) if self.aim.of_each else self.aim
+        return remember(("pattern", leg, aim.position), lambda: aim.two_way(leg.image(p)))
+
+
+def _field_of_bounces(p: Float, leg: Leg, antenna: Point) -> Float:
+    """Field [...] after the bounces of a leg from an antenna to positions p [3, ...] (m)."""
+    return leg.field(leg.image(p), antenna)
 
 
 def leg(p: Float, antenna: Point) -> Float:

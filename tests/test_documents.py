@@ -23,6 +23,7 @@ from capture.uart_bytes import demo_packet, floats, side_info
 from helpers.boards import CFG
 from helpers.command_line import ROOT, radhar
 from helpers.documents import PAGES, Block, blocks
+from helpers.poses import BLAZE, NTU, WALKER, T, c3d_bytes, landmarks, names
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
 from helpers.shell import Answer, Call, run_shell
 from learning.patterns import tree
@@ -31,6 +32,7 @@ from typer.main import get_command
 
 from radhar_cli.cli import program
 from radhar_cli.config import Config, load_config
+from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 
 LANGUAGES = {"sh", "bash", "yaml", "python", "text"}  # text is not run
@@ -40,6 +42,7 @@ NOT_RUN = {
     "rule merge": "needs Snakemake",
     "clouds_against_measured.py": "measured pairs; tests/scripts has some of its own",
     "pose_from_clouds.py": "the same",
+    "mediapipe as mp": "needs a camera and a network",
     "load_dataset": "tests/dataset/test_formats.py does, in a process of its own",
     "torchvision.datasets": "the same",
 }
@@ -116,6 +119,28 @@ def movement(path: Path) -> None:
     path.parent.mkdir(exist_ok=True)
     write = {".bvh": write_bvh, ".amc": write_amc, ".npz": write_npz}[path.suffix]
     write(path, frames("punching", 4.0))
+
+
+def webcam(path: Path) -> None:
+    """World landmarks, relative to the hips."""
+    hips = [names("blazepose33").index(f"{side}_hip") for side in ("right", "left")]
+    centred = BLAZE - BLAZE[:, hips].mean(axis=1, keepdims=True)
+    path.write_text(json.dumps(landmarks(centred)))
+
+
+def gait_markers(path: Path) -> None:
+    """Markers of Plug-in Gait, each at its joint."""
+    joints = ["hip", "hip", "hip", "hip", "head", "head", "head", "head"]
+    labels = ["LASI", "RASI", "LPSI", "RPSI", "LFHD", "RFHD", "LBHD", "RBHD"]
+    for side in ("right", "left"):
+        for marker, joint in zip(
+            ["SHO", "ELB", "WRA", "WRB", "KNE", "ANK"],
+            ["shoulder", "elbow", "hand", "hand", "knee", "ankle"],
+            strict=True,
+        ):
+            labels.append(side[0].upper() + marker)
+            joints.append(f"{side}_{joint}")
+    path.write_bytes(c3d_bytes(WALKER[:, [JOINTS.index(joint) for joint in joints]], labels))
 
 
 def capture(path: Path) -> None:
@@ -211,6 +236,12 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
         "cmu/02_01.amc": movement,
         "cmu/02_02.amc": movement,
         "beds/low.npz": movement,
+    },
+    "poses.md": {
+        "webcam.json": webcam,
+        "recorded.npy": lambda path: np.save(path, NTU),
+        "ticks.npy": lambda path: np.save(path, np.round(1e7 * T).astype(np.int64)),
+        "gait.c3d": gait_markers,
     },
     "output.md": {"CONFIG": few_samples, "datasets/mine": data_set},
     "stream.md": {"datasets/quickstart": data_set},

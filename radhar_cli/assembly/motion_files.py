@@ -9,7 +9,7 @@ from typing import Any
 from radhar_cli.assembly.place import start_of
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip
+from radhar_cli.motion.files.clip import Clip, make_clip, require_complete
 from radhar_cli.motion.files.cycle import find_cycle
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.reading import read_motion
@@ -35,8 +35,9 @@ def file_motion(person: Person) -> FileMotion:
     if folder is None:
         raise MotionFileError(f"{path}: where the files of {slug} lie is not known: motion.folder")
     clip = _cached_clip(files_config, Path(folder), path, checksum)
-    begin, end = files_config.section_s or (0.0, clip.seconds)
+    begin, end = files_config.section_s or clip.usable or (0.0, clip.seconds)
     end = min(end, clip.seconds)
+    require_complete(clip, begin, end)
     if begin >= end:
         raise MotionFileError(
             f"{path}: lasts {clip.seconds:.3g} s; classes.{slug}.section_s begins at {begin:g} s"
@@ -63,13 +64,17 @@ def file_motion(person: Person) -> FileMotion:
 
 def _cached_clip(files_config: FilesConfig, folder: Path, path: str, checksum: str) -> Clip:
     """Clip of a file, kept for the next scene that uses it."""
-    joints = tuple(sorted(files_config.joints.items()))
+    named = files_config.joints
+    joints = (
+        named if isinstance(named, str) else tuple(sorted((k, str(v)) for k, v in named.items()))
+    )
     reading_options = (
         joints,
         files_config.up,
         files_config.unit_m,
         files_config.rate_hz,
         files_config.low_pass_hz,
+        files_config.travel,
     )
     key = (folder, path, checksum, files_config.skeleton, *reading_options)
     if key in _clips:
@@ -89,6 +94,7 @@ def _cached_clip(files_config: FilesConfig, folder: Path, path: str, checksum: s
         files_config.unit_m,
         files_config.rate_hz,
         files_config.low_pass_hz,
+        files_config.travel,
     )
     _clips[key] = clip
     while len(_clips) > 1 and sum(c.positions.nbytes for c in _clips.values()) > CACHE_BYTES:

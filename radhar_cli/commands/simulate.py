@@ -28,6 +28,8 @@ from radhar_cli.commands.tell import tell
 FROM_FILE = "from_file"  # the class of `--motion` without `--activity`
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from radhar_cli.config.reading import Override
     from radhar_cli.single_scene.request import SceneRequest
     from radhar_cli.single_scene.simulate import Simulation
@@ -47,15 +49,36 @@ def simulate(
     nominal: Nominal = False,
     motion: Annotated[
         Path | None,
-        typer.Option("--motion", help="Motion file that the person follows (.bvh, .amc, .npz)."),
+        typer.Option("--motion", help="Motion file that the person follows: .bvh, .npz, ..."),
     ] = None,
     up: Annotated[
         str | None, typer.Option(help="With --motion: axis that points up in the file, such as y.")
     ] = None,
     joints: Annotated[
-        Path | None,
+        str | None,
         typer.Option(
-            help="With --motion: YAML file of radhar's joints and their names in the motion file."
+            metavar="FILE|SET",
+            help="With --motion: YAML file of radhar's joints and their names in the motion file, "
+            "or the joint set in whose order its joints are, such as coco17.",
+        ),
+    ] = None,
+    rate: Annotated[
+        float | None, typer.Option(help="With --motion: frames per second of the file.")
+    ] = None,
+    unit: Annotated[
+        float | None, typer.Option(help="With --motion: metres per unit of the file.")
+    ] = None,
+    section: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FROM,TO", help="With --motion: seconds of the file that are used, such as 2,5."
+        ),
+    ] = None,
+    travel: Annotated[
+        str | None,
+        typer.Option(
+            metavar="file|feet",
+            help="With --motion: whether the hips go as the file says, or as the feet tell.",
         ),
     ] = None,
     skeleton: Annotated[
@@ -105,7 +128,16 @@ def simulate(
     prepare_process()
     if motion is not None:
         activity = activity or FROM_FILE
-    overrides = _motion_overrides(activity or FROM_FILE, motion, up, joints, skeleton)
+    reading = {
+        "up": up,
+        "joints": joints,
+        "skeleton": skeleton,
+        "rate": rate,
+        "unit": unit,
+        "section": section,
+        "travel": travel,
+    }
+    overrides = _motion_overrides(activity or FROM_FILE, motion, reading)
     loaded = load_config(config, [*overrides, *with_tolerance(set_, tolerance)])
     chosen_maps = None if maps is None else map_names(maps.split(","), loaded)
     person_activity = find_activity(activity, loaded)
@@ -132,30 +164,25 @@ def _index_warnings(request: "SceneRequest", simulation: "Simulation") -> list[s
 
 
 def _motion_overrides(
-    slug: str, motion: Path | None, up: str | None, joints: Path | None, skeleton: Path | None
+    slug: str, motion: Path | None, reading: "Mapping[str, str | float | Path | None]"
 ) -> list["Override"]:
     """Overrides that make a class follow a motion file, and say how to read it.
 
     Args:
         slug: slug of the class.
         motion: value of --motion, the file; None without it.
-        up: value of --up.
-        joints: value of --joints.
-        skeleton: value of --skeleton.
+        reading: {option: value} of those that say how to read it; None where it is not given.
 
     Raises:
-        ConfigError: one of the last three is given without the first.
+        ConfigError: one of the latter is given without the first.
     """
     from radhar_cli.errors import ConfigError
 
+    values = {option: value for option, value in reading.items() if value is not None}
     if motion is not None:
-        return [
-            *_motion_file_overrides(motion, slug),
-            *_reader_overrides(slug, up, joints, skeleton),
-        ]
-    for option, value in (("up", up), ("joints", joints), ("skeleton", skeleton)):
-        if value is not None:
-            raise ConfigError(f"--{option} {value}: should go with --motion, whose file it reads")
+        return [*_motion_file_overrides(motion, slug), *_reader_overrides(slug, values)]
+    for option, value in values.items():
+        raise ConfigError(f"--{option} {value}: should go with --motion, whose file it reads")
     return []
 
 
@@ -164,7 +191,11 @@ def _motion_file_overrides(motion: Path, slug: str) -> list["Override"]:
     import json
 
     from radhar_cli.config.reading import Override
+    from radhar_cli.errors import ConfigError
+    from radhar_cli.motion.files.reading import SUFFIXES, describe_unknown
 
+    if motion.suffix.lower() not in SUFFIXES:
+        raise ConfigError(f"--motion {motion}: {describe_unknown(motion)}")
     values = {
         f"classes.{slug}.files": json.dumps([str(motion.absolute())]),
         "activities": json.dumps([slug]),
@@ -175,22 +206,38 @@ def _motion_file_overrides(motion: Path, slug: str) -> list["Override"]:
     return [Override(key, value, "--motion") for key, value in values.items()]
 
 
-def _reader_overrides(
-    slug: str, up: str | None, joints: Path | None, skeleton: Path | None
-) -> list["Override"]:
-    """Overrides that tell how to read the motion file of a class: --up, --joints, --skeleton."""
+def _reader_overrides(slug: str, reading: "Mapping[str, str | float | Path]") -> list["Override"]:
+    """Overrides that tell how to read the motion file of a class: --up, --joints and so on."""
     import json
 
-    from radhar_cli.config.documents import read_document
     from radhar_cli.config.reading import Override
 
-    options = (
-        ("up", up),
-        ("joints", None if joints is None else read_document(joints)[0]),
-        ("skeleton", None if skeleton is None else str(skeleton.absolute())),
-    )
+    values: dict[str, object] = {**reading}
+    if "joints" in reading:
+        values["joints"] = _joints_of(str(reading["joints"]))
+    if "skeleton" in reading:
+        values["skeleton"] = str(Path(str(reading["skeleton"])).absolute())
+    if "section" in reading:
+        values["section"] = _section_of(str(reading["section"]))
+    keys = {"rate": "rate_hz", "unit": "unit_m", "section": "section_s"}
     return [
-        Override(f"classes.{slug}.{key}", json.dumps(value), f"--{key}")
-        for key, value in options
-        if value is not None
+        Override(f"classes.{slug}.{keys.get(option, option)}", json.dumps(value), f"--{option}")
+        for option, value in values.items()
     ]
+
+
+def _joints_of(text: str) -> object:
+    """Joints that --joints says: a joint set, or what a YAML file has."""
+    from radhar_cli.config.documents import read_document
+    from radhar_cli.motion.files.joint_sets import JOINT_SETS
+
+    is_set = text in JOINT_SETS or not (Path(text).suffix or Path(text).exists())
+    return text if is_set else read_document(Path(text))[0]
+
+
+def _section_of(text: str) -> object:
+    """Seconds [from, to] that --section says; the text itself where it does not fit."""
+    try:
+        return [float(word) for word in text.split(",")]
+    except ValueError:
+        return text

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator, model_validator
@@ -18,8 +19,10 @@ from radhar_cli.config.number import Choice, uniform, value_error, vary, within
 from radhar_cli.config.section import N, Section, default_draw
 from radhar_cli.config.sequence import BY_ITSELF, SequenceConfig
 from radhar_cli.errors import did_you_mean
+from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.reading import SUFFIXES
+from radhar_cli.motion.files.reading import SUFFIXES, describe_unknown
+from radhar_cli.motion.files.recording import LONGEST_NAME
 
 FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
 
@@ -41,17 +44,19 @@ MAX_PATH_LENGTH = 240
 
 
 SHARE = within(0, 1)
+MAX_MEANS = 20  # joints of a file that one joint of ours is the mean of
 
 
 class FilesConfig(Section, Generic[N]):
-    """A class whose motion is recorded: BVH, AMC or npz files; a list of them is enough."""
+    """A class whose motion is recorded: BVH, AMC, npz and others; a list of them is enough."""
 
     files: dict[str, str]
     """Motion files {path: SHA-256}; a list of paths and patterns when a person writes it."""
     skeleton: Annotated[str, Field(max_length=MAX_PATH_LENGTH)] | None = None
     """ASF file of AMC files, where it is not beside them."""
-    joints: dict[str, Annotated[str, Field(min_length=1, max_length=100)]] = {}
-    """Names of joints {radhar's: the file's}, where the tables of names do not know the file's."""
+    joints: dict[str, str | tuple[str, ...]] | str = {}
+    """Names of joints {radhar's: the file's, or a list whose mean it is}, where the tables of names
+    do not know the file's; or the set in whose order the file's joints are, such as coco17."""
     up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None
     """Axis of the files that points up; null finds it by the body's pose."""
     unit_m: Annotated[float, Field(ge=1e-6, le=1e3, strict=True)] | None = None
@@ -62,6 +67,9 @@ class FilesConfig(Section, Generic[N]):
     """Section [from, to] of each file that is used; null is all of it."""
     low_pass_hz: Annotated[float, Field(ge=0.1, le=1e3, strict=True)] | None = 8.0
     """Cut-off of the zero-phase low-pass of the positions; null is no filter."""
+    travel: Literal["file", "feet"] = "file"
+    """Path of the hips: as the file says, or as the foot on the floor tells, where poses are
+    relative to the hips (MediaPipe's world landmarks, Human3.6M)."""
     past_end: Literal["rest", "loop"] = "rest"
     """What people do where a file is shorter than the recording: they come to rest, or go on in a
     loop."""
@@ -93,17 +101,29 @@ class FilesConfig(Section, Generic[N]):
     def _require_motion_files(cls, value: dict[str, str]) -> dict[str, str]:
         for path in value:
             if not path.lower().endswith(SUFFIXES) or len(path) > MAX_PATH_LENGTH or "\0" in path:
-                raise value_error(f"should be paths of {', '.join(SUFFIXES)} files, not {path!r}")
+                if not path.lower().endswith(SUFFIXES):
+                    raise value_error(f"{path[:MAX_PATH_LENGTH]}: {describe_unknown(Path(path))}")
+                raise value_error(f"should be short paths of motion files, not {path!r}")
         if not 0 < len(value) <= MAX_FILES:
             raise value_error(f"should have 1 to {MAX_FILES} files")
         return value
 
-    @field_validator("joints")
+    @field_validator("joints", mode="before")
     @classmethod
-    def _require_known_joints(cls, value: dict[str, str]) -> dict[str, str]:
-        for name in value:
-            if name not in WANTED:
-                raise value_error(did_you_mean(name, WANTED, f"joints are {', '.join(WANTED)}"))
+    def _require_known_joints(cls, value: Any) -> Any:
+        if isinstance(value, str) and value not in JOINT_SETS:
+            sets = ", ".join(JOINT_SETS)
+            raise value_error(did_you_mean(value, JOINT_SETS, f"joint sets are {sets}"))
+        if isinstance(value, str):
+            return value
+        if not isinstance(value, dict):
+            raise value_error("should be {right_knee: NAME, hip: [NAME, NAME], ...} or a joint set")
+        for joint, names in value.items():
+            if joint not in WANTED:
+                raise value_error(
+                    did_you_mean(str(joint), WANTED, f"joints are {', '.join(WANTED)}")
+                )
+            _require_joint_names(joint, names)
         return value
 
     @model_validator(mode="after")
@@ -118,6 +138,17 @@ class FilesConfig(Section, Generic[N]):
         if self.section_s is not None and not self.section_s[0] < self.section_s[1]:
             raise value_error("should have a section_s that begins before it ends")
         return self
+
+
+def _require_joint_names(joint: str, names: Any) -> None:
+    """Refuse what is neither a name nor a list of names."""
+    listed = names if isinstance(names, (list, tuple)) else [names]
+    are_names = all(isinstance(name, str) and 0 < len(name) <= LONGEST_NAME for name in listed)
+    if not listed or len(listed) > MAX_MEANS or not are_names:
+        raise value_error(
+            f"{joint} should be the name of a joint in the file, or a list of up to {MAX_MEANS} "
+            "names, whose mean it is"
+        )
 
 
 def _class_kind(value: Any) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import BoardRadar
+from radhar_cli.motion.files.gaps import BRIDGED_S
 from radhar_cli.motion.files.motion import SEAM
 from radhar_cli.scene_checks.sweep import describe_slow_sweep
 
@@ -31,6 +32,8 @@ class Flags(IntFlag):
     RADAR = 512
     BEHIND = 1024
     SWEEP = 2048
+    BRIDGED = 4096
+    MARCHES = 8192
 
 
 BLACK = (
@@ -56,6 +59,12 @@ WORDING = {
     f"{BODY_RADIUS_M:g} m of an antenna (motion.range_m, motion.angle_deg, duration_s)",
     Flags.BEHIND: f"a person walks past the radar, to more than {BEHIND_M:g} m behind it "
     "(motion.range_m, motion.angle_deg, duration_s)",
+    Flags.BRIDGED: f"the motion file has gaps of up to {BRIDGED_S:g} s, in which a joint is lost; "
+    "they are bridged",
+    Flags.MARCHES: "the hips of the motion file stay where they are while the feet step, as in "
+    "poses relative to the hips (MediaPipe's world landmarks, Human3.6M): the body marches on the "
+    "spot and has no speed; add the path of the hips to all positions, or let the feet tell it: "
+    "travel: feet of the class (--travel feet)",
     Flags.SWEEP: "positions are frozen during a sweep, in which a joint is so fast that its echo "
     "belongs more than a range cell elsewhere",
 }

@@ -241,6 +241,10 @@ def _check_motion(around: Surroundings, motion: Motion) -> SceneCheck:
     """Check the motion of a person on all grids."""
     flags = Flags.RUNS_OUT if getattr(motion, "stops", False) else Flags(0)
     flags |= Flags.SEAM if getattr(motion, "slides", False) else Flags(0)
+    clip = getattr(motion, "clip", None)
+    if clip is not None:
+        flags |= Flags.BRIDGED if clip.bridged else Flags(0)
+        flags |= Flags.MARCHES if clip.marches else Flags(0)
     findings = _Findings(flags)
     for grid in check_grids(motion, around.waveform, around.shares_grid):
         _check_on_grid(findings, around, motion, grid)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import ways_of
 from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings, word_warnings
@@ -144,10 +145,24 @@ def scene_warnings(scene: Scene) -> list[str]:
     check = check_scene(scene)
     if check.too_close:
         raise SceneError(f"{scene.name}: {check.invalid}; {suggest_cure(scene.people[0], check)}")
-    lines = [describe_flag(flag, scene.config) for flag in Flags if flag in check.flags]
+    flags = check.flags & ~Flags.BRIDGED  # which is said with joints and frames
+    lines = [describe_flag(flag, scene.config) for flag in Flags if flag in flags]
     if check.outside[1] and check.invalid is not None:
         lines[0] = check.invalid
+    lines += _file_notes(scene)
     return lines + config_warnings(scene.config) + timing_warnings(scene.config, (scene.activity,))
+
+
+def _file_notes(scene: Scene) -> list[str]:
+    """Say what is bridged in the motion files of a scene, and what else there is to say of them."""
+    clips = [getattr(motion_of(person), "clip", None) for person in scene.people]
+    return [
+        f"{clip.where}: {note}"
+        for clip in clips
+        if clip is not None
+        for note in (clip.bridged, *clip.remarks)
+        if note
+    ]
 
 
 def collect_warnings(

@@ -1,6 +1,7 @@
 """Motion files of anyone's: damage, bombs, pipes and lies are refused at once, in one line."""
 
 import io
+import json
 import os
 import random
 import zipfile
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers.poses import COCO, NTU, c3d_bytes, csv_text, names, npy_bytes, skeleton_text, trc_text
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
 from security.bounded import answers, limited, refused
 from security.mutations import mutate_file
@@ -58,7 +60,7 @@ HOSTILE: dict[str, tuple[str, Callable[[], bytes]]] = {
     ),
     "no zip": ("x.npz", lambda: b"PK\x03\x04" + bytes(100)),
     "a tree without end": ("x.bvh", lambda: HEAD + b"JOINT a\n{\n" * 100_000),
-    "deep braces": ("x.bvh", lambda: HEAD + b"{" * 1_000_000),
+    "deep braces": ("x.bvh", lambda: HEAD + b"{" * 300_000),
     "one endless line": ("x.bvh", lambda: b" " * 10_000_000),
     "a long name": ("x.bvh", lambda: b"HIERARCHY\nROOT " + b"x" * 900_000),
     "a steering name": ("x.bvh", lambda: b"HIERARCHY\n\x1b[2J\n"),
@@ -73,6 +75,42 @@ HOSTILE: dict[str, tuple[str, Callable[[], bytes]]] = {
     "a line of many numbers": (
         "x.bvh",
         lambda: HEAD + b"}\nMOTION\nFrames: 1\nFrame Time: 0.01\n" + b"0 " * 5_000_000,
+    ),
+    "an array of petabytes": ("x.npy", lambda: npy((10**15, 17, 3))),
+    "an array of objects": ("x.npy", lambda: npy((3,), "|O")),
+    "an array without frames": ("x.npy", lambda: npy((0, 17, 3))),
+    "times that tell ages": (
+        "x.npz",
+        lambda: archive(
+            names=NAMES,
+            times=npy((2,), content=np.float64([0, 1e300]).tobytes()),
+            positions=npy((2, 2, 3), content=bytes(96)),
+        ),
+    ),
+    "a deep JSON": ("x.json", lambda: b"[" * 5_000_000),
+    "a JSON of lists": ("x.json", lambda: b"[" + b"[]," * 3_000_000 + b"[]]"),
+    "a JSON of joints": ("x.json", lambda: b"[[" + b"[1,2,3]," * 1_000_000 + b"[1,2,3]]]"),
+    "a JSON of infinity": ("x.json", lambda: b"[" + b"[[1e999,1,1]]," * 20 + b"[[1,1,1]]]"),
+    "a CSV of columns": ("x.csv", lambda: b",".join(b"j%d_x" % n for n in range(2_000_000))),
+    "a CSV of rows": ("x.csv", lambda: b"a_x,a_y,a_z\n" + b"0,0,0\n" * 1_000_000),
+    "a CSV without end": ("x.csv", lambda: b'a_x,a_y,a_z\n"' + b"0" * 30_000_000),
+    "a steering CSV": ("x.csv", lambda: b"\x1b[2J_x,a_y,a_z\n0,0,0\n"),
+    "a TRC of names": (
+        "x.trc",
+        lambda: b"PathFileType\nDataRate\tUnits\n30\tmm\n\t\t" + b"a\t\t\t" * 3_000_000 + b"\n\n\n",
+    ),
+    "a skeleton of frames": ("x.skeleton", lambda: b"999999999\n"),
+    "a skeleton of bodies": ("x.skeleton", lambda: b"2\n" + b"9" * 9_000_000),
+    "a skeleton of ghosts": ("x.skeleton", lambda: b"400000\n" + b"0\n" * 400_000),
+    "a C3D that points to itself": ("x.c3d", lambda: (b"\x02\x50" + b"\x01" * 510) * 4),
+    "a C3D that says more than it has": (
+        "x.c3d",
+        lambda: (
+            b"\x02\x50\x11\x00\x00\x00\x01\x00\xfe\xff"
+            + bytes(504)
+            + b"\x01\x50\x01\x54"
+            + bytes(508)
+        ),
     ),
     "nulls": ("x.bvh", lambda: bytes(1000)),
     "an AMC of nulls": ("x.amc", lambda: bytes(1000)),
@@ -96,6 +134,14 @@ HOSTILE: dict[str, tuple[str, Callable[[], bytes]]] = {
             + b"".join(b"name b%d\ndirection 1 0 0\nlength 1\nend\n" % n for n in range(20_000))
         ),
     ),
+}
+POSES: dict[str, Callable[[], bytes]] = {
+    "x.npy": lambda: npy_bytes(COCO),
+    "x.csv": lambda: csv_text(COCO, names("coco17")).encode(),
+    "x.json": lambda: json.dumps({"positions": COCO.tolist(), "rate": 30}).encode(),
+    "x.trc": lambda: trc_text(COCO, names("coco17")).encode(),
+    "x.c3d": lambda: c3d_bytes(COCO, names("coco17")),
+    "x.skeleton": lambda: skeleton_text([NTU]).encode(),
 }
 SKELETON = b":root\norder rx\n:bonedata\nname a\ndirection 1 0 0\nlength 1\nend\n"
 SKELETON += b":hierarchy\nroot a\n"
@@ -153,6 +199,7 @@ def test_damage_is_refused_or_does_no_harm(tmp_path: Path, first: int, count: in
     whole = {
         "x.bvh": write_bvh(tmp_path / "x.bvh", p).read_bytes(),
         "x.npz": write_npz(tmp_path / "x.npz", p).read_bytes(),
+        **{name: data() for name, data in POSES.items()},
         "x.amc": write_amc(tmp_path / "x.amc", p).read_bytes(),
         "x.asf": (tmp_path / "x.asf").read_bytes(),
     }

@@ -1,13 +1,18 @@
 """A recording as the thirteen joints of a person of 1 m: scaled, upright, on the floor, smooth."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import atan, pi, sqrt, tan
+from typing import Literal
 
 import numpy as np
 
-from radhar_cli.motion.files.names import HIP_JOINTS, joint_numbers
-from radhar_cli.motion.files.recording import RATES, MotionRecording, motion_file_error
+from radhar_cli.motion.files.gaps import BRIDGED_S
+from radhar_cli.motion.files.joint_frames import LostSection, blend, read_frames
+from radhar_cli.motion.files.joint_order import find_joint_order
+from radhar_cli.motion.files.keypoints import Keypoints
+from radhar_cli.motion.files.names import JointMean, JointNames, joint_means
+from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
+from radhar_cli.motion.files.travel import travel_by_feet
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 
@@ -16,9 +21,10 @@ ANKLE = 0.039  # height of the ankle over the stature
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inches": 0.0254, "CMU's 0.0564 m": 0.0254 / 0.45}
 STATURES = (0.9, 2.3)  # m, of people
 FASTEST = 30.0  # m/s, of any joint
-MIN_FRAMES = 12  # frames
 UPRIGHT = 0.8  # least cosine of the angle to the vertical that tells which way is up
 MOST = 0.5  # least share of the frames in which the head is above the feet
+STAYS = 0.03  # most that hips move in the plane which stay where they are, over the stature
+SLIPS = 0.1  # least speed of a foot that is not at rest, statures per second
 BENT = 0.01  # least distance of knees before the line from hip to ankle, over the stature
 # Two passes of an order of 2 are 3 dB down, each 1.5 dB, at 0.802 of the corner of one.
 ORDER, TWO_PASSES = 2, (sqrt(2) - 1) ** 0.25
@@ -50,6 +56,11 @@ class Clip:
     stature: float  # of the recorded person by the legs, m
     up: str = "z"  # axis of the file that points up
     mirrored: bool = False  # the file is a mirror image, or its axes are left-handed
+    usable: tuple[float, float] | None = None  # s; None: from the first to the last frame
+    lost: tuple[LostSection, ...] = ()
+    bridged: str = ""  # what is bridged, in words
+    marches: bool = False  # the feet step while the hips stay where they are
+    remarks: tuple[str, ...] = ()  # what else there is to say of the file, in words
 
     @property
     def seconds(self) -> float:
@@ -57,55 +68,122 @@ class Clip:
         return (len(self.positions) - 1) / self.rate
 
 
+def require_complete(clip: Clip, begin: float, end: float) -> None:
+    """Refuse seconds of a clip in which a joint is lost for longer than gaps are bridged.
+
+    Raises:
+        MotionFileError: Names the joint, when it is lost, and the seconds that are usable.
+    """
+    first, last = clip.usable or (0.0, clip.seconds)
+    lost = [section for section in clip.lost if section.begin < end and begin < section.end]
+    if not lost and first - 1e-9 <= begin < last:
+        return
+    ends = [first, *(edge for section in clip.lost for edge in (section.begin, section.end)), last]
+    sections = sorted(
+        zip(ends[::2], ends[1::2], strict=True), key=lambda edges: edges[0] - edges[1]
+    )
+    usable = " and ".join(f"{a:.2f} to {b:.2f} s" for a, b in sorted(sections[:5]))
+    a, b = sections[0]
+    problem = (
+        f"{lost[0].joint} is lost from {lost[0].begin:.2f} to {lost[0].end:.2f} s"
+        if lost
+        else f"a joint is lost before {first:.2f} s"
+    )
+    raise motion_file_error(
+        clip.where,
+        f"{problem}; gaps of up to {BRIDGED_S:g} s are bridged; usable are {usable}: section_s: "
+        f"[{a:.2f}, {b:.2f}] of its class (--section {a:.2f},{b:.2f})",
+    )
+
+
 def make_clip(
     file: MotionRecording,
-    joints: Mapping[str, str] | None = None,
+    joints: JointNames | None = None,
     up: str | None = None,
     unit: float | None = None,
     rate: float | None = None,
     low_pass: float | None = 8.0,
+    travel: Literal["file", "feet"] = "file",
 ) -> Clip:
     """Read the frames of a recording and bring them into our form.
 
     Args:
         file: Recording.
-        joints: {our name: the file's} where names alone do not tell.
+        joints: {our name: the file's, or a list of them} where names alone do not tell, or the key
+            of the joint set in whose order the joints are.
         up: Axis of the file that points up, such as "y" or "-y"; None finds it.
         unit: Length of a unit of the file, m; None finds it.
         rate: Frames per second, instead of the file's.
         low_pass: Frequency at which a Butterworth filter, run both ways, is 3 dB down, Hz; None
             leaves the frames as they are, and so do fewer than 2.5 frames a period of it.
+        travel: Whether the hips go as the file says, or as the foot on the floor tells.
 
     Raises:
         MotionFileError: Joints or the rate are missing, the person has no human size, a joint
             jumps, or nothing tells which axis points up.
     """
-    numbers = joint_numbers(file, joints or {})
-    has_hip_joints = all(number is not None for number in numbers[-len(HIP_JOINTS) :])
-    hip = numbers[_HIP]
-    hips = numbers[len(JOINTS) :] if has_hip_joints else [hip] * len(HIP_JOINTS)
-    chosen = [number for number in (*numbers[: len(JOINTS)], *hips) if number is not None]
-    p = file.positions(chosen)
-    if len(p) < MIN_FRAMES:
-        raise motion_file_error(
-            file.where, f"has {len(p)} frames; should have {MIN_FRAMES} or more"
-        )
-    rate = rate or file.rate
-    if rate is None or not RATES[0] <= rate <= RATES[1]:
-        raise motion_file_error(file.where, "should have a frame rate of 1 to 10000 Hz: rate_hz")
+    remarks: tuple[str, ...] = ()
+    if isinstance(file, Keypoints):
+        remarks = file.remarks
+        if not file.is_named and not joints:
+            joints, remark = find_joint_order(file)
+            remarks += (remark,)
+    means = joint_means(file, joints or {})
+    has_hip_joints = None not in means
+    chosen = [mean or means[_HIP] for mean in means]
+    blends = [mean for mean in chosen if mean is not None]
+    frames = read_frames(file, blends, rate)
+    p = frames.positions
     legs = np.linalg.norm(p[:, len(JOINTS) :] - p[:, _KNEES], axis=2)
     legs += np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
     units = float(np.median(legs)) / LEG  # stature in units of the file
     stature = _stature(units, unit, file.unit, file.where)
-    _refuse_jumps(file, p, rate, stature / units)
-    up = up or _find_up_axis(file, chosen, p)
+    _refuse_jumps(file, p, frames.rate, stature / units)
+    up = up or _find_up_axis(file, blends, p)
     p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)
-    p = _smooth(p, rate, low_pass) / units
+    p = _smooth(p, frames.rate, low_pass) / units
+    if travel == "feet":
+        p += travel_by_feet(p[:, _ANKLES], frames.rate)[:, None]
     p[..., 2] += ANKLE - p[:, _ANKLES, 2].min()
     mirrored = _is_mirrored(p)
     if mirrored:
         p[..., 1] *= -1
-    return Clip(file.where, p, rate, has_hip_joints, stature, up, mirrored)
+    return Clip(
+        file.where,
+        p,
+        frames.rate,
+        has_hip_joints,
+        stature,
+        up,
+        mirrored,
+        frames.usable,
+        frames.lost,
+        frames.bridged,
+        _marches(p, frames.rate),
+        remarks,
+    )
+
+
+def _marches(p: Float, rate: float) -> bool:
+    """Whether the feet step while the hips stay where they are, as in poses about the hips.
+
+    Who walks has a foot at rest nearly always. Poses [frames, 15, 3] over the stature, z up, whose
+    hips are the origin have both feet moving ahead or back most of the time.
+    """
+    if np.ptp(p[:, _HIP, :2], axis=0).max() > STAYS:
+        return False
+    ahead = _ahead(p)
+    velocity = np.diff(p[:, _ANKLES, :2], axis=0) * rate
+    speeds = np.abs(np.einsum("fka,fa->fk", velocity, ahead[1:])).min(axis=1)
+    return bool((speeds > SLIPS).mean() > 0.5)
+
+
+def _ahead(p: Float) -> Float:
+    """Unit vectors [frames, 2] ahead of the body in the plane; p [frames, 15, 3], z up."""
+    left = (p[:, _LEFT] - p[:, _RIGHT])[..., :2].sum(axis=1)
+    ahead = np.stack([left[:, 1], -left[:, 0]], axis=1)
+    unit: Float = ahead / np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
+    return unit
 
 
 def _stature(units: float, unit: float | None, unit_of_file: float | None, where: str) -> float:
@@ -158,7 +236,7 @@ def _refuse_jumps(file: MotionRecording, p: Float, rate: float, metres: float) -
         )
 
 
-def _find_up_axis(file: MotionRecording, chosen: list[int], p: Float) -> str:
+def _find_up_axis(file: MotionRecording, blends: list[JointMean], p: Float) -> str:
     """Find the axis that points up: heads are above feet in most frames, or else in the rest pose.
 
     The rest pose comes second, for it need not stand: in games its root is turned by every frame.
@@ -167,7 +245,8 @@ def _find_up_axis(file: MotionRecording, chosen: list[int], p: Float) -> str:
     if from_frames is not None:
         return from_frames
     if file.rest is not None:
-        rest = file.rest[chosen]
+        numbers = [*range(len(file.names))]
+        rest = blend(file.rest[None], numbers, blends)[0]
         from_rest = _axis_along((rest[_HEAD] - rest[_ANKLES].mean(axis=0))[None])
         if from_rest is not None:
             return from_rest
@@ -194,9 +273,7 @@ def _is_mirrored(p: Float) -> bool:
 
     Positions [frames, 15, 3] over the stature, z up; people who lie tell nothing.
     """
-    left = (p[:, _LEFT] - p[:, _RIGHT])[..., :2].sum(axis=1)
-    ahead = np.stack([left[:, 1], -left[:, 0]], axis=1)
-    ahead /= np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
+    ahead = _ahead(p)
     legs = (p[:, len(JOINTS) :] + p[:, _ANKLES]) / 2
     bend = np.einsum("fka,fa->f", (p[:, _KNEES] - legs)[..., :2], ahead) / len(_KNEES)
     upright = p[:, _HEAD, 2] - p[:, _ANKLES, 2].mean(axis=1) > UPRIGHT / 2

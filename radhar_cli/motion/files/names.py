@@ -2,18 +2,24 @@
 
 In BVH and npz a joint is where its bone begins (Mixamo's `RightArm` is the shoulder); in ASF it is
 where its bone ends (`rclavicle` ends at the shoulder). "RightShoulder" is the clavicle in Mixamo
-and the joint in mocapbank: arms come first.
+and the joint in mocapbank: arms come first. Poses have no bones, and often neither a hip nor a
+torso nor a head: these are means of joints that they have.
 """
 
-import re
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple, TypeAlias
 
 from radhar_cli.errors import did_you_mean
+from radhar_cli.motion.files.joint_sets import JOINT_SETS, JointSet, find_joint_set
+from radhar_cli.motion.files.keypoints import Keypoints
+from radhar_cli.motion.files.plain_names import canonical_name, plain_name
 from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
-from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.motion.skeleton import JOINTS, SKELETON, TORSO
 
 HIP_JOINTS = ("right_hip_joint", "left_hip_joint")
 WANTED = (*JOINTS, *HIP_JOINTS)
+# {joint of ours: the file's joint, or several whose mean it is}; or the key of a joint set.
+JointNames: TypeAlias = Mapping[str, str | Sequence[str]] | str
 
 # Names of each joint, the best first, without side, prefix, case and punctuation.
 _BEGINS: dict[str, tuple[str, ...]] = {
@@ -42,44 +48,77 @@ _ENDS: dict[str, tuple[str, ...]] = {
     "knee": ("femur",),
     "ankle": ("tibia",),
 }
-_PREFIX = re.compile(r"^(?:.*:|bip\d+|mixamorig\d*)")
+# In poses "spine" may be anywhere from the navel (Kinect v1) to the shoulders (NTU).
+_OF_POSES: dict[str, tuple[str, ...]] = {
+    **_BEGINS,
+    "torso": ("torso",),
+    "hip": (*_BEGINS["hip"], "midhip", "basespine"),
+}
+# Joints whose mean a missing one is, the best first. The ears are beside the middle of the head;
+# neck and top of the head are below and above it.
+_MEANS: dict[str, tuple[tuple[str, ...], ...]] = {
+    "hip": (("right_hip_joint", "left_hip_joint"),),
+    "head": (
+        ("leftear", "rightear"),
+        ("neck", "headtop"),
+        ("upperneck", "headtop"),
+        ("nose",),
+        ("lefteye", "righteye"),
+    ),
+}
+_LINKS = {joint.name: joint.link[2] for joint in SKELETON}
+# Share of the way from the hip to the middle of the shoulders at which the torso of radhar is.
+TORSO_SHARE = -_LINKS["hip"] / (_LINKS["right_shoulder"] - _LINKS["hip"])
 
 
-def joint_numbers(file: MotionRecording, configured: Mapping[str, str]) -> list[int | None]:
-    """Numbers in the file of the thirteen joints, then of the hip joints.
+class JointMean(NamedTuple):
+    """A joint of ours as a weighted mean of a file's joints, given by their numbers."""
+
+    numbers: tuple[int, ...]
+    weights: tuple[float, ...]
+
+    @classmethod
+    def of(cls, numbers: Sequence[int]) -> "JointMean":
+        """Plain mean of joints."""
+        return cls(tuple(numbers), (1 / len(numbers),) * len(numbers))
+
+
+def joint_means(file: MotionRecording, configured: JointNames) -> list[JointMean | None]:
+    """Means of the file's joints that the thirteen joints are, then the hip joints.
 
     Args:
         file: Recording whose joints have names of any common kind.
-        configured: {our name: the file's} by the config, which goes before the tables.
+        configured: {our name: the file's, or a list of them} by the config, which goes before the
+            tables; or the key of the joint set in whose order the file's joints are.
 
     Returns:
-        A number for each of WANTED; None for a hip joint that the file does not have.
+        A mean for each of WANTED; None for a hip joint that the file does not have.
 
     Raises:
         MotionFileError: One of the thirteen is not there.
     """
-    numbers = {_plain(name): n for n, name in reversed([*enumerate(file.names)])}
-    table = _ENDS if file.at_bone_ends else _BEGINS
-    chosen: dict[str, int | None] = {}
-    for joint in WANTED:
-        if joint in configured:
-            if configured[joint] not in file.names:
-                hint = did_you_mean(
-                    configured[joint], file.names, f"it has {_list_names(file.names)}"
-                )
-                raise motion_file_error(
-                    file.where, f"has no joint {configured[joint]!r} (joints.{joint}); {hint}"
-                )
-            chosen[joint] = file.names.index(configured[joint])
-            continue
-        possible = _possible_names(joint, table)
-        chosen[joint] = next((numbers[word] for word in possible if word in numbers), None)
-    for side, joint in zip(("right", "left"), HIP_JOINTS, strict=True):
-        knee = chosen[f"{side}_knee"]
-        parent = None if knee is None or joint in configured else file.parents[knee]
-        if parent is not None:
-            chosen[joint] = parent
-    missing = [joint for joint in JOINTS if chosen[joint] is None]
+    names, joint_set, numbers = file.names, None, dict[int, int]()
+    if isinstance(configured, str):
+        joint_set = JOINT_SETS[configured]
+        _require_size(file, configured, joint_set)
+        names = tuple(name.split("|")[0] for name in joint_set.names)
+        numbers, configured = {n: n for n in range(len(names))}, {}
+    elif isinstance(file, Keypoints):
+        joint_set, numbers = find_joint_set(names) or (None, {})
+    means: dict[str, JointMean | None] = {
+        joint: _configured_mean(file, joint, configured[joint])
+        for joint in WANTED
+        if joint in configured
+    }
+    for joint, sources in joint_set.sources.items() if joint_set else ():
+        places = [_place_in_set(joint_set, name) for name in sources if joint_set]
+        if all(place in numbers for place in places):
+            means.setdefault(joint, JointMean.of([numbers[place] for place in places]))
+    _name_joints(means, names, _table_of(file))
+    _hang_hip_joints(means, file, configured)
+    if isinstance(file, Keypoints):
+        _add_means(means, names)
+    missing = [joint for joint in JOINTS if means[joint] is None]
     if missing:
         raise motion_file_error(
             file.where,
@@ -87,7 +126,105 @@ def joint_numbers(file: MotionRecording, configured: Mapping[str, str]) -> list[
             f"{_list_names(file.names)}; joints: {{{missing[0]}: NAME, ...}} of its class says "
             "which these are (--joints FILE.yaml)",
         )
-    return [chosen[joint] for joint in WANTED]
+    return [means[joint] for joint in WANTED]
+
+
+def _require_size(file: MotionRecording, key: str, joint_set: JointSet) -> None:
+    """Refuse a file that has another number of joints than the set it should have."""
+    if len(file.names) != len(joint_set.names):
+        raise motion_file_error(
+            file.where,
+            f"has {len(file.names)} joints; {key} ({joint_set.title}) has {len(joint_set.names)}",
+        )
+
+
+def _place_in_set(joint_set: JointSet, name: str) -> int:
+    """Number in a set of the joint of a name, or of a name that it is also called by."""
+    exact = [n for n, spelled in enumerate(joint_set.names) if spelled.split("|")[0] == name]
+    return exact[0]
+
+
+def _configured_mean(
+    file: MotionRecording, joint: str, configured: str | Sequence[str]
+) -> JointMean:
+    """Mean of the joints that a config names for one of ours."""
+    named = [configured] if isinstance(configured, str) else configured
+    for name in named:
+        if name not in file.names:
+            hint = did_you_mean(name, file.names, f"it has {_list_names(file.names)}")
+            raise motion_file_error(file.where, f"has no joint {name!r} (joints.{joint}); {hint}")
+    return JointMean.of([file.names.index(name) for name in named])
+
+
+def _table_of(file: MotionRecording) -> Mapping[str, tuple[str, ...]]:
+    """Names by which joints of a file are recognised."""
+    if isinstance(file, Keypoints):
+        return _OF_POSES
+    return _ENDS if file.at_bone_ends else _BEGINS
+
+
+def _name_joints(
+    means: dict[str, JointMean | None],
+    names: Sequence[str],
+    table: Mapping[str, tuple[str, ...]],
+) -> None:
+    """Find by their names those of ours that are not known yet, None where there is none."""
+    numbers = {plain_name(name): n for n, name in reversed([*enumerate(names)])}
+    for joint in WANTED:
+        if joint in means:
+            continue
+        possible = _possible_names(joint, table)
+        number = next((numbers[word] for word in possible if word in numbers), None)
+        means[joint] = None if number is None else JointMean.of([number])
+
+
+def _hang_hip_joints(
+    means: dict[str, JointMean | None], file: MotionRecording, configured: Mapping[str, object]
+) -> None:
+    """Take what the knees hang on as hip joints, where the file has a tree of bones."""
+    for side, joint in zip(("right", "left"), HIP_JOINTS, strict=True):
+        knee = means[f"{side}_knee"]
+        known = knee is None or len(knee.numbers) != 1 or joint in configured
+        parent = None if known or knee is None else file.parents[knee.numbers[0]]
+        if parent is not None:
+            means[joint] = JointMean.of([parent])
+
+
+def _add_means(means: dict[str, JointMean | None], names: Sequence[str]) -> None:
+    """Make hip, head and torso of other joints of a pose where it has none of their own."""
+    numbers = {canonical_name(name): n for n, name in reversed([*enumerate(names)])}
+    for joint, choices in _MEANS.items():
+        for sources in choices:
+            if means[joint] is not None:
+                break
+            parts = [
+                means[name] if name in means else _mean_of_number(numbers.get(name))
+                for name in sources
+            ]
+            known = [part for part in parts if part is not None]
+            if len(known) == len(parts):
+                means[joint] = _weigh(known, [1 / len(known)] * len(known))
+    hip, shoulders = means["hip"], [means[f"{side}_shoulder"] for side in ("right", "left")]
+    torso = JOINTS[TORSO]
+    if means[torso] is None and hip is not None and None not in shoulders:
+        known = [hip, *(shoulder for shoulder in shoulders if shoulder is not None)]
+        means[torso] = _weigh(known, [1 - TORSO_SHARE, TORSO_SHARE / 2, TORSO_SHARE / 2])
+
+
+def _mean_of_number(number: int | None) -> JointMean | None:
+    """Mean of one joint of a file."""
+    return None if number is None else JointMean.of([number])
+
+
+def _weigh(parts: Sequence[JointMean], weights: Sequence[float]) -> JointMean:
+    """Weighted mean of means."""
+    numbers = tuple(number for part in parts for number in part.numbers)
+    products = tuple(
+        weight * inner
+        for part, weight in zip(parts, weights, strict=True)
+        for inner in part.weights
+    )
+    return JointMean(numbers, products)
 
 
 def _possible_names(joint: str, table: Mapping[str, tuple[str, ...]]) -> list[str]:
@@ -97,11 +234,6 @@ def _possible_names(joint: str, table: Mapping[str, tuple[str, ...]]) -> list[st
         return list(table[joint])
     forms = (side + "{}", "{}" + side, side[0] + "{}", "{}" + side[0])
     return [form.format(word) for word in table[part] for form in forms]
-
-
-def _plain(name: str) -> str:
-    """Name in lower case, without prefix and punctuation: `mixamorig:RightArm` is `rightarm`."""
-    return re.sub(r"[^a-z0-9]", "", _PREFIX.sub("", name.lower()))
 
 
 def _list_names(names: Sequence[str]) -> str:

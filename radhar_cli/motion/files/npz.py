@@ -1,72 +1,53 @@
-"""`.npz` with `names` [J], `positions` [frames, J, 3] and `rate` (Hz), from any source.
+"""`.npz` and `.npy` with positions of joints [frames, J, 3], from any source.
 
-Arrays are read by their declared size, which is bounded, and never as Python objects.
+An npz may also hold names [J], and a rate (Hz) or the instants of its frames. Arrays are read by
+their declared size, which is bounded, and never as Python objects.
 """
 
 import io
 import struct
 import zipfile
 import zlib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable
 from math import prod
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.motion.files.recording import (
-    LONGEST_NAME,
-    MAX_BYTES,
-    MAX_FRAMES,
-    MAX_JOINTS,
-    RATES,
-    motion_file_error,
-)
+from radhar_cli.motion.files.keypoints import TIME_UNITS, Keypoints, describe_array, make_keypoints
+from radhar_cli.motion.files.recording import MAX_BYTES, MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.numerics.arrays import Float
 
 MAX_NAMES_BYTES = 2**20
 _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # as NumPy writes; others can ask for memory
 _DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, struct.error, RuntimeError),
-    *(EOFError, ValueError, OSError),
+    *(EOFError, ValueError, OSError, NotImplementedError),
+)
+_POSITIONS = (
+    *("positions", "keypoints", "keypoints_3d", "keypoints3d", "joints", "joints_3d", "joints3d"),
+    *("poses_3d", "poses3d", "pose_3d", "pose3d", "points", "xyz", "skeleton", "skeletons"),
+    *("landmarks", "world_landmarks", "pose_world_landmarks", "positions_3d", "joint_positions"),
+    "data",
+)
+_NAMES = ("names", "joint_names", "keypoint_names")
+_RATES = ("rate", "rate_hz", "fps", "frame_rate", "framerate", "mocap_framerate")
+_TIMES = ("times", "time", "timestamps", "timestamp", "t")
+_CONFIDENCES = ("confidence", "confidences", "scores", "tracking_state")
+_BODY_MODEL = frozenset({"poses", "pose_body", "root_orient", "betas", "fullpose", "body_pose"})
+# The three lines of NumPy that make joints of what AMASS has.
+OF_BODY_MODEL = (
+    "has parameters of a body model (SMPL: poses, betas, trans), no joints; its model makes them: "
+    "p = np.load(FILE); j = smplx.create(MODELS, 'smplh', batch_size=len(p['poses']))("
+    "body_pose=..., global_orient=..., transl=...).joints.detach().numpy()[:, :22]; "
+    "np.savez(OUT, names=smplx.joint_names.JOINT_NAMES[:22], positions=j, "
+    "rate=p['mocap_framerate']) (docs/guide/motion_files.md)"
 )
 
 
-@dataclass(frozen=True)
-class Npz:
-    """A `MotionRecording` of positions."""
-
-    where: str
-    names: tuple[str, ...]
-    rate: float
-    values: NDArray[Any]
-
-    rest, unit, at_bone_ends = None, None, False
-
-    @property
-    def parents(self) -> tuple[int | None, ...]:
-        return (None,) * len(self.names)
-
-    def positions(self, joints: Sequence[int]) -> Float:
-        """Positions [frames, len(joints), 3] of some joints."""
-        points: Float = self.values[:, list(joints)].astype(float)
-        bad = np.argwhere(~(np.abs(points) < 1e9))
-        if bad.size:
-            frame, joint, axis = bad[0].tolist()
-            value = points[frame, joint, axis]
-            name = self.names[joints[joint]]
-            raise motion_file_error(
-                self.place(frame), f"{name} {'xyz'[axis]} is {value}; should be a number"
-            )
-        return points
-
-    def place(self, frame: int) -> str:
-        return f"{self.where}: frame {frame + 1}"
-
-
-def read_npz(data: bytes, where: str) -> Npz:
-    """Read an npz file with `names`, `positions` and `rate`.
+def read_npz(data: bytes, where: str) -> Keypoints:
+    """Read an npz file with positions, and names, rate or times of them where it has them.
 
     Args:
         data: Bytes of the file.
@@ -77,48 +58,136 @@ def read_npz(data: bytes, where: str) -> Npz:
     """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            names = _read_array(archive, "names", MAX_NAMES_BYTES, where)
-            rate = _read_array(archive, "rate", 1024, where)
-            positions = _read_array(archive, "positions", MAX_BYTES, where)
+            return _read_archive(archive, where)
     except _DAMAGE as error:
         raise motion_file_error(where, f"is not a complete npz file ({str(error)[:120]})") from None
-    if names.dtype.kind not in "US" or names.ndim != 1 or not 0 < names.size <= MAX_JOINTS:
-        raise motion_file_error(
-            where, f"names should be 1 to {MAX_JOINTS} texts, not {_kind(names)}"
+
+
+def read_npy(data: bytes, where: str) -> Keypoints:
+    """Read positions [frames, J, 3] of an npy file, which has neither names nor a rate.
+
+    Raises:
+        MotionFileError: Names the file and what is odd.
+    """
+    positions = parse_array(data, "it", where)
+    return make_keypoints(where, None, shape_positions(positions, None, where))
+
+
+def shape_positions(
+    positions: NDArray[Any], names: Collection[str] | None, where: str
+) -> NDArray[Any]:
+    """Positions [frames, J, 3 or 4] of an array that has them in another usual shape.
+
+    That is [frames, 3 J], [3, frames, J] (ST-GCN's) or [frames, 3, J]; axes of one are dropped.
+
+    Raises:
+        MotionFileError: The array has two coordinates, or several people.
+    """
+    if positions.ndim > 3:
+        kept = [n for n in positions.shape[1:-1] if n != 1]
+        positions = positions.reshape(positions.shape[0], *kept, positions.shape[-1])
+        if positions.ndim > 3 and positions.shape[-1] == 1:
+            positions = positions[..., 0]
+    if positions.ndim == 2 and positions.shape[1] and positions.shape[1] % 3 == 0:
+        positions = positions.reshape(len(positions), -1, 3)
+    if positions.ndim != 3:
+        problem = (
+            f"positions should be [frames, J, 3] of one person, not {describe_array(positions)}"
         )
-    joint_names = [
-        n.decode("utf-8", "replace") if isinstance(n, bytes) else n for n in names.tolist()
-    ]
-    if any(len(name) > LONGEST_NAME for name in joint_names):
-        raise motion_file_error(where, f"names should have at most {LONGEST_NAME} characters each")
-    if rate.size != 1 or rate.dtype.kind not in "iuf" or not RATES[0] <= rate.item() <= RATES[1]:
-        raise motion_file_error(
-            where, f"rate should be one number of {RATES[0]:g} to {RATES[1]:g} Hz"
-        )
-    if positions.dtype.kind not in "iuf" or positions.shape[1:] != (len(joint_names), 3):
+        raise motion_file_error(where, problem)
+    shape = positions.shape
+    fits = names is None or shape[1] == len(names)
+    if shape[2] in (3, 4) and fits:
+        return positions
+    if shape[0] == 3 and shape[2] > 4:
+        return np.moveaxis(positions, 0, 2)
+    if shape[1] == 3 and shape[2] > 4:
+        return np.moveaxis(positions, 1, 2)
+    if shape[2] == 2:
+        raise motion_file_error(where, two_dimensional("positions have two coordinates"))
+    return positions
+
+
+def two_dimensional(what: str) -> str:
+    """What to say of poses in the plane of an image."""
+    return (
+        f"{what}: pixels of an image; a radar needs 3-D positions in m, cm or mm, as MediaPipe's "
+        "world landmarks, a depth camera, several cameras (triangulation) or a lifting network give"
+    )
+
+
+def _read_archive(archive: zipfile.ZipFile, where: str) -> Keypoints:
+    """Read the arrays of an npz file."""
+    members = [name.removesuffix(".npy") for name in archive.namelist() if name.endswith(".npy")]
+    key = _first_of(_POSITIONS, members)
+    if key is None and _BODY_MODEL & set(members):
+        raise motion_file_error(where, OF_BODY_MODEL)
+    if key is None:
+        listed = ", ".join(name[:30] for name in members[:10]) or "nothing"
         raise motion_file_error(
             where,
-            f"positions should be numbers [frames, {len(joint_names)}, 3], not {_kind(positions)}",
+            "has no array 'positions'; should have names [J], positions [frames, J, 3] and rate "
+            f"(or times); it has {listed}",
         )
-    if not 0 < len(positions) <= MAX_FRAMES:
+    names_key, names = _first_of(_NAMES, members), None
+    if names_key is not None:
+        names = _names(_read_array(archive, names_key, MAX_NAMES_BYTES, where), where)
+    positions = _read_array(archive, key, MAX_BYTES, where)
+    times, rate = _times(archive, members, where), _rate(archive, members, where)
+    values = shape_positions(positions, names, where)
+    confidence_key = _first_of(_CONFIDENCES, members)
+    if confidence_key is not None:
+        confidence = _read_array(archive, confidence_key, MAX_BYTES, where)
+        if confidence.shape == values.shape[:2] and confidence.dtype.kind in "iuf":
+            is_lost = (confidence == 0)[..., None]
+            values = np.where(is_lost, np.nan, values[..., :3].astype(float))
+    return make_keypoints(where, names, values, rate, None if rate else times)
+
+
+def _names(names: NDArray[Any], where: str) -> list[str]:
+    """Names of joints."""
+    if names.dtype.kind not in "US" or names.ndim != 1 or not 0 < names.size <= MAX_JOINTS:
         raise motion_file_error(
-            where, f"has {len(positions)} frames; should have 1 to {MAX_FRAMES}"
+            where, f"names should be 1 to {MAX_JOINTS} texts, not {describe_array(names)}"
         )
-    return Npz(where, tuple(joint_names), float(rate.item()), positions)
+    return [n.decode("utf-8", "replace") if isinstance(n, bytes) else n for n in names.tolist()]
 
 
-def _kind(array: NDArray[Any]) -> str:
-    return f"{array.dtype} {list(array.shape)}"
+def _rate(archive: zipfile.ZipFile, members: Iterable[str], where: str) -> float | None:
+    """Frames per second that an npz has; None where it has none."""
+    key = _first_of(_RATES, members)
+    if key is None:
+        return None
+    rate = _read_array(archive, key, 1024, where)
+    if rate.size != 1 or rate.dtype.kind not in "iuf" or not RATES[0] <= rate.item() <= RATES[1]:
+        raise motion_file_error(
+            where, f"{key} should be one number of {RATES[0]:g} to {RATES[1]:g} Hz"
+        )
+    return float(rate.item())
+
+
+def _times(archive: zipfile.ZipFile, members: Iterable[str], where: str) -> Float | None:
+    """Instants of the frames that an npz has; in s where the key ends in a unit."""
+    members = list(members)
+    for unit, seconds in (("", None), *TIME_UNITS.items()):
+        ending = f"_{unit}" if unit else ""
+        key = _first_of([name + ending for name in _TIMES], members)
+        if key is None:
+            continue
+        times = _read_array(archive, key, MAX_BYTES // 16, where).ravel()
+        return times if seconds is None or times.dtype.kind not in "iuf" else times * seconds
+    return None
+
+
+def _first_of(keys: Iterable[str], members: Iterable[str]) -> str | None:
+    """First of some keys that an archive has, in any case."""
+    known = {name.lower(): name for name in members}
+    return next((known[key] for key in keys if key in known), None)
 
 
 def _read_array(archive: zipfile.ZipFile, name: str, max_bytes: int, where: str) -> NDArray[Any]:
     """Read one array of numbers of at most `max_bytes`."""
-    try:
-        member = archive.getinfo(f"{name}.npy")
-    except KeyError:
-        raise motion_file_error(
-            where, f"has no array {name!r}; should have names, positions, rate"
-        ) from None
+    member = archive.getinfo(f"{name}.npy")
     if member.compress_type not in _PACKED:
         raise motion_file_error(where, f"{name} is packed in another way than NumPy's")
     if member.file_size > max_bytes:
@@ -126,7 +195,21 @@ def _read_array(archive: zipfile.ZipFile, name: str, max_bytes: int, where: str)
             where, f"{name} has {member.file_size} bytes; should have at most {max_bytes}"
         )
     with archive.open(member) as file:
-        data = io.BytesIO(file.read(max_bytes))
+        return parse_array(file.read(max_bytes), name, where)
+
+
+def parse_array(content: bytes, name: str, where: str) -> NDArray[Any]:
+    """Array of numbers or texts in NumPy's format.
+
+    Args:
+        content: Bytes of an npy file.
+        name: What messages call the array.
+        where: Name of the file in messages.
+
+    Raises:
+        MotionFileError: It is damaged, or holds Python objects.
+    """
+    data = io.BytesIO(content)
     try:
         version = np.lib.format.read_magic(data)
         if version not in ((1, 0), (2, 0)):
@@ -138,10 +221,10 @@ def _read_array(archive: zipfile.ZipFile, name: str, max_bytes: int, where: str)
         shape, fortran, dtype = read_header(data)
         if dtype.hasobject:
             raise ValueError("of Python objects, which are not read")
-        content = data.read()
-        if dtype.itemsize * prod(shape) != len(content):
+        numbers = data.read()
+        if dtype.itemsize * prod(shape) != len(numbers):
             raise ValueError("shorter or longer than it says")
-        flat = np.frombuffer(content, dtype)
+        flat = np.frombuffer(numbers, dtype)
         return flat.reshape(shape, order="F" if fortran else "C")
     except (ValueError, TypeError, OverflowError, SyntaxError, MemoryError) as error:
         reason = str(error).splitlines()[0][:120] if str(error) else "damaged"

@@ -1,6 +1,7 @@
 """The one place where motion files are opened: regular files of bounded size; their checksum."""
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -8,10 +9,44 @@ from radhar_cli.errors import MotionFileError
 from radhar_cli.files.untrusted import refuse_outside, regular_size
 from radhar_cli.motion.files.amc import MAX_SKELETON, read_amc
 from radhar_cli.motion.files.bvh import read_bvh
-from radhar_cli.motion.files.npz import read_npz
+from radhar_cli.motion.files.c3d import read_c3d
+from radhar_cli.motion.files.json_poses import read_json_poses
+from radhar_cli.motion.files.npz import read_npy, read_npz
+from radhar_cli.motion.files.ntu_skeleton import read_ntu_skeleton
 from radhar_cli.motion.files.recording import MAX_BYTES, MotionRecording, motion_file_error
+from radhar_cli.motion.files.text_tables import read_csv, read_trc
 
-SUFFIXES = (".bvh", ".amc", ".npz")
+# {suffix: reader of (bytes, name of the file in messages)}; an AMC needs its skeleton, too.
+_READERS: dict[str, Callable[[bytes, str], MotionRecording]] = {
+    ".bvh": read_bvh,
+    ".npz": read_npz,
+    ".npy": read_npy,
+    ".csv": read_csv,
+    ".json": read_json_poses,
+    ".trc": read_trc,
+    ".c3d": read_c3d,
+    ".skeleton": read_ntu_skeleton,
+}
+SUFFIXES = (".bvh", ".amc", *[suffix for suffix in _READERS if suffix != ".bvh"])
+# What to do with files of other kinds.
+ADVICE = {
+    ".asf": "name its .amc files",
+    ".fbx": "Blender imports it and exports .bvh",
+    ".glb": "Blender imports it and exports .bvh",
+    ".pkl": "pickles run code when they are read: save positions [frames, J, 3] by np.savez",
+    ".pickle": "pickles run code when they are read: save positions [frames, J, 3] by np.savez",
+    ".pt": "save positions [frames, J, 3] by np.savez",
+    ".mat": "save positions [frames, J, 3] by np.savez(OUT, **scipy.io.loadmat(FILE))",
+    ".mp4": "a pose network makes joints of it, such as MediaPipe (docs/guide/poses.md)",
+    ".avi": "a pose network makes joints of it, such as MediaPipe (docs/guide/poses.md)",
+}
+WRITE_NPZ = "np.savez('clip.npz', names=[...], positions=p, rate=30), p [frames, J, 3] in m"
+
+
+def describe_unknown(path: Path) -> str:
+    """What to say of a file of a kind that is not read: what is, and how to get there."""
+    advice = ADVICE.get(path.suffix.lower(), f"others by three lines of NumPy: {WRITE_NPZ}")
+    return f"should be paths of {', '.join(SUFFIXES)} files; {advice}"
 
 
 class MotionBytes(NamedTuple):
@@ -41,15 +76,14 @@ class MotionBytes(NamedTuple):
         where = where or str(self.path)
         if self.skeleton:
             return read_amc(self.data, where, self.skeleton[1], str(self.skeleton[0]))
-        read = read_bvh if self.path.suffix.lower() == ".bvh" else read_npz
-        return read(self.data, where)
+        return _READERS[self.path.suffix.lower()](self.data, where)
 
 
 def read_motion(path: Path, skeleton: Path | None = None) -> MotionBytes:
     """Read the bytes of a motion file.
 
     Args:
-        path: The file: .bvh, .amc or .npz.
+        path: The file, of one of SUFFIXES.
         skeleton: ASF of an AMC; None looks for it beside the file.
 
     Raises:
@@ -58,8 +92,7 @@ def read_motion(path: Path, skeleton: Path | None = None) -> MotionBytes:
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        hint = "; name its .amc files" if suffix == ".asf" else ""
-        raise motion_file_error(str(path), f"should be one of {', '.join(SUFFIXES)}{hint}")
+        raise motion_file_error(str(path), describe_unknown(path))
     data = _read_bytes(path, MAX_BYTES)
     asf_bytes = None
     if suffix == ".amc":

@@ -10,9 +10,9 @@ from helpers.recorded import frames, write_npz
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import ANKLE, LEG, Clip, make_clip
 from radhar_cli.motion.files.cycle import find_cycle
+from radhar_cli.motion.files.keypoints import Keypoints
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.npz import Npz
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Float
@@ -22,7 +22,7 @@ HIP, HEAD = JOINTS.index("hip"), JOINTS.index("head")
 
 
 def clip(positions: Float, rate: float = 120.0, **how: object) -> Clip:
-    return make_clip(Npz("x.npz", WANTED, rate, positions), **how)  # type: ignore[arg-type]
+    return make_clip(Keypoints("x.npz", WANTED, positions, rate), **how)  # type: ignore[arg-type]
 
 
 def mover(one: Clip, **how: object) -> FileMotion:
@@ -48,7 +48,7 @@ def test_any_axis_may_be_up_and_any_unit_will_do(up: str) -> None:
 
 
 @dataclass(frozen=True)
-class Posed(Npz):
+class Posed(Keypoints):
     """Positions with a rest pose of their own."""
 
     rest: Float | None = None  # type: ignore[assignment]
@@ -59,7 +59,7 @@ def test_up_is_what_the_moving_body_says(order: list[int]) -> None:
     """The rest pose may stand along any axis, as in games, where the root of each frame turns."""
     p = frames(seconds=1.0)
     for sign in (1, -1):
-        file = Posed("x", WANTED, 120.0, p, sign * p[0][:, order])
+        file = Posed("x", WANTED, p, 120.0, rest=sign * p[0][:, order])
         one = make_clip(file)
         assert one.up == "z"
         np.testing.assert_allclose(one.positions, clip(p).positions)
@@ -99,7 +99,7 @@ def test_the_rest_pose_tells_the_up_axis_where_nobody_stands(tmp_path: Path) -> 
     with pytest.raises(MotionFileError, match=r"which axis points up, .* \(--up y\)"):
         clip(rolls)
     assert clip(rolls, up="y").up == "y"
-    assert make_clip(Posed("x", WANTED, 120.0, rolls, p[0])).up == "z"
+    assert make_clip(Posed("x", WANTED, rolls, 120.0, rest=p[0])).up == "z"
 
 
 def test_legs_give_the_stature_and_ankles_the_floor() -> None:

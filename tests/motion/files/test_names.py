@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pytest
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.names import WANTED, joint_numbers
+from radhar_cli.motion.files.names import WANTED, JointNames, joint_means
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 
@@ -27,6 +27,13 @@ class Rig:
 
     def place(self, frame: int) -> str:
         raise NotImplementedError
+
+
+def joint_numbers(rig: Rig, configured: JointNames) -> list[int | None]:
+    """Number of each joint of ours, which is one of the rig's."""
+    means = joint_means(rig, configured)
+    assert all(mean is None or len(mean.numbers) == 1 for mean in means)
+    return [mean and mean.numbers[0] for mean in means]
 
 
 def both(*names: str) -> list[str]:

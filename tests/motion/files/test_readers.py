@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import radhar_cli.motion.files.frames
 from radhar_cli.motion.files.bvh import read_bvh
-from radhar_cli.motion.files.names import WANTED, joint_numbers
+from radhar_cli.motion.files.names import WANTED, joint_means
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.motion.files.recording import MotionRecording
 from radhar_cli.numerics.arrays import Float
@@ -72,8 +72,11 @@ def test_a_bvh_tree_is_the_product_of_its_transforms(seed: int) -> None:
 
 def in_metres(file: MotionRecording, unit: float) -> Float:
     """[frames, 15, 3] in our axes, from a file whose y is up."""
-    numbers = joint_numbers(file, {})
-    return file.positions([n for n in numbers if n is not None])[..., [2, 0, 1]] * unit
+    means = joint_means(file, {})
+    return (
+        file.positions([mean.numbers[0] for mean in means if mean is not None])[..., [2, 0, 1]]
+        * unit
+    )
 
 
 @pytest.mark.parametrize(

@@ -175,16 +175,18 @@ def test_broken_amc_is_refused(name: str, tmp_path: Path) -> None:
 def test_broken_npz_is_refused(tmp_path: Path) -> None:
     p, path = frames(seconds=0.5), tmp_path / "x.npz"
     hole, few = p.copy(), p[:5]
-    hole[20, 3, 1] = np.nan
+    hole[20, 3, 1] = np.inf
     for positions, more, message in (
-        (hole, {}, r"frame 21: right_elbow y is nan; should be a number"),
+        (hole, {}, r"frame 21: right_elbow y is inf; should be a number"),
         (few, {}, r"has 5 frames; should have 12 or more"),
         (
             p[:, :13],
             {},
             r"positions should be numbers \[frames, 15, 3\], not float64 \[61, 13, 3\]",
         ),
-        (p * 0, {}, r"has legs of 0 units"),
+        (p * 0, {}, r"torso is lost \(NaN or 0, 0, 0\) in every frame"),
+        (p * 0 + 1, {}, r"has legs of 0 units"),
+        (p[..., :2], {}, r"positions have two coordinates: pixels of an image"),
         (p, {"rate": 0.0}, r"rate should be one number"),
         (p, {"names": np.array([object()] * 15)}, r"names is not an array .*objects"),
         (p, {"names": np.zeros(15)}, r"names should be 1 to 1000 texts, not float64 \[15\]"),
@@ -195,16 +197,22 @@ def test_broken_npz_is_refused(tmp_path: Path) -> None:
         np.savez(path, allow_pickle=True, **arrays)
         with pytest.raises(MotionFileError, match=message):
             make_clip(read_motion(path).recording("x.npz"))
-    np.savez(path, positions=p)
-    with pytest.raises(MotionFileError, match="has no array 'names'"):
+    np.savez(path, places=p)
+    with pytest.raises(MotionFileError, match=r"has no array 'positions'; .* it has places"):
         read_motion(path).recording()
+    np.savez(path, positions=p[:, :13])
+    with pytest.raises(MotionFileError, match="13 joints without names"):
+        make_clip(read_motion(path).recording())
 
 
 def test_unknown_motion_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "x.fbx").write_text("")
     (tmp_path / "x.bvh").mkdir()
     for name, message in (
-        ("x.fbx", "should be one of .bvh, .amc, .npz"),
+        ("x.fbx", "should be paths of .bvh, .amc, .npz"),
+        ("x.fbx", "Blender imports it and exports .bvh"),
+        ("x.pkl", "pickles run code"),
+        ("x.xyz", "by three lines of NumPy: np.savez"),
         ("x.asf", "name its .amc files"),
         ("x.bvh", "is a folder"),
         ("y.bvh", "no such file"),

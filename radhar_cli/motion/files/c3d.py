@@ -86,7 +86,7 @@ def _read_head(data: bytes, where: str) -> tuple[_Header, dict[str, _Parameter]]
 def _read_parameters(data: bytes, place: int, order: str) -> dict[str, _Parameter]:
     """Parameters {GROUP:NAME: value} from a byte on."""
     groups = dict[int, str]()
-    found = list[tuple[int, str, _Parameter]]()
+    parameters = list[tuple[int, str, _Parameter]]()
     for _ in range(MOST_PARAMETERS):
         length, group = struct.unpack_from("<bb", data, place)
         length = abs(length)
@@ -98,11 +98,11 @@ def _read_parameters(data: bytes, place: int, order: str) -> dict[str, _Paramete
         if group < 0:
             groups[-group] = name
         else:
-            found.append((group, name, _read_parameter(data, at_offset + 2)))
+            parameters.append((group, name, _read_parameter(data, at_offset + 2)))
         if not offset:
             break
         place = at_offset + offset
-    return {f"{groups.get(group, '')}:{name}": value for group, name, value in found}
+    return {f"{groups.get(group, '')}:{name}": value for group, name, value in parameters}
 
 
 def _read_parameter(data: bytes, place: int) -> _Parameter:

@@ -42,16 +42,16 @@ def find_joint_order(file: Keypoints) -> tuple[str, str]:
     known = sets_of_size(count)
     bodies = {key: _plausible_body(file, key) for key in known}
     fitting = [key for key, body in bodies.items() if body is not None]
-    kept: list[str] = []
+    distinct: list[str] = []
     for key in fitting:
-        if not any(bodies[key] == bodies[other] for other in kept):
-            kept.append(key)
-    if len(kept) == 1:
-        title = known[kept[0]].title
-        return kept[0], f"its {count} joints have no names: taken in the order of {title}"
+        if not any(bodies[key] == bodies[other] for other in distinct):
+            distinct.append(key)
+    if len(distinct) == 1:
+        title = known[distinct[0]].title
+        return distinct[0], f"its {count} joints have no names: taken in the order of {title}"
     if known:
-        reason = "each makes a body" if kept else "in none of these orders do they make a body"
-        possible = f"{', '.join(kept or known)} ({reason})"
+        reason = "each makes a body" if distinct else "in none of these orders do they make a body"
+        possible = f"{', '.join(distinct or known)} ({reason})"
     else:
         possible = "no set that is known has so many"
     raise motion_file_error(

@@ -88,8 +88,8 @@ def _recording(
             )
     lost = np.full(shape, np.nan)
     values = np.stack([lost if joints is None else joints for joints in frames])
-    given = times if times is not None else instants if None not in instants else None
-    seconds = None if given is None or rate is not None else _instants(given, where)
+    clock = times if times is not None else instants if None not in instants else None
+    seconds = None if clock is None or rate is not None else _instants(clock, where)
     if seconds is not None and unit is not None:
         seconds = seconds * TIME_UNITS[unit]
     return make_keypoints(where, names, shape_positions(values, names, where), rate, seconds)

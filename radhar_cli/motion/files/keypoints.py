@@ -147,8 +147,8 @@ def make_keypoints(
     if times is not None:
         times, rate, problem = _check_times(times, len(values), where)
         remarks = [*remarks, *problem]
-    shown = names if names is not None else [str(n) for n in range(values.shape[1])]
-    clean = tuple("".join(c if c.isprintable() else "?" for c in name) for name in shown)
+    labels = names if names is not None else [str(n) for n in range(values.shape[1])]
+    clean = tuple("".join(c if c.isprintable() else "?" for c in name) for name in labels)
     return Keypoints(where, clean, values, rate, times, names is not None, unit, tuple(remarks))
 
 

@@ -84,8 +84,8 @@ def shape_positions(
         MotionFileError: The array has two coordinates, or several people.
     """
     if positions.ndim > 3:
-        kept = [n for n in positions.shape[1:-1] if n != 1]
-        positions = positions.reshape(positions.shape[0], *kept, positions.shape[-1])
+        axes = [n for n in positions.shape[1:-1] if n != 1]
+        positions = positions.reshape(positions.shape[0], *axes, positions.shape[-1])
         if positions.ndim > 3 and positions.shape[-1] == 1:
             positions = positions[..., 0]
     if positions.ndim == 2 and positions.shape[1] and positions.shape[1] % 3 == 0:
@@ -108,10 +108,10 @@ def shape_positions(
     return positions
 
 
-def two_dimensional(what: str) -> str:
+def two_dimensional(finding: str) -> str:
     """What to say of poses in the plane of an image."""
     return (
-        f"{what}: pixels of an image; a radar needs 3-D positions in m, cm or mm, as MediaPipe's "
+        f"{finding}: pixels of an image; a radar needs 3-D positions in m, cm or mm, as MediaPipe's "
         "world landmarks, a depth camera, several cameras (triangulation) or a lifting network give"
     )
 

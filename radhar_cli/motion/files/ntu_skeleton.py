@@ -20,7 +20,7 @@ NAMES = JOINT_SETS["ntu25"].names
 OFTEN = 0.5  # share of the frames of the main body from which another one is a second person
 
 
-class _Lines:
+class _SkeletonLines:
     """Lines of a text, one after the other, by their numbers."""
 
     def __init__(self, data: bytes, where: str) -> None:
@@ -66,7 +66,7 @@ def read_ntu_skeleton(data: bytes, where: str) -> Keypoints:
     """
     if len(data) > MAX_TEXT:
         raise motion_file_error(where, f"is {len(data)} bytes; should be at most {MAX_TEXT}")
-    lines = _Lines(data, where)
+    lines = _SkeletonLines(data, where)
     frames = lines.count("the number of frames", MAX_FRAMES)
     bodies: dict[bytes, dict[int, np.ndarray[tuple[int, ...], np.dtype[np.float64]]]] = {}
     for frame in range(frames):
@@ -92,7 +92,7 @@ def read_ntu_skeleton(data: bytes, where: str) -> Keypoints:
     return make_keypoints(where, NAMES, values, RATE, remarks=(remark,) if others else ())
 
 
-def _read_joints(lines: _Lines) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def _read_joints(lines: _SkeletonLines) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     """Positions [25, 3] of a body; NaN where a joint is not tracked."""
     joints = np.full((len(NAMES), 3), np.nan)
     for row in range(len(NAMES)):

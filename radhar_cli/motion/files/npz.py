@@ -111,8 +111,8 @@ def shape_positions(
 def two_dimensional(finding: str) -> str:
     """What to say of poses in the plane of an image."""
     return (
-        f"{finding}: pixels of an image; a radar needs 3-D positions in m, cm or mm, as MediaPipe's "
-        "world landmarks, a depth camera, several cameras (triangulation) or a lifting network give"
+        f"{finding}: pixels of an image; a radar needs 3-D positions in m, cm or mm, as "
+        "MediaPipe's world landmarks, a depth camera, several cameras or a lifting network give"
     )
 
 

@@ -86,6 +86,15 @@ def ways_of(scene: Scene) -> list[tuple[Leg, Leg]]:
     return list(reflected_legs(faces, scene.config.room.order, outside))
 
 
+def echo_ways_of(scene: Scene) -> list[Leg]:
+    """Ways from the transmitter to the receiver by faces of the room alone, at most `order`."""
+    ways = [tx for tx, rx in ways_of(scene) if not rx.faces]
+    box = box_of(scene)
+    if box is None or min(p[0] for p in antennas_of(scene).places) >= box.x[0]:
+        return ways
+    return [way for way in ways if way.faces[-1].name != "front"]  # behind which the radar is
+
+
 def kinds_of(config: Config) -> list[str]:
     """Names of the ways by which people are seen, as "floor/-", the straight one, "-/-", first."""
     scene = nominal_scene(config, config.chosen_activities[0])

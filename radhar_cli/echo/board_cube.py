@@ -17,6 +17,7 @@ from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import GOLDEN, SPARE_DB, AccuracyError, Probes, target_error_db
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.chebyshev import coefficients
+from radhar_cli.echo.dispersion import beat_of
 from radhar_cli.echo.gridded_sum import POWERS, Chirps, gridded_sum, powers_from_nodes
 from radhar_cli.echo.interpolation import lagrange_basis
 from radhar_cli.echo.paths import Paths, PathSource, Through
@@ -202,6 +203,19 @@ def _summed(
         if _still(delay, amplitude):
             cube[frame, 1:] = cube[frame, 0]
     return cube, power / (board.frames * board.loops * board.channels), roughness
+
+
+def still_samples(channels: Sequence[PathSource], board: Board) -> Complex:
+    """Exact samples [virtual, sample] of paths that do not move, the same in every loop.
+
+    Args:
+        channels: Paths of each virtual channel [V].
+        board: The board.
+    """
+    samples = np.empty((board.channels, board.samples), complex)
+    for v, source in enumerate(channels):
+        samples[v] = beat_of(source(np.zeros(1)), board.waveform)[:, 0] * board.signs[v]
+    return samples
 
 
 def mean_power(channels: Sequence[PathSource], board: Board) -> float:

@@ -29,8 +29,13 @@ def impulse_echo(source: PathSource, waveform: Impulse) -> Profiles:
     """Range profiles r [samples, M] at all pulses, without noise."""
     r = np.zeros((waveform.samples, waveform.n_pulses), complex if waveform.is_iq else float)
     for pulses, paths in _chunks(source, waveform):
-        r[:, pulses] = _spectral(paths, waveform) if paths.through else _pulses(paths, waveform)
+        r[:, pulses] = profiles_of(paths, waveform)
     return r
+
+
+def profiles_of(paths: Paths, waveform: Impulse) -> Profiles:
+    """Range profiles r [samples, M] of paths, through a layered wall or not."""
+    return _spectral(paths, waveform) if paths.through else _pulses(paths, waveform)
 
 
 def impulse_power(source: PathSource, waveform: Impulse) -> float:

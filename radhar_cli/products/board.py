@@ -12,17 +12,26 @@ from radhar_cli.assembly.bodies import Link, make_path_sources, sum_of_paths
 from radhar_cli.assembly.processing import chirp_window_of, frames_of, fsst_frames_of
 from radhar_cli.assembly.radar import board_of, detection_of, waveform_of
 from radhar_cli.assembly.receiver import noise_stream
+from radhar_cli.assembly.room import echo_ways_of
 from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
-from radhar_cli.echo.board_cube import combine_transmitters, exact_cube, fast_cube, mean_power
+from radhar_cli.echo.board_cube import (
+    combine_transmitters,
+    exact_cube,
+    fast_cube,
+    mean_power,
+    still_samples,
+)
 from radhar_cli.echo.direct import Accuracy
+from radhar_cli.echo.face_echoes import echoes_of_faces
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion, cache_motion
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.numerics.arrays import Complex, Float, Index
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.randomness import NOISE, stream
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
@@ -189,6 +198,10 @@ def _echo_rows(config: Config) -> Iterator[Product]:
     )
     yield from noise_products(config)
     needs, does = ("echo", "noise", "board", "scene"), "raw samples with noise and channel errors"
+    if config.room.faces is not None and config.room.order > 0:
+        still = "echoes of the room's faces themselves, the same in every loop"
+        yield Product("faces_echo", ("scene", "board", "wall"), compute_faces_echo, still)
+        needs = (*needs, "faces_echo")
     yield Product("cube", needs, receive_cube, does, is_array=True)
 
 
@@ -340,9 +353,42 @@ def accuracy_of_board(echo: BoardEcho) -> EchoAccuracy:
     return echo.accuracy
 
 
-def receive_cube(echo: BoardEcho, noise: WhiteNoise, board: Board, scene: Scene) -> Complex | Float:
-    """Apply the errors of the channels to a cube, and add noise; keep what a real ADC keeps."""
+def compute_faces_echo(scene: Scene, board: Board, wall: Wall | None) -> Complex:
+    """Compute samples [virtual, sample] of the echoes of the room's faces, which do not move.
+
+    They are exact, and added to the others, so that no tolerance refers to them. Those of faces
+    beyond the largest range are not there: the filter before the ADC takes them.
+
+    Args:
+        scene: scene that has the room.
+        board: the board, which sees itself in every face by each pair of its antennas.
+        wall: wall that the paths cross, or None.
+    """
+    ways, fc = echo_ways_of(scene), board.path_waveform.fc
+    latest = 2 * board.range_step * board.n_bins / SPEED_OF_LIGHT
+    pairs = [echoes_of_faces(board.antennas(k, r), ways, wall, fc, latest) for k, r in board.pairs]
+    return still_samples(combine_transmitters(pairs, board), board)
+
+
+def receive_cube(
+    echo: BoardEcho,
+    noise: WhiteNoise,
+    board: Board,
+    scene: Scene,
+    faces_echo: Complex | None = None,
+) -> Complex | Float:
+    """Apply the errors of the channels to a cube, and add noise; keep what a real ADC keeps.
+
+    Args:
+        echo: echo of all that moves.
+        noise: noise of the samples.
+        board: the board.
+        scene: scene that draws the errors.
+        faces_echo: samples [virtual, sample] of what stands still in every loop, or None.
+    """
     cube: Complex = echo.cube
+    if faces_echo is not None:
+        cube = cube + faces_echo.astype(cube.dtype)
     factors = draw_channel_errors(scene, board.channels)
     if factors is not None:
         cube = apply_channel_errors(cube, factors, board)

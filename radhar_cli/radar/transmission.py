@@ -1,5 +1,6 @@
 """One leg through the wall, with the rays and the faces that the wall asks for."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -47,9 +48,24 @@ def pass_wall(
         For a wall of layers cosines [2, I, M] of the angles at which both legs meet it, NaN for
         legs beside it; else None.
     """
+    return pass_wall_on_legs(antennas.images(p), wall, fc, delay, amplitude)
+
+
+def pass_wall_on_legs(
+    legs: Iterable[tuple[Float, Point]], wall: Wall, fc: float, delay: Float, amplitude: Float
+) -> Float | None:
+    """Take paths through a wall by their legs, as `pass_wall` does.
+
+    Args:
+        legs: Both legs: where each ends [3, I, M] (m), as if no face turned it, and its antenna.
+        wall: The wall.
+        fc: Frequency of the loss, Hz.
+        delay: Delays [I, M], s, which are changed.
+        amplitude: Amplitudes [I, M], which are changed.
+    """
     if wall.layers is not None:
-        return np.stack([_cosine(image, antenna, wall) for image, antenna in antennas.images(p)])
-    for image, antenna in antennas.images(p):
+        return np.stack([_cosine(image, antenna, wall) for image, antenna in legs])
+    for image, antenna in legs:
         through = transmission(image, antenna, wall, fc)
         delay += through.delay
         amplitude *= through.factor

@@ -1,13 +1,16 @@
-"""Raw recording of a scene: the beat matrix, or profiles, with leakage and the wall's own echo."""
+"""Raw recording of a scene: the beat matrix, or profiles, leakage and what stands still."""
 
 from functools import partial
 
 import numpy as np
 
+from radhar_cli.assembly.room import echo_ways_of
 from radhar_cli.config.radar import CwRadar
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.dispersion import beat_of
 from radhar_cli.echo.exact import beat_blocks
-from radhar_cli.echo.impulse import Profiles, steady_profile
+from radhar_cli.echo.face_echoes import echoes_of_faces
+from radhar_cli.echo.impulse import Profiles, profiles_of, steady_profile
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.static_returns import StaticReturn, leakage, near_face_distance, wall_echo
 from radhar_cli.errors import SceneError
@@ -33,7 +36,7 @@ def raw_echo(
     wall: Wall | None,
     receiver: tuple[Impairment, ...],
 ) -> Complex | Float:
-    """Compute the beat matrix as an ADC would record it: body, noise, leakage and wall echo.
+    """Compute the beat matrix as an ADC would record it, with leakage and what stands still.
 
     Args:
         scene: the scene; its wall must keep 5 cm from the antennas' midpoint.
@@ -53,6 +56,8 @@ def raw_echo(
     blocks = beat_blocks(paths, waveform, receiver, scene.config.engine.motion_in_chirp)
     beat = np.concatenate(list(blocks), axis=1)
     beat += _steady_beat(leakage(antennas), waveform)
+    faces = echoes_of_faces(antennas, echo_ways_of(scene), wall, waveform.fc)
+    beat += beat_of(faces.paths, waveform)
     if wall is not None:
         _refuse_near_face(scene, antennas, wall)
         echo = _steady_beat(wall_echo(antennas, wall, waveform), waveform)
@@ -82,7 +87,7 @@ def raw_profiles(
         receiver: impairments, noise among them.
 
     Returns:
-        Profiles [samples, M] of body, noise, leakage and wall echo.
+        Profiles [samples, M] of body, noise, leakage, and echoes of the wall and of faces.
 
     Raises:
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
@@ -91,6 +96,8 @@ def raw_profiles(
     received = receive_echo(profiles.astype(complex), look, receiver).x[0]
     r: Profiles = received if waveform.is_iq else received.real
     r = r + steady_profile(*leakage(antennas), waveform)
+    faces = echoes_of_faces(antennas, echo_ways_of(scene), wall, waveform.fc)
+    r += profiles_of(faces.paths, waveform)
     if wall is not None:
         _refuse_near_face(scene, antennas, wall)
         layers = wall.layers

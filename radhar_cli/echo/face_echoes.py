@@ -62,8 +62,8 @@ def echoes_of_faces(
         latest: Delay (s) from which on a receiver filters echoes out.
     """
     middle = tuple((a + b) / 2 for a, b in zip(antennas.tx, antennas.rx, strict=True))
-    kept = [way for way in ways if not any(_is_mount(face, middle) for face in way.faces)]
-    every = [_echo(antennas, way, wall, fc) for way in kept]
+    reflecting = [way for way in ways if not any(_is_mount(face, middle) for face in way.faces)]
+    every = [_echo(antennas, way, wall, fc) for way in reflecting]
     parts = [paths for paths in every if paths.delay.item() < latest]
     if not parts:
         return StillPaths(Paths(np.empty((0, 1)), np.empty((0, 1))))

@@ -76,13 +76,13 @@ def _is_mount(face: Face, middle: tuple[float, ...]) -> bool:
     return abs(middle[face.axis] - face.offset) < MOUNT_M
 
 
-def _echo(antennas: Antennas, way: Leg, wall: Wall | None, fc: float) -> Paths:
-    """Return the path [1, 1] of a way by faces, met in its order by the transmitter's wave."""
-    back = Leg(way.faces[::-1])
-    image_of_rx, image_of_tx = _image(way, antennas.rx), _image(back, antennas.tx)
+def _echo(antennas: Antennas, leg: Leg, wall: Wall | None, fc: float) -> Paths:
+    """Return the path [1, 1] of a leg by faces, met in its order by the transmitter's wave."""
+    back = Leg(leg.faces[::-1])
+    image_of_rx, image_of_tx = _image(leg, antennas.rx), _image(back, antennas.tx)
     distance = dist(antennas.tx, image_of_rx.ravel().tolist())
     a = antennas.gain * SPEED_OF_LIGHT / fc / (4 * pi * distance)
-    amplitude = a * way.field(image_of_rx, antennas.tx)
+    amplitude = a * leg.field(image_of_rx, antennas.tx)
     if antennas.aim is not None:
         aims = antennas.aim, antennas.aim
         if antennas.aim.of_each:
@@ -96,6 +96,6 @@ def _echo(antennas: Antennas, way: Leg, wall: Wall | None, fc: float) -> Paths:
     return Paths(delay, amplitude, Through.of(wall.layers, cosine))
 
 
-def _image(way: Leg, antenna: Point) -> Float:
+def _image(leg: Leg, antenna: Point) -> Float:
     """Image [3, 1, 1] (m) of an antenna by way of faces."""
-    return way.image(np.reshape(antenna, (3, 1, 1)))
+    return leg.image(np.reshape(antenna, (3, 1, 1)))

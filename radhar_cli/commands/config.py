@@ -39,8 +39,8 @@ def init(
         str | None,
         typer.Option(
             "--radar",
-            help="Write a short config for a TI board, given by its .cfg file or its name, such as "
-            "iwr6843isk.",
+            help="Write a short config for a TI board, given by its .cfg file or the name of a "
+            "profile for people indoors, such as iwr6843isk_people; `list` lists them.",
         ),
     ] = None,
     minimal: Annotated[
@@ -66,11 +66,16 @@ def init(
       radhar config init mine.yaml --minimal
 
       radhar config init room.yaml --preset human/room
+
+      radhar config init --radar list
     """
     from radhar_cli.config.starting_file import MINIMAL, as_commented_yaml, of_board, of_preset
     from radhar_cli.errors import FolderError, RadharError
     from radhar_cli.files.replacing import write_text
 
+    if radar == "list":
+        _list_radars()
+        return
     if out.exists() or out.is_symlink() or not out.parent.is_dir():
         why = "exists already" if out.parent.is_dir() else "there is no such folder"
         raise FolderError(f"{out}: {why}; should be a new file")
@@ -93,6 +98,17 @@ def init(
     if not minimal:
         tell(f"{out}: every key with its default; delete those that should keep it")
     tell(f"  then        radhar {'train DATA --config' if train else 'generate'} {out} -o OUT")
+
+
+def _list_radars() -> None:
+    """Print the radars that radhar comes with, one a line."""
+    from radhar_cli.config.built_in_radars import read_radars
+
+    radars = [*read_radars()]
+    report(radars={radar.name: radar.description for radar in radars})
+    width = max(len(radar.name) for radar in radars)
+    for radar in radars:
+        tell(f"{radar.name:{width}}  {radar.description}")
 
 
 def show(

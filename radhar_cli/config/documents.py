@@ -2,7 +2,9 @@
 
 import json
 import os
+import re
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from itertools import accumulate
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -18,7 +20,13 @@ Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
 BASE = "base"
 FILE_OF_CFG = "radar.cfg:"  # key, which none is, of the name that messages have for a .cfg
 SUFFIXES = (".yaml", ".yml", ".json")
-RADARS = {path.stem: path for path in sorted(Path(__file__).with_name("radars").glob("*.cfg"))}
+RADARS = {
+    path.stem: path
+    for path in sorted(
+        Path(__file__).with_name("radars").glob("*.cfg"),
+        key=lambda path: (path.stem.startswith("awr"), path.stem),
+    )
+}
 SHIPPED = Path(__file__).with_name("presets")  # in a clone a link to configs/, in a wheel its files
 PRESETS = {
     path.relative_to(SHIPPED).with_suffix("").as_posix(): path
@@ -77,7 +85,7 @@ def cfg_text(value: Any, folder: Path, where: str) -> Any:
     if not isinstance(value, str) or "\n" in value.strip():
         return value
     try:
-        return read_text(RADARS.get(value.lower(), folder / value), MAX_TEXT)
+        return read_text(RADARS.get(name_of_radar(value) or "", folder / value), MAX_TEXT)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise ConfigError(
@@ -89,7 +97,34 @@ def cfg_text(value: Any, folder: Path, where: str) -> Any:
 def name_of_cfg(value: Any) -> str:
     """Name the .cfg that a value of `radar.cfg` stands for: a path as it is written, or the key."""
     is_path = isinstance(value, str) and "\n" not in value.strip()
-    return value if is_path and value.lower() not in RADARS else "radar.cfg"
+    return value if is_path and name_of_radar(value) is None else "radar.cfg"
+
+
+def name_of_radar(value: str) -> str | None:
+    """Name of the built-in radar that a text stands for; None for none.
+
+    Capitals, hyphens, BOOST, EVM and AWR for IWR do not matter. A device that has no profile of its
+    name, or none by name for clouds, has that of the other.
+    """
+    return _names_of_radars().get(_plain_name(value))
+
+
+@lru_cache(maxsize=1)
+def _names_of_radars() -> dict[str, str]:
+    """Names of the built-in radars by their spellings without what does not matter in them."""
+    names = {_plain_name(name): name for name in RADARS}
+    for name in RADARS:
+        device, _, kind = name.partition("_")
+        if kind in ("", "clouds"):
+            names.setdefault(_plain_name(device), name)
+            names.setdefault(_plain_name(f"{device}_clouds"), name)
+    return names
+
+
+def _plain_name(name: str) -> str:
+    """Name of a radar without what does not matter in it."""
+    plain = re.sub("boost|evm|[-_ ]", "", name.lower()).replace("iskods", "ods")
+    return f"i{plain[1:]}" if plain.startswith("awr") else plain
 
 
 def read_on_bases(path: Path | None, overrides: Mapping[str, Any]) -> tuple[Document, Places]:

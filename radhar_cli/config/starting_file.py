@@ -15,12 +15,13 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import ValidationError
 
 from radhar_cli.config.annotations import ByModel, annotations, section
+from radhar_cli.config.built_in_radars import device_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.documents import (
     BASE,
     PRESETS,
-    RADARS,
     cfg_text,
+    name_of_radar,
     read_on_bases,
 )
 from radhar_cli.config.identity import yaml_text
@@ -31,10 +32,12 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
+from radhar_cli.radar.ti_elements import fitting_devices
 from radhar_cli.radar.ti_family import Family
 from radhar_cli.radar.ti_l_sdk import IWRL6844
 
 WIDTH = 100
+PEOPLE_CHAINS = "people_tracking", "people_counting"
 MAPS_OF_BOARDS = ("stft", "range_doppler", "range_azimuth", "points")
 HEAD = """\
 # Every key with its default, which holds too where a key is left out; `base: other.yaml` takes
@@ -176,20 +179,26 @@ def of_board(cfg: str, folder: Path) -> str:
     board = parse_ti_cfg(text, cfg)
     device, chain = _likely_device(board), board.firmware or "best"
     path = os.path.relpath(Path(cfg).resolve(), folder.resolve())
-    if cfg.lower() in RADARS:
-        device, path = cfg.upper(), cfg.lower()
+    if name := name_of_radar(cfg):
+        device, path = device_of(name), name
     maps = ", ".join(_maps_of_board(text, device, board.period_s, chain))
     position = "" if board.pose else ", position_m: [0, 0, 1]"
     range_end = board.farthest_m
     speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.loop_s)
     nearest, farthest = min(1.5, range_end / 3), min(3.0, range_end / 1.5)
+    activities = "punching, kicking, grabbing, sitting_down, standing_up"
+    duration_s = max(3.0, 2 * board.period_s)
+    if chain in PEOPLE_CHAINS:  # which see persons move through a room
+        nearest, farthest = min(2.0, range_end / 3), min(5.0, range_end / 1.5)
+        activities = "walking, walking_to_falling, sitting_down, standing_up, punching"
+        duration_s = 5.0
     antennas = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
     return f"""# {antennas}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
 # ranges to {range_end:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
 radar: {{device: {device}, cfg: {json.dumps(path)}{position}}}
 samples_per_class: 20
-activities: [punching, kicking, grabbing, sitting_down, standing_up]
-duration_s: {max(3.0, 2 * board.period_s):g}
+activities: [{activities}]
+duration_s: {duration_s:g}
 motion: {{place: {{range_m: {{uniform: [{nearest:.2g}, {farthest:.2g}]}}}}}}
 body: {{scatterers: surfaces}}
 cloud: {{chain: {chain}}}  # {_describe_chain(chain)}
@@ -225,14 +234,21 @@ def of_preset(name: str) -> str:
     text = path.read_text(encoding="utf-8")
     as_written, _ = parse_yaml(text, str(path))
     radar = as_written.get("radar") or {}
-    if BASE not in as_written and radar.get("cfg", "").lower() in ("", *RADARS):
+    if BASE not in as_written and ("cfg" not in radar or name_of_radar(radar["cfg"])):
         return text
     head = "".join(takewhile(lambda line: line.startswith("#"), text.splitlines(keepends=True)))
     return f"{head}\n{yaml_text(read_on_bases(path, {})[0])}"
 
 
 def _likely_device(board: BoardHeader) -> str:
-    """Name a device that software and frequency of a .cfg are for."""
+    """Name a device that software, frequency and elements of a .cfg are for."""
+    likely = _usual_device(board)
+    fitting = fitting_devices(board)
+    return likely if likely in fitting or not fitting else fitting[0]
+
+
+def _usual_device(board: BoardHeader) -> str:
+    """Name the device that is usual with software and frequency of a .cfg."""
     if board.start_hz < 70e9 and board.family is not Family.L_SDK:
         return "IWR6843ISK"
     by_family = {

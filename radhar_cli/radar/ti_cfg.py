@@ -24,6 +24,12 @@ from radhar_cli.radar.ti_commands import (
     split_lines,
 )
 from radhar_cli.radar.ti_detection import read_detection
+from radhar_cli.radar.ti_elements import (
+    CORRECTIONS,
+    Antennas,
+    FileElements,
+    read_rows_and_columns,
+)
 from radhar_cli.radar.ti_family import Family
 from radhar_cli.radar.ti_l_sdk import read_l_sdk
 from radhar_cli.radar.ti_people import (
@@ -124,6 +130,7 @@ class BoardHeader(FrameHeader):
             would do.
         pose: Place and direction by sensorPosition; None without that line.
         box: Box of the room by boundaryBox, or by SceneryParam; None without either.
+        grid: Elements by rows and columns (antGeometryCfg, antGeometryTX and antGeometryRx).
         unknown: Commands that radhar does not know.
         not_simulated: Commands that switch on what is not simulated.
     """
@@ -135,6 +142,7 @@ class BoardHeader(FrameHeader):
     missing: tuple[str, ...]
     pose: BoardPose | None
     box: RoomBox | None
+    grid: FileElements
     unknown: tuple[str, ...]
     not_simulated: tuple[str, ...]
 
@@ -155,11 +163,35 @@ class BoardHeader(FrameHeader):
 
         Of two that send together the lower takes the place of their sum.
         """
-        order = [mask.bit_length() - 1 for mask in self.masks]
-        if self.bpm is not None:
-            lower, higher = transmitters_of(self.masks[self.bpm[0]])
-            order[self.bpm[0]], order[self.bpm[1]] = lower, higher
-        return tuple(order)
+        return order_of(self)
+
+    @property
+    def antennas(self) -> Antennas:
+        """Transmitter and receiver of each virtual element, from 0 on."""
+        return antennas_of(self)
+
+    @property
+    def elements(self) -> FileElements:
+        """Elements that the detection of the file takes the board for, and factors of its feeds.
+
+        A chain of the firmware takes all feeds for equal where the file has no factors.
+        """
+        if isinstance(self.people, PeopleTracking):
+            places = tuple(zip((-x for x in self.people.right), self.people.up, strict=True))
+            rotation = self.people.rotation
+            corrections = self.people.coefficients or (1,) * len(rotation)
+            has_both = len(set(corrections)) > 1
+            names = ("antPhaseRot",) if len(set(rotation)) > 1 or not has_both else ()
+            return FileElements(
+                places=places,
+                of_places=("antGeometry0", "antGeometry1"),
+                phases=tuple(p * c for p, c in zip(rotation, corrections, strict=True)),
+                of_phases=(*names, *(CORRECTIONS,) * has_both),
+            )
+        corrections = self.detection.coefficients
+        if not corrections and self.firmware is not None:
+            corrections = (1,) * len(self.antennas)
+        return replace(self.grid, phases=corrections, of_phases=(CORRECTIONS,))
 
     @property
     def frames_apart(self) -> bool:
@@ -208,6 +240,11 @@ def parse_ti_cfg(
         missing=missing,
         pose=_read_pose(lines.with_effect(Effect.POSE)),
         box=_read_box(lines.with_effect(Effect.BOX)),
+        grid=read_rows_and_columns(
+            {line.name: line for line in lines.with_effect(Effect.ELEMENTS)},
+            antennas_of(header),
+            family,
+        ),
         unknown=tuple(dict.fromkeys(line.name[:40] for line in lines.lines if not line.command)),
         not_simulated=tuple(dict.fromkeys(filter(None, map(_name_if_not_simulated, lines.lines)))),
     )
@@ -285,6 +322,23 @@ def make_frame_header(
         averaged=1,
         loop_s=turns * profile.slot_s,
     )
+
+
+def order_of(header: FrameHeader) -> tuple[int, ...]:
+    """Numbers of the transmitters in their order within a loop, from 0 on.
+
+    Of two that send together the lower takes the place of their sum.
+    """
+    order = [mask.bit_length() - 1 for mask in header.masks]
+    if header.bpm is not None:
+        lower, higher = transmitters_of(header.masks[header.bpm[0]])
+        order[header.bpm[0]], order[header.bpm[1]] = lower, higher
+    return tuple(order)
+
+
+def antennas_of(header: FrameHeader) -> Antennas:
+    """Transmitter and receiver of each virtual element, from 0 on."""
+    return [(t, r) for t in order_of(header) for r in header.receivers]
 
 
 def transmitters_of(mask: int) -> tuple[int, ...]:

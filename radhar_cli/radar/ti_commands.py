@@ -27,6 +27,7 @@ class Effect(Enum):
     SIGNAL = "describes the chirps, frames and samples: simulated, and read of captures"
     POINTS = "sets the detection of points: simulated"
     POSE = "sets the pose of the board, where the config does not"
+    ELEMENTS = "describes the elements, which are the device's: a difference is said"
     BOX = "keeps the points in a box of the room, with `cloud.boundary_box: true`"
     WARNING = "is not simulated, and a warning says so"
     SILENT = "changes nothing here"
@@ -316,6 +317,14 @@ def _optional(*names: str) -> tuple[Argument, ...]:
 
 def _positive(name: str, meaning: str) -> Argument:
     return Argument(name, 1e-3, 1e6, meaning=meaning)
+
+
+def _places(antenna: str, count: int, more: str = "") -> tuple[Argument, ...]:
+    """Arguments of the places of so many antennas or fewer, of which two numbers may follow."""
+    meaning = f"row and column of each {antenna}{more}"
+    first = Argument("number1", 0, LARGEST, meaning=meaning)
+    others = range(2, 2 * count + (3 if more else 1))
+    return first, *(Argument(f"number{n}", 0, LARGEST, is_optional=True) for n in others)
 
 
 _MIMO_PATTERNS = (0, 1, 4)
@@ -768,6 +777,27 @@ _BOX = (
         Family.PEOPLE,
     ),
 )
+_ELEMENTS = (
+    *(
+        Command(
+            "antGeometryCfg",
+            Effect.ELEMENTS,
+            _places("virtual element", CHANNELS, f", then their spacings, {unit}"),
+            family,
+        )
+        for family, unit in ((Family.L_SDK, "mm"), (Family.MCU_PLUS, "wavelengths"))
+    ),
+    *(
+        Command(name, Effect.ELEMENTS, _places(antenna, 4), Family.L_SDK)
+        for name, antenna in (("antGeometryTX", "transmitter"), ("antGeometryRx", "receiver"))
+    ),
+    Command(
+        "antGeometryDist",
+        Effect.ELEMENTS,
+        tuple(Argument(name, 1e-3, 1000, meaning="mm") for name in ("dX", "dZ")),
+        Family.L_SDK,
+    ),
+)
 _WITH_WARNING = (
     Command("extendedMaxVelocity", Effect.WARNING, _wholes("enabled"), subframe=Subframe.OPTIONAL),
     Command(
@@ -807,10 +837,7 @@ _SILENT = {
         *("antennaCalibParams", "enetStreamCfg", "spreadSpectrumConfig", "subDataFrameCfg"),
         POWER_MEASUREMENT,
     ),
-    Family.L_SDK: (
-        *("antGeometryCfg", "antGeometryTX", "antGeometryRx", "antGeometryDist"),
-        "antGeometryBoard",
-    ),
+    Family.L_SDK: ("antGeometryBoard",),
     Family.PEOPLE: (
         *("GatingParam", "StateParam", "AllocationParam", "VariationParam"),
         *("AccelerationParam", "PointCloudEn"),
@@ -881,6 +908,7 @@ def _by_name() -> Mapping[str, tuple[Command, ...]]:
         *points,
         *_POSE,
         *_BOX,
+        *_ELEMENTS,
         *_WITH_WARNING,
         *_CAPTURES,
         *silent,

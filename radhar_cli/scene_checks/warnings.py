@@ -1,6 +1,7 @@
 """What is said of a config or a scene before anything is computed."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from radhar_cli.assembly.motion import motion_of
@@ -84,12 +85,41 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
             "cloud.chain: people_counting: of the Doppler CFAR of an IWR6843, which makes several "
             "points of a cell, the largest Doppler alone is modelled"
         )
+    yield from _elements_warnings(config, radar)
     if header.sampling is Sampling.REAL and header.family not in (Family.MCU_PLUS, Family.L_SDK):
         yield "radar.cfg: adcCfg has real samples, which firmware of SDK 1 to 3 does not take"
     pose = {} if header.pose is None else vars(header.pose)
     config_keys = [f"radar.{key}" for key, number in pose.items() if getattr(radar, key) != number]
     if config_keys:
         yield f"radar.cfg: sensorPosition yields to the config's {', '.join(config_keys)}"
+
+
+def _elements_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
+    """Say that the file has other elements than the board, which count; in one line."""
+    from radhar_cli.radar.ti_elements import compare_elements, fitting_devices  # of boards alone
+
+    header, array = radar.header, radar.elements
+    assert array is not None
+    is_best = config.cloud.chain == "best"  # which believes the device alone
+    elements = replace(header.elements, phases=()) if is_best else header.elements
+    difference = compare_elements(elements, array, header.antennas)
+    if not difference.commands:
+        return
+    names = " and ".join(
+        filter(None, (", ".join(difference.commands[:-1]), difference.commands[-1]))
+    )
+    board = radar.device if radar.array is None else "radar.array"
+    if difference.is_calibration:
+        yield (
+            f"radar.cfg: {names} corrects feeds of one board, which the simulated {board} does not "
+            "have: angles of points are off by that"
+        )
+        return
+    differ = "differs" if len(difference.commands) == 1 else "differ"
+    others = [name for name in fitting_devices(header) if name != radar.device]
+    fit = f", and would fit {' or '.join(others)}" if others else ""
+    effect = "the device's count" if is_best else "angles of points are wrong, as on the board"
+    yield f"radar.cfg: {names} {differ} from the elements of {board}{fit}: {effect}"
 
 
 def _counts_people(chain: Chain, header: "BoardHeader") -> bool:

@@ -81,3 +81,31 @@ def test_every_device_has_a_sign_for_each_receiver(device: str) -> None:
     assert len(array.rx_sign) == len(array.rx) == (3 if "6432" in device else 4)
     assert len(array.tx) == TRANSMITTERS.get(device, 3)
     assert len(array.tx_sign) in (0, len(array.tx))
+
+
+OF_BOARDS: dict[str, tuple[str, str, str, str, tuple[float, float]]] = {
+    # TX and RX (left, up), signs of RX and of TX, half-power half-widths (azimuth, elevation)
+    "IWR1443BOOST": ("0,0 2,1 4,0", "0,0 1,0 2,0 3,0", "++++", "+++", (28, 14)),
+    "IWR1642BOOST": ("0,0 4,0", "0,0 1,0 2,0 3,0", "++++", "++", (28, 14)),
+    "IWR1843BOOST": ("0,0 2,1 4,0", "0,0 1,0 2,0 3,0", "++++", "+++", (28, 14)),
+    "IWR6843ISK": ("0,-1 2,0 4,-1", "0,0 1,0 2,0 3,0", "++++", "+++", (60, 15)),
+    "IWR6843ISK-ODS": ("0,0 2,0 2,-2", "0,0 0,-1 1,-1 1,0", "+--+", "+++", (60, 60)),
+    "IWR6843AOP": ("0,0 2,-2 0,-2", "1,-1 1,0 0,-1 0,0", "+-+-", "+++", (60, 60)),
+    "AWR2944EVM": ("0,0 2,1.6 4,0 8,0", "0,0 1,0 2,0 3,0", "++++", "++++", (28, 14)),
+    "IWRL6432BOOST": ("0,0 1,0", "0,0 1,1 2,0", "+-+", "+-", (60, 30)),
+    "IWRL6844EVM": ("2,2 0,2 0,0 2,0", "0,1 0,0 1,0 1,1", "++++", "-+-+", (60, 60)),
+}
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_elements_of_a_device_are_those_of_its_guide(device: str) -> None:
+    """Places (left, up) in half wavelengths looking out, signs of the feeds, beam of an element."""
+    name = device.replace("AWR1", "IWR1")
+    tx, rx, rx_signs, tx_signs, beam = OF_BOARDS[name]
+    array = DEVICES[device].array
+    for places, written in ((array.tx, tx), (array.rx, rx)):
+        assert [*places] == [tuple(map(float, place.split(","))) for place in written.split()]
+    assert "".join("-+"[sign > 0] for sign in array.rx_sign) == rx_signs
+    assert "".join("-+"[sign > 0] for sign in array.tx_sign or (1,) * len(array.tx)) == tx_signs
+    assert array.half_power_deg == beam
+    assert array.unit_m == {"IWRL6432BOOST": 2.418e-3, "IWRL6844EVM": 2.54e-3}.get(name)

@@ -3,6 +3,7 @@
 import random
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -77,10 +78,12 @@ def test_the_order_of_lines_does_not_matter(name: str) -> None:
     header, draw = read("\n".join(lines)), random.Random(SEED)
     for _ in range(8):
         draw.shuffle(lines)
-        assert read("\n".join(lines)) == header
+        read_again = read("\n".join(lines))
+        assert sorted(read_again.not_simulated) == sorted(header.not_simulated)
+        assert replace(read_again, not_simulated=header.not_simulated) == header
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", [name for name in FILES if "iwrl" not in name])
 def test_the_last_chirp_of_an_index_holds(name: str) -> None:
     lines = lines_of(name)
     (first, *_) = (line for line in lines if line.startswith("chirpCfg"))

@@ -1,0 +1,75 @@
+"""The radars that radhar comes with: profiles of TI boards for people indoors."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from radhar_cli.config.documents import RADARS
+from radhar_cli.files.untrusted import read_text
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.radar.detection import Chain
+from radhar_cli.radar.ti_cfg import MAX_CFG, BoardHeader, parse_ti_cfg
+
+
+@dataclass(frozen=True)
+class BuiltInRadar:
+    """A profile that radhar comes with.
+
+    Attributes:
+        name: Name by which configs have it.
+        device: Board that it is for.
+        header: What its .cfg says.
+    """
+
+    name: str
+    device: str
+    header: BoardHeader
+
+    @property
+    def chain(self) -> Chain:
+        """Chain that finds its points: the firmware's, or `best` where that is not simulated."""
+        return self.header.firmware or "best"
+
+    @property
+    def range_step_m(self) -> float:
+        """Spacing of its range bins, m."""
+        return self.header.farthest_m / self.header.bins
+
+    @property
+    def fastest_mps(self) -> float:
+        """Radial speed up to which Doppler is unambiguous, c/(4 f_c loop), m/s."""
+        swept_hz = self.header.slope_hz * (self.header.samples - 1) / self.header.adc_rate_hz
+        centre_hz = self.header.carrier_hz + swept_hz / 2
+        return SPEED_OF_LIGHT / (4 * centre_hz * self.header.loop_s)
+
+    @property
+    def speed_step_mps(self) -> float:
+        """Spacing of its Doppler bins, m/s."""
+        return 2 * self.fastest_mps / (1 << (self.header.loops - 1).bit_length())
+
+    @property
+    def frames_per_s(self) -> float:
+        """Frames per second."""
+        return 1 / self.header.period_s
+
+    @property
+    def description(self) -> str:
+        """Line that says what it is for."""
+        return (
+            f"{self.chain}; {self.frames_per_s:.3g} frames a second, "
+            f"ranges to {self.header.farthest_m:.3g} m in steps of "
+            f"{100 * self.range_step_m:.2g} cm, +-{self.fastest_mps:.2g} m/s in steps of "
+            f"{self.speed_step_mps:.2g} m/s"
+        )
+
+
+def device_of(name: str) -> str:
+    """Board that a built-in radar is for."""
+    return name.partition("_")[0].upper()
+
+
+def read_radars() -> Iterator[BuiltInRadar]:
+    """Read all built-in radars, in the order of their names."""
+    for name, path in RADARS.items():
+        device = device_of(name)
+        header = parse_ti_cfg(read_text(path, MAX_CFG), path.name, device)
+        yield BuiltInRadar(name, device, header)

@@ -11,6 +11,7 @@ from radhar_cli.capture.chain import Maps
 from radhar_cli.capture.recording import RecordingInfo
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.identity import resolved
+from radhar_cli.config.radar import BoardRadar
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.frames_panel import BoardFrames, draw_frames
 from radhar_cli.figures.maps_panel import MapsPage, draw_maps
@@ -48,7 +49,9 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
             for name, power_map in maps.maps.items():
                 write_map(file, name, power_map)
             if maps.board is not None:
-                write_frames(file, maps.frames, maps.board, config)
+                assert isinstance(config.radar, BoardRadar)
+                end = config.radar.ends_in_files[""]
+                write_frames(file, {end: (maps.board, maps.frames)}, config)
             if maps.track is not None:
                 for name, unit in TRACK_UNITS.items():
                     file[f"track/{name}"] = getattr(maps.track, name)

@@ -10,7 +10,8 @@ from radhar_cli.commands.tell import report, tell
 if TYPE_CHECKING:
     from radhar_cli.single_scene.simulate import Simulation
 
-RECORDING = "recording.h5"
+RECORDING = "recording{}.h5"
+RECORDINGS = [RECORDING.format(end) for end in ("", "_sf1", "_sf2", "_sf3")]  # of subframes
 
 
 @dataclass(frozen=True)
@@ -40,9 +41,9 @@ def require_scene_folder(out: Path, overwrite: bool) -> None:
     refuse_file(out)
     if not any((out / name).exists() for name in scene_file.FILES):
         refuse_foreign_files(out, "scene of radhar's", allowed=())
-    for name in (*scene_file.FILES, RECORDING):
+    for name in (*scene_file.FILES, *RECORDINGS):
         refuse_links(out, out / name)
-    refuse_to_replace_results(out, (*scene_file.FILES, RECORDING), overwrite)
+    refuse_to_replace_results(out, (*scene_file.FILES, *RECORDINGS), overwrite)
 
 
 def write_scene_folder(simulation: "Simulation", out: Path, outputs: SceneOutputs) -> list[Path]:
@@ -59,9 +60,10 @@ def write_scene_folder(simulation: "Simulation", out: Path, outputs: SceneOutput
     from radhar_cli.single_scene import scene_file
 
     files = scene_file.write_all(simulation, out)
-    (out / RECORDING).unlink(missing_ok=True)  # of an earlier scene
+    for name in RECORDINGS:
+        (out / name).unlink(missing_ok=True)  # of an earlier scene
     if outputs.recording:
-        files.append(_write_recording(simulation, out / RECORDING))
+        files += _write_recordings(simulation, out)
     if outputs.panels:
         files += _draw_figures(simulation, out, outputs.overlay)
     if outputs.page:
@@ -72,22 +74,24 @@ def write_scene_folder(simulation: "Simulation", out: Path, outputs: SceneOutput
     return files
 
 
-def _write_recording(simulation: "Simulation", path: Path) -> Path:
-    """Write the beat matrix of a scene as a recording; return its path."""
+def _write_recordings(simulation: "Simulation", out: Path) -> list[Path]:
+    """Write the samples of a scene as a recording, of a board one a subframe; return the paths."""
     from radhar_cli.capture.importing import write_simulated
     from radhar_cli.capture.recording import Label
 
-    label, board = Label(label=simulation.activity.slug), simulation.board
-    if board is not None:
-        cube = simulation.frames["cube"]  # [frame, loop, virtual, sample]
+    label, paths = Label(label=simulation.activity.slug), list[Path]()
+    for end, (board, frames) in simulation.all_subframes.items():
+        cube = frames["cube"]  # [frame, loop, virtual, sample]
         beat = cube.reshape(-1, *cube.shape[2:]).transpose(1, 2, 0)
         delays = [k * board.slot for k, _ in board.pairs]
-        waveform, pulses = simulation.waveform, board.pulses
-        write_simulated(path, beat, waveform, label, pulses, delays, board.bpm)
-    else:
+        paths.append(out / RECORDING.format(end))
+        waveform, pulses = board.waveform, board.pulses
+        write_simulated(paths[-1], beat, waveform, label, pulses, delays, board.bpm)
+    if simulation.board is None:
         assert simulation.beat is not None
-        write_simulated(path, simulation.beat[None], simulation.waveform, label)
-    return path
+        paths.append(out / RECORDING.format(""))
+        write_simulated(paths[-1], simulation.beat[None], simulation.waveform, label)
+    return paths
 
 
 def _draw_figures(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:

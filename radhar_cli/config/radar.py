@@ -326,7 +326,7 @@ class BoardRadar(_Emission[N], Generic[N]):
     antenna_gain_dbi: Annotated[N, DECIBEL, within(-150, 150, "dBi")] = default_draw(9.0)
     """Gain of each antenna at its boresight."""
     subframe: Annotated[int, Field(ge=0, le=3, strict=True)] = 0
-    """Number of the subframe (advFrameCfg of the .cfg) that maps, points and recordings are of."""
+    """Number of the subframe (advFrameCfg of the .cfg) that images and Doppler-time maps are of."""
     half_power_deg: tuple[HalfPower, HalfPower] | None = None
     """Half-power half-widths of an element in azimuth and elevation; null is the device's."""
     half_wavelength_m: Annotated[float, Field(gt=0, le=1, strict=True)] | None = None
@@ -345,9 +345,19 @@ class BoardRadar(_Emission[N], Generic[N]):
 
     @property
     def other_subframes(self) -> dict[str, int]:
-        """Numbers of the subframes of the .cfg but the chosen one, {end of names: number}."""
+        """Numbers of the subframes of the .cfg but the chosen one, {end of products: number}."""
         numbers = range(self.header.subframes)
         return {f"_sf{number}": number for number in numbers if number != self.subframe}
+
+    @property
+    def ends_in_files(self) -> dict[str, str]:
+        """Ends of the names of what is stored of each subframe, {end of products: end in files}.
+
+        Products of the chosen subframe have no end, in files those of subframe 0.
+        """
+        chosen = {"": self.subframe}
+        numbers = sorted((chosen | self.other_subframes).items(), key=lambda pair: pair[1])
+        return {end: f"_sf{number}" if number else "" for end, number in numbers}
 
     @property
     def carrier_hz(self) -> float:  # type: ignore[override]

@@ -159,17 +159,26 @@ class Request(Section):
         )  # other words stay until `filled` has noted them
 
     @property
-    def stored(self) -> tuple[str, ...]:
-        """Products that a data set holds as arrays: those of `output.products` and of boards."""
+    def stored(self) -> dict[str, str]:
+        """Products that a data set holds as arrays, {name in files: product}.
+
+        They are those of `output.products` and of boards.
+        """
         frames = [name for name in self.maps if name in FRAME_MAPS]
         segments = () if self.stream is None else ("segments",)
         ghosts = ("points_kind",) if self.room.faces is not None else ()
         points = (*OF_POINTS, *ghosts) if "points" in frames else ()
         people = OF_FRAMES if frames else ()
         of_frames = (*frames, *points, *people)
-        ends = self.radar.other_subframes if isinstance(self.radar, BoardRadar) else ()
-        others = [name + end for end in ends for name in of_frames]
-        return tuple(dict.fromkeys((*segments, *of_frames, *others, *self.output.products)))
+        ends = self.radar.ends_in_files if isinstance(self.radar, BoardRadar) else {"": ""}
+        of_subframes = {
+            name + in_files: name + end
+            for end, in_files in ends.items()
+            for name in (*of_frames, "cube", *FRAME_MAPS)
+        }
+        names = [name + in_files for in_files in ends.values() for name in of_frames]
+        names = [*segments, *names, *self.output.products]
+        return {name: of_subframes.get(name, name) for name in names}
 
     @property
     def has_error(self) -> bool:

@@ -140,7 +140,7 @@ def _describe_stream(file: h5py.File, config: Config) -> None:
 def _describe_products(file: h5py.File, config: Config) -> None:
     """Write the attributes of products, labels of people and slow time."""
     radar = config.radar
-    ends = ("", *radar.other_subframes) if isinstance(radar, BoardRadar) else ("",)
+    ends = radar.ends_in_files.values() if isinstance(radar, BoardRadar) else ("",)
     for end in ends:
         if f"products/points{end}" in file:
             file[f"products/points{end}"].attrs["columns"] = [*COLUMNS]

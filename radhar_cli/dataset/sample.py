@@ -129,7 +129,8 @@ def store(recording: Results, scene: Scene, config: Config) -> StoredSample:
         error_db = accuracy.error_db
     deepest = scene.config.image.dynamic_range_db
     products = {
-        name: storable_array(recording[name], name, deepest) for name in scene.config.stored
+        name: storable_array(recording[product], name, deepest)
+        for name, product in scene.config.stored.items()
     }
     return StoredSample(
         images,

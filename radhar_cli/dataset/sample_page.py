@@ -78,7 +78,8 @@ def _sample_entry(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> 
     if scene is None and isinstance(config, Config):
         likely_scene = nominal_scene(config, activity)
     if likely_scene is not None and isinstance(likely_scene.radar, BoardRadar):
-        board = board_of(likely_scene.radar, likely_scene.seconds)
+        radar = likely_scene.radar.model_copy(update={"subframe": 0})  # that has the plain names
+        board = board_of(radar, likely_scene.seconds)
     if scene is not None:
         view = view_scene(scene, tuple(map(motion_of, scene.people)))
     else:

@@ -50,14 +50,14 @@ def plan_images(config: Config) -> Plan:
     requested = [image_name(name) for name in (*by_signal, *others)]
     if config.has_error:
         requested.append("accuracy")
-    requested += config.stored
+    requested += config.stored.values()
     if config.output.slow_time:
         requested.append(signal_name())
     if config.output.column_labels:
         requested.append("motions")
     table = products(config)
     storable = extensions | {name for name, product in table.items() if product.is_array}
-    unknown = [name for name in config.output.products if name not in storable]
+    unknown = [name for name in config.output.products if config.stored[name] not in storable]
     if unknown:
         names = ", ".join(name for name in table if name in storable)
         right = f"should be arrays that this radar and engine make: {names}"

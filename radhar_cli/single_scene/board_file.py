@@ -20,22 +20,25 @@ AXES = "of the radar: x ahead, y left, z up, m"
 DOPPLER_SIGN = "positive approaching"
 
 
-def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, config: Config) -> None:
+def write_frames(
+    file: h5py.File, subframes: Mapping[str, tuple[Board, Mapping[str, Any]]], config: Config
+) -> None:
     """Write /cube, /range_doppler and so on, /points, /points_start, /points_person, /skeleton.
 
     Args:
         file: HDF5 file, open for writing.
-        frames: {name: product} of FrameMaps, `cube`, `cloud`, `skeletons`, `points_person`,
+        subframes: {end of names: board, products} of each subframe that there is, the products
+            {name: product} of FrameMaps, `cube`, `cloud`, `skeletons`, `points_person`,
             `points_kind`, as far as they were made.
-        board: board that the frames are of.
         config: config of the scene, or of the processing of a recording.
     """
-    write_subframe(file, frames, board, config)
+    for end, (board, frames) in subframes.items():
+        write_subframe(file, frames, board, config, end)
     radar = config.radar
     assert isinstance(radar, BoardRadar)
+    board = next(board for board, _ in subframes.values())
     file.attrs.update(
         {
-            "frame_times": board.middles,
             "cfg": radar.cfg,
             "cfg_sha256": hashlib.sha256(radar.cfg.encode()).hexdigest(),
             "device": str(radar.device or "array"),
@@ -44,8 +47,6 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
             "position_m": np.array(board.position),
             "yaw_deg": np.degrees(board.yaw),
             "tilt_deg": np.degrees(board.tilt),
-            "roll_deg": np.degrees(board.roll),
-            "virtual_elements": board.places,
         }
     )
 
@@ -55,7 +56,12 @@ def write_subframe(
 ) -> None:
     """Write the products of a board's frames, or of a subframe, with an end to each name.
 
-    Arguments are those of `write_frames`.
+    Args:
+        file: HDF5 file, open for writing.
+        frames: {name: product}, as `write_frames` has them.
+        board: board that the frames are of.
+        config: config of the scene, or of the processing of a recording.
+        end: end of the names.
     """
     for key, product in frames.items():
         name = key + end
@@ -77,9 +83,8 @@ def write_subframe(
         else:
             file[name] = product
             file[name].attrs["meaning"] = "number of the person, -1 of none"
-    if end:
-        file.attrs[f"frame_times{end}"] = board.middles
-        file.attrs[f"virtual_elements{end}"] = board.places
+    file.attrs[f"frame_times{end}"] = board.middles
+    file.attrs[f"virtual_elements{end}"] = board.places
 
 
 def _write_maps(file: h5py.File, name: str, maps: FrameMaps) -> None:
@@ -112,5 +117,5 @@ def _write_skeletons(file: h5py.File, skeletons: Skeletons, end: str) -> None:
         file[name].attrs["unit"] = unit
         file[name].attrs["axes"] = ["frame", "person", "joint", "ahead left up"]
         file[name].attrs["meaning"] = "in the middle of the chirps of a frame; NaN if absent"
-    if not end:
+    if "joint_names" not in file:
         file["joint_names"] = [*skeletons.names]

@@ -18,7 +18,7 @@ from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.scene import scene_numbers
-from radhar_cli.single_scene.board_file import write_frames, write_subframe
+from radhar_cli.single_scene.board_file import write_frames
 from radhar_cli.single_scene.simulate import Simulation
 from radhar_cli.single_scene.single_precision import in_single
 from radhar_cli.single_scene.truth import Truth
@@ -40,9 +40,7 @@ def write_scene(simulation: Simulation, path: Path) -> None:
         for name, signal in simulation.signals.items():
             file[f"slow_time/{name}"] = signal.x[0, 0]
         if simulation.board is not None:
-            write_frames(file, simulation.frames, simulation.board, simulation.config)
-        for end, subframe in simulation.subframes.items():
-            write_subframe(file, subframe.frames, subframe.board, simulation.config, end)
+            write_frames(file, simulation.all_subframes, simulation.config)
         _write_truth(file, simulation)
         file.attrs["scene"] = json.dumps(describe(simulation))
         config = keep_used_files(simulation.config, simulation.activity.slug)

@@ -10,7 +10,7 @@ from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.room import reflectors_of
 from radhar_cli.config.checks.doubts import word_warnings
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import ImpulseRadar
+from radhar_cli.config.radar import BoardRadar, ImpulseRadar
 from radhar_cli.config.reading import as_config
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.motion.protocol import Motion
@@ -48,8 +48,8 @@ class OtherPerson(NamedTuple):
     truth: Truth
 
 
-class OtherSubframe(NamedTuple):
-    """Products of the frames of another subframe than the chosen one.
+class SubframeProducts(NamedTuple):
+    """Products of the frames of a subframe.
 
     Attributes:
         board: the board with the chirps of the subframe.
@@ -100,7 +100,7 @@ class Simulation:
     beat: Complex | Float | None = None
     board: Board | None = None
     frames: dict[str, Any] = field(default_factory=dict)
-    subframes: dict[str, OtherSubframe] = field(default_factory=dict)
+    subframes: dict[str, SubframeProducts] = field(default_factory=dict)
     others: list[OtherPerson] = field(default_factory=list)
     paths: PathTruth | None = None
 
@@ -118,6 +118,15 @@ class Simulation:
     def config(self) -> Config:
         """Config of the scene, in which every number is fixed."""
         return self.scene.config
+
+    @property
+    def all_subframes(self) -> dict[str, SubframeProducts]:
+        """Products of every subframe of a board, by the ends of their names in files."""
+        radar = self.config.radar
+        if self.board is None or not isinstance(radar, BoardRadar):
+            return {}
+        by_end = {"": SubframeProducts(self.board, self.frames), **self.subframes}
+        return {in_files: by_end[end] for end, in_files in radar.ends_in_files.items()}
 
     @property
     def activity(self) -> Activity:
@@ -224,7 +233,7 @@ def _simulation_of(
         board=results["board"] if "board" in names.others else None,
         frames={name: results[name] for name in names.frames},
         subframes={
-            end: OtherSubframe(
+            end: SubframeProducts(
                 results[f"board{end}"], {name: results[name + end] for name in names.frames}
             )
             for end in names.ends

@@ -135,6 +135,13 @@ def test_a_subframe_is_a_board_of_its_own(tmp_path: Path) -> None:
     chosen = simulate(load_config(tmp_path / "config.yaml", ["radar.subframe=1"]), raw=True)
     np.testing.assert_array_equal(other, chosen.frames["cube"].astype(np.complex64))
     assert [*chosen.subframes] == ["_sf0"]
+    write_scene(chosen, tmp_path / "chosen.h5")  # has the products by the same names
+    with h5py.File(tmp_path / "chosen.h5") as file, h5py.File(tmp_path / "scene.h5") as first:
+        for end in ("", "_sf1"):
+            np.testing.assert_array_equal(file[f"cube{end}"], first[f"cube{end}"])
+            np.testing.assert_array_equal(file[f"points{end}"], first[f"points{end}"])
+            same = file.attrs[f"frame_times{end}"] == first.attrs[f"frame_times{end}"]
+            assert same.all()
     quiet = simulate(
         load_config(tmp_path / "config.yaml", ["receiver.noise_figure_db=null"]), raw=True
     )
@@ -159,6 +166,42 @@ def test_a_data_set_holds_the_frames_of_every_subframe(tmp_path: Path) -> None:
         assert [*products["points_sf1"].attrs["columns"]] == [*products["points"].attrs["columns"]]
         assert products["skeleton_sf1"].shape == products["skeleton"].shape
     assert "/products/range_doppler_sf1" in (tmp_path / "set/README.md").read_text()
+
+
+def test_images_are_of_the_chosen_subframe_and_products_keep_their_names(tmp_path: Path) -> None:
+    config_of(tmp_path, "advframe", "IWR1443BOOST", "range_doppler, points", 0.1)
+    for number in (0, 1):
+        out = tmp_path / f"set{number}"
+        ok(
+            *("generate", tmp_path / "config.yaml", "-o", out, "--jobs", "1", "-q"),
+            *("--set", f"radar.subframe={number}", "--set", "output.products=[cube]"),
+        )
+    with (
+        h5py.File(tmp_path / "set0/dataset.h5") as first,
+        h5py.File(tmp_path / "set1/dataset.h5") as second,
+    ):
+        assert first["products"].keys() == second["products"].keys()
+        for name in ("cube", "points", "points_sf1", "range_doppler", "range_doppler_sf1"):
+            np.testing.assert_array_equal(first[f"products/{name}"], second[f"products/{name}"])
+        assert (first["maps/range_doppler"][:] != second["maps/range_doppler"][:]).any()
+
+
+def test_a_recording_of_each_subframe_gives_the_products_of_the_scene(tmp_path: Path) -> None:
+    config_of(tmp_path, "advframe", "IWR1443BOOST", "range_doppler, points", 0.2)
+    chosen = ("--maps", "range_doppler,points,cube", "--no-figures")
+    ok("simulate", tmp_path / "config.yaml", "-o", tmp_path / "out", "--raw", *chosen)
+    for end, number in (("", 0), ("_sf1", 1)):
+        recording, maps = tmp_path / f"out/recording{end}.h5", tmp_path / f"maps{end}"
+        ok(
+            *("process", recording, "--config", tmp_path / "config.yaml", "-o", maps, *chosen),
+            *("--set", f"radar.subframe={number}"),
+        )
+        with h5py.File(tmp_path / "out/scene.h5") as scene, h5py.File(maps / "maps.h5") as file:
+            for name in ("cube", "range_doppler", "points", "points_start"):
+                np.testing.assert_array_equal(file[name + end], scene[name + end])
+            np.testing.assert_array_equal(
+                file.attrs[f"frame_times{end}"], scene.attrs[f"frame_times{end}"]
+            )
 
 
 def test_a_subframe_that_is_not_there_is_refused(tmp_path: Path) -> None:

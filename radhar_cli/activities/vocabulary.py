@@ -11,9 +11,10 @@ SHORT, SIMILAR_SHORT, SIMILAR = 5, 0.75, 0.8
 # {word: our names of the same meaning, of which the first that is known counts}; a config may say
 # the word instead. A movement of the word's own name comes before these.
 MEANINGS: dict[str, tuple[str, ...]] = {
-    **dict.fromkeys(("picking_up", "pick_up", "picking", "picking_up_object"), ("grabbing",)),
-    **dict.fromkeys(("picking_up_objects", "pick_up_object", "grasping", "grab"), ("grabbing",)),
+    **dict.fromkeys(("picking_up", "pick_up", "picking", "picking_object"), ("grabbing",)),
+    **dict.fromkeys(("picking_up_objects", "picking_up_object", "pick_up_object"), ("grabbing",)),
     **dict.fromkeys(("pick_up_an_object", "picking_up_things", "pick_up_things"), ("grabbing",)),
+    **dict.fromkeys(("grasping", "grab"), ("grabbing",)),
     **dict.fromkeys(("boxing", "box", "punch", "shadow_boxing"), ("punching",)),
     **dict.fromkeys(("kick", "front_kick"), ("kicking",)),
     **dict.fromkeys(("standing", "still", "standing_still", "stand"), ("stationary",)),
@@ -35,7 +36,7 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("walk", "strolling", "pacing", "normal_walking"), ("walking",)),
     **dict.fromkeys(("fall", "fall_down", "falling_down", "collapsing"), ("falling",)),
     **dict.fromkeys(("squat", "squats"), ("squatting",)),
-    **dict.fromkeys(("jump", "jumps"), ("jumping",)),
+    **dict.fromkeys(("jump", "jumps", "jump_up", "jumping_up"), ("jumping",)),
     **dict.fromkeys(("jumping_jack", "star_jumps"), ("jumping_jacks",)),
     **dict.fromkeys(("run", "jogging", "jog", "sprinting", "sprint"), ("running",)),
     **dict.fromkeys(
@@ -44,14 +45,17 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("raise_right_arm", "raising_right_hand"), ("raising_right_arm",)),
     **dict.fromkeys(("raise_left_arm", "raising_left_hand"), ("raising_left_arm",)),
     **dict.fromkeys(("stumble",), ("stumbling",)),
-    **dict.fromkeys(("drink", "drinking_water", "drinking_standing"), ("drinking",)),
+    **dict.fromkeys(("drinking_standing",), ("drinking",)),
+    **dict.fromkeys(("drink", "drinking_water", "drink_water", "drinking_from_cup"), ("drinking",)),
     **dict.fromkeys(("write", "writing_on_board"), ("writing",)),
     **dict.fromkeys(("writing_at_table",), ("writing_seated",)),
     **dict.fromkeys(("wave", "hand_waving", "waving_hand"), ("waving",)),
     **dict.fromkeys(("clap", "clapping_hands", "hand_clapping", "applauding"), ("clapping",)),
     **dict.fromkeys(("empty", "empty_room", "no_one", "no_person", "absent"), ("nobody",)),
+    **dict.fromkeys(("left_front_lunge",), ("left_lunge",)),
+    **dict.fromkeys(("right_front_lunge",), ("right_lunge",)),
     **dict.fromkeys(("trip",), ("tripping",)),
-    **dict.fromkeys(("limp", "antalgic_gait", "hobbling"), ("limping",)),
+    **dict.fromkeys(("limp", "antalgic_gait", "hobbling", "limping_leg"), ("limping",)),
     **dict.fromkeys(("walking_with_cane", "walking_with_crutch"), ("walking_with_stick",)),
     **dict.fromkeys(("walking_with_rollator", "walking_with_frame"), ("walking_with_walker",)),
     **dict.fromkeys(("carry", "carrying_box", "carrying_bag"), ("carrying",)),
@@ -63,13 +67,35 @@ NEARBY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("mark_time", "stepping_in_place"), ("jogging_in_place",)),
     **dict.fromkeys(("hitting", "striking"), ("punching",)),
     **dict.fromkeys(("turning", "turn"), ("body_rotating",)),
-    **dict.fromkeys(("walking_towards", "walking_away", "marching"), ("walking",)),
+    **dict.fromkeys(("marching", "short_steps", "walking_slowly", "walking_fast"), ("walking",)),
     **dict.fromkeys(("hopping", "hop", "leaping"), ("jumping",)),
     **dict.fromkeys(("jack", "jacks"), ("jumping_jacks",)),
     **dict.fromkeys(("lunge", "lunges", "lunging"), ("right_lunge",)),
     **dict.fromkeys(("raise_arm",), ("raising_right_arm",)),
     **dict.fromkeys(("eating", "sipping"), ("drinking",)),
     **dict.fromkeys(("drawing",), ("writing_seated",)),
+    **dict.fromkeys(("staggering",), ("stumbling",)),
+    **dict.fromkeys(("crutches", "walking_on_crutches"), ("walking_with_stick",)),
+    **dict.fromkeys(("left_limb_extension",), ("raising_left_arm_and_leg",)),
+    **dict.fromkeys(("right_limb_extension",), ("raising_right_arm_and_leg",)),
+    **dict.fromkeys(("left_upper_limb_extension",), ("raising_left_arm",)),
+    **dict.fromkeys(("right_upper_limb_extension",), ("raising_right_arm",)),
+    **dict.fromkeys(("both_upper_limb_extension",), ("raising_arms",)),
+}
+# {word: our name that it is, and the key that makes the difference}.
+WITH_KEY: dict[str, tuple[str, str]] = {
+    **dict.fromkeys(
+        ("walking_towards", "walk_towards", "towards_walk", "walking_towards_radar", "approaching"),
+        ("walking", "motion.angle_deg: 180, towards the radar"),
+    ),
+    **dict.fromkeys(
+        ("walking_away", "walk_away", "walking_away_from_radar", "departing"),
+        ("walking", "motion.angle_deg: 0, away from the radar"),
+    ),
+    **dict.fromkeys(
+        ("walking_sideways", "walking_across", "walking_tangentially"),
+        ("walking", "motion.angle_deg: 90, across the line of sight"),
+    ),
 }
 # Movements that no model of ours makes, nor one that means the same.
 UNKNOWN = frozenset(
@@ -95,6 +121,14 @@ UNKNOWN = frozenset(
         # of another meaning than the name of ours whose letters they nearly have
         *("pinching", "picking_nose", "licking", "talking", "falling_asleep", "sitting_up"),
         *("failing", "filling", "weaving"),
+        # classes of public data sets: NTU RGB+D, Widar, CI4R and others
+        *("eating_meal", "eat_meal", "brushing_teeth", "dropping", "drop", "throw", "reading"),
+        *("tearing_paper", "tear_up_paper", "put_on_jacket", "take_off_jacket", "pointing"),
+        *("phone_call", "playing_with_phone", "taking_selfie", "check_time", "rub_two_hands"),
+        *("nod_head", "shake_head", "wipe_face", "salute", "cross_hands", "sneeze", "headache"),
+        *("chest_pain", "back_pain", "neck_pain", "nausea", "fan_self", "pat_on_back", "hugging"),
+        *("handshaking", "walking_apart", "push_pull", "sweep", "slide", "draw_circle"),
+        *("draw_zigzag", "scissors_gait", "coughing", "sweeping", "mopping", "cooking"),
     }
 )
 FROM_FILES = "no model moves like this; motion files can (docs/guide/motion_files.md)"
@@ -115,6 +149,9 @@ def advice_on(name: str, known: Iterable[str], otherwise: str) -> str:
     meant = meaning_of(name, names)
     if meant is not None:
         return f"did you mean {meant!r}?"
+    same, key = WITH_KEY.get(word, ("", ""))
+    if same in names:
+        return f"it is {same!r} with {key}"
     near = next((candidate for candidate in NEARBY.get(word, ()) if candidate in names), None)
     if near is not None:
         return f"{near!r} comes near it"

@@ -17,6 +17,9 @@ from radhar_cli.config.number import NOT_NEGATIVE, SECONDS, Number, Share, suppo
 from radhar_cli.config.section import Flag, N, Section
 
 MIN_MOVEMENT_S = 0.3
+UNKNOWN_MOVEMENT = (
+    "docs/reference/movements.md lists them; motion files have others (docs/guide/motion_files.md)"
+)
 BY_ITSELF = f"activities: [{NOBODY}, ...]"
 MAX_MOVEMENTS = 4096  # of a sequence, as streams of ten minutes have
 
@@ -137,7 +140,7 @@ def movement_named(word: str) -> str:
     """Name of the movement that a word of a file means."""
     name = meaning_of(word, MOVEMENTS)
     if name is None:
-        hint = advice_on(word, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
+        hint = advice_on(word, MOVEMENTS, UNKNOWN_MOVEMENT)
         raise value_error(f"{word!r} is not a movement; {hint}")
     return name
 

@@ -15,7 +15,7 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene import MAX_PLACES, Person, Redrawn, Scene, draw_scene, redrawn
 from radhar_cli.scene_checks.check_grid import GRID_HZ
 from radhar_cli.scene_checks.flags import Flags
-from radhar_cli.scene_checks.validity import SceneCheck, check_people, check_person
+from radhar_cli.scene_checks.validity import HALF_BAND, SceneCheck, check_people, check_person
 
 MAX_ATTEMPTS = 1000
 # Draws after which there are no more where none comes near, without and with lists to choose from.
@@ -49,7 +49,10 @@ def draw_valid_scene(
         scene = draw_scene(config, activity, index, len(misses))
         check = check_people(scene, scene.people[:1])
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
-            return _add_others(config, scene, check.flags)
+            flags = check.flags
+            if any(kind == HALF_BAND for kind, _ in misses):
+                flags |= Flags.REDRAWN
+            return _add_others(config, scene, flags)
         misses.append(check.miss)
         if len(misses) >= limit or config.on_invalid != "redraw" or is_hopeless(misses, draws):
             break
@@ -105,6 +108,8 @@ def _add_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Flag
             if refusal.reason is None and find_crowded(scene, number) is None:
                 flags |= check.flags & ~Flags.GATE  # which follows the sample's own person
                 break
+            if refusal.reason is not None and check.miss[0] == HALF_BAND:
+                flags |= Flags.REDRAWN
             if refusal.reason is not None and config.on_invalid != "redraw":
                 reason = f"people.{number - 1}: {refusal.reason}"
                 raise SceneError(f"{scene.name}: {reason}; {refusal.cure}")

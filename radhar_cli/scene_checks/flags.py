@@ -34,6 +34,7 @@ class Flags(IntFlag):
     SWEEP = 2048
     BRIDGED = 4096
     MARCHES = 8192
+    REDRAWN = 16384
 
 
 BLACK = (
@@ -65,6 +66,9 @@ WORDING = {
     "poses relative to the hips (MediaPipe's world landmarks, Human3.6M): the body marches on the "
     "spot and has no speed; add the path of the hips to all positions, or let the feet tell it: "
     "travel: feet of the class (--travel feet)",
+    Flags.REDRAWN: "drawn again, as somebody left the range half-band of this radar: a data set of "
+    "the same seed with another radar has other people in these scenes (nearer places, "
+    "motion.place or motion.range_m, or on_invalid: keep, give all radars the same people)",
     Flags.SWEEP: "positions are frozen during a sweep, in which a joint is so fast that its echo "
     "belongs more than a range cell elsewhere",
 }

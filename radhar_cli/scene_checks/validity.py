@@ -26,6 +26,7 @@ from radhar_cli.scene_checks.check_grid import CheckGrid, check_grids
 from radhar_cli.scene_checks.flags import BEHIND_M, BODY_RADIUS_M, WORDING, Flags
 from radhar_cli.scene_checks.sweep import sweep_shift
 
+HALF_BAND = "half-band"  # a miss that is of the radar alone
 MIN_DISTANCE_M = 0.05
 HEAD_M = 0.2  # from the highest joint to the top of the head
 REACH_M = 1.0  # distance of a segment's surface from its joints, at most
@@ -98,7 +99,7 @@ class SceneCheck:
             return "wall", self.inside_wall
         if Flags.RADAR in self.flags:  # by how much is not known
             return "radar", 0.0
-        return "half-band", self.beyond_band
+        return HALF_BAND, self.beyond_band
 
 
 def check_scene(scene: Scene) -> SceneCheck:

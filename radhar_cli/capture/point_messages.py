@@ -19,6 +19,7 @@ from radhar_cli.capture.point_frames import (
     no_targets,
 )
 from radhar_cli.capture.uart_packets import Packet
+from radhar_cli.dataset.formats.uart import Q_POINT
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.people_tracking.compressed_points import POINT, Polar
@@ -30,7 +31,6 @@ SPHERICAL, TARGETS, INDEX, COMPRESSED = 1000, 1010, 1011, 1020  # people trackin
 POINTS_OF_ANY = (DETECTED, EXTENDED, SPHERICAL, COMPRESSED)
 
 DESCRIPTOR = np.dtype([("count", "<u2"), ("q", "<u2")])
-Q_POINT = np.dtype([("range", "<u2"), ("doppler", "<i2"), ("peak", "<u2"), ("place", "<i2", (3,))])
 SIDE = np.dtype([("snr", "<i2"), ("noise", "<i2")])
 TENTH_DB = 0.1
 UNITS = 5  # floats before compressed points

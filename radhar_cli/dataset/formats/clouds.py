@@ -19,7 +19,12 @@ from numpy.typing import NDArray
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.radar import BoardRadar
-from radhar_cli.dataset.formats.uart import demo_frames, people_frames
+from radhar_cli.dataset.formats.uart import (
+    counting_frames,
+    demo_frames,
+    old_demo_frames,
+    people_frames,
+)
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
@@ -70,7 +75,12 @@ class Clouds(NamedTuple):
 
 
 Encode: TypeAlias = Callable[[Iterator[Float]], Iterator[bytes]]
-MESSAGES: Mapping[str | None, Encode] = {"people_tracking": people_frames, "sdk3": demo_frames}
+MESSAGES: Mapping[str | None, Encode] = {
+    "people_tracking": people_frames,
+    "people_counting": counting_frames,
+    "sdk3": demo_frames,
+    "sdk1": old_demo_frames,
+}
 Columns: TypeAlias = Callable[[Clouds], Sequence[Any]]
 
 
@@ -269,7 +279,7 @@ def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <split>/<class>/<sample>.csv into a folder, with the columns TI.
 
     Beside it stands <sample>.bin, what the board would have sent, of firmware whose message is
-    known: people tracking, and the out-of-box demo of SDK 3.
+    known: all but radhar's own.
 
     Raises:
         FolderError: there are no points.

@@ -4,6 +4,7 @@ import struct
 from collections.abc import Iterator, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.people_tracking.compressed_points import (
@@ -19,6 +20,11 @@ HEADER = 40  # bytes, with the magic word
 ALIGNED = 32  # bytes of which a frame is a multiple
 DETECTED_POINTS, SIDE_INFO = 1, 7  # messages of the out-of-box demo of SDK 3
 TENTH_DB = 10
+LEAST = 1e-9  # amplitude whose decibels are finite
+OLD_VERSION, OLD_PLATFORM, OLD_HEADER = 0x01020000, 0xA1443, 36  # of SDK 1
+Q_FORMAT = 10  # binary places of the coordinates of SDK 1, m
+Q_POINT = np.dtype([("range", "<u2"), ("doppler", "<i2"), ("peak", "<u2"), ("place", "<i2", (3,))])
+COUNTED_POINTS, COUNTING_HEADER = 6, 52  # of people counting
 
 
 def encode_frame(number: int, count: int, messages: Mapping[int, bytes]) -> bytes:
@@ -38,6 +44,53 @@ def encode_frame(number: int, count: int, messages: Mapping[int, bytes]) -> byte
     return MAGIC + struct.pack("<8I", *fields) + body + bytes(padding)
 
 
+def encode_old_frame(number: int, points: NDArray[np.void]) -> bytes:
+    """Write a frame of the demos of SDK 1: a shorter header, and points of whole numbers.
+
+    Args:
+        number: Number of the frame.
+        points: Points [n] of Q_POINT.
+    """
+    head = struct.pack("<2H", len(points), Q_FORMAT) if len(points) else b""
+    message = head + points.tobytes()
+    tlv = struct.pack("<2I", DETECTED_POINTS, len(message)) + message if len(points) else b""
+    padding = -(OLD_HEADER + len(tlv)) % ALIGNED
+    length = OLD_HEADER + len(tlv) + padding
+    fields = OLD_VERSION, length, OLD_PLATFORM, number, 0, len(points), int(len(points) > 0)
+    return MAGIC + struct.pack("<7I", *fields) + tlv + bytes(padding)
+
+
+def old_demo_frames(frames: Iterator[Float]) -> Iterator[bytes]:
+    """Write frames of points [n, 8] as the out-of-box demos of SDK 1 send them.
+
+    Places are in steps of 2^-10 m; those beyond 32 m are cut there.
+    """
+    limits = np.iinfo(np.int16)
+    for number, points in enumerate(frames):
+        packed = np.zeros(len(points), Q_POINT)
+        x, y, z = points[:, :3].T
+        places = np.round(np.column_stack([-y, x, z]) * 2.0**Q_FORMAT)
+        packed["place"] = np.clip(places, limits.min, limits.max)
+        packed["range"], packed["doppler"] = np.round(points[:, 6]), -np.round(points[:, 7])
+        packed["peak"] = np.clip(np.round(points[:, 4]), 0, np.iinfo(np.uint16).max)
+        yield encode_old_frame(number, packed)
+
+
+def counting_frames(frames: Iterator[Float]) -> Iterator[bytes]:
+    """Write frames of points [n, 8] as people counting sends them.
+
+    A point is range, azimuth to the right, Doppler away, and SNR as a ratio of powers.
+    """
+    for number, points in enumerate(frames):
+        polar = Polar.of_cloud(points)
+        numbers = [polar.range, polar.azimuth, polar.doppler, polar.snr]
+        message = np.column_stack(numbers).astype("<f4").tobytes()
+        tlv = struct.pack("<2I", COUNTED_POINTS, 8 + len(message)) + message if message else b""
+        length = COUNTING_HEADER + len(tlv)
+        fields = OLD_VERSION, 0xA1642, 0, length, number, 0, 0, 0, 0, 0
+        yield MAGIC + struct.pack("<10I2H", *fields, int(bool(message)), 0) + tlv
+
+
 def people_frames(frames: Iterator[Float]) -> Iterator[bytes]:
     """Write frames of points [n, 8] as people tracking sends them."""
     for number, points in enumerate(frames):
@@ -49,12 +102,14 @@ def people_frames(frames: Iterator[Float]) -> Iterator[bytes]:
 def demo_frames(frames: Iterator[Float]) -> Iterator[bytes]:
     """Write frames of points [n, 8] as the out-of-box demo of SDK 3 sends them.
 
-    The column of the noise is 0.
+    Noise is the level of a point less its SNR, both in tenths of a decibel.
     """
+    limits = np.iinfo(np.int16)
     for number, points in enumerate(frames):
         x, y, z, doppler = points[:, :4].T
         places = np.column_stack([-y, x, z, -doppler]).astype("<f4")
         snr = np.round(points[:, 5] * TENTH_DB)
-        side = np.column_stack([snr, np.zeros_like(snr)]).astype("<i2")
+        level = np.round(20 * TENTH_DB * np.log10(np.maximum(points[:, 4], LEAST)))
+        side = np.clip(np.column_stack([snr, level - snr]), limits.min, limits.max).astype("<i2")
         messages = {DETECTED_POINTS: places.tobytes(), SIDE_INFO: side.tobytes()}
         yield encode_frame(number, len(points), messages if len(points) else {})

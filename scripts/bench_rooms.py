@@ -30,7 +30,11 @@ body: {scatterers: surfaces}
 maps: [range_doppler, points]
 on_invalid: keep
 """
-SECOND = "people: [{activity: punching, motion: {range_m: 2.5, cross_range_m: 1}}]\n"
+SECOND = """
+people:
+  - activity: punching
+    motion: {place: {range_m: {uniform: [1, 6]}, cross_range_m: {uniform: [-2.5, 2.5]}}}
+"""
 TRACKING = ROOM.replace("cfg: iwr6843isk,", f"cfg: {ROOT}/tests/radar/cfg/people_isk_bpm.cfg,")
 DOCUMENTS = {
     "walker": ROOM + "duration_s: 12\n",

@@ -9,7 +9,7 @@ sections were fitted to measured clouds (docs/guide/boards.md).
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from math import pi
 from typing import NamedTuple
 
@@ -20,7 +20,7 @@ from radhar_cli.bodies.segment_paths import Body
 from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.motion.protocol import Motion, cached_result
 from radhar_cli.motion.segments import REFERENCE_STATURE, cross, soft_unit, unit
-from radhar_cli.numerics.arrays import Complex, Float, Index
+from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
 from radhar_cli.radar.room import Point
 from radhar_cli.radar.transmission import pass_wall
@@ -108,7 +108,7 @@ class SurfacePaths(OfMotion):
     def places(self, t: Float) -> tuple[Float, Index]:
         """Middles of the segments, which shadows fall on, as `PlacedPaths.places`."""
         placed, segment = self.body.at(t), self.drawn.segment
-        return 0.5 * (placed.start + placed.end), segment[np.isin(segment, self.scattering)]
+        return 0.5 * (placed.start + placed.end), segment[self._scatters]
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s)."""
@@ -134,9 +134,15 @@ class SurfacePaths(OfMotion):
         if self.wall is not None:
             cosine = pass_wall(p, self.antennas, self.wall, self.fc, tau, a)
             layers = self.wall.layers
-        chosen = np.isin(self.drawn.segment, self.scattering)
         tau -= (np.angle(self.drawn.weight) / (2 * pi * self.fc))[:, None]  # less than lambda/2
-        return Paths(tau, a, Through.of(layers, cosine)).only(chosen)
+        paths = Paths(tau, a, Through.of(layers, cosine))
+        return paths if self._scatters.all() else paths.only(self._scatters)
+
+    @cached_property
+    def _scatters(self) -> Bool:
+        """Whether each point [I] scatters."""
+        scatters: Bool = np.isin(self.drawn.segment, self.scattering)
+        return scatters
 
     def _centre(self) -> Point:
         """What surfaces face: the array, or the middle of the antennas."""

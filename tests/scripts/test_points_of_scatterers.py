@@ -44,3 +44,20 @@ def test_a_row_has_the_errors_of_its_chain(study: ModuleType) -> None:
     assert cells[3].strip() == "0 of 2"
     assert abs(float(cells[4].split("+-")[0])) < 20
     assert len(cells) == len(study.HEAD.splitlines()[0].split("|"))
+
+
+def test_bpm_has_three_decibels_less_noise_and_more_points(study: ModuleType) -> None:
+    """Peaks rise by less than 3 dB: what moves leaks between the two transmitters."""
+    noise, peaks, counts = study.compare_bpm(8)
+    assert noise == pytest.approx(-3.0, abs=0.15)
+    assert 0.8 < peaks[0] - peaks[1] < 3.0
+    assert counts[0] > 1.1 * counts[1]
+
+
+@pytest.mark.parametrize("name", ["people_counting, IWR1642BOOST", "sdk1, IWR1443BOOST"])
+def test_older_boards_find_single_scatterers_too(study: ModuleType, name: str) -> None:
+    board, find = study.chains()[name]
+    cells = study.row_of(name, board, find, 6, 2).split("|")
+    assert int(cells[3].split()[0]) <= 1
+    assert abs(float(cells[4].split("+-")[0])) < 40
+    assert abs(float(cells[7].split("+-")[0])) < 0.1

@@ -11,10 +11,12 @@ import numpy as np
 from radhar_cli.assembly.processing import chirp_window_of
 from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.config.radar import (
+    ArrayRadar,
     BeamConfig,
     BoardRadar,
     CwRadar,
     FmcwRadar,
+    FramesRadar,
     ImpulseRadar,
     SfcwRadar,
 )
@@ -30,10 +32,11 @@ from radhar_cli.scene import Scene
 Vector: TypeAlias = tuple[float, float, float]
 
 
-def board_of(radar: BoardRadar[float], seconds: float = 0.0) -> Board:
-    """Make the board of a `radar.cfg`, with the frames of so many seconds, at least one."""
+def board_of(radar: ArrayRadar[float], seconds: float = 0.0) -> Board:
+    """Make the board of a radar with frames, as many as so many seconds have, at least one."""
     header, array = radar.header, radar.elements
     assert array is not None  # refused where the config is read
+    ends = ends_of(radar)
     frames = max(int(seconds / header.period_s + 1e-9), 1)
     return Board(
         array=array,
@@ -48,7 +51,7 @@ def board_of(radar: BoardRadar[float], seconds: float = 0.0) -> Board:
         loops=header.loops,
         frames=min(frames, header.frames or frames),
         period=header.period_s,
-        position=radar.position_m,
+        position=radar.position_m if ends is None else middle_of(*ends),
         yaw=radians(radar.yaw_deg),
         tilt=radians(radar.tilt_deg),
         roll=radians(radar.roll_deg),
@@ -63,13 +66,27 @@ def board_of(radar: BoardRadar[float], seconds: float = 0.0) -> Board:
         burst_s=header.loop_s if header.has_bursts else None,
         delay=header.delay_s,
         subframe=header.subframe,
+        ends=ends,
     )
 
 
-def detection_of(radar: BoardRadar, processing: ProcessingConfig) -> Detection:
+def ends_of(radar: ArrayRadar[float]) -> tuple[Vector, Vector] | None:
+    """Places of transmitter and receiver that stand in the scene; None for those of an array."""
+    if not isinstance(radar, FramesRadar) or radar.tx_m is None or radar.rx_m is None:
+        return None
+    return radar.tx_m, radar.rx_m
+
+
+def middle_of(tx: Vector, rx: Vector) -> Vector:
+    """Middle between two places, m."""
+    x, y, z = (np.array(tx) + np.array(rx)) / 2
+    return float(x), float(y), float(z)
+
+
+def detection_of(radar: ArrayRadar, processing: ProcessingConfig) -> Detection:
     """Read detection from the .cfg, as far as the board heeds it; clutter is the config's."""
     detection = replace(radar.header.detection, remove_mean=processing.clutter == "mean")
-    device = DEVICES.get(str(radar.device))
+    device = DEVICES.get(str(radar.device)) if isinstance(radar, BoardRadar) else None
     return detection if device is None or device.heeds_limits else detection.without_limits()
 
 
@@ -80,7 +97,7 @@ def waveform_of(scene: Scene) -> Waveform:
     residual_video_phase, centred = False, processing.range_reference == "centre"
     window = RECTANGULAR
     match radar:
-        case BoardRadar():
+        case ArrayRadar():
             waveform = board_of(radar, scene.seconds).waveform
             return replace(waveform, window=chirp_window_of(processing))
         case ImpulseRadar():
@@ -114,7 +131,7 @@ def waveform_of(scene: Scene) -> Waveform:
 def antennas_of(scene: Scene) -> Antennas:
     """Make the antennas of a scene; for a board those of its first channel."""
     radar = scene.radar
-    if isinstance(radar, BoardRadar):
+    if isinstance(radar, ArrayRadar):
         board = board_of(radar)
         return board.antennas(*board.pairs[0])
     return Antennas(

@@ -12,7 +12,7 @@ from radhar_cli.capture.content import Beat, describe_difference
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import CaptureError
 from radhar_cli.products.plan import plan
 from radhar_cli.products.run import run
@@ -36,7 +36,7 @@ def frames_of_recording(
 
     Args:
         recording: recording of the board.
-        config: config with the board's `radar.cfg`.
+        config: config with the radar of the frames.
         names: products of a cube, such as range_doppler or cloud.
         start: begin of the part of the recording that is used, s; None is the start.
         stop: end of that part, s; None is the end. Frames that are whole within it are used.
@@ -71,14 +71,16 @@ def _board(recording: Recording, config: Config) -> Board:
         CaptureError: the config has no board, or another.
     """
     radar = fixed_radar(config)
-    if not isinstance(radar, BoardRadar):
-        raise CaptureError(f"{recording.path}: frames need the board's .cfg: radar.cfg")
+    if not isinstance(radar, ArrayRadar):
+        raise CaptureError(
+            f"{recording.path}: frames need a radar that has them: radar.cfg or radar.frame"
+        )
     board, info = board_of(radar), recording.info
     difference = describe_difference(info.content, Beat(timing_of(board)))
     if info.receivers != board.channels:
         difference = f"receivers = {info.receivers}: should be {board.channels}"
     if difference is not None:
-        raise CaptureError(f"{recording.path}: {difference}, as radar.cfg has it")
+        raise CaptureError(f"{recording.path}: {difference}, as {radar.named} has it")
     return board
 
 

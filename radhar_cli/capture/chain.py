@@ -22,7 +22,7 @@ from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
 from radhar_cli.config.data_set import AnyConfig
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Bool, Complex
 from radhar_cli.numerics.phasor import unit_phasor
@@ -209,12 +209,12 @@ def _range_signal(
     duration = part.segments.pulses / part.segments.prf
     waveform = content.waveform(duration, processing.range_fft_length, centred)
     radar = fixed_radar(config)
-    if isinstance(radar, BoardRadar):  # whose samples have no half band
+    if isinstance(radar, ArrayRadar):  # whose samples have no half band
         board = board_of(radar)
         if isinstance(content, Beat) and content.samples != board.samples:
             raise CaptureError(
                 f"{part.recording.path}: samples = {content.samples}: should be {board.samples}, "
-                "as radar.cfg has it"
+                f"as {radar.named} has it"
             )
         waveform = replace(board.waveform, centred=centred)
     if isinstance(content, Beat):

@@ -11,7 +11,7 @@ from radhar_cli.capture.chain import Maps
 from radhar_cli.capture.recording import RecordingInfo
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.identity import resolved
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.frames_panel import BoardFrames, draw_frames
 from radhar_cli.figures.maps_panel import MapsPage, draw_maps
@@ -49,7 +49,7 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
             for name, power_map in maps.maps.items():
                 write_map(file, name, power_map)
             if maps.board is not None:
-                assert isinstance(config.radar, BoardRadar)
+                assert isinstance(config.radar, ArrayRadar)
                 end = config.radar.ends_in_files[""]
                 write_frames(file, {end: (maps.board, maps.frames)}, config)
             if maps.track is not None:

@@ -4,11 +4,11 @@ from radhar_cli.config.annotations import OfRadar, OnlyMaps, Unless
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import DOPPLER_TIME_KINDS, MAP_KINDS, RTM, Transform
 
-BOARD = OfRadar("board")
+BOARD = OfRadar("board", "frames")
 NO_BOARD = OfRadar("fmcw", "sfcw", "cw", "impulse")
-CHIRPS = OfRadar("fmcw", "sfcw", "board")
-NO_IMPULSE = OfRadar("fmcw", "sfcw", "cw", "board")
-EVEN = Unless("radar.frames_apart", "the pauses between a board's frames (radar.cfg)")
+CHIRPS = OfRadar("fmcw", "sfcw", "board", "frames")
+NO_IMPULSE = OfRadar("fmcw", "sfcw", "cw", "board", "frames")
+EVEN = Unless("radar.frames_apart", "the pauses between frames (radar.cfg or radar.frame)")
 RANGE_TIME = OnlyMaps((str(RTM),))
 SIGNAL_MAPS = OnlyMaps(tuple(MAP_KINDS))
 OVER_RANGE = OnlyMaps((str(RTM), *(kind.name for kind in FRAME_MAP_KINDS.values())))

@@ -173,6 +173,9 @@ class ActsIfNull:
         return f"{self.key}: null"
 
 
+_KEYS_OF_FRAMES = {"board": "radar.cfg", "frames": "radar.frame"}
+
+
 @dataclass(frozen=True)
 class OfRadar:
     """The key acts only with radars of some kinds."""
@@ -193,9 +196,10 @@ class OfRadar:
     @property
     def right(self) -> str:
         """What would tell one of the kinds, in words."""
-        waveforms = [kind for kind in self.kinds if kind != "board"]
+        waveforms = [kind for kind in self.kinds if kind not in ("board", "frames")]
         words = [f"radar.waveform: {' or '.join(waveforms)}"] if waveforms else []
-        return " or ".join((*words, *["radar.cfg"] * ("board" in self.kinds)))
+        words += [key for kind, key in _KEYS_OF_FRAMES.items() if kind in self.kinds]
+        return " or ".join(words)
 
 
 Condition: TypeAlias = ActsIf | ActsIfAny | ActsIfNull | Unless | OfRadar

@@ -1,7 +1,7 @@
 """Which maps the radar of a config makes, and why not the others."""
 
 from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.processing.map_kind import MAP_KINDS
 
@@ -13,7 +13,7 @@ def possible_maps(config: Request) -> tuple[str, ...]:
     """
     radar = config.radar
     names = [*MAP_NAMES, *FRAME_MAPS, "cube"]
-    if isinstance(radar, BoardRadar) and config.processing.savgol.frame > radar.header.loops:
+    if isinstance(radar, ArrayRadar) and config.processing.savgol.frame > radar.header.loops:
         denoised = {name for name, kind in MAP_KINDS.items() if kind.treatment.denoised}
         names = [name for name in names if name not in denoised]
     return tuple(name for name in names if why_no_map(config, name) is None)
@@ -24,7 +24,7 @@ def why_no_map(config: AnyRequest, name: str) -> str | None:
     radar = config.radar
     if name in (*FRAME_MAPS, "cube"):
         why = radar.why_no_frames(name)
-        if why is None and name == "points" and isinstance(radar, BoardRadar):
+        if why is None and name == "points" and isinstance(radar, ArrayRadar):
             chain = config.cloud.chain if isinstance(config, Request) else "best"
             why = radar.why_no_points(chain)
         return why
@@ -39,5 +39,5 @@ def _gating(config: AnyRequest) -> str | None:
     if processing.range_sum != "gated":
         return None
     by_default = "range_sum" not in processing.model_fields_set
-    is_board = isinstance(config.radar, BoardRadar)
+    is_board = isinstance(config.radar, ArrayRadar)
     return "processing.range_sum: gated" + ", the default of boards," * (by_default and is_board)

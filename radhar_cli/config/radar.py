@@ -1,14 +1,22 @@
-"""The radar: five kinds, each with the keys that it alone has.
+"""The radar: six kinds, each with the keys that it alone has.
 
-`radar:` is the one that `cfg` or `waveform` tells. A kind answers for itself: what its pulses are,
-which maps it makes, and why not the others.
+`radar:` is the one that `cfg`, `frame` or `waveform` tells. A kind answers for itself: what its
+pulses are, which maps it makes, and why not the others.
 """
 
 from itertools import pairwise
 from math import radians
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, Self, TypeAlias
 
-from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, field_validator
+from pydantic import (
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    field_validator,
+    model_validator,
+)
 
 from radhar_cli.config.annotations import GIVEN, ActsIf, ActsIfAny, ByModel
 from radhar_cli.config.maps import MIN_LOOPS
@@ -118,7 +126,10 @@ class AnyRadar(Section, Generic[N]):
 
     def why_no_frames(self, name: str) -> str | None:
         """Say why the radar does not make a map of frames, or their cube; None if it does."""
-        return f"{name} is of the frames of a board (radar.cfg, docs/guide/boards.md)"
+        return (
+            f"{name} is of frames: those of a board (radar.cfg), or radar.frame of an FMCW radar, "
+            "such as 'frame: {chirps: 64}'"
+        )
 
 
 class _Pulses(AnyRadar[N], Generic[N]):
@@ -299,38 +310,178 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
         return super().why_no_map(kind, gating)
 
 
-class BoardRadar(_Emission[N], Generic[N]):
+class ArrayRadar(_Emission[N], Generic[N]):
+    """A radar that sends frames of chirps and receives them by an array: what all of them are."""
+
+    waveform: Literal["fmcw"] = "fmcw"
+    """Waveform of a radar with frames, which sends chirps."""
+    position_m: VectorOf[N] = default_draw((0.0, 0.0, 1.0))
+    """Position of the array: range, cross-range, height."""
+    yaw_deg: Annotated[N, ANGLE] = default_draw(0.0)
+    """Angle of the boresight from the x axis, positive to the left."""
+    tilt_deg: Annotated[N, ANGLE] = default_draw(0.0)
+    """Angle of the boresight below the horizontal, positive down."""
+    roll_deg: Annotated[N, ANGLE] = default_draw(0.0)
+    """Angle by which the array is turned about its boresight, positive where its left side, looking
+    out of it, goes up."""
+    antenna_gain_dbi: Annotated[N, DECIBEL, within(-150, 150, "dBi")] = default_draw(9.0)
+    """Gain of each antenna at its boresight."""
+    half_power_deg: tuple[HalfPower, HalfPower] | None = None
+    """Half-power half-widths of an element in azimuth and elevation; null is the device's, and none
+    of an array by hand."""
+    half_wavelength_m: Annotated[float, Field(gt=0, le=1, strict=True)] | None = None
+    """Unit of an array's places; null is c/(2 f_c), where f_c is the middle of the sampled band."""
+
+    chirps_key: ClassVar[str]  # as messages name what says how many loops a frame has
+
+    @property
+    def header(self) -> "BoardHeader":
+        """Chirps, frames and samples of the radar."""
+        raise NotImplementedError
+
+    @property
+    def elements(self) -> Array | None:
+        """Antenna elements of the radar; None where nothing says them."""
+        raise NotImplementedError
+
+    @property
+    def other_subframes(self) -> dict[str, int]:
+        """Numbers of the subframes but the chosen one, {end of names: number}."""
+        return {}
+
+    @property
+    def ends_in_files(self) -> dict[str, str]:
+        """Ends of the names of what is stored of each subframe, {end of products: end in files}."""
+        return {"": ""}
+
+    @property
+    def first_subframe(self) -> Self:
+        """This radar with subframe 0 chosen."""
+        return self
+
+    @property
+    def frames_apart(self) -> bool:
+        """Whether the radar pauses between its frames."""
+        return self.header.frames_apart
+
+    @property
+    def place_keys(self) -> tuple[str, ...]:
+        """Key of the place of the array."""
+        return ("position_m",)
+
+    @property
+    def usual_noise_figure_db(self) -> float:
+        """Noise figure of a radar whose elements stand in the config, dB."""
+        return NOISE_FIGURE_DB
+
+    @property
+    def virtual_places(self) -> Places:
+        """Places of the virtual elements, half wavelengths; none where elements are missing."""
+        array, header = self.elements, self.header
+        if array is None:
+            return ()
+        if max(header.order) >= len(array.tx) or max(header.receivers) >= len(array.rx):
+            return ()
+        scale = 1.0
+        if self.half_wavelength_m is not None:
+            swept = header.slope_hz * (header.samples - 1) / header.adc_rate_hz
+            centre = header.carrier_hz + swept / 2
+            scale = self.half_wavelength_m * 2 * centre / SPEED_OF_LIGHT
+        return tuple(
+            (scale * (array.tx[t][0] + array.rx[r][0]), scale * (array.tx[t][1] + array.rx[r][1]))
+            for t in header.order
+            for r in header.receivers
+        )
+
+    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
+        """Say why the radar does not make a map: its frames may be too short for a window."""
+        if kind.is_doppler_time and self.header.loops < MIN_WINDOW:
+            return (
+                f"the {self._loops} of a frame ({self.chirps_key}) are fewer than "
+                f"{MIN_WINDOW} pulses"
+            )
+        return super().why_no_map(kind, gating)
+
+    def why_no_frames(self, name: str) -> str | None:
+        """Say why the radar does not make a map of its frames; None if it does.
+
+        A board that lacks elements which its .cfg names is refused elsewhere.
+        """
+        kind = FRAME_MAP_KINDS.get(name)  # none of the points
+        shows_doppler = name == "points" or (kind is not None and kind.shows_doppler)
+        if shows_doppler and 1 < self.header.loops < MIN_LOOPS:  # a window keeps a loop of one
+            return (
+                f"the {self._loops} of a frame ({self.chirps_key}) show no Doppler; "
+                f"{MIN_LOOPS} do, or 1, whose Doppler is 0"
+            )
+        axis = None if kind is None else kind.array_axis
+        if axis is None:
+            return None
+        roll: Number = self.roll_deg  # type: ignore[assignment]  # of a config or a scene
+        for side in {axis_after_roll(axis, radians(end)) for end in support(roll)}:
+            if len({round(place[side], 6) for place in self.virtual_places}) == 1:
+                rolled = " of the board that is rolled (radar.roll_deg)" if side != axis else ""
+                return f"all elements of the array lie in one {('column', 'row')[side]}{rolled}"
+        return None
+
+    @property
+    def likely_chain(self) -> Chain:
+        """The firmware's chain whose commands the file has, unless elements or masks do not fit."""
+        firmware = self.header.firmware
+        if firmware is None or self.why_no_points(firmware) is not None:
+            return "best"
+        return firmware
+
+    def why_no_points(self, chain: Chain) -> str | None:
+        """Say why a chain does not find points with the radar; None if it does."""
+        return self._why_no_azimuths(chain)
+
+    def _why_no_azimuths(self, chain: Chain) -> str | None:
+        """Say why the elements of the array do not tell azimuths apart; None if they do.
+
+        Firmware takes the elements of a row for neighbours, but for people tracking, whose .cfg has
+        their places. `best` knows them, but takes high sidelobes of a sparse row for targets.
+        """
+        if chain == "people_tracking" or (
+            chain == "board" and self.header.firmware == "people_tracking"
+        ):
+            return None
+        places = self.virtual_places
+        row = [places[v][0] for v in longest_rows(places, 0)[0]] if places else []
+        spacings = [right - left for left, right in pairwise(row)]
+        if not spacings:
+            return None
+        neighbours = min(spacings) >= 0.8 and max(spacings) <= 1.2
+        unambiguous = min(spacings) <= 1.2 and sidelobe(row) <= MAX_SIDELOBE
+        if neighbours or (chain == "best" and unambiguous):
+            return None
+        listed = ", ".join(f"{place:g}" for place in row)
+        return (
+            f"the longest row of the array, with elements at {listed} half wavelengths, does not "
+            f"tell azimuths apart for the points of cloud.chain: {chain}"
+        )
+
+    @property
+    def _loops(self) -> str:
+        return f"{self.header.loops} loop{'s' * (self.header.loops > 1)}"
+
+
+class BoardRadar(ArrayRadar[N], Generic[N]):
     """A TI board: the .cfg says its chirps, frames and receivers, the device its antennas."""
 
     kind: ClassVar[str] = "board"
     named: ClassVar[str] = "radar.cfg"
+    chirps_key: ClassVar[str] = "radar.cfg, frameCfg"
 
     cfg: Annotated[str, Field(min_length=1, max_length=2**16)]
     """The .cfg of a TI board, which gives the waveform: a path from this file's folder on, or a
     known radar (docs/guide/boards.md). A config that is written has its text."""
-    waveform: Literal["fmcw"] = "fmcw"
-    """Waveform of a board, which sends chirps."""
     device: Literal[tuple(DEVICES)] | None = None  # type: ignore[valid-type]
     """TI board that the .cfg runs on; it decides the antenna array."""
     array: ArrayConfig | None = None
     """Antenna array used instead of the device's."""
-    position_m: VectorOf[N] = default_draw((0.0, 0.0, 1.0))
-    """Position of the board: range, cross-range, height."""
-    yaw_deg: Annotated[N, ANGLE] = default_draw(0.0)
-    """Angle of the board's boresight from the x axis, positive to the left."""
-    tilt_deg: Annotated[N, ANGLE] = default_draw(0.0)
-    """Angle of the board's boresight below the horizontal, positive down."""
-    roll_deg: Annotated[N, ANGLE] = default_draw(0.0)
-    """Angle by which the board is turned about its boresight, positive where its left side, looking
-    out of it, goes up."""
-    antenna_gain_dbi: Annotated[N, DECIBEL, within(-150, 150, "dBi")] = default_draw(9.0)
-    """Gain of each antenna at its boresight."""
     subframe: Annotated[int, Field(ge=0, le=3, strict=True)] = 0
     """Number of the subframe (advFrameCfg of the .cfg) that images and Doppler-time maps are of."""
-    half_power_deg: tuple[HalfPower, HalfPower] | None = None
-    """Half-power half-widths of an element in azimuth and elevation; null is the device's."""
-    half_wavelength_m: Annotated[float, Field(gt=0, le=1, strict=True)] | None = None
-    """Unit of an array's places; null is c/(2 f_c), where f_c is the middle of the sampled band."""
 
     @property
     def header(self) -> "BoardHeader":
@@ -360,6 +511,11 @@ class BoardRadar(_Emission[N], Generic[N]):
         return {end: f"_sf{number}" if number else "" for end, number in numbers}
 
     @property
+    def first_subframe(self) -> Self:
+        """This board with subframe 0 chosen."""
+        return self.model_copy(update={"subframe": 0})
+
+    @property
     def carrier_hz(self) -> float:  # type: ignore[override]
         """Frequency at the first sample of a chirp that is kept, Hz."""
         return self.header.carrier_hz
@@ -385,20 +541,9 @@ class BoardRadar(_Emission[N], Generic[N]):
         return self.header.samples / self.header.adc_rate_hz
 
     @property
-    def frames_apart(self) -> bool:
-        """Whether the board pauses between its frames."""
-        return self.header.frames_apart
-
-    @property
-    def place_keys(self) -> tuple[str, ...]:
-        """Key of the place of the board."""
-        return ("position_m",)
-
-    @property
     def usual_noise_figure_db(self) -> float:
         """Noise figure of the device, or of boards whose elements `array` gives, dB."""
-        device = None if self.device is None else DEVICES[self.device]
-        return NOISE_FIGURE_DB if device is None else device.noise_figure_db
+        return NOISE_FIGURE_DB if self.device is None else DEVICES[self.device].noise_figure_db
 
     @property
     def elements(self) -> Array | None:
@@ -407,67 +552,9 @@ class BoardRadar(_Emission[N], Generic[N]):
             return None if self.device is None else DEVICES[self.device].array
         return Array(self.array.tx, self.array.rx, (1.0,) * len(self.array.rx), EVEN)
 
-    @property
-    def virtual_places(self) -> Places:
-        """Places of the virtual elements, half wavelengths; none where elements are missing."""
-        array, header = self.elements, self.header
-        if array is None:
-            return ()
-        if max(header.order) >= len(array.tx) or max(header.receivers) >= len(array.rx):
-            return ()
-        scale = 1.0
-        if self.half_wavelength_m is not None:
-            swept = header.slope_hz * (header.samples - 1) / header.adc_rate_hz
-            centre = header.carrier_hz + swept / 2
-            scale = self.half_wavelength_m * 2 * centre / SPEED_OF_LIGHT
-        return tuple(
-            (scale * (array.tx[t][0] + array.rx[r][0]), scale * (array.tx[t][1] + array.rx[r][1]))
-            for t in header.order
-            for r in header.receivers
-        )
-
-    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the board does not make a map: its frames may be too short for a window."""
-        if kind.is_doppler_time and self.header.loops < MIN_WINDOW:
-            return (
-                f"the {self._loops} of a frame (radar.cfg, frameCfg) are fewer than "
-                f"{MIN_WINDOW} pulses"
-            )
-        return super().why_no_map(kind, gating)
-
-    def why_no_frames(self, name: str) -> str | None:
-        """Say why the board does not make a map of its frames; None if it does.
-
-        A board that lacks elements which its .cfg names is refused elsewhere.
-        """
-        kind = FRAME_MAP_KINDS.get(name)  # none of the points
-        shows_doppler = name == "points" or (kind is not None and kind.shows_doppler)
-        if shows_doppler and 1 < self.header.loops < MIN_LOOPS:  # a window keeps a loop of one
-            return (
-                f"the {self._loops} of a frame (radar.cfg, frameCfg) show no Doppler; "
-                f"{MIN_LOOPS} do, or 1, whose Doppler is 0"
-            )
-        axis = None if kind is None else kind.array_axis
-        if axis is None:
-            return None
-        roll: Number = self.roll_deg  # type: ignore[assignment]  # of a config or a scene
-        for side in {axis_after_roll(axis, radians(end)) for end in support(roll)}:
-            if len({round(place[side], 6) for place in self.virtual_places}) == 1:
-                rolled = " of the board that is rolled (radar.roll_deg)" if side != axis else ""
-                return f"all elements of the array lie in one {('column', 'row')[side]}{rolled}"
-        return None
-
-    @property
-    def likely_chain(self) -> Chain:
-        """The firmware's chain whose commands the file has, unless elements or masks do not fit."""
-        firmware = self.header.firmware
-        if firmware is None or self.why_no_points(firmware) is not None:
-            return "best"
-        return firmware
-
     def why_no_points(self, chain: Chain) -> str | None:
         """Say why a chain does not find points on the board; None if it does."""
-        return self._why_no_pair(chain) or self._why_no_azimuths(chain)
+        return self._why_no_pair(chain) or super().why_no_points(chain)
 
     def _why_no_pair(self, chain: Chain) -> str | None:
         """Say why a demo does not take the chirps in which two transmitters send together.
@@ -490,34 +577,104 @@ class BoardRadar(_Emission[N], Generic[N]):
             f"takes {right} (cloud.chain: {chain})"
         )
 
-    def _why_no_azimuths(self, chain: Chain) -> str | None:
-        """Say why the elements of the board do not tell azimuths apart; None if they do.
 
-        Firmware takes the elements of a row for neighbours, but for people tracking, whose .cfg has
-        their places. `best` knows them, but takes high sidelobes of a sparse row for targets.
-        """
-        if chain == "people_tracking" or (
-            chain == "board" and self.header.firmware == "people_tracking"
-        ):
-            return None
-        places = self.virtual_places
-        row = [places[v][0] for v in longest_rows(places, 0)[0]] if places else []
-        spacings = [right - left for left, right in pairwise(row)]
-        if not spacings:
-            return None
-        neighbours = min(spacings) >= 0.8 and max(spacings) <= 1.2
-        unambiguous = min(spacings) <= 1.2 and sidelobe(row) <= MAX_SIDELOBE
-        if neighbours or (chain == "best" and unambiguous):
-            return None
-        listed = ", ".join(f"{place:g}" for place in row)
-        return (
-            f"the longest row of the array, with elements at {listed} half wavelengths, does not "
-            f"tell azimuths apart for the points of cloud.chain: {chain}"
-        )
+class FrameConfig(Section):
+    """Frames of a radar: so many chirps, and a pause until the next frame."""
+
+    chirps: Annotated[int, Field(ge=1, le=2**14, strict=True)]
+    """Number of chirps of each transmitter in a frame: the pulses of a range-Doppler map."""
+    interval_s: Annotated[float, Field(gt=0, le=1e3, strict=True)] | None = None
+    """Time from chirp to chirp, of whichever transmitter; null is 1/(prf_hz times the number of
+    transmitters), or chirp_s without prf_hz."""
+    period_s: Annotated[float, Field(gt=0, le=1e4, strict=True)] | None = None
+    """Time from frame to frame; null is that of the chirps, without a pause."""
+
+
+class ElementsConfig(Section):
+    """Antenna elements of a radar with frames, (left, up) in half wavelengths, looking out."""
+
+    tx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=16)] = ((0.0, 0.0),)
+    """Places of the transmitters, which take turns, chirp by chirp, in this order."""
+    rx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=16)] = ((0.0, 0.0),)
+    """Places of the receivers."""
+
+
+ONE_PAIR = ElementsConfig.model_construct()
+
+
+class FramesRadar(ArrayRadar[N], Generic[N]):
+    """A radar with frames whose numbers stand in the config, as its data sheet has them."""
+
+    kind: ClassVar[str] = "frames"
+    named: ClassVar[str] = "radar.frame"
+    chirps_key: ClassVar[str] = "radar.frame.chirps"
+
+    frame: FrameConfig
+    """Frames of the radar, which range-Doppler and angle maps, cubes, points and skeletons are
+    of."""
+    carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True)] = 77e9  # type: ignore[assignment]
+    """Frequency at the first sample of a chirp."""
+    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True)] = 1e9  # type: ignore[assignment]
+    """Bandwidth that a chirp sweeps while it is sampled."""
+    adc_rate_hz: Annotated[float, Field(ge=1e-3, le=1e13, strict=True)] = 10e6  # type: ignore[assignment]
+    """Sampling rate of the ADC within a chirp."""
+    chirp_s: Annotated[float, Field(ge=1e-12, le=1e4, strict=True)] = 40e-6  # type: ignore[assignment]
+    """Duration of the sampled sweep."""
+    prf_hz: Annotated[float, Field(ge=1e-3, le=1e7, strict=True)] | None = None  # type: ignore[assignment]
+    """Chirps of each transmitter per second, within a frame; null is by frame.interval_s."""
+    output: Literal["iq", "real"] = "iq"
+    """Samples of the receivers: iq, or real for one channel of the mixer, whose range bins are
+    those of half the band."""
+    array: ElementsConfig = ONE_PAIR
+    """Antenna elements; one transmitter and one receiver at the same place unless given."""
+    tx_m: VectorOf[N] | None = None
+    """Place of one transmitter in the scene, with rx_m instead of array and position_m."""
+    rx_m: VectorOf[N] | None = None
+    """Place of one receiver in the scene."""
+
+    @model_validator(mode="after")
+    def _fill_prf(self) -> Self:
+        """Fill the rate of chirps that the interval gives."""
+        if self.prf_hz is None:
+            object.__setattr__(self, "prf_hz", 1 / (self.interval_s * len(self.array.tx)))
+        return self
 
     @property
-    def _loops(self) -> str:
-        return f"{self.header.loops} loop{'s' * (self.header.loops > 1)}"
+    def interval_s(self) -> float:
+        """Time from chirp to chirp, s."""
+        if self.frame.interval_s is not None:
+            return self.frame.interval_s
+        if self.prf_hz is not None:
+            return 1 / (self.prf_hz * len(self.array.tx))
+        return self.chirp_s
+
+    @property
+    def header(self) -> "BoardHeader":
+        """Header of a board that sends these frames."""
+        from radhar_cli.radar.written_frames import WrittenFrames  # slow to import
+
+        return WrittenFrames(
+            carrier_hz=self.carrier_hz,
+            bandwidth_hz=self.bandwidth_hz,
+            adc_rate_hz=self.adc_rate_hz,
+            chirp_s=self.chirp_s,
+            interval_s=self.interval_s,
+            chirps=self.frame.chirps,
+            period_s=self.frame.period_s,
+            transmitters=len(self.array.tx),
+            receivers=len(self.array.rx),
+            is_real=self.output == "real",
+        ).header
+
+    @property
+    def place_keys(self) -> tuple[str, ...]:
+        """Keys of the places of the antennas, or of the array."""
+        return ("position_m",) if self.tx_m is None else ("tx_m", "rx_m")
+
+    @property
+    def elements(self) -> Array:
+        """Antenna elements, which have no pattern unless half_power_deg gives one."""
+        return Array(self.array.tx, self.array.rx, (1.0,) * len(self.array.rx), EVEN)
 
 
 RADARS: tuple[type[AnyRadar[Any]], ...] = (
@@ -526,6 +683,7 @@ RADARS: tuple[type[AnyRadar[Any]], ...] = (
     CwRadar,
     ImpulseRadar,
     BoardRadar,
+    FramesRadar,
 )
 for _kind in RADARS:
     _kind.ALTERNATIVES = tuple(other for other in RADARS if other is not _kind)
@@ -537,7 +695,11 @@ def class_of_radar(value: Any) -> type[AnyRadar[Any]] | None:
         return type(value)
     if not isinstance(value, dict):
         return FmcwRadar  # which refuses what is no mapping
-    name = "board" if value.get("cfg") is not None else value.get("waveform", "fmcw")
+    name = value.get("waveform", "fmcw")
+    if value.get("cfg") is not None:
+        name = "board"
+    elif value.get("frame") is not None and name == "fmcw":
+        name = "frames"
     return next((radar for radar in RADARS if radar.kind == name), None)
 
 
@@ -547,10 +709,11 @@ def _tag_of_radar(value: Any) -> str | None:
     return None if radar is None else f"<{radar.kind}>"
 
 
-def _without_null_cfg(value: Any) -> Any:
-    """Drop `cfg: null`, by which a config leaves the board of its base."""
-    if isinstance(value, dict) and "cfg" in value and value["cfg"] is None:
-        return {key: inner for key, inner in value.items() if key != "cfg"}
+def _without_null(value: Any) -> Any:
+    """Drop `cfg: null` and `frame: null`, by which a config leaves the board of its base."""
+    if isinstance(value, dict):
+        nulls = {key for key in ("cfg", "frame") if key in value and value[key] is None}
+        return {key: inner for key, inner in value.items() if key not in nulls}
     return value
 
 
@@ -560,14 +723,20 @@ Radar: TypeAlias = Annotated[
     | Annotated[SfcwRadar[N], Tag("<sfcw>")]
     | Annotated[CwRadar[N], Tag("<cw>")]
     | Annotated[ImpulseRadar[N], Tag("<impulse>")]
-    | Annotated[BoardRadar[N], Tag("<board>")],
+    | Annotated[BoardRadar[N], Tag("<board>")]
+    | Annotated[FramesRadar[N], Tag("<frames>")],
     Discriminator(
         _tag_of_radar,
         custom_error_type="wrong",
-        custom_error_message="should have a waveform: fmcw, sfcw, cw or impulse; or cfg",
+        custom_error_message="should have a waveform: fmcw, sfcw, cw or impulse; or cfg, or frame",
     ),
-    BeforeValidator(_without_null_cfg),
+    BeforeValidator(_without_null),
 ]
 SceneRadar: TypeAlias = (
-    FmcwRadar[float] | SfcwRadar[float] | CwRadar[float] | ImpulseRadar[float] | BoardRadar[float]
+    FmcwRadar[float]
+    | SfcwRadar[float]
+    | CwRadar[float]
+    | ImpulseRadar[float]
+    | BoardRadar[float]
+    | FramesRadar[float]
 )

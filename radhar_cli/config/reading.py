@@ -48,7 +48,7 @@ Options: TypeAlias = dict[str, str]
 MAX_MISTAKES = 20
 MAX_VALUE, MAX_ADVICE = 200, 500  # characters of value and advice in a message
 
-_CHANNELS = "is not there: channels of a board come with radar.cfg (docs/guide/boards.md)"
+_CHANNELS = "is not there: channels come with radar.cfg or radar.frame (docs/guide/boards.md)"
 _PEOPLE = "is not there: `people` has others in a scene (docs/guide/scenes.md)"
 _UNMEASURED = (
     *("squat", "reach_deg", "free_arm", "kneel_s", "look_deg", "recline_from"),

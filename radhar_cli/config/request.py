@@ -52,7 +52,7 @@ from radhar_cli.config.number import Decibel, Positive, nominal, uniform, value_
 from radhar_cli.config.output import OutputConfig, SplitConfig
 from radhar_cli.config.people import BodyConfig, OneOf, PersonConfig, SubjectConfig
 from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
-from radhar_cli.config.radar import BoardRadar, FmcwRadar, Radar
+from radhar_cli.config.radar import ArrayRadar, FmcwRadar, Radar
 from radhar_cli.config.range_zone import range_zone
 from radhar_cli.config.receiver import ReceiverConfig
 from radhar_cli.config.recordings import RecordingsConfig
@@ -170,7 +170,7 @@ class Request(Section):
         points = (*OF_POINTS, *ghosts) if "points" in frames else ()
         people = OF_FRAMES if frames else ()
         of_frames = (*frames, *points, *people)
-        ends = self.radar.ends_in_files if isinstance(self.radar, BoardRadar) else {"": ""}
+        ends = self.radar.ends_in_files if isinstance(self.radar, ArrayRadar) else {"": ""}
         of_subframes = {
             name + in_files: name + end
             for end, in_files in ends.items()
@@ -185,7 +185,7 @@ class Request(Section):
         """Whether the direct engine makes something whose error is measured."""
         signals = set(self.maps) & set(MAP_NAMES) - {"rtm"}
         return self.engine.kind == "direct" and (
-            bool(signals) or isinstance(self.radar, BoardRadar)
+            bool(signals) or isinstance(self.radar, ArrayRadar)
         )
 
     def filled(self) -> Self:
@@ -207,7 +207,7 @@ class Request(Section):
             changed.setdefault("wall", {})["size_m"] = (None, *wall.size_m[1:])
         if self.receiver.noise_figure_db is not None and "snr_db" not in self.model_fields_set:
             changed.setdefault("", {})["snr_db"] = None
-        if isinstance(self.radar, BoardRadar):
+        if isinstance(self.radar, ArrayRadar):
             _fill_for_board(self, self.radar, changed)
         for name, value in changed.pop("", {}).items():
             object.__setattr__(self, name, value)
@@ -219,7 +219,7 @@ class Request(Section):
             filled = tuple(self._filled_person(n) for n in range(1, len(self.people) + 1))
             object.__setattr__(self, "people", filled)
         reads_ends = self.processing.range_reference == "start" and not isinstance(
-            self.radar, BoardRadar
+            self.radar, ArrayRadar
         )
         if reads_ends and not chosen_window:
             none = {"range_window": "rectangular"}  # as its sum reads the ends of a chirp
@@ -572,7 +572,7 @@ def _by_our_names(number: PerActivity[Any], known: Mapping[str, Activity]) -> Pe
     return PerActivity({names[word]: one for word, one in number.per_activity.items()})
 
 
-def _fill_for_board(c: Request, radar: BoardRadar, changed: dict[str, dict[str, Any]]) -> None:
+def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, Any]]) -> None:
     """Note the defaults that a board has of its own, of what was not given."""
     try:
         header = radar.header

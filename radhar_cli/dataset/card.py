@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.number import nominal
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import BoardRadar, FramesRadar
 from radhar_cli.dataset.card_contents import (
     describe_arrays,
     describe_classes,
@@ -236,6 +236,9 @@ def _radar_in_words(config: Config) -> str:
     radar, kind = config.radar, config.radar.kind
     if isinstance(radar, BoardRadar):
         return f"a TI {radar.device or 'board'} ({radar.carrier_hz / 1e9:.4g} GHz)"
+    if isinstance(radar, FramesRadar):
+        antennas = f"{len(radar.array.tx)} x {len(radar.array.rx)}"
+        return f"an FMCW radar with frames ({antennas} antennas, {radar.carrier_hz / 1e9:.4g} GHz)"
     carrier = f"{nominal(radar.carrier_hz) / 1e9:.4g} GHz"
     band = "" if kind == "cw" else f" + {nominal(radar.bandwidth_hz) / 1e9:.3g} GHz"
     name = {"fmcw": "an FMCW", "sfcw": "a stepped-frequency", "cw": "a CW"}.get(kind, "an impulse")

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.dataset.layout import row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.figures.page import DPI, page_of_rows, write_figure
@@ -54,7 +54,7 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
 def over_bones(data: Dataset, sample: int, points: Levels) -> Levels:
     """Draw a sheet of points [H, W] over its frames' true skeletons, if the joints are known."""
     radar = data.config.radar  # points are those of the subframe that images are of
-    name = "skeleton" + (radar.ends_in_files[""] if isinstance(radar, BoardRadar) else "")
+    name = "skeleton" + (radar.ends_in_files[""] if isinstance(radar, ArrayRadar) else "")
     skeletons = data.products[name][sample] if name in data.products else None
     if skeletons is None or skeletons.shape[2] != len(JOINTS):
         return points

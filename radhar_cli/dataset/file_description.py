@@ -10,7 +10,7 @@ from radhar_cli.assembly.room import kinds_of
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.config.maps import FRAME_MAPS
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.identity import identity, versions
@@ -140,7 +140,7 @@ def _describe_stream(file: h5py.File, config: Config) -> None:
 def _describe_products(file: h5py.File, config: Config) -> None:
     """Write the attributes of products, labels of people and slow time."""
     radar = config.radar
-    ends = radar.ends_in_files.values() if isinstance(radar, BoardRadar) else ("",)
+    ends = radar.ends_in_files.values() if isinstance(radar, ArrayRadar) else ("",)
     for end in ends:
         if f"products/points{end}" in file:
             file[f"products/points{end}"].attrs["columns"] = [*COLUMNS]

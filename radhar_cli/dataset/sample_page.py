@@ -12,7 +12,7 @@ from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.maps import FRAME_MAPS
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
@@ -77,8 +77,8 @@ def _sample_entry(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> 
     board, likely_scene = None, scene
     if scene is None and isinstance(config, Config):
         likely_scene = nominal_scene(config, activity)
-    if likely_scene is not None and isinstance(likely_scene.radar, BoardRadar):
-        radar = likely_scene.radar.model_copy(update={"subframe": 0})  # that has the plain names
+    if likely_scene is not None and isinstance(likely_scene.radar, ArrayRadar):
+        radar = likely_scene.radar.first_subframe  # that has the plain names
         board = board_of(radar, likely_scene.seconds)
     if scene is not None:
         view = view_scene(scene, tuple(map(motion_of, scene.people)))

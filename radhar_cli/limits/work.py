@@ -5,7 +5,7 @@ from math import inf
 from radhar_cli.assembly.processing import frames_of, fsst_frames_of
 from radhar_cli.assembly.radar import board_of, waveform_of
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import RadharError
 from radhar_cli.processing.map_kind import MAP_KINDS, Transform
 from radhar_cli.scene import nominal_scene
@@ -22,11 +22,11 @@ def counted_work(config: Config) -> Counts:
     scene = nominal_scene(config, config.chosen_activities[0])
     w = waveform_of(scene)
     channels = 1
-    if isinstance(scene.radar, BoardRadar):
+    if isinstance(scene.radar, ArrayRadar):
         board = board_of(scene.radar, scene.seconds)
         channels = board.channels
     holds_samples = (
-        isinstance(scene.radar, BoardRadar)
+        isinstance(scene.radar, ArrayRadar)
         or config.engine.kind == "cube"
         or "rtm" in config.maps
         or config.processing.range_sum == "gated"

@@ -2,7 +2,7 @@
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import support
-from radhar_cli.config.radar import BoardRadar, ImpulseRadar
+from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.echo.compiled import MIN_TERMS
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.accelerators import installed
@@ -20,7 +20,7 @@ def describe_acceleration(config: Config) -> str | None:
     Returns:
         A line; None where numba compiles nothing.
     """
-    if config.engine.precision == "double" or isinstance(config.radar, BoardRadar):
+    if config.engine.precision == "double" or isinstance(config.radar, ArrayRadar):
         return None
     kinds = (MAP_KINDS[name] for name in config.maps if name in MAP_KINDS)
     has_fsst = any(kind.transform == "fsst" for kind in kinds)

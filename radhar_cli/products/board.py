@@ -16,7 +16,7 @@ from radhar_cli.assembly.room import echo_ways_of
 from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import (
     combine_transmitters,
@@ -121,7 +121,7 @@ class CloudChain:
     @classmethod
     def of(cls, config: Config) -> "CloudChain":
         """Read `cloud` and the detection of `radar.cfg` of a config."""
-        assert isinstance(config.radar, BoardRadar)
+        assert isinstance(config.radar, ArrayRadar)
         cloud, header = config.cloud, config.radar.header
         return cls(
             None if cloud.chain == "best" else header.firmware,
@@ -140,7 +140,7 @@ def board_products(config: Config) -> Iterator[Product]:
     yield from _frame_rows(config)
     yield from _people_rows()
     yield from _signal_rows(config)
-    assert isinstance(config.radar, BoardRadar)
+    assert isinstance(config.radar, ArrayRadar)
     for end, number in config.radar.other_subframes.items():
         yield from _subframe_rows(config, end, number)
 
@@ -269,7 +269,7 @@ def _signal_rows(config: Config) -> Iterator[Product]:
 
 def make_board(scene: Scene) -> Board:
     """Make the board of a scene, with its array and chirps."""
-    assert isinstance(scene.radar, BoardRadar)
+    assert isinstance(scene.radar, ArrayRadar)
     return board_of(scene.radar, scene.seconds)
 
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol
 
 from radhar_cli.assembly.bodies import Link, sum_of_paths, trace_people
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.echo.exact import signal_power
 from radhar_cli.echo.impulse import impulse_power
 from radhar_cli.echo.knots import mean_power
@@ -109,7 +109,7 @@ def refers_to_other_paths(config: Config) -> bool:
     without what wall and beam take.
     """
     radar = config.radar
-    loses_power = config.wall is not None or isinstance(radar, BoardRadar) or radar.beam is not None
+    loses_power = config.wall is not None or isinstance(radar, ArrayRadar) or radar.beam is not None
     room = config.room
     has_others = room.reflectors or config.people or room.faces or room.back_wall_m is not None
     return (config.snr_reference == "free_space" and loses_power) or bool(has_others)

@@ -19,7 +19,7 @@ from dataclasses import replace
 from typing import assert_never
 
 from radhar_cli.config.data_set import AnyConfig, Config
-from radhar_cli.config.radar import BoardRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
+from radhar_cli.config.radar import ArrayRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
 from radhar_cli.errors import ConfigError
 from radhar_cli.extensions import own_products
 from radhar_cli.processing.map_kind import MAP_KINDS, TREATMENTS
@@ -101,7 +101,7 @@ def products_of_signals(config: AnyConfig) -> dict[str, Product]:
 def _radar_products(config: Config) -> Iterator[Product]:
     """Rows of the echo of the radar of a config."""
     match config.radar:
-        case BoardRadar():
+        case ArrayRadar():
             from radhar_cli.products.board import board_products  # slow to import
 
             _refuse_products_of_one_channel()
@@ -138,6 +138,6 @@ def _refuse_products_of_one_channel() -> None:
     for product in own_products():
         if product.name in ONE_CHANNEL:
             raise ConfigError(
-                f"product {product.name}: has no effect with radar.cfg; should be 'channels' or "
-                "'cube'"
+                f"product {product.name}: has no effect with radar.cfg or radar.frame; should "
+                "be 'channels' or 'cube'"
             )

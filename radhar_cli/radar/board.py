@@ -19,6 +19,7 @@ from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes, roll_matrix
 from radhar_cli.radar.pulse_times import PulseTimes
+from radhar_cli.radar.room import Point
 from radhar_cli.radar.ti_family import Family
 from radhar_cli.radar.waveform import Waveform
 
@@ -202,6 +203,8 @@ class Board:
         burst_s: Time from loop to loop, s; None where loops follow without a pause.
         delay: Time from the start of a frame to its first chirp, s.
         subframe: Number of the subframe that these are the chirps of.
+        ends: Positions of the one transmitter and the one receiver in the scene, m, in place of the
+            array's elements; None for these.
     """
 
     array: Array
@@ -231,6 +234,7 @@ class Board:
     burst_s: float | None = None
     delay: float = 0.0
     subframe: int = 0
+    ends: tuple[Point, Point] | None = None
 
     @property
     def centre(self) -> float:
@@ -307,7 +311,8 @@ class Board:
         gain = self.gain  # sqrt(G_t G_r), in which less transmitted power counts as less G_t
         if self.backoff_db:
             gain *= 10 ** (-self.backoff_db[self.order[k]] / 20)
-        return Antennas(self.element(tx), self.element(rx), gain, 0.0, self.aim)
+        places = self.ends or (self.element(tx), self.element(rx))
+        return Antennas(*places, gain, 0.0, self.aim)
 
     @property
     def pairs(self) -> list[tuple[int, int]]:

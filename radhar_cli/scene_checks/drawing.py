@@ -8,7 +8,7 @@ import numpy as np
 from radhar_cli.activities.activity import Activity
 from radhar_cli.assembly.motion import moving
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar, ImpulseRadar
+from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.numerics.arrays import Float
@@ -198,7 +198,7 @@ def suggest_cure(person: Person, check: SceneCheck) -> str:
         return _suggest_room(person, check)
     if check.too_close and check.closest.joint.startswith("reflector "):
         return "room.reflectors should be elsewhere"
-    is_board = isinstance(config.radar, BoardRadar)
+    is_board = isinstance(config.radar, ArrayRadar)
     range_key = f"motion.{_place_section(person)}range_m"
     if check.flags & Flags.HALF_BAND and is_board and not check.too_close:
         return f"a smaller {range_key} stays in the range that the board's .cfg sees"

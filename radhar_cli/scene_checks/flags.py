@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.motion.files.gaps import BRIDGED_S
 from radhar_cli.motion.files.motion import SEAM
 from radhar_cli.scene_checks.sweep import describe_slow_sweep
@@ -77,7 +77,7 @@ WORDING = {
 def describe_flag(flag: Flags, config: Config | None) -> str:
     """Say what a flag means, of scenes of a config where there is one."""
     radar = None if config is None else config.radar
-    if flag is Flags.ALIASING and isinstance(radar, BoardRadar):
+    if flag is Flags.ALIASING and isinstance(radar, ArrayRadar):
         turns = len(radar.header.order) > 1
         return WORDING[flag] + ANGLES_ALIAS * turns
     if flag is Flags.SWEEP and config is not None:

@@ -2,7 +2,7 @@
 
 from radhar_cli.assembly.radar import waveform_of
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar, SfcwRadar
+from radhar_cli.config.radar import ArrayRadar, BoardRadar, SfcwRadar
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene import nominal_scene
 
@@ -23,8 +23,10 @@ def describe_slow_sweep(config: Config) -> str:
     w = waveform_of(nominal_scene(config, config.chosen_activities[0]))
     shorter = "radar.dwell_s or radar.steps" if isinstance(radar, SfcwRadar) else "radar.chirp_s"
     within = "engine.motion_in_chirp: true with engine.kind: cube has it, "
+    if isinstance(radar, ArrayRadar):
+        within = ""
     if isinstance(radar, BoardRadar):
-        shorter, within = "a ramp of radar.cfg", ""
+        shorter = "a ramp of radar.cfg"
     return (
         f"by {sweep_shift(w):.2g} m at 1 m/s, with {w.chirp:.2g} s a sweep and cells of "
         f"{SPEED_OF_LIGHT / (2 * w.bandwidth):.2g} m ({within}a smaller {shorter} leaves less)"

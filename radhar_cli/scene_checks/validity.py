@@ -11,7 +11,7 @@ from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import box_of, reflectors_of, wall_of
 from radhar_cli.bodies.motion_paths import point_delay, through_wall_delay
 from radhar_cli.bodies.segment_paths import Body
-from radhar_cli.config.radar import BoardRadar, FmcwRadar, SfcwRadar
+from radhar_cli.config.radar import ArrayRadar, FmcwRadar, SfcwRadar
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.protocol import Motion
@@ -168,7 +168,7 @@ class Surroundings:
         is_gated = config.processing.range_sum == "gated"
         has_segments = config.body.scatterers == "segments"
         is_alone = not config.people and config.room.faces is None
-        sweeps = isinstance(config.radar, FmcwRadar | SfcwRadar | BoardRadar)
+        sweeps = isinstance(config.radar, FmcwRadar | SfcwRadar | ArrayRadar)
         return cls(
             antennas=antennas_of(scene),
             wall=wall_of(scene),
@@ -177,7 +177,7 @@ class Surroundings:
             body=body_of(person, moving(person)) if has_segments else None,
             gate_m=gate_m if is_gated and isinstance(gate_m, tuple) else None,
             freezes_sweeps=sweeps and not config.engine.motion_in_chirp,
-            shares_grid=is_alone and not isinstance(config.radar, BoardRadar),
+            shares_grid=is_alone and not isinstance(config.radar, ArrayRadar),
         )
 
 

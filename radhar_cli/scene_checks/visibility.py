@@ -20,7 +20,7 @@ from radhar_cli.assembly.radar import antennas_of, board_of, waveform_of
 from radhar_cli.assembly.room import wall_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.look import noise_gain, weights
@@ -77,7 +77,7 @@ def noise_alone(config: Config) -> list[str]:
         noise += " in free space"
     causes = [f"{obstacle} takes {loss:.0f} dB of the echo" for obstacle, loss in large.items()]
     both_ways = f"{' and '.join(causes)}, both ways: " if causes else ""
-    by_obstacle = _BOARD_KEYS if isinstance(config.radar, BoardRadar) else _KEYS
+    by_obstacle = _BOARD_KEYS if isinstance(config.radar, ArrayRadar) else _KEYS
     keys = [*(key for obstacle in large for key in by_obstacle[obstacle]), *last_keys]
     return [
         f"{both_ways}at {noise} maps show noise alone: {best} gains at most {gain:.0f} dB over it "
@@ -98,7 +98,7 @@ def cell_gain_db(scene: Scene, name: str) -> float:
             filter matched to the recording.
     """
     config, channels = scene.config, 1
-    if isinstance(scene.radar, BoardRadar):
+    if isinstance(scene.radar, ArrayRadar):
         board = board_of(scene.radar)
         channels = board.channels
         if name in FRAME_MAPS:
@@ -152,7 +152,7 @@ def _pulse(w: Impulse) -> Float:
 
 def _window_pulses(scene: Scene, w: Waveform) -> int:
     """Pulses of a window of the Doppler maps; those of a board end with the frame."""
-    if not isinstance(scene.radar, BoardRadar):
+    if not isinstance(scene.radar, ArrayRadar):
         return frames_of(scene.config, w.duration, w.prf, w.f0).length
     board = board_of(scene.radar, scene.seconds)
     frames = frames_of(scene.config, board.frames * board.period, 1 / board.loop, board.centre)

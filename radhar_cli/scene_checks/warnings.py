@@ -9,7 +9,7 @@ from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import ways_of
 from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings, word_warnings
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar, CwRadar, ImpulseRadar
+from radhar_cli.config.radar import ArrayRadar, BoardRadar, CwRadar, ImpulseRadar
 from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.errors import SceneError
 from radhar_cli.processing.map_kind import MAP_KINDS
@@ -38,7 +38,7 @@ def config_warnings(config: Config) -> list[str]:
 def warnings_of_signal(config: Config) -> list[str]:
     """Say what aliases, and whether maps are noise alone, whatever keys have no effect."""
     radar = config.radar
-    header_lines = _header_warnings(config, radar) if isinstance(radar, BoardRadar) else ()
+    header_lines = _header_warnings(config, radar) if isinstance(radar, ArrayRadar) else ()
     return [
         *tone_warnings(config),
         *header_lines,
@@ -59,8 +59,8 @@ def _loose_tolerance(config: Config) -> Iterator[str]:
         )
 
 
-def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
-    """Say which lines of `radar.cfg` have no effect, and which key has none because of it."""
+def _header_warnings(config: Config, radar: ArrayRadar) -> Iterator[str]:
+    """Say which lines of a .cfg have no effect, and which key has none because of frames."""
     header = radar.header
     if header.unknown:
         verb = "is not known and has" if len(header.unknown) == 1 else "are not known and have"
@@ -72,8 +72,10 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
     if window_s is not None and window_s > frame_s:
         yield (
             f"processing.window_s has no effect beyond the {frame_s:.3g} s of a frame's chirps "
-            f"(radar.cfg): it is {window_s:g} s"
+            f"({radar.named}): it is {window_s:g} s"
         )
+    if not isinstance(radar, BoardRadar):
+        return
     if header.not_simulated:
         names = ", ".join(header.not_simulated)
         yield f"radar.cfg: {names}: what is set there is not simulated"

@@ -9,7 +9,7 @@ import numpy as np
 
 from radhar_cli.assembly.room import kinds_of
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar, BoardRadar
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import COLUMNS, Cloud
 from radhar_cli.products.board_people import Skeletons
@@ -35,18 +35,20 @@ def write_frames(
     for end, (board, frames) in subframes.items():
         write_subframe(file, frames, board, config, end)
     radar = config.radar
-    assert isinstance(radar, BoardRadar)
+    assert isinstance(radar, ArrayRadar)
+    if isinstance(radar, BoardRadar):
+        file.attrs["cfg"] = radar.cfg
+        file.attrs["cfg_sha256"] = hashlib.sha256(radar.cfg.encode()).hexdigest()
+        file.attrs["device"] = str(radar.device or "array")
     board = next(board for board, _ in subframes.values())
     file.attrs.update(
         {
-            "cfg": radar.cfg,
-            "cfg_sha256": hashlib.sha256(radar.cfg.encode()).hexdigest(),
-            "device": str(radar.device or "array"),
             "axes": AXES,
             "doppler_sign": DOPPLER_SIGN,
             "position_m": np.array(board.position),
             "yaw_deg": np.degrees(board.yaw),
             "tilt_deg": np.degrees(board.tilt),
+            "roll_deg": np.degrees(board.roll),
         }
     )
 

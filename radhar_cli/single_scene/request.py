@@ -9,7 +9,7 @@ from radhar_cli.config.checks.signal import problems_of_maps
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
 from radhar_cli.config.offered_maps import possible_maps
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.reading import ABSENT
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.motion.protocol import Motion, ScattererSubset
@@ -89,7 +89,7 @@ class SceneRequest:
 
     def product_names(self, maps: tuple[str, ...]) -> "ProductNames":
         """Names of the products that give these maps, and all else that is requested."""
-        config, is_board = self.config, isinstance(self.config.radar, BoardRadar)
+        config, is_board = self.config, isinstance(self.config.radar, ArrayRadar)
         frames = [product for name in maps for product in FRAMES.get(name, ())]
         frames += ["points_kind"] if "points" in maps and config.room.faces else []
         frames += ["cube"] if is_board and self.raw and "cube" not in frames else []
@@ -102,7 +102,7 @@ class SceneRequest:
         others += ["accuracy"] if config.engine.kind == "direct" else []
         others += ["raw_echo"] if self.raw and not is_board else []
         names_of_maps = tuple(name for name in maps if name not in FRAMES)
-        ends = config.radar.other_subframes if isinstance(config.radar, BoardRadar) else ()
+        ends = config.radar.other_subframes if isinstance(config.radar, ArrayRadar) else ()
         return ProductNames(names_of_maps, signals, tuple(frames), tuple(others), tuple(ends))
 
 

@@ -10,7 +10,7 @@ from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.room import reflectors_of
 from radhar_cli.config.checks.doubts import word_warnings
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar, ImpulseRadar
+from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.config.reading import as_config
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.motion.protocol import Motion
@@ -123,7 +123,7 @@ class Simulation:
     def all_subframes(self) -> dict[str, SubframeProducts]:
         """Products of every subframe of a board, by the ends of their names in files."""
         radar = self.config.radar
-        if self.board is None or not isinstance(radar, BoardRadar):
+        if self.board is None or not isinstance(radar, ArrayRadar):
             return {}
         by_end = {"": SubframeProducts(self.board, self.frames), **self.subframes}
         return {in_files: by_end[end] for end, in_files in radar.ends_in_files.items()}

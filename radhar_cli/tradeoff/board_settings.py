@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import BoardRadar, FramesRadar
 from radhar_cli.tradeoff.setting import Setting, Worth, keyed
 
 CHIRP_END, LOOPS, PERIOD = 2, 3, 5  # places in a line of frameCfg
@@ -38,6 +38,22 @@ def board_settings(radar: BoardRadar, config: Config) -> Iterator[Setting]:
         text = change(radar.cfg)
         if text != radar.cfg:
             yield Setting("board", name, (f"radar.cfg={json.dumps(text)}",), worth=Worth.SAVES)
+    if "points" in config.maps:
+        yield from _point_settings(config)
+
+
+def frame_settings(radar: FramesRadar, config: Config) -> Iterator[Setting]:
+    """Yield settings of a radar's frames and of its points.
+
+    Args:
+        radar: radar of the config.
+        config: config of the data set.
+    """
+    header = radar.header
+    yield keyed("radar", f"radar.frame.period_s={2 * header.period_s:g}", Worth.SAVES)
+    if header.loops > 1:
+        yield keyed("radar", f"radar.frame.chirps={header.loops // 2}", Worth.SAVES)
+    yield keyed("radar", f"radar.adc_rate_hz={radar.adc_rate_hz / 2:g}", Worth.SAVES)
     if "points" in config.maps:
         yield from _point_settings(config)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import nominal
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.numerics.arrays import Bool, Complex, Float
 from radhar_cli.processing.canceller import Fir
@@ -85,7 +85,7 @@ def shown_names(config: Config) -> dict[str, str]:
 
 def raw_names(config: Config) -> tuple[str, ...]:
     """Names of the raw products from which a config's maps are drawn."""
-    if isinstance(config.radar, BoardRadar):
+    if isinstance(config.radar, ArrayRadar):
         return (CUBE,)
     table = products(config)
     steps = plan(table, shown_names(config).values(), ["scene"])
@@ -124,7 +124,7 @@ class Recorder:
             RadharError: the scene cannot be simulated so.
         """
         scene = self.draw(overrides)
-        if isinstance(scene.config.radar, BoardRadar):
+        if isinstance(scene.config.radar, ArrayRadar):
             return _simulate_board(scene)
         quiet = scene
         if scene.config.has_noise:

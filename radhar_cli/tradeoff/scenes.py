@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.scene import Scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 
@@ -47,7 +47,7 @@ class Scenes:
         """
         activities = self.config().chosen_activities
         slugs = [activity.slug for activity in activities]
-        if self.quick or isinstance(self.config().radar, BoardRadar):
+        if self.quick or isinstance(self.config().radar, ArrayRadar):
             slugs = [slug for slug in slugs if slug in QUICK] or slugs[:QUICK_SCENES]
         samples = [SweepSample(slug) for slug in slugs]
         counts = {a.slug: self.config().samples_of(a) for a in activities}

@@ -4,10 +4,17 @@ from collections.abc import Iterator
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import nominal
-from radhar_cli.config.radar import BoardRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
+from radhar_cli.config.radar import (
+    ArrayRadar,
+    BoardRadar,
+    CwRadar,
+    FmcwRadar,
+    ImpulseRadar,
+    SfcwRadar,
+)
 from radhar_cli.config.room import WallConfig
 from radhar_cli.processing.map_kind import MAP_KINDS
-from radhar_cli.tradeoff.board_settings import board_settings
+from radhar_cli.tradeoff.board_settings import board_settings, frame_settings
 from radhar_cli.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth, keyed
 
 TOLERANCES_DB = (-60, -80, -100, -120)
@@ -57,7 +64,7 @@ def engine_settings(config: Config) -> Iterator[Setting]:
     yield keyed("engine", f"engine.kind={other_kind}", Worth.ENGINE, Change.ERROR)
     if engine.kind == "direct" and engine.precision != "double":
         yield keyed("engine", "engine.precision=double", Worth.ENGINE, Change.ERROR)
-    if not isinstance(config.radar, BoardRadar) and not engine.motion_in_chirp:
+    if not isinstance(config.radar, ArrayRadar) and not engine.motion_in_chirp:
         cube = ("engine.kind=cube",)
         moving = (*cube, "engine.motion_in_chirp=true")
         name = "motion within the chirp"
@@ -71,7 +78,7 @@ def map_settings(config: Config) -> Iterator[Setting]:
             remaining_maps = [other for other in config.maps if other != name]
             overrides = (f"maps=[{', '.join(remaining_maps)}]",)
             yield Setting("maps", f"maps without {name}", overrides, worth=Worth.SAVES)
-    is_other = isinstance(config.radar, BoardRadar) or _has_real_samples(config)
+    is_other = isinstance(config.radar, ArrayRadar) or _has_real_samples(config)
     allows_fsst = not is_other and config.processing.range_sum == "coherent"
     if allows_fsst and not _has_fsst(config):
         overrides = (f"maps=[{', '.join((*config.maps, 'fsst'))}]",)
@@ -114,8 +121,11 @@ def body_settings(config: Config) -> Iterator[Setting]:
 def radar_settings(config: Config) -> Iterator[Setting]:
     """Yield fewer pulses, fewer samples of each, and other radar physics."""
     radar = config.radar
-    if isinstance(radar, BoardRadar):
-        yield from board_settings(radar, config)
+    if isinstance(radar, ArrayRadar):
+        if isinstance(radar, BoardRadar):
+            yield from board_settings(radar, config)
+        else:
+            yield from frame_settings(radar, config)
         return
     prf = nominal(radar.prf_hz)
     for share in (0.5, 0.75):
@@ -145,12 +155,12 @@ def processing_settings(config: Config) -> Iterator[Setting]:
     """Yield other overlaps, cancellers and sums over range."""
     processing = config.processing
     has_doppler = any(name in MAP_KINDS and name != "rtm" for name in config.maps)
-    if has_doppler and not isinstance(config.radar, BoardRadar):
+    if has_doppler and not isinstance(config.radar, ArrayRadar):
         for share, worth in ((2, Worth.SAVES), (5, Worth.PROCESSING)):
             overlap = 1 - share * (1 - processing.overlap_fraction)
             if overlap > 0:
                 yield keyed("processing", f"processing.overlap_fraction={overlap:.3g}", worth)
-    is_board = isinstance(config.radar, BoardRadar)
+    is_board = isinstance(config.radar, ArrayRadar)
     for kind in ("mean", "none") if is_board else CLUTTER:
         if kind != processing.clutter:
             yield keyed("processing", f"processing.clutter={kind}", Worth.PROCESSING)
@@ -233,7 +243,7 @@ def _wall_without_echoes(config: Config, wall: WallConfig) -> Setting:
 def receiver_settings(config: Config) -> Iterator[Setting]:
     """Yield coloured noise and interference, or none of them."""
     receiver = config.receiver
-    is_other = isinstance(config.radar, BoardRadar) or _has_real_samples(config)
+    is_other = isinstance(config.radar, ArrayRadar) or _has_real_samples(config)
     if not config.has_noise or is_other:  # whose receivers have white noise alone
         return
     prf = nominal(config.radar.prf_hz)

@@ -2,25 +2,33 @@
 
 from collections.abc import Iterator
 from math import ceil
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from radhar_cli.config.annotations import at
 from radhar_cli.config.checks.smallest_waveform import ENDS, waveform_at
 from radhar_cli.config.maps import FRAME_MAPS, OF_FRAMES, OF_POINTS
 from radhar_cli.config.number import support
 from radhar_cli.config.offered_maps import why_no_map
-from radhar_cli.config.radar import BoardRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
+from radhar_cli.config.radar import (
+    ArrayRadar,
+    BoardRadar,
+    CwRadar,
+    FmcwRadar,
+    FramesRadar,
+    ImpulseRadar,
+    SfcwRadar,
+)
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
+from radhar_cli.numerics.rounding import half_up
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.impulse import impulse
 from radhar_cli.radar.ti_family import Family
 
-if TYPE_CHECKING:
-    from radhar_cli.radar.ti_cfg import BoardHeader
-
 MAX_CUBE = 2**27  # samples of all channels
 MAX_PADDING = 64
+MAX_SAMPLES = 2**16  # of a chirp of a radar with frames
+EQUAL = 1e-6  # relative difference of a rate and an interval that are the same
 ROUNDING = 1 + 1e-9  # of a sweep without a pause, whose length is 1/prf_hz
 
 
@@ -33,6 +41,9 @@ def radar_problems(c: Request) -> Iterator[Problem]:
         case BoardRadar():
             yield from board_problems(c, c.radar)
             return
+        case FramesRadar():
+            yield from frames_problems(c, c.radar)
+            return
         case CwRadar():
             yield from _cw_problems(c)
         case ImpulseRadar():
@@ -42,7 +53,7 @@ def radar_problems(c: Request) -> Iterator[Problem]:
         case _:
             assert_never(c.radar)
     if of_boards := [name for name in c.output.products if name in BOARD_PRODUCTS]:
-        right = "should have the board that makes them: radar.cfg"
+        right = "should have a radar with frames that makes them: radar.cfg or radar.frame"
         yield Problem("output.products", of_boards, right)
     yield from profile_problems(c)
 
@@ -133,14 +144,62 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
         )
         yield Problem("radar.cfg", "chirpCfg, channelCfg", right)
         return
-    yield from _frame_problems(c, board)
+    yield from _frame_problems(c, radar)
     yield from _output_problems_of_board(c)
     yield from _missing_on_board(c)
 
 
-def _frame_problems(c: Request, board: "BoardHeader") -> Iterator[Problem]:
-    """Find what does not fit the frames of a board: durations, clutter, detection."""
-    clutter = c.processing.clutter
+def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
+    """Find what a radar with frames cannot have, or numbers that do not fit together."""
+    yield from _place_problems(radar)
+    transmitters, samples = len(radar.array.tx), half_up(radar.adc_rate_hz, radar.chirp_s)
+    if not 2 <= samples <= MAX_SAMPLES:
+        right = (
+            f"should give 2 to {MAX_SAMPLES} ADC samples per chirp (adc_rate_hz * chirp_s is "
+            f"{samples})"
+        )
+        yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
+        return
+    interval = radar.interval_s
+    given_rate = None if radar.prf_hz is None else radar.prf_hz * transmitters
+    if given_rate is not None and abs(interval * given_rate - 1) > EQUAL:
+        turns = f" times the {transmitters} transmitters" if transmitters > 1 else ""
+        right = f"should be 1/(frame.interval_s{turns}) = {1 / (interval * transmitters):g} Hz"
+        yield Problem("radar.prf_hz", radar.prf_hz, f"{right}, or be left out")
+        return
+    if radar.chirp_s > interval * ROUNDING:
+        right = f"should be at most the time from chirp to chirp, {interval:g} s"
+        yield Problem("radar.chirp_s", radar.chirp_s, right)
+        return
+    chirps = radar.frame.chirps * transmitters
+    if radar.frame.period_s is not None and chirps * interval > radar.frame.period_s * ROUNDING:
+        right = f"should be at least {chirps * interval:.6g} s, {chirps} chirps of {interval:g} s"
+        yield Problem("radar.frame.period_s", radar.frame.period_s, right)
+        return
+    yield from _frame_problems(c, radar)
+    yield from _output_problems_of_board(c)
+    yield from _missing_on_board(c)
+
+
+def _place_problems(radar: FramesRadar) -> Iterator[Problem]:
+    """Find places of antennas that are said twice, or by half."""
+    for name, other in (("tx_m", "rx_m"), ("rx_m", "tx_m")):
+        if getattr(radar, name) is None and getattr(radar, other) is not None:
+            yield Problem(f"radar.{name}", None, f"should be given with radar.{other}")
+    if radar.tx_m is None or radar.rx_m is None:
+        return
+    written = [name for name in ("array", "position_m") if name in radar.model_fields_set]
+    for name in written:
+        if getattr(radar, name) != type(radar).model_fields[name].default:
+            right = "should be left out with radar.tx_m and radar.rx_m, which are the antennas"
+            value = getattr(radar, name)
+            value = value if name == "position_m" else value.model_dump(mode="json")
+            yield Problem(f"radar.{name}", value, right)
+
+
+def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
+    """Find what does not fit frames: durations, clutter, detection."""
+    clutter, board = c.processing.clutter, radar.header
     if support(c.duration_s)[0] < board.period_s:
         right = f"should hold a frame of {board.period_s:g} s"
         yield Problem("duration_s", c.duration_s, right)
@@ -154,15 +213,16 @@ def _frame_problems(c: Request, board: "BoardHeader") -> Iterator[Problem]:
         right = f"should be at most {seconds:.3g} s: a cube of {MAX_CUBE} samples is held at once"
         yield Problem("duration_s", c.duration_s, right)
     if clutter not in ("mean", "none"):
-        right = "should be mean (of each frame) or none with radar.cfg"
+        right = f"should be mean (of each frame) or none with {radar.named}"
         yield Problem("processing.clutter", clutter, right)
     if c.cloud.boundary_box and board.box is None:
-        right = "should be false: radar.cfg has no boundaryBox"
+        right = f"should be false: {radar.named} has no boundaryBox"
         yield Problem("cloud.boundary_box", True, right)
     firmware, chain = board.firmware, c.cloud.chain
     if firmware is None and chain != "best":
         missing = (*board.missing, "cfarCfg is missing")[0]
-        yield Problem("cloud.chain", chain, f"should be best: radar.cfg: {missing}")
+        why = f"radar.cfg: {missing}" if isinstance(radar, BoardRadar) else "no firmware is known"
+        yield Problem("cloud.chain", chain, f"should be best: {why}")
     elif chain not in ("best", "board", firmware):
         right = f"should be {firmware} or best: radar.cfg has the commands of that firmware"
         yield Problem("cloud.chain", chain, right)
@@ -184,7 +244,7 @@ def _output_problems_of_board(c: Request) -> Iterator[Problem]:
     if reasons := [why for name in products if (why := why_no_map(c, name)) is not None]:
         yield Problem("output.products", products, f"should not have these: {reasons[0]}")
     if c.output.slow_time:
-        right = "should be false with radar.cfg; output.products: [cube] stores raw samples"
+        right = f"should be false with {c.radar.named}; output.products: [cube] stores raw samples"
         yield Problem("output.slow_time", True, right)
 
 
@@ -196,10 +256,10 @@ def _missing_on_board(c: Request) -> Iterator[Problem]:
         ("noise_corner_hz", corner if support(corner)[1] > 0 else None),
     ):
         if value:
-            right = "should be left out with radar.cfg: it is of one channel"
+            right = f"should be left out with {c.radar.named}: it is of one channel"
             yield Problem(f"receiver.{name}", value, right)
     if c.engine.motion_in_chirp:
-        right = "should be false with radar.cfg: positions are frozen when a chirp begins"
+        right = f"should be false with {c.radar.named}: positions are frozen when a chirp begins"
         yield Problem("engine.motion_in_chirp", True, right)
 
 

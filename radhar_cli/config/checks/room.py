@@ -5,7 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 from radhar_cli.config.number import support
-from radhar_cli.config.radar import BoardRadar, ImpulseRadar
+from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.config.request import Request
 from radhar_cli.config.room import WallConfig
 from radhar_cli.config.section import Problem, for_activity
@@ -50,8 +50,8 @@ def _layer_problems(c: Request, wall: WallConfig) -> Iterator[Problem]:
     if wall.fresnel != "normal":
         right = "should be left out with wall.echoes: exact, which has radar.polarisation"
         yield Problem("wall.fresnel", wall.fresnel, right)
-    if isinstance(c.radar, BoardRadar):
-        yield Problem("wall.echoes", "exact", "should be none with radar.cfg")
+    if isinstance(c.radar, ArrayRadar):
+        yield Problem("wall.echoes", "exact", f"should be none with {c.radar.named}")
     elif c.engine.kind == "direct" and not isinstance(c.radar, ImpulseRadar):
         right = "should be cube with wall.echoes: exact, which the direct engine does not have"
         yield Problem("engine.kind", "direct", right)

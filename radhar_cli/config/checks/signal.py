@@ -13,7 +13,7 @@ from radhar_cli.config.checks.smallest_waveform import (
 from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
 from radhar_cli.config.number import support
 from radhar_cli.config.offered_maps import why_no_map
-from radhar_cli.config.radar import MIN_WINDOW, BoardRadar
+from radhar_cli.config.radar import MIN_WINDOW, ArrayRadar
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
@@ -46,7 +46,7 @@ def processing_problems(c: AnyRequest) -> Iterator[Problem]:
     names = c.maps if isinstance(c, Request) else [one for one in c.maps if one in MAP_NAMES]
     if (of_maps := map_problem(c, names)) is not None:
         yield of_maps
-    if not isinstance(c.radar, BoardRadar):
+    if not isinstance(c.radar, ArrayRadar):
         yield from waveform_problems(c)
         yield from _clutter_problems(c)
     yield from _signal_problems(c)
@@ -62,10 +62,10 @@ def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
     window, longest_window = window_pulses(c, shortest), window_pulses(c, longest)
     usable_pulses = pulses - 1 if processing.clutter == "difference" else pulses
     pulses_meant = "pulses there are"
-    board = c.radar if isinstance(c.radar, BoardRadar) else None
+    board = c.radar if isinstance(c.radar, ArrayRadar) else None
     if board:  # frames are cancelled, filtered and windowed one by one
         usable_pulses = board.header.loops
-        pulses_meant = "pulses of a frame, the loops of radar.cfg"
+        pulses_meant = f"pulses of a frame, the loops of {board.named}"
     doppler = [name for name in c.maps if name != "rtm" and name not in FRAME_MAPS]
     denoised = [n for n in doppler if n in MAP_KINDS and MAP_KINDS[n].treatment.denoised]
     duration_entry: tuple[str, object] = ("duration_s", c.duration_s)
@@ -130,7 +130,7 @@ def _gate_problems(c: AnyRequest) -> Iterator[Problem]:
         return
     within = processing.gate_m
     half_band = waveform_at(c, "bandwidth_hz").half_band_range  # the least
-    if isinstance(c.radar, BoardRadar):
+    if isinstance(c.radar, ArrayRadar):
         half_band = c.radar.header.farthest_m
     if isinstance(within, tuple):
         if within[1] >= half_band:
@@ -139,7 +139,7 @@ def _gate_problems(c: AnyRequest) -> Iterator[Problem]:
     elif 2 * within >= half_band:
         right = f"should be less than half the range half-band of {half_band:.4g} m"
         yield Problem("processing.gate_m", within, right)
-    if not isinstance(c.radar, BoardRadar):
+    if not isinstance(c.radar, ArrayRadar):
         yield from _bin_problems(c, "processing.range_sum", "gated", "the gate")
 
 

@@ -1,7 +1,7 @@
 """Waveforms at the ends of what a config draws."""
 
 from radhar_cli.config.number import support
-from radhar_cli.config.radar import BoardRadar, ImpulseRadar
+from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.config.request import AnyRequest
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import Waveform
@@ -28,13 +28,14 @@ def waveform_at(c: AnyRequest, *largest: str) -> Waveform:
 def window_pulses(c: AnyRequest, w: Waveform) -> int:
     """Pulses of the STFT's window of a waveform, at most those of a board's frame."""
     length = c.processing.window_pulses(w.duration, w.prf, w.f0)
-    return min(length, c.radar.header.loops) if isinstance(c.radar, BoardRadar) else length
+    return min(length, c.radar.header.loops) if isinstance(c.radar, ArrayRadar) else length
 
 
 def prf_in_words(c: AnyRequest, w: Waveform) -> str:
     """The pulse rate of a waveform, and the key that one would change it by."""
-    board = isinstance(c.radar, BoardRadar)
-    return f"radar.cfg has a PRF of {w.prf:g} Hz" if board else f"radar.prf_hz may be {w.prf:g}"
+    has_frames = isinstance(c.radar, ArrayRadar)
+    why = f"{c.radar.named} has a PRF of {w.prf:g} Hz"
+    return why if has_frames else f"radar.prf_hz may be {w.prf:g}"
 
 
 HIGHEST_F0 = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz")

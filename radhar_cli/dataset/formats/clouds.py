@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.dataset.formats.uart import (
     counting_frames,
     demo_frames,
@@ -87,7 +87,7 @@ Columns: TypeAlias = Callable[[Clouds], Sequence[Any]]
 def firmware_of(data: Dataset) -> Firmware | None:
     """Firmware that found the points of a data set; None of `cloud.chain: best`."""
     config = data.config
-    if not isinstance(config, Config) or not isinstance(config.radar, BoardRadar):
+    if not isinstance(config, Config) or not isinstance(config.radar, ArrayRadar):
         return None
     return None if config.cloud.chain == "best" else config.radar.header.firmware
 
@@ -222,7 +222,7 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
     """
     _require_points(data, "ros")
     radar = data.config.radar
-    if not isinstance(radar, BoardRadar):
+    if not isinstance(radar, ArrayRadar):
         raise FolderError(
             f"{data.path}: ros needs bins of Doppler; import the recordings with --radar FILE.cfg"
         )

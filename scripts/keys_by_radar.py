@@ -77,6 +77,11 @@ RADARS: dict[str, dict[str, Any]] = {
         **{"profile_m": [0, 6], "profile_samples": 300},
     },
     "board": {"device": "IWR1443BOOST", "cfg": CFG},
+    "frames": {
+        **{"frame": {"chirps": 12, "period_s": 0.05}, "carrier_hz": 24e9, "prf_hz": 1000},
+        **{"bandwidth_hz": 250e6, "adc_rate_hz": 1e6, "chirp_s": 64e-6},
+        "array": {"tx": [[0, 0]], "rx": [[0, 0], [1, 0], [1, 1]]},
+    },
 }
 BASE: dict[str, Any] = {
     "activities": ["punching"],
@@ -86,6 +91,7 @@ BASE: dict[str, Any] = {
     "image": {"size_px": 16},
     "on_invalid": "keep",
 }
+NAMES_OF_TAGS = {"<board>": "radar.cfg", "<frames>": "radar.frame"}
 FILES_OF_A_DATA_SET = ("output.", "split.", "samples_per_class", "image.colour_map")
 MODELS = ("human", "paper")
 SOME_LABELS = ("S1", "S3", "S5", "S8", "S12")
@@ -110,6 +116,9 @@ SITUATIONS: dict[str, dict[str, Any]] = {
     "radar.device": {"radar.cfg": FOR_ANY_DEVICE},
     "radar.subframe": {"radar.cfg": SUBFRAMES},
     "cloud.boundary_box": {"radar.cfg": f"{CFG}boundaryBox -1 1 0.5 2 0 0.2\n"},
+    "radar.tx_m": {"radar.array": {}, "maps": ["stft"]},
+    "radar.rx_m": {"radar.array": {}, "maps": ["stft"]},
+    "radar.frame.interval_s": {"radar.prf_hz": None},
     "engine.fallback": {"engine.tolerance_db": -400.0},
     "on_invalid": {"wall": {"center_m": [2.5, 0, 1.25]}},
     "snr_reference": {"wall": {"center_m": [1, 0, 1.25]}},
@@ -132,6 +141,8 @@ SITUATIONS: dict[str, dict[str, Any]] = {
 }
 # Keys that only change together: {key: other keys and their values}.
 TOGETHER: dict[str, dict[str, Any]] = {
+    "radar.tx_m": {"radar.rx_m": [0.4, 0.1, 1.5]},
+    "radar.rx_m": {"radar.tx_m": [0.4, -0.1, 1.5]},
     "split.by": {"split.subjects": 2},
     "split.train": {"split.validation": 0.0},
     "split.validation": {"split.train": 0.0},
@@ -167,6 +178,9 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "receiver.tones": ([{"doppler_hz": 20}],),
     "receiver.noise_figure_db": (60.0,),
     "radar.carrier_hz": (9e9, 2.1e9),
+    "radar.tx_m": ([0.3, -0.2, 1.4],),
+    "radar.rx_m": ([0.3, 0.2, 1.4],),
+    "radar.frame.interval_s": (5e-4,),
     "radar.profile_m": ([0, 5.5],),
     "radar.array.tx": ([[0, 0], [4, 0], [2, 1]], [[1, 0], [4, 0], [2, 1]]),
     "radar.array.rx": ([[0, 0], [1, 0], [2, 0], [4, 0]],),
@@ -250,7 +264,11 @@ def fields(kind: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, Any]]
 
 def base_of(radar: str) -> dict[str, Any]:
     """The config of a radar: every map that it makes, with noise."""
-    document = {**BASE, "radar": RADARS[radar], "duration_s": 0.1 if radar == "board" else 0.5}
+    document = {
+        **BASE,
+        "radar": RADARS[radar],
+        "duration_s": 0.1 if radar in ("board", "frames") else 0.5,
+    }
     document["maps"] = ["rtm"] if radar == "impulse" else ["stft"]
     if radar == "impulse":
         document["processing"] = {"range_sum": "gated"}
@@ -344,7 +362,7 @@ def _faults(error: ValidationError) -> Iterator[tuple[str, str]]:
         elif not item["type"].endswith("_type"):
             tags = [name for name in item["loc"] if str(name).startswith("<")]  # of the radar
             key = ".".join(str(name) for name in item["loc"] if name not in tags)
-            names = ["radar.cfg" if tag == "<board>" else f"radar.waveform: {tag}" for tag in tags]
+            names = [NAMES_OF_TAGS.get(tag, f"radar.waveform: {tag}") for tag in tags]
             yield key, " with ".join((item["msg"], *names))
 
 

@@ -32,6 +32,11 @@ PRESETS = {
     path.relative_to(SHIPPED).with_suffix("").as_posix(): path
     for path in sorted(SHIPPED.rglob("*.yaml"))
 }
+WRITTEN_RADARS = tuple(  # radars that are no TI board: their frames stand in a preset
+    name.removeprefix("boards/")
+    for name in PRESETS
+    if name.startswith("boards/") and "iwr" not in name
+)
 OTHER_NAMES = {"split.val": "split.validation"}  # as folders and options have them
 _SHIPPED_PATHS = {f"configs/{name}.yaml": name for name in PRESETS}  # as documents name them
 MAX_CHAIN = 8  # files in a chain of bases
@@ -88,9 +93,10 @@ def cfg_text(value: Any, folder: Path, where: str) -> Any:
         return read_text(RADARS.get(name_of_radar(value) or "", folder / value), MAX_TEXT)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
+        names = (*RADARS, *WRITTEN_RADARS) if where == "--radar" else RADARS
         raise ConfigError(
             f"{where}: radar.cfg = {json.dumps(value)}: should be the path of a TI .cfg "
-            f"({reason}), or one of {', '.join(RADARS)}"
+            f"({reason}), or one of {', '.join(names)}"
         ) from None
 
 

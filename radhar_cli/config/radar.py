@@ -127,8 +127,8 @@ class AnyRadar(Section, Generic[N]):
     def why_no_frames(self, name: str) -> str | None:
         """Say why the radar does not make a map of frames, or their cube; None if it does."""
         return (
-            f"{name} is of frames: those of a board (radar.cfg), or radar.frame of an FMCW radar, "
-            "such as 'frame: {chirps: 64}'"
+            f"{name} is of the frames of a board (radar.cfg, docs/guide/boards.md) or of an FMCW "
+            "radar with radar.frame, such as 'frame: {chirps: 64}'"
         )
 
 
@@ -669,7 +669,8 @@ class FramesRadar(ArrayRadar[N], Generic[N]):
     @property
     def place_keys(self) -> tuple[str, ...]:
         """Keys of the places of the antennas, or of the array."""
-        return ("position_m",) if self.tx_m is None else ("tx_m", "rx_m")
+        written = [name for name in ("tx_m", "rx_m") if getattr(self, name) is not None]
+        return (*written,) or ("position_m",)
 
     @property
     def elements(self) -> Array:

@@ -165,7 +165,7 @@ def as_text(value: object) -> str:
 
 
 def of_board(cfg: str, folder: Path) -> str:
-    """Write the text of a short config for the TI board that a .cfg describes.
+    """Write the text of a short config for the TI board that a .cfg describes, or a known radar.
 
     Args:
         cfg: path of the .cfg, or the name of a radar that radhar knows.
@@ -175,6 +175,8 @@ def of_board(cfg: str, folder: Path) -> str:
         ConfigError: the .cfg cannot be read.
         CaptureError: the .cfg is not one that boards of radhar can run.
     """
+    if (preset := f"boards/{cfg.lower()}") in PRESETS:
+        return of_preset(preset)  # a radar whose frames stand in its config
     text = cfg_text(cfg, Path(), "--radar")
     board = parse_ti_cfg(text, cfg)
     device, chain = _likely_device(board), board.firmware or "best"

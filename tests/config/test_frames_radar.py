@@ -1,0 +1,212 @@
+"""Radars with frames in YAML: their header, their board, and what of them does not fit together."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from helpers.boards import channels
+from helpers.known import A, P, V
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from radhar_cli.assembly.radar import antennas_of, board_of
+from radhar_cli.config import Config
+from radhar_cli.config.identity import as_yaml
+from radhar_cli.config.radar import BoardRadar, FmcwRadar, FramesRadar
+from radhar_cli.config.reading import load_config
+from radhar_cli.echo.board_cube import exact_cube, fast_cube
+from radhar_cli.errors import ConfigError
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, range_doppler
+from radhar_cli.products.run import record
+from radhar_cli.radar.board import Board
+from radhar_cli.scene import nominal_scene
+
+BGT60: dict[str, Any] = {
+    "frame": {"chirps": 64, "interval_s": 500e-6, "period_s": 0.1},
+    "carrier_hz": 58.5e9,
+    "bandwidth_hz": 1e9,
+    "adc_rate_hz": 2e6,
+    "chirp_s": 64e-6,
+    "array": {"tx": [[0, 0]], "rx": [[0, 0], [1, 0], [1, 1]]},
+    "output": "real",
+}
+AS_CFG = """
+channelCfg 7 1 0
+adcCfg 2 0
+profileCfg 0 58.5 436 0 64 0 0 15.625 1 128 2000 0 0 30
+chirpCfg 0 0 0 0 0 0 0 1
+frameCfg 0 0 64 0 100 1 0
+"""
+TWO_BY_TWO = {"tx": [[0, 0], [3, 0]], "rx": [[0, 0], [1, 0]]}
+PAIR = "tx_m: [0, 0, 1], rx_m: [0, 0, 1]"
+ALL = ["range_doppler", "range_azimuth", "range_elevation", "points"]
+
+
+def frames_radar(**changes: Any) -> FramesRadar:
+    return FramesRadar.model_validate(BGT60 | changes)
+
+
+def config_of(radar: dict[str, Any], **keys: Any) -> Config:
+    usual = {"maps": ["range_doppler"], "duration_s": 0.4, "motion": {"range_m": 2}}
+    return Config.model_validate({"radar": radar} | usual | keys)
+
+
+def refusal(folder: Path, radar: str, rest: str = "maps: [range_doppler]") -> str:
+    path = folder / "radar.yaml"
+    path.write_text(f"radar: {radar}\n{rest}\nduration_s: 0.5\nmotion: {{range_m: 2}}\n")
+    with pytest.raises(ConfigError) as caught:
+        load_config(path)
+    return str(caught.value)
+
+
+def test_a_cfg_and_yaml_of_the_same_radar_are_the_same_board() -> None:
+    array = {"tx": [[0, 0]], "rx": [[0, 0], [1, 0], [1, 1]]}
+    of_cfg = board_of(BoardRadar.model_validate({"cfg": AS_CFG, "array": array}), 1.0)
+    of_yaml = board_of(frames_radar(), 1.0)
+    for name in vars(of_cfg).keys() - {"array"}:
+        one, other = getattr(of_cfg, name), getattr(of_yaml, name)
+        assert other == (pytest.approx(one) if isinstance(one, float) else one), name
+    assert vars(of_cfg.array) == vars(of_yaml.array)
+
+
+def test_steps_and_limits_follow_from_the_numbers() -> None:
+    board = board_of(frames_radar(), 1.0)
+    assert (board.samples, board.n_bins, board.n_doppler, board.frames) == (128, 64, 64, 10)
+    assert board.range_step == pytest.approx(SPEED_OF_LIGHT / 2e9)
+    fastest = board.doppler_step() * 32
+    assert fastest == pytest.approx(SPEED_OF_LIGHT / (4 * board.centre * 500e-6))
+
+
+@given(
+    chirps=st.sampled_from([1, 2, 5, 64]),
+    places=st.lists(st.tuples(st.integers(-2, 2), st.integers(-2, 2)), min_size=1, max_size=4),
+    transmitters=st.integers(1, 2),
+    is_real=st.booleans(),
+    pause=st.sampled_from([0.0, 0.013]),
+)
+@settings(max_examples=40, deadline=None)
+def test_edges_make_maps_of_the_shape_that_the_axes_say(
+    chirps: int,
+    places: list[tuple[int, int]],
+    transmitters: int,
+    is_real: bool,
+    pause: float,
+) -> None:
+    """One chirp a frame, one receiver, elements at one place, frames without a pause."""
+    period = chirps * transmitters * 200e-6 + pause
+    radar = frames_radar(
+        frame={"chirps": chirps, "interval_s": 200e-6, "period_s": period},
+        array={"tx": [[0, 0], [2, 0]][:transmitters], "rx": places},
+        output="real" if is_real else "iq",
+        adc_rate_hz=0.5e6,
+    )
+    assert radar.frames_apart == (pause > 0)
+    board = board_of(radar, 2 * period)
+    assert board.frames == 2
+    sources = channels(board, P, V, A)
+    cube, _ = exact_cube(sources, board)
+    samples = np.ascontiguousarray(cube.real) if is_real else cube
+    for kind in FRAME_MAP_KINDS.values():
+        if radar.why_no_frames(kind.name) is None:
+            maps = kind.make(samples, board, True)
+            shape = (2, maps.rows.values.size, maps.columns.values.size)
+            assert maps.power.shape == shape
+            assert np.isfinite(maps.power).all()
+
+
+@pytest.mark.parametrize("output", ["iq", "real"])
+@pytest.mark.parametrize(
+    "array", [BGT60["array"], {"tx": [[0, 0], [3, 0]], "rx": [[0, 0], [1, 0]]}]
+)
+def test_the_fast_engine_keeps_its_promise(output: str, array: dict[str, Any]) -> None:
+    board = board_of(frames_radar(output=output, array=array), 0.3)
+    sources = channels(board, P, V, A)
+    exact, _ = exact_cube(sources, board)
+    fast, _, error_db = fast_cube(sources, board, -80.0)
+    if board.is_real:
+        exact, fast = exact.real, fast.real
+    measured = 10 * np.log10((abs(fast - exact) ** 2).sum() / (abs(exact) ** 2).sum())
+    assert max(measured, error_db) < -80
+
+
+def test_a_pulse_radar_with_a_frame_has_its_antennas_in_the_scene() -> None:
+    plain = {"carrier_hz": 24e9, "bandwidth_hz": 250e6, "prf_hz": 2000.0, "adc_rate_hz": 1e6}
+    plain |= {"chirp_s": 128e-6, "tx_m": [0.0, -0.1, 1.2], "rx_m": [0.0, 0.1, 1.2]}
+    assert isinstance(config_of(plain, maps=["stft"]).radar, FmcwRadar)
+    config = config_of(plain | {"frame": {"chirps": 64}})
+    radar = config.radar
+    assert isinstance(radar, FramesRadar)
+    assert (radar.header.loops, radar.prf_hz, radar.frames_apart) == (64, 2000, False)
+    scene = nominal_scene(config, config.chosen_activities[0])
+    antennas = antennas_of(scene)
+    assert (antennas.tx, antennas.rx) == ((0.0, -0.1, 1.2), (0.0, 0.1, 1.2))
+    board: Board = record(scene, ["board"]).products["board"]
+    assert board.position == pytest.approx((0, 0, 1.2))
+
+
+def test_interval_and_rate_say_the_same_and_survive_a_written_config(tmp_path: Path) -> None:
+    config = config_of(BGT60 | {"array": {"tx": [[0, 0], [2, 0]], "rx": [[0, 0]]}})
+    assert config.radar.prf_hz == pytest.approx(1000)
+    (tmp_path / "again.yaml").write_text(as_yaml(config))
+    assert load_config(tmp_path / "again.yaml") == config
+
+
+def test_every_product_of_frames_is_made() -> None:
+    config = config_of(BGT60, maps=ALL)
+    scene = nominal_scene(config, config.chosen_activities[0])
+    names = ("cube", "range_doppler", "range_azimuth", "range_elevation", "points", "skeleton")
+    made = record(scene, names).products
+    assert made["cube"].shape == (4, 64, 3, 128)
+    assert made["cube"].dtype.kind == "f"
+    assert made["range_doppler"].columns.name == "radial speed"
+    assert made["skeleton"].shape[0] == 4
+
+
+def test_a_walker_who_comes_closer_is_on_the_positive_side() -> None:
+    """Real samples tell the sign of the Doppler by the sign of the range."""
+    board = board_of(frames_radar(frame={"chirps": 64, "interval_s": 250e-6}), 0.02)
+    cube, _ = exact_cube(channels(board, (3, 0, 1), (-1.0, 0, 0), 9.0), board)
+    maps = range_doppler(np.ascontiguousarray(cube.real), board, True)
+    row, column = np.unravel_index(maps.power[0].argmax(), maps.power[0].shape)
+    assert maps.columns.values[column] == pytest.approx(1.0, abs=0.1)
+    assert maps.rows.values[row] == pytest.approx(3.0, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("radar", "line"),
+    [
+        ("{frame: {chirps: 0}}", "radar.frame.chirps = 0: should be"),
+        ("{frame: {chirps: 64, chirp: 3}}", "radar.frame.chirp = 3: is an unknown key"),
+        (
+            "{frame: {chirps: 64, interval_s: 1e-3, period_s: 0.05}}",
+            "radar.frame.period_s = 0.05: should be at least 0.064 s, 64 chirps of 0.001 s",
+        ),
+        (
+            "{frame: {chirps: 64, interval_s: 3e-5}}",
+            "radar.chirp_s = 4e-05: should be at most the time from chirp to chirp, 3e-05 s",
+        ),
+        (
+            "{frame: {chirps: 64, interval_s: 1e-3}, prf_hz: 500}",
+            "radar.prf_hz = 500.0: should be 1/(frame.interval_s) = 1000 Hz, or be left out",
+        ),
+        ("{frame: {chirps: 64}, adc_rate_hz: 1e10}", "radar.adc_rate_hz = 10000000000.0"),
+        ("{frame: {chirps: 64}, tx_m: [0, 0, 1]}", "radar.rx_m = null: should be given with"),
+        (
+            f"{{frame: {{chirps: 64}}, {PAIR}, array: {{rx: [[0, 0], [1, 0]]}}}}",
+            "should be left out with radar.tx_m and radar.rx_m",
+        ),
+        ("{frame: {chirps: 64}, device: IWR1443BOOST}", "radar.device"),
+        ("{carrier_hz: 24e9}", "FMCW radar with radar.frame, such as 'frame: {chirps: 64}'"),
+    ],
+)
+def test_what_does_not_fit_is_said_in_a_line(radar: str, line: str, tmp_path: Path) -> None:
+    text = refusal(tmp_path, radar)
+    assert line in text
+    assert len(text.splitlines()) == 1
+
+
+def test_one_chirp_a_frame_and_one_receiver_have_no_angles(tmp_path: Path) -> None:
+    text = refusal(tmp_path, "{frame: {chirps: 64}}", "maps: [range_azimuth]")
+    assert "all elements of the array lie in one column" in text

@@ -118,7 +118,8 @@ SITUATIONS: dict[str, dict[str, Any]] = {
     "cloud.boundary_box": {"radar.cfg": f"{CFG}boundaryBox -1 1 0.5 2 0 0.2\n"},
     "radar.tx_m": {"radar.array": {}, "maps": ["stft"]},
     "radar.rx_m": {"radar.array": {}, "maps": ["stft"]},
-    "radar.frame.interval_s": {"radar.prf_hz": None},
+    "radar.frame.interval_s": {"radar.prf_hz": None, "maps": ["stft"]},
+    "radar.frame.period_s": {"maps": ["stft"]},
     "engine.fallback": {"engine.tolerance_db": -400.0},
     "on_invalid": {"wall": {"center_m": [2.5, 0, 1.25]}},
     "snr_reference": {"wall": {"center_m": [1, 0, 1.25]}},
@@ -141,6 +142,8 @@ SITUATIONS: dict[str, dict[str, Any]] = {
 }
 # Keys that only change together: {key: other keys and their values}.
 TOGETHER: dict[str, dict[str, Any]] = {
+    "radar.frame.interval_s": {"radar.frame.chirps": 12},
+    "radar.frame.period_s": {"radar.frame.chirps": 12},
     "radar.tx_m": {"radar.rx_m": [0.4, 0.1, 1.5]},
     "radar.rx_m": {"radar.tx_m": [0.4, -0.1, 1.5]},
     "split.by": {"split.subjects": 2},
@@ -182,8 +185,12 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "radar.rx_m": ([0.3, 0.2, 1.4],),
     "radar.frame.interval_s": (5e-4,),
     "radar.profile_m": ([0, 5.5],),
-    "radar.array.tx": ([[0, 0], [4, 0], [2, 1]], [[1, 0], [4, 0], [2, 1]]),
-    "radar.array.rx": ([[0, 0], [1, 0], [2, 0], [4, 0]],),
+    "radar.array": ({}, {"rx": [[0, 0], [1, 0], [2, 1]]}),
+    "radar.array.tx": ([[0, 0.5]], [[0, 0], [4, 0], [2, 1]], [[1, 0], [4, 0], [2, 1]]),
+    "radar.array.rx": (
+        [[0, 0], [1, 0], [2, 1]],
+        [[0, 0], [1, 0], [2, 0], [4, 0]],
+    ),
     "radar.half_power_deg": ([20.0, 20.0],),
     "radar.half_wavelength_m": (0.0018,),
     "radar.steps": (100,),

@@ -39,8 +39,8 @@ def init(
         str | None,
         typer.Option(
             "--radar",
-            help="Write a short config for a TI board, given by its .cfg file or the name of a "
-            "profile for people indoors, such as iwr6843isk_people; `list` lists them.",
+            help="Write a short config for a radar, given by its name, such as bgt60tr13c or "
+            "iwr6843isk_people, or by the .cfg file of a TI board; `list` lists them.",
         ),
     ] = None,
     minimal: Annotated[
@@ -69,6 +69,7 @@ def init(
 
       radhar config init --radar list
     """
+    from radhar_cli.config.documents import WRITTEN_RADARS
     from radhar_cli.config.starting_file import MINIMAL, as_commented_yaml, of_board, of_preset
     from radhar_cli.errors import FolderError, RadharError
     from radhar_cli.files.replacing import write_text
@@ -84,7 +85,8 @@ def init(
     if radar is not None:
         write_text(out, of_board(radar, out.parent))
         report(file=out)
-        tell(f"{out}: the board of {radar}; radar.device should be the one that runs it")
+        device = "; radar.device should be the one that runs it"
+        tell(f"{out}: the radar of {radar}{device * (radar.lower() not in WRITTEN_RADARS)}")
         tell(f"  then        radhar simulate {out} --activity punching -o OUT")
         return
     if preset is not None:

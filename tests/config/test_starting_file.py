@@ -151,7 +151,7 @@ def test_an_unknown_preset_is_a_line_that_names_the_known_ones(tmp_path: Path, n
     done = radhar("config", "init", tmp_path / "mine.yaml", "--preset", name)
     assert done.returncode == 2
     (line,) = done.stderr.splitlines()
-    assert f'--preset "{name}": should be one of boards/iwr1443, human/exercises' in line
+    assert f'--preset "{name}": should be one of boards/bgt60tr13c, boards/fmcw24_1x4' in line
     assert all(name in line for name in PRESETS)
     assert not (tmp_path / "mine.yaml").exists()
 
@@ -166,3 +166,12 @@ def test_who_has_no_clone_is_told_of_the_preset(
         assert ("`radhar config init FILE --preset human/room` writes" in error) == (
             name == "configs/human/room.yaml"
         )
+
+
+@pytest.mark.parametrize("name", ["bgt60tr13c", "Position2Go", "tinyrad24g", "fmcw24_1x4"])
+def test_a_radar_of_another_maker_is_written_by_its_name(tmp_path: Path, name: str) -> None:
+    path = tmp_path / "mine.yaml"
+    ok("config", "init", path, "--radar", name)
+    radar = load_config(path).radar
+    assert radar.named == "radar.frame"
+    assert radar == load_config(ROOT / f"configs/boards/{name.lower()}.yaml").radar

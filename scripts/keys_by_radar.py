@@ -184,6 +184,7 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "radar.tx_m": ([0.3, -0.2, 1.4],),
     "radar.rx_m": ([0.3, 0.2, 1.4],),
     "radar.frame.interval_s": (5e-4,),
+    "radar.frame.period_s": (0.04, 0.1),
     "radar.profile_m": ([0, 5.5],),
     "radar.array": ({}, {"rx": [[0, 0], [1, 0], [2, 1]]}),
     "radar.array.tx": ([[0, 0.5]], [[0, 0], [4, 0], [2, 1]], [[1, 0], [4, 0], [2, 1]]),

@@ -105,12 +105,15 @@ def init(
 def _list_radars() -> None:
     """Print the radars that radhar comes with, one a line."""
     from radhar_cli.config.built_in_radars import read_radars
+    from radhar_cli.config.documents import WRITTEN_RADARS
+    from radhar_cli.config.starting_file import describe_written
 
-    radars = [*read_radars()]
-    report(radars={radar.name: radar.description for radar in radars})
-    width = max(len(radar.name) for radar in radars)
-    for radar in radars:
-        tell(f"{radar.name:{width}}  {radar.description}")
+    radars = {radar.name: radar.description for radar in read_radars()}
+    radars |= {name: describe_written(name) for name in WRITTEN_RADARS}
+    report(radars=radars)
+    width = max(map(len, radars))
+    for name, description in radars.items():
+        tell(f"{name:{width}}  {description}")
 
 
 def show(

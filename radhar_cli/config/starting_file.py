@@ -215,6 +215,12 @@ def _describe_chain(chain: Chain) -> str:
     return "as the firmware makes points; best: fewer, finer ones"
 
 
+def describe_written(name: str) -> str:
+    """Return the first line of the config of a radar whose frames stand in it (WRITTEN_RADARS)."""
+    text = PRESETS[f"boards/{name}"].read_text(encoding="utf-8")
+    return text.partition("\n")[0].removeprefix("# ").rstrip(".")
+
+
 def of_preset(name: str) -> str:
     """Write the text of a config that comes with radhar, one of configs/.
 

@@ -9,7 +9,7 @@ from helpers.command_line import ok, radhar
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.built_in_radars import BuiltInRadar, read_radars
-from radhar_cli.config.documents import RADARS, name_of_radar
+from radhar_cli.config.documents import RADARS, WRITTEN_RADARS, name_of_radar
 from radhar_cli.config.starting_file import of_board
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.ti_family import Family
@@ -86,7 +86,7 @@ def test_they_are_listed_and_no_file_is_written(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     lines = ok("config", "init", "--radar", "list").stdout.splitlines()
-    assert [line.split()[0] for line in lines] == [*RADARS]
+    assert [line.split()[0] for line in lines] == [*RADARS, *WRITTEN_RADARS]
     assert [*tmp_path.iterdir()] == []
     wrong = radhar("config", "init", "--radar", "iwr6843")
     assert wrong.returncode == 2

@@ -235,9 +235,18 @@ def _joints_of(text: str) -> object:
     return text if is_set else read_document(Path(text))[0]
 
 
-def _section_of(text: str) -> object:
-    """Seconds [from, to] that --section says; the text itself where it does not fit."""
+def _section_of(text: str) -> list[float]:
+    """Seconds [from, to] that --section says.
+
+    Raises:
+        ConfigError: it is not two numbers.
+    """
+    from radhar_cli.errors import ConfigError
+
     try:
-        return [float(word) for word in text.split(",")]
+        begin, end = map(float, text.split(","))
     except ValueError:
-        return text
+        raise ConfigError(
+            f"--section {text}: should be FROM,TO in seconds of the file, such as 2,5"
+        ) from None
+    return [begin, end]

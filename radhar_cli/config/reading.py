@@ -515,6 +515,8 @@ def _locate(where: str, key: str, places: Places, options: Mapping[str, str]) ->
     of_options = of_options or (within if key not in places else [])
     if of_options:
         option = of_options[-1]
+        if _within(key, "classes") and not option.startswith("--set "):
+            return option  # of --motion, whose user has typed no key
         return option if option.endswith(f" {key}") else f"{option}: {_short(escaped(key))}"
     place = places.get(key)
     parent = key

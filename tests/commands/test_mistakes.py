@@ -30,7 +30,7 @@ MISTAKES = {
     f"{SIMULATE} --maps sftf": "did you mean",
     f"{SIMULATE} --set engine.kind=cubic": "engine.kind",
     "simulate small.yaml -o x --motion broken.amc": "needs its skeleton",
-    "simulate small.yaml -o x --motion none.bvh": "--motion: classes.from_file.files",
+    "simulate small.yaml -o x --motion none.bvh": "--motion = ",
     f"{SIMULATE} --tolerance 5": "--tolerance: engine.tolerance_db = 5.0",
     "train tree -o x --target skeleton": "--target: should have model: cloudnet",
     "preview none": "no such file",

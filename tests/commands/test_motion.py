@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from helpers.command_line import ROOT, ok, radhar
+from helpers.poses import BLAZE
 from helpers.recorded import frames, write_npz
 
 from radhar_cli.activities.activity import ACTIVITIES
@@ -86,9 +87,9 @@ def test_options_say_what_a_motion_file_does_not(tmp_path):
     assert "; z is up; " in done.stdout
     refused = {
         (): "no joint that is right_knee by its name",
-        ("--joints", tmp_path / "wrong.yaml"): "--joints: classes.from_file.joints",
-        ("--up", "w"): "--up: classes.from_file.up",
-        ("--skeleton", "x.asf"): "--skeleton: classes.from_file",
+        ("--joints", tmp_path / "wrong.yaml"): "--joints =",
+        ("--up", "w"): "--up = ",
+        ("--skeleton", "x.asf"): "--skeleton = ",
     }
     for words, message in refused.items():
         done = radhar(*play, *words, "--overwrite")
@@ -98,6 +99,36 @@ def test_options_say_what_a_motion_file_does_not(tmp_path):
     assert (alone.returncode, alone.stderr) == (
         *(2, "radhar: --up y: should go with --motion, whose file it reads\n"),
     )
+
+
+def test_poses_without_names_or_a_rate_need_options_that_messages_name(tmp_path):
+    config, path = tmp_path / "c.yaml", tmp_path / "x.npy"
+    config.write_text("duration_s: 1\nradar: {prf_hz: 500}\nmotion: {range_m: 6}\nmaps: [stft]\n")
+    poses = BLAZE.copy()
+    poses[60:63, 0] = 0  # the nose, which is not needed
+    poses[20:24, 13] = np.nan
+    np.save(path, poses - poses[:, [23, 24]].mean(axis=1, keepdims=True))
+    play = ["simulate", config, "--no-figures", "-o", tmp_path / "out", "--motion", path]
+    refused = {
+        (): "should have a frame rate of 1 to 10000 Hz: rate_hz of its class (--rate HZ)",
+        ("--rate", 30, "--joints", "coco18"): "did you mean 'coco17'?",
+        ("--rate", 30, "--joints", "coco17"): "has 33 joints; coco17 (COCO) has 17",
+        ("--rate", 30, "--travel", "hands"): "--travel = ",
+        ("--rate", 30, "--section", "3"): "--section 3: should be FROM,TO",
+        ("--rate", 30, "--unit", 5): "those of a giant",
+    }
+    for words, message in refused.items():
+        done = radhar(*play, *words, "--overwrite")
+        assert (done.returncode, "classes." in done.stderr) == (2, False)
+        assert message in done.stderr
+    done = ok(*play, "--rate", 30, "--section", "0.5,3.5")
+    warnings = done.stderr.splitlines()
+    assert any("marches on the spot" in line for line in warnings)
+    assert any("1 gap of up to 0.5 s, 4 frames" in line for line in warnings)
+    assert any("in the order of BlazePose, MediaPipe" in line for line in warnings)
+    assert "0.50 to 1.50 s of its" in done.stdout
+    done = ok(*play, "--rate", 30, "--travel", "feet", "--joints", "blazepose33", "--overwrite")
+    assert "marches" not in done.stderr
 
 
 def test_simulate_says_which_part_of_a_file_is_repeated_and_where_it_starts(tmp_path):

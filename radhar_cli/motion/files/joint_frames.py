@@ -62,7 +62,7 @@ def _bridge_frames(file: Keypoints, blends: list[JointMean], rate: float | None)
     for column, number in enumerate(numbers):
         if not known[:, column].any():
             raise motion_file_error(
-                file.where, f"{file.names[number]} is lost (NaN or 0, 0, 0) in every frame"
+                file.where, f"{file.label(number)} is lost (NaN or 0, 0, 0) in every frame"
             )
     if complete.sum() < MIN_FRAMES:
         raise motion_file_error(
@@ -72,7 +72,7 @@ def _bridge_frames(file: Keypoints, blends: list[JointMean], rate: float | None)
         )
     first, last = (int(n) for n in np.flatnonzero(complete)[[0, -1]])
     lost = tuple(
-        LostSection(file.names[numbers[int(np.argmin(known[a]))]], (a - 1) / rate, (b + 1) / rate)
+        LostSection(file.label(numbers[int(np.argmin(known[a]))]), (a - 1) / rate, (b + 1) / rate)
         for a, b in true_runs(~complete)
         if first < a and b < last
     )
@@ -126,7 +126,7 @@ def _describe_bridged(
 ) -> str:
     """Say how many frames of which joints are bridged; "" where there are none."""
     lost = [
-        (file.names[number], n, count)
+        (file.label(number), n, count)
         for number, n, count in zip(numbers, missing, gaps, strict=True)
         if n
     ]

@@ -100,6 +100,10 @@ class Keypoints:
         times = np.arange(len(p)) / rate if even or self.times is None else self.times
         return bridge_gaps(p, times, rate)
 
+    def label(self, joint: int) -> str:
+        """What messages call a joint: its name, or its number where there are no names."""
+        return self.names[joint] if self.is_named else f"joint {joint}"
+
     def place(self, frame: int) -> str:
         return f"{self.where}: frame {frame + 1}"
 

@@ -36,6 +36,7 @@ _RATES = ("rate", "rate_hz", "fps", "frame_rate", "framerate", "mocap_framerate"
 _TIMES = ("times", "time", "timestamps", "timestamp", "t")
 _CONFIDENCES = ("confidence", "confidences", "scores", "tracking_state")
 _BODY_MODEL = frozenset({"poses", "pose_body", "root_orient", "betas", "fullpose", "body_pose"})
+_BODY_MODEL |= frozenset({"smpl_poses", "smpl_trans", "global_orient", "transl"})
 # The three lines of NumPy that make joints of what AMASS has.
 OF_BODY_MODEL = (
     "has parameters of a body model (SMPL: poses, betas, trans), no joints; its model makes them: "

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from radhar_cli import __version__
 from radhar_cli.capture.point_frames import NO_TRACK, TARGET_COLUMNS, PointFrame
-from radhar_cli.capture.recording import Label, SourceNote
+from radhar_cli.capture.recording import KIND_OF_POINTS, Label, SourceNote
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.files.new_hdf5 import new_hdf5
@@ -21,7 +21,7 @@ from radhar_cli.files.untrusted import Closing
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.processing.points import COLUMNS, Cloud
 
-KIND, SCHEMA_VERSION = "radhar recording of points", 1
+SCHEMA_VERSION = 1
 CHUNK = 8192  # rows
 NOBODY = -1
 LONGEST_GAP = 100_000  # frames; a larger step of the numbers is a board that began again
@@ -239,7 +239,7 @@ def _write_columns(file: Any, clock: FrameClock, info: PointRecordingInfo) -> No
     file["targets"].attrs["columns"] = TARGET_COLUMNS
     file["points_track"].attrs["meaning"] = f"number of the track of a point; {NO_TRACK} none"
     file["points_person"].attrs["meaning"] = f"whose a point is; {NOBODY} unknown"
-    file.attrs["kind"] = KIND
+    file.attrs["kind"] = KIND_OF_POINTS
     file.attrs["schema_version"] = SCHEMA_VERSION
     file.attrs["recording"] = json.dumps(info.model_dump(by_alias=True))
     file.attrs["radhar_version"] = __version__
@@ -249,7 +249,7 @@ def is_point_recording(path: Path) -> bool:
     """Whether a file describes itself as a recording of points."""
     try:
         with UntrustedFile(path) as file:
-            return file.has_attribute("kind") and file.text("kind") == KIND
+            return file.has_attribute("kind") and file.text("kind") == KIND_OF_POINTS
     except FolderError:
         return False
 
@@ -292,7 +292,7 @@ class PointRecording(Closing):
 
     def _read_info(self) -> PointRecordingInfo:
         """Read and check the description."""
-        if not self._file.has_attribute("kind") or self._file.text("kind") != KIND:
+        if not self._file.has_attribute("kind") or self._file.text("kind") != KIND_OF_POINTS:
             raise FolderError(
                 f"{self.path}: is no recording of points; `radhar import` makes one of a dump of "
                 "a board's data port"

@@ -36,6 +36,7 @@ from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 
 KIND, SCHEMA_VERSION = "radhar recording", 1
+KIND_OF_POINTS = "radhar recording of points"  # `point_recording.py`
 CHUNK_BYTES = 2**20
 MAX_PULSE = 2**28  # bytes of a pulse in complex128
 NUMBERS = ("i2", "f4", "f8")
@@ -302,7 +303,13 @@ class Recording(Closing):
         self.path = path
         self._file = UntrustedFile(path)
         try:
-            if not self._file.has_attribute("kind") or self._file.text("kind") != KIND:
+            kind = self._file.text("kind") if self._file.has_attribute("kind") else ""
+            if kind == KIND_OF_POINTS:
+                raise FolderError(
+                    f"{path}: is a recording of points, which has no samples; a data set of it: "
+                    "radhar generate CONFIG --recordings LIST.csv (docs/guide/points.md)"
+                )
+            if kind != KIND:
                 raise FolderError(
                     f"{path}: is not a recording; `radhar import` makes one from a capture"
                 )

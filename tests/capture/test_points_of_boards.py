@@ -307,6 +307,16 @@ def test_replay_files_that_are_none_are_refused_in_a_line(tmp_path, data, says):
     assert "\n" not in str(error.value)
 
 
+def test_points_have_no_samples_to_process(tmp_path):
+    """The message says what a recording of points is for."""
+    imported(tmp_path, demo_packet(0, [(1, floats(ONE)), (7, side_info([[1, 1]]))], 1))
+    config = tmp_path / "config.yaml"
+    config.write_text("maps: [stft]\n")
+    done = radhar("process", tmp_path / "out.h5", "--config", config, "-o", tmp_path / "out")
+    assert done.returncode == 2
+    assert "is a recording of points, which has no samples" in done.stderr
+
+
 @settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )

@@ -21,6 +21,7 @@ import yaml
 from capture.dca1000_file import Radar, body, echo, words
 from capture.uart_bytes import demo_packet, floats, side_info
 from helpers.boards import CFG
+from helpers.capture_files import write_all
 from helpers.command_line import ROOT, radhar
 from helpers.documents import PAGES, Block, blocks
 from helpers.poses import BLAZE, NTU, WALKER, T, c3d_bytes, landmarks, names
@@ -226,6 +227,7 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
         "masks": lambda path: tree(path, [*FEW[:2], "picking_up"]),
         "names.yaml": lambda path: path.write_text("picking_up: grabbing"),
     },
+    "captures.md": {"walk.wav": lambda path: write_all(path.parent)},
     "points.md": {
         "walk.bin": dump,
         "replay_1.json": replay,

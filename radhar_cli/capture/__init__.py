@@ -3,7 +3,8 @@
 settings      the header of a capture, from a file or by hand
 formats       the formats of captures, a row each
 dca1000       raw samples of TI's capture card
-array_files   .npy, .npz, .mat, HDF5
+array_files   .npy, .npz, .mat, HDF5; wav_files, text_files; packed_files: .xz, .gz, .bz2
+named_parts   names by which I, Q and times are found
 findings      estimates from the samples: offset binary, sign of the beat, clipping, losses
 content       what the samples of a recording are: beat signals, range profiles or slow time
 recording     the recording file itself: docs/guide/measured.md

@@ -7,9 +7,9 @@ is bounded.
 import struct
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import prod
 from pathlib import Path
@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.capture.named_parts import find_pair
 from radhar_cli.capture.settings import USUAL_AXES, AxisName, CaptureSettings
 from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Parts, Source
 from radhar_cli.dataset.untrusted_hdf5 import NumberColumn, UntrustedFile
@@ -29,6 +30,7 @@ MAX_RECEIVERS = 1024
 MAX_PACKING = 200  # growth of a file when it is unpacked
 MAX_MAT5 = 2**30  # bytes: SciPy holds a variable of the old format whole
 MAX_TIMES = 2**24
+DEEPEST_STRUCT = 8
 BLOCK = 2**20  # bytes that are unpacked at once
 MATLAB_NUMBERS = {"double", "single", *(f"{u}int{n}" for u in ("", "u") for n in (8, 16, 32, 64))}
 _ORDER: tuple[AxisName, ...] = ("transmitter", "receiver", "sample", "frame", "pulse", "iq")
@@ -61,6 +63,67 @@ class StoredArray:
         block = np.ascontiguousarray(self.load()[key])
         native = block.astype(block.dtype.newbyteorder("="), copy=False)
         return native.view(self.number).reshape(*block.shape, self.parts)
+
+
+class PairedArray(StoredArray):
+    """Two arrays of one shape, I and Q, as one of complex numbers.
+
+    Args:
+        real: I.
+        imaginary: Q.
+
+    Raises:
+        CaptureError: they differ, or are complex.
+    """
+
+    def __init__(self, real: "StoredArray | NumberColumn", imaginary: "StoredArray | NumberColumn"):
+        if real.shape != imaginary.shape or real.parts + imaginary.parts != 2:
+            raise CaptureError(
+                f"{imaginary.where}: has the shape {[*imaginary.shape]}; should be real numbers of "
+                f"the shape {[*real.shape]}, as I in {real.where}"
+            )
+        self.where, self.shape, self.chunk = real.where, real.shape, real.chunk
+        self.halves, self.parts = (real, imaginary), 2
+        self.number = np.result_type(real.number, imaginary.number)
+
+    def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
+        """Read a block [..., part] of both."""
+        blocks = [half.read(key)[..., 0] for half in self.halves]
+        return np.stack(blocks, axis=-1).astype(self.number, copy=False)
+
+
+class FrameFiles(StoredArray):
+    """Arrays of one shape in files of their own, as an array whose first axis numbers the files.
+
+    Args:
+        arrays: the arrays, in order.
+
+    Raises:
+        CaptureError: they differ in shape or type.
+    """
+
+    def __init__(self, arrays: Sequence["StoredArray | NumberColumn"]) -> None:
+        first = arrays[0]
+        for array in arrays[1:]:
+            same = array.shape == first.shape and array.number == first.number
+            if not same or array.parts != first.parts:
+                raise CaptureError(
+                    f"{array.where}: has the shape {[*array.shape]} of {array.number}; should be "
+                    f"{[*first.shape]} of {first.number}, as {first.where}: a file a frame"
+                )
+        self.arrays, self.where, self.parts = arrays, first.where, first.parts
+        self.shape, self.number = (len(arrays), *first.shape), first.number
+        self.chunk = (1,) * len(self.shape)
+
+    def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
+        """Read a block [file, ..., part]."""
+        return np.stack([array.read(key[1:]) for array in self.arrays[key[0]]])
+
+
+def _npy_files(files: CaptureFiles) -> list[StoredArray | NumberColumn]:
+    """Map the array of a .npy file, or those of several, a frame each."""
+    arrays = [_npy(path, str(path)) for path in files.paths]
+    return [*arrays] if len(arrays) == 1 else [FrameFiles(arrays)]
 
 
 def _npy(path: Path, where: str) -> StoredArray | NumberColumn:
@@ -103,8 +166,8 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
 
 def _hdf5(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberColumn]:
     file = UntrustedFile(path)
-    named_arrays = [name for name in (settings.dataset, settings.times) if name is not None]
-    names = [*file.numeric_names(), *named_arrays]
+    named = settings.dataset, settings.times, settings.imaginary
+    names = list(dict.fromkeys([*file.numeric_names(), *filter(None, named)]))
     shapes = {name: tuple(file.shape(name.strip("/"))) for name in names}
     return [file.samples(name.strip("/")) for name in _chosen(path, shapes, settings)]
 
@@ -123,9 +186,35 @@ def _mat5(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberCol
         _check_mat5(path)
         kinds = whosmat(str(path), appendmat=False)
         shapes = {name: shape for name, shape, kind in kinds if kind in MATLAB_NUMBERS}
+        structs = [name for name, _, kind in kinds if kind == "struct"]
+        loaded = dict[str, NDArray[Any]]()
+        if structs:
+            fields = loadmat(str(path), appendmat=False, variable_names=structs)
+            for name in structs:
+                loaded |= _fields(fields[name], name)
+            shapes |= {name: values.shape for name, values in loaded.items()}
         names = _chosen(path, shapes, settings)
-        loaded = loadmat(str(path), appendmat=False, variable_names=names)
+        top = [name for name in names if name not in loaded]
+        loaded |= loadmat(str(path), appendmat=False, variable_names=top) if top else {}
         return [StoredArray(f"{path}: {n}", partial(np.transpose, loaded[n])) for n in names]
+
+
+def _fields(values: NDArray[Any], name: str, depth: int = 0) -> dict[str, NDArray[Any]]:
+    """Arrays of numbers in a struct of MATLAB, by dotted names.
+
+    Args:
+        values: the struct, or what one of its fields holds.
+        name: its name.
+        depth: in how many structs it lies.
+    """
+    if values.dtype.names is not None and values.size == 1 and depth < DEEPEST_STRUCT:
+        inner = dict[str, NDArray[Any]]()
+        for field in values.dtype.names:
+            value = values.reshape(-1)[0][field]
+            if isinstance(value, np.ndarray):
+                inner |= _fields(value, f"{name}.{field}", depth + 1)
+        return inner
+    return {name: values} if values.dtype.kind in "iufc" and values.size > 1 else {}
 
 
 def _check_mat5(path: Path) -> None:
@@ -157,14 +246,21 @@ def _check_mat5(path: Path) -> None:
 
 
 def _chosen(path: Path, shapes: dict[str, tuple[int, ...]], settings: CaptureSettings) -> list[str]:
-    """Choose the array of the samples (named, or the only one it can be), and that of the times."""
-    named_arrays = [name for name in (settings.dataset, settings.times) if name is not None]
+    """Choose the array of the samples (named, or the only one it can be), and that of the times.
+
+    Where I and Q are apart, that of Q comes last.
+    """
+    names = settings.dataset, settings.times, settings.imaginary
+    named_arrays = [name for name in names if name is not None]
     for name in named_arrays:
         if name not in shapes:
             hint = did_you_mean(name, shapes, f"there are {', '.join(shapes) or 'none'}")
             raise CaptureError(f"{path}: {name}: no such array of numbers; {hint}")
     if settings.dataset is not None:
         return named_arrays
+    pair = find_pair([name for name, shape in shapes.items() if prod(shape) > 1])
+    if pair is not None and shapes[pair[0]] == shapes[pair[1]]:
+        return [pair[0], *named_arrays, pair[1]]
     candidates = [
         name for name, shape in shapes.items() if len(shape) > 1 and prod(shape) > max(shape)
     ]
@@ -174,7 +270,8 @@ def _chosen(path: Path, shapes: dict[str, tuple[int, ...]], settings: CaptureSet
             ", ".join(f"{name} {list(shape)}" for name, shape in shapes.items()) or "none"
         )
         raise CaptureError(
-            f"{path}: --set dataset=NAME should name the samples; there are {known_arrays}"
+            f"{path}: --set dataset=NAME should name the samples, or dataset=NAME and "
+            f"imaginary=NAME I and Q; there are {known_arrays}"
         )
     return [*candidates, *named_arrays]
 
@@ -308,16 +405,38 @@ def _open_with(
 
     def open_arrays(capture: CaptureFiles) -> Source:
         arrays, settings = arrays_of(capture), capture.settings
-        times = None if settings.times is None or len(arrays) == 1 else _times(arrays[1])
-        return as_source(capture.paths[0], arrays[0], settings, times, of_matlab)
+        samples, others = arrays[0], arrays[1:]
+        times = _times(others.pop(0)) if settings.times is not None and others else None
+        if others:
+            samples = PairedArray(samples, others[0])
+        if len(capture.paths) > 1:
+            settings = _with_frames(samples, settings)
+        return replace(
+            as_source(capture.paths[0], samples, settings, times, of_matlab),
+            files=tuple(capture.paths),
+        )
 
     return open_arrays
+
+
+def _with_frames(array: StoredArray | NumberColumn, settings: CaptureSettings) -> CaptureSettings:
+    """Settings whose axes begin with that of the frames, a file each.
+
+    Raises:
+        CaptureError: axes are not named, and not the usual ones of a frame.
+    """
+    usual: dict[int, tuple[AxisName, ...]] = {3: ("frame", "sample", "pulse")}
+    axes = settings.axes or usual.get(len(array.shape)) or USUAL_AXES.get(len(array.shape), ())
+    if settings.axes is not None and "frame" not in axes:
+        axes = ("frame", *axes)
+    return settings.model_copy(update={"axes": axes})
 
 
 NPY = CaptureFormat(
     ".npy",
     lambda path, head: head.startswith(b"\x93NUMPY"),
-    _open_with(lambda files: [_npy(files.paths[0], str(files.paths[0]))], of_matlab=False),
+    _open_with(_npy_files, of_matlab=False),
+    is_split=True,
 )
 NPZ = CaptureFormat(
     ".npz",

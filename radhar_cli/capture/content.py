@@ -1,6 +1,6 @@
 """What the samples of a recording are: beat signals of chirps, range profiles, or slow time."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar, TypeAlias
 
 from radhar_cli.config.radar import class_of_radar
@@ -14,6 +14,21 @@ TOLERANCE = 1e-6  # relative difference of frequencies and times that are the sa
 
 
 @dataclass(frozen=True)
+class WholeBand(Waveform):
+    """Waveform of which all range bins are kept, as complex samples tell both halves apart."""
+
+    @property
+    def n_bins(self) -> int:
+        """Number of range bins."""
+        return self.n_fft
+
+    @property
+    def half_band_range(self) -> float:
+        """Range of the end of the band, m."""
+        return self.range_step * self.n_bins
+
+
+@dataclass(frozen=True)
 class Beat:
     """Beat signals: N samples of every chirp."""
 
@@ -22,6 +37,7 @@ class Beat:
     axes: ClassVar[tuple[str, ...]] = ("receiver", "fast time", "pulse")
 
     timing: FmcwTiming
+    is_whole: bool = False  # whether echoes lie in both halves of the band of complex samples
 
     @property
     def carrier_hz(self) -> float:
@@ -42,7 +58,10 @@ class Beat:
         self, duration: float, fft_length: int | None = None, centred: bool = True
     ) -> Waveform:
         """Waveform of the chirps; arguments are those of `FmcwTiming.waveform`."""
-        return self.timing.waveform(duration, fft_length, centred)
+        w = self.timing.waveform(duration, fft_length, centred)
+        if not self.is_whole:
+            return w
+        return WholeBand(**{field.name: getattr(w, field.name) for field in fields(w)})
 
     def range_bins(self, pulses: Complex, w: Waveform) -> Complex:
         """Range bins [K, M] of pulses [N, M], referred to the chirp's start unless w is centred."""
@@ -105,7 +124,7 @@ Content: TypeAlias = Ranging | SlowTime
 def numbers_of(content: Content) -> dict[str, Any]:
     """Numbers of the radar behind a content, by the names that they have in a recording's file."""
     if isinstance(content, Beat):
-        return asdict(content.timing)
+        return asdict(content.timing) | ({"whole_band": True} if content.is_whole else {})
     return {name: value for name, value in asdict(content).items() if name != "is_iq"}
 
 
@@ -119,7 +138,7 @@ def describe_difference(content: Content, expected: Content) -> str | None:
     numbers, expected_numbers = numbers_of(content), numbers_of(expected)
     # The number of samples comes first, as the bandwidth follows from it.
     for name in sorted(numbers, key=lambda name: name != "samples"):
-        value, number = numbers[name], expected_numbers[name]
+        value, number = numbers[name], expected_numbers.get(name, False)
         if abs(value - number) > TOLERANCE * abs(number):
             return f"{name} = {value:.10g}: should be {number:.10g}"
     return None

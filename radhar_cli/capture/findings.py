@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 
 from radhar_cli.capture.source import Parts, Source
 from radhar_cli.errors import CaptureError
-from radhar_cli.numerics.arrays import Bool
+from radhar_cli.numerics.arrays import Bool, Float
 
 PROBES, PROBED = 16, 64  # places that are examined, and pulses of each
 SURE = 0.65  # share of the energy in one half of the spectrum that decides
+FEWEST_SAMPLES, FEW_SAMPLES = 16, 0.3  # of a pulse; share in which range bins have their power
+EDGE = 3  # bins at zero that lie in both halves
 LOST_RUN = 32  # consecutive zero samples
 MIN_ZEROS = 4  # zero samples of a pulse beside a lost one
 RARE = 3  # samples at full scale that are ignored
@@ -238,3 +240,54 @@ def checked(raw: Parts, first: int, where: str, coding: Coding = PLAIN) -> tuple
         )
     gone: Bool = np.asarray(nan.any(axis=(0, 1, 3)))
     return np.where(nan, raw.dtype.type(0), raw), gone
+
+
+def lies_beyond_half_band(pieces: list[Parts], conjugated: bool) -> bool:
+    """Whether something moves in the half of the band in which radhar's beat has no targets.
+
+    Its strongest bin there is no image of one in the other half (6 dB) and no noise (13 dB).
+
+    Args:
+        pieces: numbers, each [receiver, sample, pulse, part] with two parts.
+        conjugated: whether samples are conjugated on import.
+    """
+    power: Any = 0.0
+    for piece in pieces:
+        x = piece[..., 0].astype(float) + (-1j if conjugated else 1j) * piece[..., 1]
+        x = np.nan_to_num(x - x.mean(axis=2, keepdims=True))
+        window = np.hanning(x.shape[1] + 2)[1:-1, None]
+        power = power + np.mean(np.abs(np.fft.fft(x * window, axis=1)) ** 2, axis=(0, 2))
+    if np.size(power) < FEWEST_SAMPLES:
+        return False
+    beyond = float(power[EDGE : power.size // 2 - 1].max())
+    return beyond > power.max() / 4 and beyond > 20 * float(np.median(power))
+
+
+def look_like_range_bins(pieces: list[Parts]) -> bool:
+    """Whether the power of samples lies in few of them, and less so that of their spectrum.
+
+    A beat signal has much the same power in all samples of a chirp, and its spectrum has the
+    targets; of range profiles it is the other way round. The measure is how many of N samples
+    share a power p, (sum p)^2/(N sum p^2), of the mean over pulses.
+
+    Args:
+        pieces: numbers, each [receiver, sample, pulse, part].
+    """
+    signals = []
+    for piece in pieces:
+        values = np.nan_to_num(piece.astype(float))
+        signals.append(values[..., 0] + (1j * values[..., 1] if values.shape[-1] == 2 else 0))
+    x = np.concatenate(
+        [signal.swapaxes(0, 1).reshape(signal.shape[1], -1) for signal in signals], 1
+    )
+    if x.shape[0] < FEWEST_SAMPLES:
+        return False
+    share = _share_of_samples(np.mean(np.abs(x) ** 2, axis=1))
+    spectrum = _share_of_samples(np.mean(np.abs(np.fft.fft(x, axis=0)) ** 2, axis=1))
+    return share < FEW_SAMPLES and share < spectrum
+
+
+def _share_of_samples(power: Float) -> float:
+    """Share of the samples [N] in which a power lies: 1 of a constant one, 1/N of a single one."""
+    total = float(np.sum(power**2))
+    return 1.0 if total <= 0 else float(np.sum(power)) ** 2 / (power.size * total)

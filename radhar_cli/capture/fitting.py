@@ -155,6 +155,32 @@ def _timing(paths: Sequence[Path]) -> tuple[FmcwTiming, float]:
     return timing, float(np.median(seconds))
 
 
+def refuse_frames_and_receivers(path: Path) -> None:
+    """Refuse a recording of frames or of several receivers: the radar of a fitted config has none.
+
+    Raises:
+        CaptureError: says what would differ, and what to do.
+    """
+    with Recording(path) as recording:
+        info, segments = recording.info, recording.segments
+    differences = []
+    period = float(np.median(np.diff(segments.start))) if len(segments) > 1 else 0.0
+    is_regular = np.allclose(np.diff(segments.start), period, rtol=0.01)
+    if len(segments) > 1 and is_regular and np.ptp(segments.lengths[:-1]) == 0:
+        pulses = segments.lengths[0]
+        differences.append(
+            f"{len(segments)} frames of {pulses:g} pulses every {period * 1e3:.4g} ms (fitted: "
+            "pulses without a pause)"
+        )
+    if info.receivers > 1:
+        differences.append(f"{info.receivers} receivers (fitted: one)")
+    if differences:
+        raise CaptureError(
+            f"{path}: has {' and '.join(differences)}, which fit does not keep: "
+            "write a config by hand, whose radar has these frames and this array"
+        )
+
+
 def parts_of(path: Path) -> Iterator[Estimates]:
     """Yield estimates from parts of about PART_S, at most MAX_PARTS, spread over a recording.
 

@@ -1,6 +1,10 @@
 """Formats of captures: what adds one is a file with a `CaptureFormat`, and its line here."""
 
-from radhar_cli.capture import array_files, dca1000
+from dataclasses import replace
+from pathlib import Path
+
+from radhar_cli.capture import array_files, dca1000, text_files, wav_files
+from radhar_cli.capture.packed_files import unpacked
 from radhar_cli.capture.source import HEAD_BYTES, CaptureFiles, CaptureFormat, Source
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import regular_size
@@ -12,6 +16,8 @@ FORMATS: list[CaptureFormat] = [
     array_files.NPZ,
     array_files.MAT,
     array_files.HDF5,
+    wav_files.WAV,
+    text_files.TEXT,
 ]
 
 
@@ -21,13 +27,9 @@ def open_capture(files: CaptureFiles) -> Source:
     Raises:
         CaptureError: the format is unknown, or the capture does not fit its header.
     """
+    files = replace(files, paths=[_unpacked(files, path) for path in files.paths])
     path = files.paths[0]
-    try:
-        regular_size(path)
-        with path.open("rb") as file:
-            head = file.read(HEAD_BYTES)
-    except OSError as error:
-        raise CaptureError(f"{path}: {error.strerror}") from None
+    head = _head_of(path)
     for form in FORMATS:
         if form.recognises(path, head):
             if len(files.paths) > 1 and not form.is_split:
@@ -36,5 +38,24 @@ def open_capture(files: CaptureFiles) -> Source:
                     f"{files.paths[1]}: only captures of {split} are split into several files"
                 )
             return form.open(files)
-    names = [form.name for form in FORMATS]
+    names = [*(form.name for form in FORMATS), "one of these in .xz, .gz or .bz2"]
     raise CaptureError(f"{path}: unknown format; should be {', '.join(names[:-1])} or {names[-1]}")
+
+
+def _unpacked(files: CaptureFiles, path: Path) -> Path:
+    """Path of a file of a capture, unpacked if it is compressed as a whole."""
+    return unpacked(path, _head_of(path), files.scratch)
+
+
+def _head_of(path: Path) -> bytes:
+    """First bytes of a file, by which its format is recognised.
+
+    Raises:
+        CaptureError: it cannot be read.
+    """
+    try:
+        regular_size(path)
+        with path.open("rb") as file:
+            return file.read(HEAD_BYTES)
+    except OSError as error:
+        raise CaptureError(f"{path}: {error.strerror}") from None

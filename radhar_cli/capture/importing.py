@@ -25,12 +25,13 @@ from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 
-TI_HEADERS = (".json", ".cfg")
+TI_HEADERS = (".json", ".cfg", ".lua")
 GAP = 0.5  # shortest gap between frames, in pulse intervals
 MAX_HZ = 1e15
 JITTER = 0.1  # in pulse intervals, above which it is reported
@@ -100,6 +101,7 @@ def _write_capture(
     source: Source, out: Path, s: CaptureSettings, header: str, exclusive: bool
 ) -> RecordingInfo:
     """Write an open capture as a recording, with radhar's coding and sign of the beat."""
+    _require_keys(source, s, header)
     notes = [*source.notes]
     probed = findings.probe(source)
     coding = _coding(probed, s, source.name, notes)
@@ -108,9 +110,11 @@ def _write_capture(
     if swapped:
         notes.append("Q before I, as the header says")
         probed = [piece[..., ::-1] for piece in probed]
+    _require_beat(probed, source, s)
     conjugated = _conjugated(probed, source, s, notes)
     segments = _segments(source, s, header, notes)
-    info = _info(source, s, segments, header, notes)
+    is_whole = source.parts == 2 and findings.lies_beyond_half_band(probed, conjugated)
+    info = _info(source, s, segments, notes, is_whole)
     damage = findings.Damage(findings.full_scale(source.dtype, coding, s.adc_bits))
 
     def pieces() -> Iterator[tuple[int, Parts]]:
@@ -156,7 +160,7 @@ def _coding(
 
 def _conjugated(probed: list[Parts], source: Source, s: CaptureSettings, notes: list[str]) -> bool:
     """Whether samples have to be conjugated for radhar's sign of the beat; add a note."""
-    if source.parts == 1 or source.samples is None:
+    if source.parts == 1 or source.samples is None or s.are_profiles:
         return source.parts == 2 and s.beat == "positive"
     shares = findings.positive_share(probed)
     moving, still = (f"{100 * share:.0f} %" for share in shares)
@@ -185,8 +189,7 @@ def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str])
     """Times of the pulses, from their times or the frames of the header; add a note."""
     if source.times is not None:
         return _segments_of_times(source, source.times, s, notes)
-    if s.prf_hz is None:
-        raise CaptureError(f"{header}: prf_hz is missing; --set prf_hz=..., or times=NAME")
+    assert s.prf_hz is not None  # as `_require_keys` found
     if s.frame_pulses is None and s.frame_s is None:
         return PulseTimes.even(source.pulses, s.prf_hz)
     if s.frame_pulses is None or s.frame_s is None:
@@ -244,10 +247,16 @@ def _segments_of_times(
 
 
 def _info(
-    source: Source, s: CaptureSettings, segments: PulseTimes, header: str, notes: list[str]
+    source: Source, s: CaptureSettings, segments: PulseTimes, notes: list[str], is_whole: bool
 ) -> RecordingInfo:
-    """Describe the recording that is made of a capture."""
-    content = _content(source, s, segments.prf, header)
+    """Describe the recording that is made of a capture, whose echoes may fill the whole band."""
+    content = _content(source, s, segments.prf, notes)
+    if isinstance(content, Beat) and is_whole:
+        content = Beat(content.timing, is_whole)
+        notes.append(
+            "what moves lies in both halves of the band: ranges reach from 0 to "
+            f"{content.waveform(1.0).half_band_range:.4g} m"
+        )
     if s.transmitters > 1:
         notes.append(
             f"{s.transmitters} transmitters take turns: {segments.prf:.6g} pulses/s each, "
@@ -267,27 +276,89 @@ def _info(
     )
 
 
-def _content(source: Source, s: CaptureSettings, prf_hz: float, header: str) -> Content:
-    """Content of a capture: chirps, or slow time.
+def _content(source: Source, s: CaptureSettings, prf_hz: float, notes: list[str]) -> Content:
+    """Content of a capture whose keys are known: chirps, range profiles, or slow time."""
+    assert s.carrier_hz is not None
+    if source.samples is None:
+        return SlowTime(s.carrier_hz, prf_hz)
+    if s.are_profiles:
+        assert s.first_range_m is not None
+        assert s.range_step_m is not None
+        bandwidth_hz = s.bandwidth_hz
+        if bandwidth_hz is None:
+            bandwidth_hz = min(SPEED_OF_LIGHT / (2 * s.range_step_m), s.carrier_hz)
+            notes.append(
+                f"bandwidth_hz is unknown; {bandwidth_hz:.4g} Hz assumed, whose resolution is a "
+                "step of range"
+            )
+        return RangeProfiles(
+            s.carrier_hz,
+            bandwidth_hz,
+            source.samples,
+            prf_hz,
+            s.first_range_m,
+            s.range_step_m,
+            source.parts == 2,
+        )
+    assert s.bandwidth_hz is not None
+    assert s.adc_rate_hz is not None
+    timing = FmcwTiming(s.carrier_hz, s.bandwidth_hz, s.adc_rate_hz, source.samples, prf_hz)
+    return Beat(timing)
+
+
+# {key: a value of it that a message shows}
+EXAMPLES = {
+    "carrier_hz": "77e9",
+    "prf_hz": "1000",
+    "bandwidth_hz": "1e9",
+    "adc_rate_hz": "5e6",
+    "first_range_m": "0.3",
+    "range_step_m": "0.05",
+}
+
+
+def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
+    """Require the keys that a capture needs, and name all that are missing at once.
 
     Raises:
-        CaptureError: a number that is needed is unknown.
+        CaptureError: keys are missing; a command that gives them follows.
     """
+    keys = ["carrier_hz"] + ["prf_hz"] * (source.times is None)
+    if source.samples is not None:
+        beat, profiles = ["bandwidth_hz", "adc_rate_hz"], ["first_range_m", "range_step_m"]
+        keys += profiles if s.are_profiles else beat
+    missing = [key for key in keys if getattr(s, key) is None]
+    if not missing:
+        return
+    are = "are" if len(missing) > 1 else "is"
+    sets = " ".join(f"--set {key}={EXAMPLES[key]}" for key in missing)
+    files = " ".join(map(str, source.files[:3])) + (" ..." if len(source.files) > 3 else "")
+    radar = "" if header == "--set" else f"--radar {header} "
+    several = "s" * (source.receivers > 1)
+    shape = f"{source.receivers} receiver{several}, {source.samples or 'no'} samples a pulse, "
+    also = ""
+    if source.samples is not None and not s.are_profiles:
+        also = "; range bins have first_range_m and range_step_m instead of adc_rate_hz"
+    raise CaptureError(
+        f"{header}: {', '.join(missing)} {are} missing; of {shape}{source.pulses} pulses, with "
+        f"your numbers: radhar import {files} {radar}{sets} -o walk.h5, or --radar FILE with these "
+        f"keys{also}"
+    )
 
-    def require_number(key: str) -> float:
-        number: float | None = getattr(s, key)
-        if number is None:
-            raise CaptureError(
-                f"{header}: {key} is missing; give it by --radar FILE or --set {key}=..."
-            )
-        return number
 
-    carrier_hz = require_number("carrier_hz")
-    if source.samples is None:
-        return SlowTime(carrier_hz, prf_hz)
-    bandwidth_hz = require_number("bandwidth_hz")
-    return Beat(
-        FmcwTiming(carrier_hz, bandwidth_hz, require_number("adc_rate_hz"), source.samples, prf_hz)
+def _require_beat(probed: list[Parts], source: Source, s: CaptureSettings) -> None:
+    """Refuse samples that look like range bins, unless the header says what they are.
+
+    Raises:
+        CaptureError: they look like range bins, and nothing says that they are beat signals.
+    """
+    is_known = s.holds is not None or s.are_profiles or source.usual_beat == "positive"
+    if is_known or source.samples is None or not findings.look_like_range_bins(probed):
+        return
+    raise CaptureError(
+        f"{source.name}: the power of its {source.samples} samples a pulse lies in few of them, as "
+        "of range bins, not of beat signals: --set first_range_m=... --set range_step_m=... say "
+        "where bins lie; --set holds=beat takes them for beat signals"
     )
 
 

@@ -83,6 +83,7 @@ class _Description(_Part):
     # where the samples of range profiles lie; None of chirps and slow time
     first_range_m: Annotated[float, Field(ge=0, le=1e7)] | None = None
     range_step_m: Annotated[float, Field(gt=0, le=1e7)] | None = None
+    whole_band: bool = False  # of chirps, whether ranges are those of both halves of the band
     receivers: Annotated[int, Field(ge=1, le=2**16)]
     pulses: Whole
     segments: Whole = 1
@@ -102,7 +103,8 @@ class _Description(_Part):
             case (None, None, None, None, None):
                 return SlowTime(self.carrier_hz, self.prf_hz)
             case (int(n), float(band), float(rate), None, None):
-                return Beat(FmcwTiming(self.carrier_hz, band, rate, n, self.prf_hz))
+                timing = FmcwTiming(self.carrier_hz, band, rate, n, self.prf_hz)
+                return Beat(timing, self.whole_band)
             case (int(n), float(band), None, float(first), float(step)):
                 return RangeProfiles(self.carrier_hz, band, n, self.prf_hz, first, step)
         return None

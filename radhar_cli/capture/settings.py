@@ -46,8 +46,15 @@ class CaptureSettings(Section):
     # half of the spectrum with the targets: negative is radhar's exp(-j 2 pi K tau t), positive
     # TI's; detected if None
     beat: Literal["negative", "positive"] | None = None
-    # names of the samples, and of the pulses' times (s), within the file
+    # what samples are, where they do not look like it; slow_time follows from axes without sample
+    holds: Literal["beat", "profiles"] | None = None
+    # of range profiles: range of the first sample and step to the next, m
+    first_range_m: Annotated[float, Field(ge=0, le=1e7)] | None = None
+    range_step_m: Annotated[float, Field(gt=0, le=1e7)] | None = None
+    # names of the samples (or of I, where Q is another array: imaginary), and of the pulses' times
+    # (s), within the file
     dataset: Text | None = None
+    imaginary: Text | None = None
     times: Text | None = None
     # of an array, outermost first, in the order of the program that wrote it
     axes: Annotated[
@@ -59,6 +66,13 @@ class CaptureSettings(Section):
     ] = None
     label: Text | None = None  # of the whole recording, as the person
     person: Text | None = None
+
+    @property
+    def are_profiles(self) -> bool:
+        """Whether samples of a pulse are said to lie over range."""
+        return self.holds == "profiles" or (
+            self.holds is None and (self.first_range_m, self.range_step_m) != (None, None)
+        )
 
     @property
     def words_of_a_pulse(self) -> int:

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from radhar_cli.capture.lvds_format import LvdsFormat, read_lvds_format
+from radhar_cli.capture.ti_lua import read_lua
 from radhar_cli.capture.ti_studio import read_studio
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import text_of
@@ -21,7 +22,8 @@ def read_ti_settings(path: Path) -> dict[str, Any]:
         CaptureError: The file cannot be read, or describes what is not supported; names file,
             field, value and what would be right.
     """
-    header, stream = read_studio(path) if path.suffix.lower() == ".json" else _read_cfg(path)
+    readers = {".json": read_studio, ".lua": read_lua}
+    header, stream = readers.get(path.suffix.lower(), _read_cfg)(path)
     return {
         "carrier_hz": header.carrier_hz,
         "bandwidth_hz": header.bandwidth_hz,

@@ -8,6 +8,7 @@ Striebel (AIAA Journal 3, 1965) then weighs ranges and velocities of the ridge.
 """
 
 from dataclasses import dataclass
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -55,9 +56,10 @@ class TorsoTrack(Track):
     # 0 to 1 [F]: the share of the frame's moving power, above the floor, within a metre of the
     # track; 0 in a frame that was bridged
     confidence: Float
+    limits: tuple[float, float] = (0.0, inf)  # of the range axis, which the torso does not leave
 
     def range_at(self, t: Float) -> Float:
-        """Range (m) at times t (s): cubic between frames, straight beyond them."""
+        """Range (m) at times t (s): cubic between frames, straight beyond, within the limits."""
         from scipy.interpolate import CubicHermiteSpline
 
         inside = np.clip(t, self.time[0], self.time[-1])
@@ -65,7 +67,7 @@ class TorsoTrack(Track):
         if self.time.size > 1:
             position = CubicHermiteSpline(self.time, self.range, self.velocity)(inside)
         edge = np.where(t < self.time[0], self.velocity[0], self.velocity[-1])
-        return np.asarray(position + edge * (t - inside), dtype=float)
+        return np.asarray(np.clip(position + edge * (t - inside), *self.limits), dtype=float)
 
     def delay_at(self, t: Float) -> Float:
         """Two-way delay (s) at times t (s)."""
@@ -134,7 +136,8 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
     near = np.where(np.abs(ranges - position[:, None]) <= NEAR_M, profile, 0).sum(axis=1)
     total = profile.sum(axis=1)
     share = np.where((ridge >= 0) & (total > 0), near / np.where(total > 0, total, 1), 0.0)
-    return TorsoTrack(times, position, velocity, share)
+    limits = max(float(ranges[0]), 0.0), float(ranges[-1])
+    return TorsoTrack(times, np.clip(position, *limits), velocity, share, limits)
 
 
 def peaks(power: Float, ranges: Float, speeds: Float, looks: int = 1) -> Peaks:

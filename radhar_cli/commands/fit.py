@@ -28,7 +28,7 @@ def fit(
     """
     import json
 
-    from radhar_cli.capture.fitting import draw
+    from radhar_cli.capture.fitting import draw, refuse_frames_and_receivers
     from radhar_cli.capture.fitting import fit as fit_recordings
     from radhar_cli.errors import FolderError
     from radhar_cli.files.replacing import write_text
@@ -38,6 +38,8 @@ def fit(
     if out.suffix == ".png":
         raise FolderError(f"{out}: .png is for the figure; -o should end in .yaml")
     refuse_to_replace(out, overwrite, "measured.yaml")
+    for path in recordings:
+        refuse_frames_and_receivers(path)
     fitted = fit_recordings(recordings)
     for key, value in fitted.numbers().items():
         tell(f"  {key:<19} {value:.4g}")

@@ -15,8 +15,8 @@ def import_(
         list[Path],
         typer.Argument(
             metavar="CAPTURE...",
-            help="Capture: .bin of a DCA1000 (name only the first), .npy, .npz, .mat, HDF5; "
-            "points: a dump of a TI demo's data port, or its visualizer's JSON.",
+            help="Capture: .bin of a DCA1000 (name only the first), .npy, .npz, .mat, HDF5, .wav, "
+            "text; points: a dump of a TI demo's data port, or its visualizer's JSON.",
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")],
@@ -24,7 +24,7 @@ def import_(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Header: mmWave Studio's JSON, TI's .cfg, or YAML of radhar's keys.",
+            help="Header: mmWave Studio's JSON or .lua, TI's .cfg, or YAML of radhar's keys.",
         ),
     ] = None,
     set_: Annotated[

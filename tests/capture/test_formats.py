@@ -32,22 +32,22 @@ def open_text(capture: CaptureFiles) -> Source:
     return Source((capture.paths[0],), 1, None, len(values), values.dtype, 2, read)
 
 
-TEXT = CaptureFormat(".txt", lambda path, head: path.suffix == ".txt", open_text)
+TEXT = CaptureFormat(".own", lambda path, head: path.suffix == ".own", open_text)
 
 
 def test_a_format_is_added_by_one_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     samples = np.exp(2j * np.pi * 0.1 * np.arange(50))
-    np.savetxt(tmp_path / "x.txt", samples.view(float).reshape(-1, 2), delimiter=",")
+    np.savetxt(tmp_path / "x.own", samples.view(float).reshape(-1, 2), delimiter=",")
     settings = read_settings(None, ["carrier_hz=24e9", "prf_hz=1000"])
-    with pytest.raises(CaptureError, match=r"x\.txt: unknown format; should be \.bin.* or HDF5"):
-        import_capture([tmp_path / "x.txt"], tmp_path / "x.h5", settings)
+    with pytest.raises(CaptureError, match=r"x\.own: unknown format; should be \.bin.*HDF5"):
+        import_capture([tmp_path / "x.own"], tmp_path / "x.h5", settings)
     monkeypatch.setattr(formats, "FORMATS", [*formats.FORMATS, TEXT])
-    import_capture([tmp_path / "x.txt"], tmp_path / "x.h5", settings)
+    import_capture([tmp_path / "x.own"], tmp_path / "x.h5", settings)
     with Recording(tmp_path / "x.h5") as recording:
         assert recording.info.content == SlowTime(24e9, 1000.0)
         assert np.allclose(recording.beat(0, 50)[0, 0], samples)
-    with pytest.raises(CaptureError, match=r"x\.txt: only captures of \.bin .* are split"):
-        import_capture([tmp_path / "x.txt"] * 2, tmp_path / "y.h5", settings)
+    with pytest.raises(CaptureError, match=r"x\.own: only captures of \.bin .* are split"):
+        import_capture([tmp_path / "x.own"] * 2, tmp_path / "y.h5", settings)
 
 
 BEAT = Beat(FmcwTiming(24e9, 1e9, 2.5e6, 100, 1000.0))

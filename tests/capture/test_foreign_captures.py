@@ -1,0 +1,256 @@
+"""Captures as people have them: point targets in other people's formats, and what import says."""
+
+import bz2
+import gzip
+import lzma
+
+import h5py
+import numpy as np
+import pytest
+from helpers.command_line import ok, radhar
+from helpers.foreign_targets import LUA, RATE, frame, profiles, tone
+from scipy.io import savemat, wavfile
+
+from radhar_cli.capture.importing import import_capture, read_settings
+from radhar_cli.capture.named_parts import find_pair
+from radhar_cli.capture.packed_files import unpacked
+from radhar_cli.capture.recording import Recording
+from radhar_cli.capture.ti_lua import read_lua
+from radhar_cli.errors import CaptureError
+
+CARRIER = ["carrier_hz=24e9"]
+
+
+def taken(tmp_path, names, *overrides, header=None):
+    """(recording's info, samples of all pulses) of a capture."""
+    paths = [tmp_path / name for name in names]
+    info = import_capture(paths, tmp_path / "out.h5", read_settings(header, overrides))
+    with Recording(tmp_path / "out.h5") as recording:
+        return info, recording.beat(0, info.pulses)
+
+
+def wav(path):
+    x = tone()
+    wavfile.write(path, int(RATE), np.round(20000 * np.column_stack([x.real, x.imag])).astype("i2"))
+
+
+def csv_named(path):
+    x = tone()
+    rows = [f"{n / RATE:.6f},{v.real:.6f},{v.imag:.6f}" for n, v in enumerate(x)]
+    path.write_text("\n".join(["time,I,Q", *rows]))
+
+
+def text_complex(path):
+    path.write_text("% from MATLAB\n" + "\n".join(f"{v.real:.6f}{v.imag:+.6f}i" for v in tone()))
+
+
+def text_columns(path):
+    path.write_text("\n".join(f"{v.real:.6f}\t{v.imag:.6f}" for v in tone()))
+
+
+def mat_pair(path):
+    savemat(path, {"I": tone().real, "Q": tone().imag, "fs": RATE})
+
+
+def mat_struct(path):
+    savemat(path, {"rec": {"meta": {"fs": RATE}, "data": tone()[None]}, "note": "a text"})
+
+
+def npz_pair(path):
+    np.savez(path, ch_I=tone().real, ch_Q=tone().imag, temperature=np.float64(20))
+
+
+def h5_integers(path):
+    x = np.zeros(400, [("r", "<i2"), ("i", "<i2")])
+    x["r"], x["i"] = np.round(20000 * tone().real), np.round(20000 * tone().imag)
+    with h5py.File(path, "w") as file:
+        file["x"] = x
+
+
+def h5_pair(path):
+    with h5py.File(path, "w") as file:
+        file["real"], file["imag"] = tone().real, tone().imag
+
+
+def npy_xz(path):
+    np.save(path.with_name("x.npy"), tone())
+    path.write_bytes(lzma.compress(path.with_name("x.npy").read_bytes()))
+
+
+SLOW_TIME = {
+    "iq.wav": (wav, []),
+    "named.csv": (csv_named, []),
+    "complex.txt": (text_complex, ["prf_hz=1000"]),
+    "columns.dat": (text_columns, ["prf_hz=1000"]),
+    "pair.mat": (mat_pair, ["prf_hz=1000"]),
+    "struct.mat": (mat_struct, ["prf_hz=1000"]),
+    "pair.npz": (npz_pair, ["prf_hz=1000"]),
+    "integers.h5": (h5_integers, ["prf_hz=1000"]),
+    "pair.h5": (h5_pair, ["prf_hz=1000"]),
+    "slow.npy.xz": (npy_xz, ["prf_hz=1000"]),
+}
+
+
+@pytest.mark.parametrize("name", SLOW_TIME)
+def test_slow_time_of_any_format_keeps_its_doppler(tmp_path, name):
+    write, keys = SLOW_TIME[name]
+    write(tmp_path / name)
+    info, x = taken(tmp_path, [name], *CARRIER, *keys)
+    assert x.shape == (1, 1, 400)
+    assert info.prf_hz == pytest.approx(RATE, rel=1e-3)
+    spectrum = np.abs(np.fft.fft(x[0, 0]))
+    assert np.fft.fftfreq(400, 1 / RATE)[spectrum.argmax()] == pytest.approx(160, abs=2.6)
+    assert spectrum.max() > 20 * np.median(spectrum)
+
+
+def test_i_and_q_are_found_by_names_that_pair():
+    assert find_pair(["fs", "I", "Q"]) == ("I", "Q")
+    assert find_pair(["rx1_real", "rx1_imag", "t"]) == ("rx1_real", "rx1_imag")
+    assert find_pair(["data.re", "data.im"]) == ("data.re", "data.im")
+    assert find_pair(["mini", "minq"]) is None
+    assert find_pair(["a_i", "a_q", "b_i", "b_q"]) is None
+
+
+def test_several_pairs_and_structs_say_what_is_there(tmp_path):
+    np.savez(tmp_path / "two.npz", a_i=np.ones(9), a_q=np.ones(9), b_i=np.ones(9), b_q=np.ones(9))
+    with pytest.raises(CaptureError, match=r"imaginary=NAME I and Q; there are a_i \[9\]"):
+        taken(tmp_path, ["two.npz"], *CARRIER, "prf_hz=1000")
+    _, x = taken(tmp_path, ["two.npz"], *CARRIER, "prf_hz=1000", "dataset=b_i", "imaginary=b_q")
+    np.testing.assert_allclose(x, 1 + 1j)
+    savemat(tmp_path / "s.mat", {"rec": {"a": np.ones((4, 9)), "b": np.ones((4, 9))}})
+    with pytest.raises(CaptureError, match=r"there are rec\.a \[4, 9\], rec\.b \[4, 9\]"):
+        taken(tmp_path, ["s.mat"], *CARRIER, "prf_hz=1000")
+
+
+PROFILE_KEYS = ["carrier_hz=7.29e9", "prf_hz=256", "axes=[pulse, sample]"]
+
+
+def test_range_bins_are_tracked_where_they_are_and_not_taken_for_a_beat(tmp_path):
+    np.save(tmp_path / "x4.npy", profiles())
+    beat = ["bandwidth_hz=1.5e9", "adc_rate_hz=1e9"]
+    for kind in (complex, float):
+        np.save(tmp_path / "real.npy", profiles(kind))
+        with pytest.raises(CaptureError, match=r"as of range bins.*first_range_m.*holds=beat"):
+            taken(tmp_path, ["real.npy"], *PROFILE_KEYS, *beat)
+    places = ["first_range_m=0.3", "range_step_m=0.05144", "bandwidth_hz=1.5e9"]
+    info, x = taken(tmp_path, ["x4.npy"], *PROFILE_KEYS, *places)
+    assert info.content.is_iq
+    np.testing.assert_allclose(x[0], profiles().T, rtol=1e-6)  # as they are, not conjugated
+    (tmp_path / "c.yaml").write_text(
+        "maps: [rtm]\nprocessing: {clutter: mean, range_sum: gated}\nimage: {size_px: 32}\n"
+    )
+    ok("process", tmp_path / "out.h5", "--config", tmp_path / "c.yaml", "-o", tmp_path / "maps",
+       "--no-figures")  # fmt: skip
+    with h5py.File(tmp_path / "maps" / "maps.h5") as file:
+        time, track = file["track/time"][()], file["track/range"][()]
+    np.testing.assert_allclose(track, 4 - time, atol=0.1)
+
+
+def test_beat_signals_are_not_taken_for_range_bins(tmp_path):
+    """Echoes near and far, in noise, real and complex, are beat signals."""
+    rng, n = np.random.default_rng(2), np.arange(64)
+    for bins in ((3,), (3, 20), ()):
+        noise = rng.standard_normal((64, 40)) + 1j * rng.standard_normal((64, 40))
+        x = 0.1 * noise + sum(np.exp(-2j * np.pi * k * n / 64)[:, None] for k in bins)
+        for values in (x, x.real):
+            np.save(tmp_path / "beat.npy", values)
+            info, _ = taken(
+                tmp_path, ["beat.npy"], "carrier_hz=24e9", "bandwidth_hz=2.5e8",
+                "adc_rate_hz=1e6", "prf_hz=1000",
+            )  # fmt: skip
+            assert info.content.dataset == "beat"
+
+
+FRAME_KEYS = ["carrier_hz=77e9", "bandwidth_hz=1.28e9", "adc_rate_hz=3e6", "prf_hz=5555.6"]
+
+
+@pytest.mark.parametrize("range_m", [3.4, 4.0])
+def test_one_file_a_frame_and_echoes_in_both_halves_of_the_band(tmp_path, range_m):
+    names = [f"{index:06d}.npy" for index in range(6)]
+    for index, name in enumerate(names):
+        np.save(tmp_path / name, frame(index, range_m)[..., None, None])
+    info, x = taken(
+        tmp_path, names, *FRAME_KEYS, "axes=[sample, pulse, receiver, transmitter]", "frame_s=0.1"
+    )
+    assert (info.pulses, info.segments, info.receivers) == (6 * 32, 6, 1)
+    np.testing.assert_allclose(x[0][:, 32:64], frame(1, range_m).conj(), rtol=1e-6)
+    assert info.content.is_whole == (range_m > 3.75)
+    assert len(info.source.files) == 6
+    np.save(tmp_path / names[3], frame(3, range_m)[:32, :, None, None])
+    with pytest.raises(CaptureError, match=r"000003\.npy: has the shape .* a file a frame"):
+        taken(tmp_path, names, *FRAME_KEYS, "axes=[sample, pulse, receiver, transmitter]")
+
+
+def test_scripts_of_mmwave_studio_are_read_as_its_json_is(tmp_path):
+    path = tmp_path / "capture.lua"
+    path.write_text(LUA)
+    header, stream = read_lua(path)
+    assert (header.samples, header.loops, header.period_s) == (256, 128, pytest.approx(0.04))
+    assert header.receivers == (0, 1)
+    assert header.carrier_hz == pytest.approx(77e9 + 6 * 29.982e6)
+    assert header.slope_hz * 256 / 1e7 == pytest.approx(767.5e6, rel=1e-3)
+    assert stream.lanes == 2
+    for text, says in (
+        (LUA.replace("ar1.FrameConfig", "x.FrameConfig"), "should call ar1.FrameConfig"),
+        (LUA.replace("SAMPLES, 10000", "os.getenv, 10000"), "all numbers, or names"),
+        (LUA.replace("0, 0, 0, 1, 0, 0)\nar1.F", "0, 0, 0, 0, 0, 0)\nar1.F"), "transmitter on"),
+        ("print('hello')", "should call ar1.ChanNAdcConfig, ar1.ProfileConfig"),
+    ):
+        path.write_text(text)
+        with pytest.raises(CaptureError) as error:
+            read_lua(path)
+        assert says in str(error.value)
+
+
+def test_missing_keys_are_all_named_at_once_with_a_command(tmp_path):
+    np.save(tmp_path / "x.npy", np.ones((64, 40)))
+    done = radhar("import", tmp_path / "x.npy", "-o", tmp_path / "y.h5")
+    assert done.returncode == 2
+    keys = ("carrier_hz", "prf_hz", "bandwidth_hz", "adc_rate_hz")
+    assert ", ".join(keys) + " are missing" in done.stderr
+    assert all(f"--set {key}=" in done.stderr for key in keys)
+    assert f"radhar import {tmp_path / 'x.npy'} --set carrier_hz" in done.stderr
+
+
+def test_fit_refuses_what_it_does_not_keep(tmp_path):
+    rng = np.random.default_rng(3)
+    np.save(tmp_path / "x.npy", rng.standard_normal((25, 3, 64, 32)))
+    ok("import", tmp_path / "x.npy", "-o", tmp_path / "r.h5", "--set", "carrier_hz=58.5e9",
+       "--set", "bandwidth_hz=1e9", "--set", "adc_rate_hz=2e6", "--set", "prf_hz=2000",
+       "--set", "frame_s=0.1", "--set", "axes=[frame, receiver, pulse, sample]")  # fmt: skip
+    done = radhar("fit", tmp_path / "r.h5", "-o", tmp_path / "fitted.yaml")
+    assert done.returncode == 2
+    assert "25 frames of 64 pulses every 100 ms" in done.stderr
+    assert "3 receivers" in done.stderr
+    assert not (tmp_path / "fitted.yaml").exists()
+
+
+@pytest.mark.parametrize(("suffix", "pack"), [(".xz", lzma), (".gz", gzip), (".bz2", bz2)])
+def test_packed_files_cannot_take_the_disk(tmp_path, suffix, pack):
+    path = tmp_path / f"zeros.npy{suffix}"
+    path.write_bytes(pack.compress(bytes(2**27)))
+    with pytest.raises(CaptureError, match="compressed 200-fold or more"):
+        unpacked(path, path.read_bytes()[:16], tmp_path)
+    path.write_bytes(path.read_bytes()[:-20])
+    with pytest.raises(CaptureError):
+        unpacked(path, path.read_bytes()[:16], tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("a.csv", b"time,I,Q\n0,1\n", "lines have 2 numbers"),
+        ("a.csv", b"a,b,c\n1,2,3\n2,3,4\n", "has columns a, b, c"),
+        ("a.csv", b"I,Q\n1,2\n3\n", "as many numbers"),
+        ("a.txt", b"1\nx\n", "after line 1"),
+        ("a.wav", b"RIFF\x00\x00\x00\x00WAVEfmt ", "cannot be read"),
+        ("a.npy.xz", b"\xfd7zXZ\x00junk", "cannot be unpacked"),
+        ("a.qqq", b"123", "unknown format"),
+    ],
+)
+def test_damaged_and_unknown_files_are_refused_in_a_line(tmp_path, name, content, says):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(CaptureError) as error:
+        taken(tmp_path, [name], *CARRIER, "prf_hz=1000")
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)

@@ -1,7 +1,7 @@
 """Conditions under which a key acts that several sections share."""
 
 from radhar_cli.config.annotations import OfRadar, OnlyMaps, Unless
-from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, RANGE
 from radhar_cli.processing.map_kind import DOPPLER_TIME_KINDS, MAP_KINDS, RTM, Transform
 
 BOARD = OfRadar("board", "frames")
@@ -11,7 +11,9 @@ NO_IMPULSE = OfRadar("fmcw", "sfcw", "cw", "board", "frames")
 EVEN = Unless("radar.frames_apart", "the pauses between frames (radar.cfg or radar.frame)")
 RANGE_TIME = OnlyMaps((str(RTM),))
 SIGNAL_MAPS = OnlyMaps(tuple(MAP_KINDS))
-OVER_RANGE = OnlyMaps((str(RTM), *(kind.name for kind in FRAME_MAP_KINDS.values())))
+OVER_RANGE = OnlyMaps(
+    (str(RTM), *(kind.name for kind in FRAME_MAP_KINDS.values() if kind.rows is RANGE))
+)
 SPECTRA = OnlyMaps(tuple(map(str, DOPPLER_TIME_KINDS)))
 STFTS, FSSTS = (
     OnlyMaps(tuple(str(kind) for kind in DOPPLER_TIME_KINDS if kind.transform is transform))

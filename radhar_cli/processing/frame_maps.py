@@ -1,4 +1,4 @@
-"""Maps of a board's frames: range-Doppler, range-azimuth and range-elevation, frame by frame.
+"""Maps of a board's frames: range-Doppler, range-angle and Doppler-angle, frame by frame.
 
 Spectra are divided by the sum of their window, so that a steady echo of amplitude a in the middle
 of a bin reads a^2 in all of them.
@@ -241,6 +241,35 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     return FrameMaps(power, RANGE.of(board), ANGLES[axis].of(board), board.middles)
 
 
+def doppler_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> FrameMaps:
+    """Doppler-angle maps [frame, Doppler, angle] of a Bartlett beamformer over the longest rows.
+
+    Of every Doppler bin, compensated for the transmitters' turns, the powers of all range bins are
+    summed and divided by what a steady echo in the middle of one leaves in all of them, so that it
+    reads its power. Taper, rows and angles are those of `range_angle`.
+    """
+    angles = angles_of_beams(board)
+    rows, places = board.rows_along(axis)
+    taper = np.sin(np.pi * np.arange(1, len(rows[0]) + 1) / (len(rows[0]) + 1)) ** 2
+    sines = np.sin(np.radians(angles))[:, None]
+    window = hann(board.samples)
+    level = board.n_fft * float((window**2).sum() / window.sum() ** 2)
+    power = np.zeros((len(cube), board.n_doppler, angles.size), np.float32)
+    order = ascending(board.n_doppler)
+    for frames, x in spectra(cube, board, remove_mean):
+        x = without_turns(x, board)[:, order]
+        for row in rows:
+            steering = np.exp(-1j * np.pi * sines * places[row]) * taper / taper.sum()
+            element = np.ascontiguousarray(x[:, :, row])  # range last
+            covariance = np.matmul(element, element.conj().swapaxes(2, 3))
+            pairs = (steering[:, :, None] * steering[:, None].conj()).reshape(len(angles), -1)
+            flat = covariance.reshape(*covariance.shape[:2], -1)
+            power[frames] += (flat @ pairs.T.astype(flat.dtype)).real
+    np.maximum(power, 0, out=power)  # of rounding
+    power /= level * len(rows)
+    return FrameMaps(power, SPEED.of(board), ANGLES[axis].of(board), board.middles)
+
+
 class MakeFrameMaps(Protocol):
     """Function that makes the maps of a cube."""
 
@@ -284,6 +313,12 @@ def _angle_kind(name: str, title: str, axis: int) -> FrameMapKind:
     return FrameMapKind(name, title, make, RANGE, ANGLES[axis], array_axis=axis)
 
 
+def _doppler_angle_kind(name: str, title: str, axis: int) -> FrameMapKind:
+    """Kind of a Doppler-angle map."""
+    make = partial(doppler_angle, axis=axis)
+    return FrameMapKind(name, title, make, SPEED, ANGLES[axis], shows_doppler=True, array_axis=axis)
+
+
 # {name: kind} of every map of a board's frames, in the order of data sets.
 FRAME_MAP_KINDS = {
     kind.name: kind
@@ -293,5 +328,7 @@ FRAME_MAP_KINDS = {
         ),
         _angle_kind("range_azimuth", "range-azimuth", 0),
         _angle_kind("range_elevation", "range-elevation", 1),
+        _doppler_angle_kind("doppler_azimuth", "Doppler-azimuth", 0),
+        _doppler_angle_kind("doppler_elevation", "Doppler-elevation", 1),
     )
 }

@@ -8,7 +8,7 @@ from helpers.boards import MARS, channels, cube_of
 
 from radhar_cli.echo.board_cube import exact_cube, fast_cube
 from radhar_cli.processing.best_points import best_points
-from radhar_cli.processing.frame_maps import FrameMaps, range_angle, range_doppler
+from radhar_cli.processing.frame_maps import FrameMaps, doppler_angle, range_angle, range_doppler
 from radhar_cli.processing.points import board_points
 from radhar_cli.radar.board import DEVICES, longest_rows
 from radhar_cli.radar.detection import CASO, Cfar, Detection
@@ -115,3 +115,31 @@ def test_frames_of_one_loop_have_angles() -> None:
     assert np.isfinite(maps.power).all()
     peak = np.unravel_index(maps.power[0].argmax(), maps.power[0].shape)[1]
     assert maps.columns.values[peak] == pytest.approx(np.degrees(np.arctan2(0.5, 2)), abs=2)
+
+
+@pytest.mark.parametrize("degrees", [-35.0, 0.0, 20.0])
+@pytest.mark.parametrize("speed", [-1.2, 0.7])
+def test_doppler_azimuth_has_speed_and_angle_of_who_moves(degrees: float, speed: float) -> None:
+    direction = np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees)), 0])
+    cube, board = cube_of(3 * direction, -speed * direction, snr_db=None)
+    maps = doppler_angle(cube, board, False, 0)
+    row, azimuth, _ = _peak(maps)
+    assert maps.rows.values[row] == pytest.approx(speed, abs=board.doppler_step())
+    assert azimuth == pytest.approx(degrees, abs=2)
+    assert (maps.rows.name, maps.columns.name) == ("radial speed", "azimuth")
+
+
+def test_doppler_elevation_is_positive_up() -> None:
+    direction = np.array([np.cos(0.4), 0, np.sin(0.4)])
+    array = DEVICES["IWR6843ISK-ODS"].array
+    cube, board = cube_of(3 * direction, -0.7 * direction, array=array)
+    assert _peak(doppler_angle(cube, board, False, 1))[1] == pytest.approx(np.degrees(0.4), abs=2)
+
+
+def test_a_steady_echo_reads_its_power_over_doppler_and_angle() -> None:
+    n = np.arange(80)
+    beat = 3 * np.exp(-2j * np.pi * 60 * n / MARS.n_fft)
+    cube = np.broadcast_to(beat, (2, 32, 12, 80)).astype(complex)
+    row, azimuth, level = _peak(doppler_angle(cube, MARS, False, 0))
+    assert (row, azimuth) == (15, 0)
+    assert level == pytest.approx(20 * np.log10(3), abs=3e-3)

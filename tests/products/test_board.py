@@ -300,7 +300,8 @@ def test_what_frames_of_few_loops_show_is_made_and_the_rest_refused(path: Path, 
     fewer(path, loops)
     still = "processing.clutter=none"
     possible = {"rtm", "range_azimuth", "range_elevation", "cube"}
-    possible |= {"range_doppler", "points"} if loops >= 4 or loops == 1 else set()
+    if loops >= 4 or loops == 1:
+        possible |= {"range_doppler", "doppler_azimuth", "doppler_elevation", "points"}
     possible |= {"stft", "stft_compensated"} if loops >= 8 else set()
     possible |= {"stft_denoised", "stft_compensated_denoised"} if loops >= 11 else set()
     simulation = simulate(load_config(path, ["maps=[rtm]", still]), maps="all")

@@ -64,7 +64,7 @@ def draw_frames(content: BoardFrames, path: Path) -> None:
         for axes, frame in zip(row, chosen, strict=True):
             drawn = _draw_map(axes, frame_maps, frame, content)
             axes.set_title(f"{FRAME_MAP_KINDS[name].title}, {middles[frame]:.2f} s", fontsize=8)
-        row[0].set_ylabel("range (m)", fontsize=7)
+        row[0].set_ylabel(f"{frame_maps.rows.name} ({frame_maps.rows.unit})", fontsize=7)
         figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB").ax.tick_params(labelsize=6)
     if cloud is not None:
         sides = [SideView(axes, "from the radar", *_limits(content)) for axes in grid[-1]]
@@ -84,7 +84,8 @@ def _draw_map(axes: Axes, maps: FrameMaps, frame: int, content: BoardFrames) -> 
     extent = (*maps.columns.edges, *maps.rows.edges)
     lowest = -content.image.dynamic_range_db
     drawn = axes.imshow(level, extent=extent, vmin=lowest, vmax=0, **look)
-    axes.set_ylim(maps.limits or (0, min(content.farthest or np.inf, maps.rows.edges[1])))
+    if maps.rows.name == "range":
+        axes.set_ylim(maps.limits or (0, min(content.farthest or np.inf, maps.rows.edges[1])))
     if maps.columns.name == "azimuth":  # left of the radar is left
         axes.invert_xaxis()
     axes.set_xlabel(f"{maps.columns.name} ({maps.columns.unit})", fontsize=7)

@@ -30,6 +30,7 @@ ROUNDS_S = 2.0  # of the rounds of a setting with --quick, beyond the least numb
 PAIRS_EVERY = 6  # settings between two timings of the config against itself
 LEAST_PAIRS = 4
 FLOOR_SHARE = 0.12  # of the budget
+BASE_SHARE = 0.25  # of the budget, in which scenes are compared as they are; at least one is
 SHARES = 3.0  # of its equal part of the time left that a setting may take
 MAX_REASON = 100  # characters
 
@@ -165,7 +166,8 @@ class TradeoffStudy:
     def _comparisons(self) -> list[SceneComparison]:
         config = self.scenes.config()
         is_exact = config.engine.kind == "cube" or isinstance(config.radar, ImpulseRadar)
-        samples = self.scenes.samples()
+        default = self.sweep.row_of(DEFAULT)
+        samples = self.scenes.samples()[: default.scenes if default else None]
         return [SceneComparison(Recorder(self.scenes, sample), is_exact) for sample in samples]
 
     @cached_property
@@ -264,6 +266,7 @@ class TradeoffStudy:
         scenes: list[SceneDifference] = []
         rounds: list[Times] = []
         notes: list[str] = []
+        start, base_s = time.monotonic(), BASE_SHARE * self.budget.left
         with time_limit(limit):
             for number, comparison in enumerate(self._comparisons):
                 try:
@@ -281,6 +284,9 @@ class TradeoffStudy:
                     if setting is AS_IT_IS:  # whose first sample imports and fills caches
                         time_setting(self.scenes, setting, 0)
                     rounds.append(time_setting(self.scenes, setting, 0))
+                spent = time.monotonic() - start
+                if setting is AS_IT_IS and spent * (number + 2) / (number + 1) > base_s:
+                    del self._comparisons[number + 1 :]  # which would leave no time for settings
             self._time(setting, rounds)
         if not rounds or not (scenes or notes):
             return None

@@ -206,6 +206,9 @@ class TestStops:
         scenes = Scenes(config, (), quick=True)
         study.TradeoffStudy(scenes, sweep, study.Budget(0.0), Listener(), lambda: None).run()
         assert [row.name for row in sweep.rows] == [DEFAULT]
+        assert sweep.rows[0].scenes == 1  # of three, which would leave no time for settings
+        resumed = study.TradeoffStudy(scenes, sweep, study.Budget(60.0), Listener(), lambda: None)
+        assert len(resumed._comparisons) == 1
         assert "engine.precision: double" in {name for name, _ in sweep.unmeasured}
 
 

@@ -1,6 +1,6 @@
 """A dump of the data port of TI's demos, or a replay file, becomes a recording of points."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
@@ -11,14 +11,13 @@ from pydantic import Field
 
 from radhar_cli.capture.point_frames import PointFrame, RadarSteps, tracks_of
 from radhar_cli.capture.point_messages import (
-    DETECTED,
     MessageError,
     MessageReader,
     is_q_format,
 )
 from radhar_cli.capture.point_recording import (
-    MAX_CFG,
-    Describe,
+    LONGEST_CFG,
+    PointRecordingDraft,
     PointRecordingInfo,
     write_point_recording,
 )
@@ -29,11 +28,11 @@ from radhar_cli.capture.visualizer_json import Replay, is_replay, read_replay
 from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.config.section import Section
+from radhar_cli.dataset.formats.uart import DETECTED_POINTS
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import regular_size, text_of
 from radhar_cli.radar.frame_header import FrameHeader
-from radhar_cli.radar.ti_cfg import MAX_CFG as MAX_CFG_FILE
-from radhar_cli.radar.ti_cfg import parse_frames, parse_ti_cfg
+from radhar_cli.radar.ti_cfg import MAX_CFG, parse_frames, parse_ti_cfg
 
 SEARCHED = 2**16  # bytes in which the first magic word of a dump lies
 RATIOS = ("people", "3d tracking", "vital")  # words of demos whose SNR is a ratio of powers
@@ -110,7 +109,7 @@ def read_point_header(header: Path | None, overrides: Sequence[str]) -> PointHea
     document: dict[str, Any] = {}
     cfg, where = "", "--set" if header is None else str(header)
     if header is not None and header.suffix.lower() == ".cfg":
-        cfg = text_of(header, MAX_CFG_FILE, CaptureError)
+        cfg = text_of(header, MAX_CFG, CaptureError)
     elif header is not None:
         document = read_document(header)[0]
     settings = validated(PointSettings, with_overrides(document, overrides), where, {})
@@ -160,8 +159,8 @@ def _import_dump(
     reader = MessageReader(layout.is_people_counting, steps)
     frames = DumpFrames(dump, reader, header.settings.subframe)
     demo = f"header of {layout.size} bytes ({layout.name})"
-    describe = _describe(paths, header, frame_s, demo, frames.findings)
-    return write_point_recording(out, frames, describe, not overwrite)
+    draft = _draft_of(paths, header, frame_s, demo, frames.findings)
+    return write_point_recording(out, frames, draft, not overwrite)
 
 
 def _import_replay(
@@ -179,28 +178,32 @@ def _import_replay(
     is_ratio = any(word in replay.demo.lower() for word in RATIOS)
     unit = "ratios of powers" if is_ratio else "decibels"
     notes.append(f"SNRs are taken for {unit}, as of {replay.demo or 'an out-of-box demo'}")
-    describe = _describe(paths, header, frame_s, replay.demo[:1000], lambda: notes)
+    draft = _draft_of(paths, header, frame_s, replay.demo[:1000], lambda: notes)
     frames = replay.frames(header.steps, is_ratio)
-    return write_point_recording(out, frames, describe, not overwrite)
+    return write_point_recording(out, frames, draft, not overwrite)
 
 
-def _describe(
-    paths: Sequence[Path], header: PointHeader, frame_s: float, demo: str, findings: Any
-) -> Describe:
+def _draft_of(
+    paths: Sequence[Path],
+    header: PointHeader,
+    frame_s: float,
+    demo: str,
+    findings: Callable[[], Sequence[str]],
+) -> PointRecordingDraft:
     """What is known of a recording before its frames are read."""
     s = header.settings
     source = SourceNote(format="points", files=[path.name for path in paths[:1000]])
     labels = [] if s.label is None else [Label(label=s.label, person=s.person)]
     nothing = f"{paths[0]}: holds no frame that could be read"
     cfg = _essential_lines(header.cfg)
-    return Describe(frame_s, nothing, demo, cfg, labels, source, findings)
+    return PointRecordingDraft(frame_s, nothing, demo, cfg, labels, source, findings)
 
 
 def _essential_lines(cfg: str) -> str:
     """Lines of a .cfg without comments; "" of one that is too long to keep."""
     lines = (line.partition("%")[0].strip() for line in cfg.splitlines())
     text = "".join(f"{line}\n" for line in lines if line)
-    return text if len(text) <= MAX_CFG else ""
+    return text if len(text) <= LONGEST_CFG else ""
 
 
 def _parse_cfg(cfg: str, where: str, subframe: int) -> tuple[FrameHeader, float]:
@@ -221,7 +224,7 @@ def _has_doppler_bins(dump: Dump) -> bool:
     if dump.framing.layout.is_people_counting:
         return False
     for packet in islice(dump.packets(), PROBED):
-        message = packet.messages.get(DETECTED)
+        message = packet.messages.get(DETECTED_POINTS)
         if message:
             return is_q_format(message, packet.points)
     return False

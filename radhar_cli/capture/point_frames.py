@@ -97,14 +97,13 @@ class TiPoints:
 
     def rows(self, steps: RadarSteps) -> Float:
         """Points [n, 8] in radhar's axes; bins of ranges and speeds where the message has none."""
-        right, ahead, up = self.places.T
         doppler = -self.doppler
         if self.bins is None:
             range_bins = steps.range_bins(np.linalg.norm(self.places, axis=1))
             doppler_bins = steps.doppler_bins(doppler)
         else:
             range_bins, doppler_bins = self.bins[:, 0], -self.bins[:, 1]
-        columns = (ahead, -right, up, doppler, self.intensity, self.snr_db, range_bins)
+        columns = (in_radhar_axes(self.places), doppler, self.intensity, self.snr_db, range_bins)
         rows = np.column_stack([*columns, doppler_bins]) + 0.0  # never -0
         assert rows.shape[1] == len(COLUMNS)
         return rows
@@ -122,7 +121,7 @@ def tracks_of(numbers: Float) -> Float:
     return np.where(known, numbers, NO_TRACK)
 
 
-def turned(vectors: Float) -> Float:
+def in_radhar_axes(vectors: Float) -> Float:
     """Vectors [n, 3] of TI's axes (right, ahead, up) in radhar's (ahead, left, up)."""
     return np.column_stack([vectors[:, 1], -vectors[:, 0], vectors[:, 2]]) + 0.0
 
@@ -139,7 +138,7 @@ def make_targets(
         acceleration: Accelerations [t, 3] in TI's axes, m/s^2.
         confidence: Confidences [t]; NaN where the message has none.
     """
-    vectors = (turned(vector) for vector in (place, velocity, acceleration))
+    vectors = (in_radhar_axes(vector) for vector in (place, velocity, acceleration))
     return np.column_stack([track, *vectors, confidence])
 
 
@@ -152,6 +151,12 @@ def amplitude_of(power_db: Float) -> Float:
     """Magnitudes of powers in dB."""
     amplitude: Float = 10 ** (power_db / 20)
     return amplitude
+
+
+def decibels_of(ratio: Float) -> Float:
+    """Ratios of powers in dB; NaN where they are not positive, or unknown."""
+    decibels: Float = 10 * np.log10(np.where(ratio > 0, ratio, np.nan))
+    return decibels
 
 
 def are_measurements(values: Float) -> bool:

@@ -15,25 +15,30 @@ from radhar_cli.capture.point_frames import (
     TiPoints,
     amplitude_of,
     are_measurements,
+    decibels_of,
     make_targets,
     no_targets,
 )
 from radhar_cli.capture.uart_packets import Packet
-from radhar_cli.dataset.formats.uart import Q_POINT
+from radhar_cli.dataset.formats.uart import DETECTED_POINTS, Q_POINT, SIDE_INFO
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.processing.people_tracking.compressed_points import POINT, Polar
+from radhar_cli.processing.people_tracking.compressed_points import (
+    POINT,
+    UNITS,
+    Polar,
+    unpack_points,
+)
+from radhar_cli.processing.people_tracking.compressed_points import TLV as COMPRESSED
 
-DETECTED, SIDE_INFO = 1, 7  # out-of-box demos
 COUNTED, COUNTED_TARGETS, COUNTED_INDEX = 6, 7, 8  # people counting labs
 EXTENDED, EXTENDED_TARGETS, EXTENDED_INDEX = 301, 308, 309  # xWRL
-SPHERICAL, TARGETS, INDEX, COMPRESSED = 1000, 1010, 1011, 1020  # people tracking
-POINTS_OF_ANY = (DETECTED, EXTENDED, SPHERICAL, COMPRESSED)
+SPHERICAL, TARGETS, INDEX = 1000, 1010, 1011  # people tracking
 
 DESCRIPTOR = np.dtype([("count", "<u2"), ("q", "<u2")])
 SIDE = np.dtype([("snr", "<i2"), ("noise", "<i2")])
 TENTH_DB = 0.1
-UNITS = 5  # floats before compressed points
+UNITS_BYTES = 4 * len(UNITS)  # floats before compressed points
 EXTENDED_UNITS = np.dtype(
     [("place", "<f4"), ("doppler", "<f4"), ("snr", "<f4"), ("noise", "<f4"), ("count", "<u2", (2,))]
 )
@@ -117,9 +122,9 @@ class MessageReader:
             if len(message) % 16 or (len(message) // 16 != count and _has_units(message)):
                 return _compressed(message)
             return _with_side_info(_spherical(message), messages.get(SIDE_INFO))
-        if DETECTED not in messages:
+        if DETECTED_POINTS not in messages:
             return TiPoints.empty()
-        message = messages[DETECTED]
+        message = messages[DETECTED_POINTS]
         if is_q_format(message, count):
             return self._q_format(message)
         if len(message) % 16:
@@ -177,16 +182,14 @@ def _with_side_info(points: TiPoints, message: bytes | None) -> TiPoints:
 def _of_polar(polar: Polar) -> TiPoints:
     """Points of ranges and angles, whose SNR is a ratio of powers."""
     snr = np.maximum(polar.snr, 0)
-    with np.errstate(divide="ignore"):
-        snr_db = np.where(snr > 0, 10 * np.log10(np.where(snr > 0, snr, 1)), np.nan)
-    return TiPoints(polar.places, polar.doppler, snr, snr_db)
+    return TiPoints(polar.places, polar.doppler, snr, decibels_of(snr))
 
 
 def _has_units(message: bytes) -> bool:
     """Whether a message begins with five units of compressed points."""
-    if len(message) < 4 * UNITS or (len(message) - 4 * UNITS) % POINT.itemsize:
+    if len(message) < UNITS_BYTES or (len(message) - UNITS_BYTES) % POINT.itemsize:
         return False
-    units = np.frombuffer(message, "<f4", UNITS)
+    units = np.frombuffer(message, "<f4", len(UNITS))
     return bool(np.isfinite(units).all() and (units > 0).all() and (units < 1).all())
 
 
@@ -197,16 +200,9 @@ def _compressed(message: bytes) -> TiPoints:
             f"compressed points have {len(message)} bytes; should be five units between 0 and 1, "
             f"then {POINT.itemsize} bytes a point"
         )
-    elevation, azimuth, doppler, range_m, snr = np.frombuffer(message, "<f4", UNITS).astype(float)
-    packed = np.frombuffer(message, POINT, offset=4 * UNITS)
-    polar = Polar(
-        range=packed["range"] * range_m,
-        azimuth=packed["azimuth"] * azimuth,
-        elevation=packed["elevation"] * elevation,
-        doppler=packed["doppler"] * doppler,
-        snr=packed["snr"] * snr,
-    )
-    return _of_polar(polar)
+    units = np.frombuffer(message, "<f4", len(UNITS)).astype(float)
+    packed = np.frombuffer(message, POINT, offset=UNITS_BYTES)
+    return _of_polar(unpack_points(packed, units.tolist()))
 
 
 def _spherical(message: bytes) -> TiPoints:

@@ -1,7 +1,7 @@
 """The file of a recording of points: what a board sent, frame by frame (docs/guide/points.md)."""
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
@@ -26,7 +26,7 @@ CHUNK = 8192  # rows
 NOBODY = -1
 LONGEST_GAP = 100_000  # frames; a larger step of the numbers is a board that began again
 MAX_FRAMES = 10**6  # of a window
-MAX_CFG = 2**15  # characters that are kept
+LONGEST_CFG = 2**15  # characters that are kept
 
 Whole = Annotated[int, Field(ge=0, le=2**40)]
 
@@ -42,7 +42,7 @@ class PointRecordingInfo(BaseModel):
     lost_frames: Whole = 0  # numbers that are missing between those received
     targets: Whole = 0
     demo: Annotated[str, Field(max_length=1000)] = ""  # what sent it, in words
-    cfg: Annotated[str, Field(max_length=MAX_CFG)] = ""  # of the board; "" where it is unknown
+    cfg: Annotated[str, Field(max_length=LONGEST_CFG)] = ""  # of the board; "" where it is unknown
     labels: Annotated[list[Label], Field(max_length=10_000)] = []
     source: SourceNote
 
@@ -99,7 +99,7 @@ class FrameClock:
 def write_point_recording(
     path: Path,
     frames: Iterable[PointFrame],
-    describe: "Describe",
+    draft: "PointRecordingDraft",
     exclusive: bool = False,
 ) -> PointRecordingInfo:
     """Write a recording of points under another name, then rename it into place.
@@ -107,7 +107,7 @@ def write_point_recording(
     Args:
         path: file to write.
         frames: its frames, which are read one after the other.
-        describe: describes it, once all frames are read.
+        draft: what is known of it beside its frames.
         exclusive: leave a file alone that another process made meanwhile.
 
     Returns:
@@ -124,11 +124,11 @@ def write_point_recording(
             replacing(path, exclusive=exclusive) as unfinished,
             new_hdf5(unfinished, path) as (file, check),
         ):
-            clock = FrameClock(describe.frame_s)
+            clock = FrameClock(draft.frame_s)
             points, targets = _write_frames(file, frames, clock, check)
             if not clock.numbers:
-                raise CaptureError(describe.nothing)
-            info = describe.info(clock, points, targets)
+                raise CaptureError(draft.nothing)
+            info = draft.info(clock, points, targets)
             _write_columns(file, clock, info)
     except FileExistsError:
         raise FolderError(
@@ -142,7 +142,7 @@ def write_point_recording(
 
 
 @dataclass(frozen=True)
-class Describe:
+class PointRecordingDraft:
     """What is known of a recording beside its frames.
 
     Attributes:
@@ -161,7 +161,7 @@ class Describe:
     cfg: str
     labels: Sequence[Label]
     source: SourceNote
-    findings: Any
+    findings: Callable[[], Sequence[str]]
 
     def info(self, clock: FrameClock, points: int, targets: int) -> PointRecordingInfo:
         """Describe the recording of the frames of a clock."""
@@ -180,7 +180,7 @@ class Describe:
 
 
 def _write_frames(
-    file: Any, frames: Iterable[PointFrame], clock: FrameClock, check: Any
+    file: Any, frames: Iterable[PointFrame], clock: FrameClock, check: Callable[[], None]
 ) -> tuple[int, int]:
     """Write points and targets of frames; return how many there are of each."""
     rows = {

@@ -14,6 +14,7 @@ from radhar_cli.capture.point_frames import (
     TiPoints,
     amplitude_of,
     are_measurements,
+    decibels_of,
     make_targets,
     no_targets,
 )
@@ -183,8 +184,7 @@ def _points(value: Any, where: str, snr_is_ratio: bool) -> TiPoints:
     table = _table(value, "pointCloud", where, *POINT_VALUES)
     places, doppler, snr, noise, track = table[:, :3], *table[:, 3:7].T
     if snr_is_ratio:
-        snr_db = 10 * np.log10(np.where(snr > 0, snr, np.nan))
-        return TiPoints(places, doppler, snr, snr_db, track=track)
+        return TiPoints(places, doppler, snr, decibels_of(snr), track=track)
     amplitude = amplitude_of(np.clip(snr + np.nan_to_num(noise), -1e3, 1e2))
     return TiPoints(places, doppler, amplitude, snr, track=track)
 

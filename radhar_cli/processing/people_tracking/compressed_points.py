@@ -6,6 +6,7 @@ does not fit saturates; the firmware's SNR would wrap above 4095.875.
 """
 
 import struct
+from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -80,14 +81,20 @@ def pack_points(points: Polar) -> Packed:
     return packed
 
 
-def unpack_points(packed: Packed) -> Polar:
-    """Points that a receiver of the message has."""
+def unpack_points(packed: Packed, units: Sequence[float] = UNITS) -> Polar:
+    """Points that a receiver of the message has.
+
+    Args:
+        packed: Whole numbers [n] of the message.
+        units: Units of elevation, azimuth (rad), speed (m/s), range (m) and SNR, in this order.
+    """
+    elevation_rad, azimuth_rad, speed_mps, range_m, snr = units
     return Polar(
-        range=packed["range"] * RANGE_M,
-        azimuth=packed["azimuth"] * AZIMUTH_RAD,
-        elevation=packed["elevation"] * ELEVATION_RAD,
-        doppler=packed["doppler"] * SPEED_MPS,
-        snr=packed["snr"] * SNR,
+        range=packed["range"] * range_m,
+        azimuth=packed["azimuth"] * azimuth_rad,
+        elevation=packed["elevation"] * elevation_rad,
+        doppler=packed["doppler"] * speed_mps,
+        snr=packed["snr"] * snr,
     )
 
 

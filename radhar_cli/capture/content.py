@@ -137,8 +137,8 @@ def describe_difference(content: Content, expected: Content) -> str | None:
         return f"holds {content.noun}: should hold {expected.noun}"
     numbers, expected_numbers = numbers_of(content), numbers_of(expected)
     # The number of samples comes first, as the bandwidth follows from it.
-    for name in sorted(numbers, key=lambda name: name != "samples"):
-        value, number = numbers[name], expected_numbers.get(name, False)
+    for name in sorted(numbers | expected_numbers, key=lambda name: name != "samples"):
+        value, number = numbers.get(name, False), expected_numbers.get(name, False)
         if abs(value - number) > TOLERANCE * abs(number):
             return f"{name} = {value:.10g}: should be {number:.10g}"
     return None

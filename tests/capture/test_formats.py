@@ -88,5 +88,8 @@ def test_differences_of_recordings_are_said() -> None:
     other = Beat(FmcwTiming(24e9, 1e9, 2.5e6, 100, 500.0))
     assert describe_difference(BEAT, BEAT) is None
     assert describe_difference(other, BEAT) == "prf_hz = 500: should be 1000"
+    whole = Beat(BEAT.timing, is_whole=True)
+    assert describe_difference(whole, BEAT) == "whole_band = 1: should be 0"
+    assert describe_difference(BEAT, whole) == "whole_band = 0: should be 1"
     text = "holds slow time: should hold samples of chirps"
     assert describe_difference(SLOW, BEAT) == text

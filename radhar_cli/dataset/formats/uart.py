@@ -19,12 +19,24 @@ VERSION, PLATFORM = 0x03060000, 0xA6843
 HEADER = 40  # bytes, with the magic word
 ALIGNED = 32  # bytes of which a frame is a multiple
 DETECTED_POINTS, SIDE_INFO = 1, 7  # messages of the out-of-box demo of SDK 3
-TENTH_DB = 10
+TENTHS = 10  # of a decibel, in which SNR and noise are sent
 LEAST = 1e-9  # amplitude whose decibels are finite
 OLD_VERSION, OLD_PLATFORM, OLD_HEADER = 0x01020000, 0xA1443, 36  # of SDK 1
 Q_FORMAT = 10  # binary places of the coordinates of SDK 1, m
 Q_POINT = np.dtype([("range", "<u2"), ("doppler", "<i2"), ("peak", "<u2"), ("place", "<i2", (3,))])
-COUNTED_POINTS, COUNTING_HEADER = 6, 52  # of people counting
+COUNTED_POINTS, COUNTING_HEADER, COUNTING_PLATFORM = 6, 52, 0xA1642  # of people counting
+TYPE_AND_LENGTH = 8  # bytes before a message
+
+
+def encode_message(kind: int, message: bytes, counted: int = 0) -> bytes:
+    """Write a message (TLV) with its type and length.
+
+    Args:
+        kind: Type of the message.
+        message: The message.
+        counted: Bytes of type and length that the length counts, too; 0 but of people counting.
+    """
+    return struct.pack("<2I", kind, len(message) + counted) + message
 
 
 def encode_frame(number: int, count: int, messages: Mapping[int, bytes]) -> bytes:
@@ -35,9 +47,7 @@ def encode_frame(number: int, count: int, messages: Mapping[int, bytes]) -> byte
         count: Number of its points.
         messages: {type: message}.
     """
-    body = b"".join(
-        struct.pack("<2I", kind, len(message)) + message for kind, message in messages.items()
-    )
+    body = b"".join(encode_message(kind, message) for kind, message in messages.items())
     padding = -(HEADER + len(body)) % ALIGNED
     length = HEADER + len(body) + padding
     fields = VERSION, length, PLATFORM, number, 0, count, len(messages), 0
@@ -53,7 +63,7 @@ def encode_old_frame(number: int, points: NDArray[np.void]) -> bytes:
     """
     head = struct.pack("<2H", len(points), Q_FORMAT) if len(points) else b""
     message = head + points.tobytes()
-    tlv = struct.pack("<2I", DETECTED_POINTS, len(message)) + message if len(points) else b""
+    tlv = encode_message(DETECTED_POINTS, message) if len(points) else b""
     padding = -(OLD_HEADER + len(tlv)) % ALIGNED
     length = OLD_HEADER + len(tlv) + padding
     fields = OLD_VERSION, length, OLD_PLATFORM, number, 0, len(points), int(len(points) > 0)
@@ -85,9 +95,9 @@ def counting_frames(frames: Iterator[Float]) -> Iterator[bytes]:
         polar = Polar.of_cloud(points)
         numbers = [polar.range, polar.azimuth, polar.doppler, polar.snr]
         message = np.column_stack(numbers).astype("<f4").tobytes()
-        tlv = struct.pack("<2I", COUNTED_POINTS, 8 + len(message)) + message if message else b""
+        tlv = encode_message(COUNTED_POINTS, message, TYPE_AND_LENGTH) if message else b""
         length = COUNTING_HEADER + len(tlv)
-        fields = OLD_VERSION, 0xA1642, 0, length, number, 0, 0, 0, 0, 0
+        fields = OLD_VERSION, COUNTING_PLATFORM, 0, length, number, 0, 0, 0, 0, 0
         yield MAGIC + struct.pack("<10I2H", *fields, int(bool(message)), 0) + tlv
 
 
@@ -108,8 +118,8 @@ def demo_frames(frames: Iterator[Float]) -> Iterator[bytes]:
     for number, points in enumerate(frames):
         x, y, z, doppler = points[:, :4].T
         places = np.column_stack([-y, x, z, -doppler]).astype("<f4")
-        snr = np.round(points[:, 5] * TENTH_DB)
-        level = np.round(20 * TENTH_DB * np.log10(np.maximum(points[:, 4], LEAST)))
+        snr = np.round(points[:, 5] * TENTHS)
+        level = np.round(20 * TENTHS * np.log10(np.maximum(points[:, 4], LEAST)))
         side = np.clip(np.column_stack([snr, level - snr]), limits.min, limits.max).astype("<i2")
         messages = {DETECTED_POINTS: places.tobytes(), SIDE_INFO: side.tobytes()}
         yield encode_frame(number, len(points), messages if len(points) else {})

@@ -100,9 +100,9 @@ class FilesConfig(Section, Generic[N]):
     @classmethod
     def _require_motion_files(cls, value: dict[str, str]) -> dict[str, str]:
         for path in value:
-            if not path.lower().endswith(SUFFIXES) or len(path) > MAX_PATH_LENGTH or "\0" in path:
-                if not path.lower().endswith(SUFFIXES):
-                    raise value_error(f"{path[:MAX_PATH_LENGTH]}: {describe_unknown(Path(path))}")
+            if not path.lower().endswith(SUFFIXES):
+                raise value_error(f"{path[:MAX_PATH_LENGTH]}: {describe_unknown(Path(path))}")
+            if len(path) > MAX_PATH_LENGTH or "\0" in path:
                 raise value_error(f"should be short paths of motion files, not {path!r}")
         if not 0 < len(value) <= MAX_FILES:
             raise value_error(f"should have 1 to {MAX_FILES} files")

@@ -109,8 +109,8 @@ def name_of_cfg(value: Any) -> str:
 def name_of_radar(value: str) -> str | None:
     """Name of the built-in radar that a text stands for; None for none.
 
-    Capitals, hyphens, BOOST, EVM and AWR for IWR do not matter. A device that has no profile of its
-    name, or none by name for clouds, has that of the other.
+    Capitals, hyphens, BOOST, EVM and AWR for IWR do not matter. A device's name alone, and its name
+    with _clouds, stand for the same profile unless it has one of each name.
     """
     return _names_of_radars().get(_plain_name(value))
 

@@ -466,6 +466,11 @@ class ArrayRadar(_Emission[N], Generic[N]):
         return f"{self.header.loops} loop{'s' * (self.header.loops > 1)}"
 
 
+def _array_of(places: "ArrayConfig | ElementsConfig") -> Array:
+    """Array of elements at places, none of them turned and without a pattern of their own."""
+    return Array(places.tx, places.rx, (1.0,) * len(places.rx), EVEN)
+
+
 class BoardRadar(ArrayRadar[N], Generic[N]):
     """A TI board: the .cfg says its chirps, frames and receivers, the device its antennas."""
 
@@ -550,7 +555,7 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
         """Antenna elements of the board: those of `array`, or its device's; None without either."""
         if self.array is None:
             return None if self.device is None else DEVICES[self.device].array
-        return Array(self.array.tx, self.array.rx, (1.0,) * len(self.array.rx), EVEN)
+        return _array_of(self.array)
 
     def why_no_points(self, chain: Chain) -> str | None:
         """Say why a chain does not find points on the board; None if it does."""
@@ -675,7 +680,7 @@ class FramesRadar(ArrayRadar[N], Generic[N]):
     @property
     def elements(self) -> Array:
         """Antenna elements, which have no pattern unless half_power_deg gives one."""
-        return Array(self.array.tx, self.array.rx, (1.0,) * len(self.array.rx), EVEN)
+        return _array_of(self.array)
 
 
 RADARS: tuple[type[AnyRadar[Any]], ...] = (

@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from radhar_cli.capture import array_files, dca1000, text_files, wav_files
-from radhar_cli.capture.packed_files import unpacked
+from radhar_cli.capture.packed_files import unpack_file
 from radhar_cli.capture.source import HEAD_BYTES, CaptureFiles, CaptureFormat, Source
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import regular_size
@@ -27,7 +27,7 @@ def open_capture(files: CaptureFiles) -> Source:
     Raises:
         CaptureError: the format is unknown, or the capture does not fit its header.
     """
-    files = replace(files, paths=[_unpacked(files, path) for path in files.paths])
+    files = replace(files, paths=[_unpack(files, path) for path in files.paths])
     path = files.paths[0]
     head = _head_of(path)
     for form in FORMATS:
@@ -42,9 +42,9 @@ def open_capture(files: CaptureFiles) -> Source:
     raise CaptureError(f"{path}: unknown format; should be {', '.join(names[:-1])} or {names[-1]}")
 
 
-def _unpacked(files: CaptureFiles, path: Path) -> Path:
-    """Path of a file of a capture, unpacked if it is compressed as a whole."""
-    return unpacked(path, _head_of(path), files.scratch)
+def _unpack(files: CaptureFiles, path: Path) -> Path:
+    """Unpack a file of a capture if it is compressed as a whole; return the path to read."""
+    return unpack_file(path, _head_of(path), files.scratch)
 
 
 def _head_of(path: Path) -> bytes:

@@ -16,18 +16,21 @@ LEAST = 2**20  # bytes that any file may unpack to
 BLOCK = 2**20
 
 
-def unpacked(path: Path, head: bytes, scratch: Path) -> Path:
-    """Path of what a file holds: itself, or its unpacked content in a scratch folder.
+def unpack_file(path: Path, head: bytes, scratch: Path) -> Path:
+    """Unpack a file into a scratch folder, unless it is not compressed as a whole.
 
     Args:
         path: the file.
         head: its first bytes.
         scratch: folder for what is unpacked.
 
+    Returns:
+        Path of the unpacked content; of a file that is not compressed its own.
+
     Raises:
         CaptureError: it is damaged, or unpacks to far more than it has.
     """
-    opener = next((one for magic, one in OPENERS.items() if head.startswith(magic)), None)
+    opener = next((OPENERS[magic] for magic in OPENERS if head.startswith(magic)), None)
     if opener is None or path.suffix.lower() not in SUFFIXES:
         return path
     limit = max(MAX_PACKING * path.stat().st_size, LEAST)

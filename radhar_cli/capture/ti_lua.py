@@ -45,7 +45,7 @@ class Call(NamedTuple):
     name: str
     arguments: tuple[float, ...]
 
-    def whole(self, place: int) -> int:
+    def whole_number(self, place: int) -> int:
         """Argument at a place as a whole number.
 
         Raises:
@@ -73,36 +73,36 @@ def read_lua(path: Path) -> tuple[FrameHeader, LvdsFormat]:
         CaptureError: a call is missing, or asks for what is not read; names line and argument.
     """
     calls = _calls(text_of(path, MAX_LUA, CaptureError), path)
-    missing = [f"ar1.{name}" for name in NEEDED if not any(one.name == name for one in calls)]
+    missing = [f"ar1.{name}" for name in NEEDED if not _calls_of(name, calls)]
     if missing:
         raise CaptureError(
             f"{path}: should call {', '.join(missing)} with numbers; of other scripts give the "
             "keys by --set or in YAML: carrier_hz, bandwidth_hz, adc_rate_hz, prf_hz, samples, "
             "receivers, frame_pulses, frame_s"
         )
-    channels = _last(calls, "ChanNAdcConfig")
-    frame = _last(calls, "FrameConfig")
-    receivers = sum(bool(channels.whole(TRANSMITTERS + n)) << n for n in range(RECEIVERS))
+    channels = _calls_of("ChanNAdcConfig", calls)[-1]  # the last call is the one that holds
+    frame = _calls_of("FrameConfig", calls)[-1]
+    receivers = sum(bool(channels.whole_number(TRANSMITTERS + n)) << n for n in range(RECEIVERS))
     header = make_frame_header(
-        {one.whole(0): _profile(one) for one in calls if one.name == "ProfileConfig"},
-        [_chirps(one) for one in calls if one.name == "ChirpConfig"],
+        {call.whole_number(0): _profile(call) for call in _calls_of("ProfileConfig", calls)},
+        [_chirps(call) for call in _calls_of("ChirpConfig", calls)],
         FrameTiming(
-            frame.whole(0),
-            frame.whole(1),
-            frame.whole(3),
-            frame.whole(2),
+            frame.whole_number(0),
+            frame.whole_number(1),
+            frame.whole_number(3),
+            frame.whole_number(2),
             frame.arguments[4],
             frame.place,
         ),
         receivers,
         _sampling(channels),
-        12 + 2 * min(channels.whole(7), 2),
+        12 + 2 * min(channels.whole_number(7), 2),
     )
-    lanes = [one for one in calls if one.name == "LVDSLaneConfig"]
-    count = 4 if lanes and lanes[-1].whole(3) and lanes[-1].whole(4) else 2
-    formats = [one for one in calls if one.name == "DataFmtConfig"]
-    is_q_first = bool(formats) and formats[-1].whole(2) == 1
-    is_interleaved = bool(formats) and formats[-1].whole(3) == 0
+    lanes = _calls_of("LVDSLaneConfig", calls)
+    count = 4 if lanes and lanes[-1].whole_number(3) and lanes[-1].whole_number(4) else 2
+    formats = _calls_of("DataFmtConfig", calls)
+    is_q_first = bool(formats) and formats[-1].whole_number(2) == 1
+    is_interleaved = bool(formats) and formats[-1].whole_number(3) == 0
     return header, LvdsFormat(count, is_interleaved, is_q_first)
 
 
@@ -140,9 +140,9 @@ def _number(word: str) -> float | None:
     return value if abs(value) < 1e12 else None
 
 
-def _last(calls: Sequence[Call], name: str) -> Call:
-    """Last call of a name, which is the one that holds."""
-    return [one for one in calls if one.name == name][-1]
+def _calls_of(name: str, calls: Sequence[Call]) -> list[Call]:
+    """Calls of a name, in their order."""
+    return [call for call in calls if call.name == name]
 
 
 def _profile(call: Call) -> ChirpProfile:
@@ -160,7 +160,7 @@ def _profile(call: Call) -> ChirpProfile:
         adc_start_us=numbers[3],
         ramp_end_us=numbers[4],
         slope_mhz_per_us=numbers[11],
-        samples=call.whole(13),
+        samples=call.whole_number(13),
         rate_ksps=numbers[14],
         place=f"{call.place}: ProfileConfig argument 14",
     )
@@ -181,12 +181,14 @@ def _chirps(call: Call) -> ChirpRange:
     mask = sum(bool(flag) << n for n, flag in enumerate(flags))
     if not mask:
         raise CaptureError(f"{call.place}: ChirpConfig: should switch a transmitter on")
-    return ChirpRange(call.whole(0), call.whole(1), call.whole(2), mask, call.place)
+    return ChirpRange(
+        call.whole_number(0), call.whole_number(1), call.whole_number(2), mask, call.place
+    )
 
 
 def _sampling(call: Call) -> Sampling:
     """Kind of the samples, by the last but one argument that tells the format of the ADC."""
-    kind = call.whole(8)
+    kind = call.whole_number(8)
     if kind > 2:
         raise CaptureError(f"{call.place}: ChanNAdcConfig argument 9 = {kind}: should be 0, 1 or 2")
     return Sampling(kind)

@@ -13,7 +13,7 @@ from scipy.io import savemat, wavfile
 
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.named_parts import find_pair
-from radhar_cli.capture.packed_files import unpacked
+from radhar_cli.capture.packed_files import unpack_file
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.ti_lua import read_lua
 from radhar_cli.errors import CaptureError
@@ -230,10 +230,10 @@ def test_packed_files_cannot_take_the_disk(tmp_path, suffix, pack):
     path = tmp_path / f"zeros.npy{suffix}"
     path.write_bytes(pack.compress(bytes(2**27)))
     with pytest.raises(CaptureError, match="compressed 200-fold or more"):
-        unpacked(path, path.read_bytes()[:16], tmp_path)
+        unpack_file(path, path.read_bytes()[:16], tmp_path)
     path.write_bytes(path.read_bytes()[:-20])
     with pytest.raises(CaptureError):
-        unpacked(path, path.read_bytes()[:16], tmp_path)
+        unpack_file(path, path.read_bytes()[:16], tmp_path)
 
 
 @pytest.mark.parametrize(

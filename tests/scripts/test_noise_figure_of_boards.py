@@ -1,10 +1,8 @@
 """scripts/studies/noise_figure_of_boards.py: counts, the choice, and tables of made-up clouds."""
 
-import importlib.util
-import sys
-from types import ModuleType
 from typing import NamedTuple
 
+import noise_figure_of_boards as study
 import numpy as np
 import pytest
 from helpers.boards import CFG
@@ -19,24 +17,7 @@ class Points(NamedTuple):
     start: np.ndarray
 
 
-@pytest.fixture(scope="module")
-def study() -> ModuleType:
-    folder = ROOT / "scripts/studies"
-    sys.path.insert(0, str(folder))
-    try:
-        path = folder / "noise_figure_of_boards.py"
-        spec = importlib.util.spec_from_file_location("noise_figure_of_boards", path)
-        assert spec is not None
-        assert spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[spec.name] = module
-        spec.loader.exec_module(module)
-        return module
-    finally:
-        sys.path.remove(str(folder))
-
-
-def test_the_figure_nearest_in_the_half_that_chooses_is_chosen(study: ModuleType) -> None:
+def test_the_figure_nearest_in_the_half_that_chooses_is_chosen() -> None:
     counts = {figure: [study.Count(40.0 - figure, 1.0)] for figure in study.FIGURES_DB}
     chooses = study.Comparison("a", True, study.Count(19.0, 1.0), counts)
     reports = study.Comparison("b", False, study.Count(5.0, 1.0), counts)
@@ -46,7 +27,7 @@ def test_the_figure_nearest_in_the_half_that_chooses_is_chosen(study: ModuleType
     assert any("19.0; 1.0" in line and "chooses" in line for line in lines)
 
 
-def test_points_outside_the_person_and_other_frames_do_not_count(study: ModuleType) -> None:
+def test_points_outside_the_person_and_other_frames_do_not_count() -> None:
     frame = np.array([0, 0, 1, 1, 3])
     points = np.zeros((5, 6))
     points[:, 5] = 1.5, 9.0, 1.5, 1.5, 1.5  # range
@@ -56,7 +37,7 @@ def test_points_outside_the_person_and_other_frames_do_not_count(study: ModuleTy
     assert study.count(speeds) == (1.0, pytest.approx(2 / 3))
 
 
-def test_moving_points_are_counted_in_each_frame(study: ModuleType) -> None:
+def test_moving_points_are_counted_in_each_frame() -> None:
     points = np.zeros((4, 8))
     points[:, 3] = 0.5, 0, 0, -0.5
     points[:, 5] = 10, 20, 30, 40
@@ -65,7 +46,7 @@ def test_moving_points_are_counted_in_each_frame(study: ModuleType) -> None:
     assert snr.tolist() == [10, 40]
 
 
-def test_more_noise_on_the_same_echo_leaves_fewer_points(study: ModuleType) -> None:
+def test_more_noise_on_the_same_echo_leaves_fewer_points() -> None:
     document = {
         "radar": {"device": "IWR1443BOOST", "cfg": CFG},
         "activities": ["punching"],
@@ -81,7 +62,7 @@ def test_more_noise_on_the_same_echo_leaves_fewer_points(study: ModuleType) -> N
     assert counts[0] > counts[3] > counts[-1]
 
 
-def test_walkers_are_two_people_before_an_1843(study: ModuleType) -> None:
+def test_walkers_are_two_people_before_an_1843() -> None:
     text = (ROOT / "radhar_cli/config/radars/iwr1843boost.cfg").read_text()
     config = Config.model_validate(study.walkers_document(text, 3))
     assert config.radar.device == "IWR1843BOOST"

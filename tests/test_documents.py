@@ -153,7 +153,15 @@ def capture(path: Path) -> None:
     words(beat, len(CARD.transmitters)).tofile(path)
 
 
+ADVANCED = (Path(__file__).parent / "radar/cfg/advframe.cfg").read_text()
 CARD = Radar(samples=32, idle_us=2466.0, loops=8, period_ms=20.0, transmitters=(1,), receivers=0b1)
+
+
+def subframes(path: Path) -> None:
+    """What a board of two subframes sends of something that stands still, in two frames."""
+    (path.parent / "advframe.cfg").write_text(ADVANCED)
+    beat = np.exp(-0.2j * np.pi * np.arange(256))
+    words(np.tile(beat[None, :, None], (4, 1, 2 * 2 * 64)), 1).tofile(path)
 
 
 def array(path: Path) -> None:
@@ -222,6 +230,7 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     "config.md": {"lab.yaml": few_samples},
     "measured.md": {
         "adc_data_Raw_0.bin": capture,
+        "adc_subframes.bin": subframes,
         "walk.npy": array,
         "masks.npz": masks,
         "masks": lambda path: tree(path, [*FEW[:2], "picking_up"]),

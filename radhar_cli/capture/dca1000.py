@@ -7,13 +7,15 @@ Capture", sections on DCA1000, and rawDataReader.m of mmWave Studio):
     Q Q Q Q. Real samples stand one after the other.
     Channels not interleaved: all samples of the first receiver, then of the next. Interleaved: a
     sample of every receiver, then the next; with 4 lanes always of four, zeros where one is off.
-    Then the next chirp, of the next transmitter where they take turns.
+    Then the next chirp, of the next transmitter where they take turns. Of frames of several
+    subframes all chirps of the first, then those of the next (`subframes.py`).
 
 The card splits a capture into files of 1 GiB anywhere, and fills lost packets with zeros.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, floor
 from pathlib import Path
@@ -68,6 +70,35 @@ class Words:
         return data.view(WORD)
 
 
+@dataclass(frozen=True)
+class FrameLayout:
+    """Where pulses lie in a stream of words, of which every frame may have others.
+
+    Attributes:
+        unit: Words of a pulse of every transmitter.
+        pulses: Number of pulses of a frame.
+        frame_words: Words from frame to frame.
+        skipped_words: Words of a frame before the first pulse.
+    """
+
+    unit: int
+    pulses: int
+    frame_words: int
+    skipped_words: int = 0
+
+    def slices(self, first: int, stop: int) -> Iterator[slice]:
+        """Yield the words of pulses first .. stop - 1, a slice for each frame."""
+        for frame in range(first // self.pulses, (stop - 1) // self.pulses + 1):
+            begin = frame * self.frame_words + self.skipped_words
+            low = max(first - frame * self.pulses, 0)
+            high = min(stop - frame * self.pulses, self.pulses)
+            yield slice(begin + low * self.unit, begin + high * self.unit)
+
+    def read(self, words: Words, first: int, stop: int) -> NDArray[np.uint16]:
+        """Read the words of pulses first .. stop - 1."""
+        return np.concatenate([words[place] for place in self.slices(first, stop)])
+
+
 def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
     """List all files of a capture: `..._Raw_0.bin` is followed by `..._Raw_1.bin` and so on.
 
@@ -109,21 +140,14 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     interleaved, lanes = bool(settings.interleaved), settings.lanes
     stream = {"lanes": lanes or (4 if interleaved else 2), "interleaved": interleaved}
     settings = settings.model_copy(update=stream)
-    words = Words(files)
-    unit, notes = settings.words_of_a_pulse, list[str]()
-    pulses, incomplete_words = divmod(words.count, unit)
-    if pulses == 0:
-        raise CaptureError(
-            f"{files[0]}: holds {words.bytes} bytes; a pulse by {header} takes {unit * 2}"
-        )
-    _check_length(words, settings, header)
+    words, notes = Words(files), list[str]()
+    layout, pulses = _layout_of(words, settings, header, notes)
+    _check_length(words, layout, pulses, settings, header)
     if len(files) > 1:
-        notes.append(f"{len(files)} files: {files[0].name} to {files[-1].name}")
-    if incomplete_words:
-        notes.append(f"the last {incomplete_words * 2} bytes (an incomplete pulse) are left out")
+        notes.insert(0, f"{len(files)} files: {files[0].name} to {files[-1].name}")
 
     def read(first: int, stop: int) -> Parts:
-        return decode(words[first * unit : stop * unit], settings)
+        return decode(layout.read(words, first, stop), settings)
 
     return Source(
         files,
@@ -133,6 +157,7 @@ def open_dca1000(capture: CaptureFiles) -> Source:
         np.dtype(np.int16),
         1 + settings.complex,
         read,
+        is_part=settings.frame_words is not None,
         notes=tuple(notes),
         usual_beat="positive",
     )
@@ -143,6 +168,7 @@ FORMAT = CaptureFormat(
     lambda path, head: path.suffix.lower() == ".bin",
     open_dca1000,
     is_split=True,
+    has_subframes=True,
 )
 
 
@@ -165,21 +191,65 @@ def decode(words: NDArray[np.uint16], s: CaptureSettings) -> Parts:
     return samples.reshape(-1, s.samples, samples.shape[3], parts)
 
 
-def _check_length(words: Words, s: CaptureSettings, header: str) -> None:
+def _layout_of(
+    words: Words, s: CaptureSettings, header: str, notes: list[str]
+) -> tuple[FrameLayout, int]:
+    """Find where the pulses of a stream lie, and how many are whole; add a note on what is not.
+
+    Of frames of several subframes those are left out that are not whole.
+
+    Raises:
+        CaptureError: there is none, or frames have too few words for their pulses.
+    """
+    unit = s.words_of_a_pulse
+    period, noun = s.frame_words or unit, "pulse"
+    if s.frame_words is not None:
+        noun = "frame" if s.subframe is None else "frame of all subframes"
+        busy = s.skipped_words + (s.frame_pulses or 1) * unit
+        if s.frame_pulses is None or busy > s.frame_words:
+            raise CaptureError(
+                f"{header}: frame_words = {s.frame_words}: should be at least {busy}, of "
+                f"frame_pulses = {s.frame_pulses or 1} after skipped_words = {s.skipped_words}"
+            )
+    count, incomplete_words = divmod(words.count, period)
+    if count == 0:
+        raise CaptureError(
+            f"{words.files[0]}: holds {words.bytes} bytes; a {noun} by {header} takes {period * 2}"
+        )
+    if incomplete_words:
+        notes.append(f"the last {incomplete_words * 2} bytes (an incomplete {noun}) are left out")
+    if s.frame_words is None:
+        return FrameLayout(unit, count, count * unit), count
+    pulses = s.frame_pulses or 1
+    return FrameLayout(unit, pulses, period, s.skipped_words), count * pulses
+
+
+def _check_length(
+    words: Words, layout: FrameLayout, pulses: int, s: CaptureSettings, header: str
+) -> None:
     """Refuse a header whose chirps are not those of the file.
 
     Static echoes are the same in every chirp: words repeat after the length of a chirp.
     """
     assert s.samples is not None
-    start = max((words.count - PROBED_WORDS) // 2, 0)
-    probe = words[start : min(start + PROBED_WORDS, words.count)]
-    correlation = autocorrelation(probe)
-    pulse_words = s.words_of_a_pulse
+    pulse_words = layout.unit
+    if 2 * pulse_words > PROBED_WORDS:
+        return
+    probed = min(PROBED_WORDS // pulse_words, pulses)
+    start = (pulses - probed) // 2
+    correlation = autocorrelation(layout.read(words, start, start + probed))
     if pulse_words >= correlation.size:
         return
     best = float(correlation.max())
     if best < REPEATS or correlation[pulse_words] >= ALIKE * best:
         return
+    if s.frame_words is not None:
+        place = "the pulses of frames" if s.subframe is None else f"subframe {s.subframe}"
+        raise CaptureError(
+            f"{header}: {place}: samples = {s.samples}, receivers = {s.receivers}, transmitters = "
+            f"{s.transmitters}, frame_pulses = {s.frame_pulses}: {words.files[0]} does not repeat "
+            f"from chirp to chirp there, in frames of {layout.frame_words * 2} bytes"
+        )
     # One receiver's chirp may repeat, a chirp of all, or a cycle of the transmitters.
     lag = int(np.flatnonzero(correlation >= 0.95 * best)[0])
     per_sample = (1 + s.complex, (1 + s.complex) * s.stored_receivers, pulse_words // s.samples)

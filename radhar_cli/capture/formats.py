@@ -37,6 +37,11 @@ def open_capture(files: CaptureFiles) -> Source:
                 raise CaptureError(
                     f"{files.paths[1]}: only captures of {split} are split into several files"
                 )
+            if files.subframes > 1 and not form.has_subframes:
+                raise CaptureError(
+                    f"{path}: {form.name} holds one subframe; {files.header} has "
+                    f"{files.subframes}: --set subframe=N says which"
+                )
             return form.open(files)
     names = [*(form.name for form in FORMATS), "one of these in .xz, .gz or .bz2"]
     raise CaptureError(f"{path}: unknown format; should be {', '.join(names[:-1])} or {names[-1]}")

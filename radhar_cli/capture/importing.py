@@ -1,9 +1,8 @@
 """A capture of any format becomes a recording."""
 
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,9 +19,8 @@ from radhar_cli.capture.recording import (
 )
 from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import CaptureFiles, Parts, Source
-from radhar_cli.capture.ti_header import read_ti_settings
-from radhar_cli.config.documents import read_document
-from radhar_cli.config.reading import validated, with_overrides
+from radhar_cli.capture.subframes import read_subframes
+from radhar_cli.config.reading import validated
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
@@ -31,28 +29,25 @@ from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 
-TI_HEADERS = (".json", ".cfg", ".lua")
 GAP = 0.5  # shortest gap between frames, in pulse intervals
 MAX_HZ = 1e15
 JITTER = 0.1  # in pulse intervals, above which it is reported
 
 
 def read_settings(header: Path | None, overrides: Sequence[str]) -> CaptureSettings:
-    """Read the settings of a capture from its header and from overrides.
+    """Read the settings of a capture without subframes, or of the subframe that is chosen.
 
     Args:
         header: TI's JSON or .cfg, or YAML with radhar's keys; None for overrides alone.
         overrides: KEY=VALUE of each.
 
     Raises:
-        RadharError: the header or an override cannot be used.
+        RadharError: the header or an override cannot be used, or no subframe is chosen.
     """
-    document: dict[str, Any] = {}
-    if header is not None:
-        ti = header.suffix.lower() in TI_HEADERS
-        document = read_ti_settings(header) if ti else read_document(header)[0]
-    where = str(header) if header else "--set"
-    return validated(CaptureSettings, with_overrides(document, overrides), where, {})
+    settings = [*read_subframes(header, overrides).values()]
+    if len(settings) > 1:
+        raise CaptureError(f"{header}: has {len(settings)} subframes; subframe=0 chooses one")
+    return settings[0]
 
 
 def import_capture(
@@ -76,17 +71,45 @@ def import_capture(
         FolderError: another process wrote the recording meanwhile.
         UnfinishedError: it cannot be written.
     """
-    out.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as scratch:
-        source, settings = _open_capture(paths, settings, header, Path(scratch))
-        return _write_capture(source, out, settings, header, exclusive=not overwrite)
+    return import_subframes(paths, {out: settings}, header, overwrite)[0]
 
 
-def _open_capture(
-    paths: Sequence[Path], settings: CaptureSettings, header: str, scratch: Path
-) -> tuple[Source, CaptureSettings]:
+def import_subframes(
+    paths: Sequence[Path],
+    subframes: Mapping[Path, CaptureSettings],
+    header: str = "--set",
+    overwrite: bool = True,
+) -> list[RecordingInfo]:
+    """Write each subframe of a capture as a recording, once all of them fit their headers.
+
+    Args:
+        paths: files of the capture, or the first of those that are numbered.
+        subframes: {recording to write: header of a subframe}; one of a capture without subframes.
+        header: file of the headers, for messages.
+        overwrite: replace existing recordings.
+
+    Raises:
+        CaptureError: the capture is damaged, does not fit its header, or is of a format that holds
+            one subframe.
+        FolderError: another process wrote a recording meanwhile.
+        UnfinishedError: one cannot be written.
+    """
+    first = next(iter(subframes))
+    first.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{first.name}.", dir=first.parent) as scratch:
+        captures = [
+            (out, *_open_capture(CaptureFiles(paths, s, header, Path(scratch), len(subframes))))
+            for out, s in subframes.items()
+        ]
+        return [
+            _write_capture(source, out, settings, header, exclusive=not overwrite)
+            for out, source, settings in captures
+        ]
+
+
+def _open_capture(files: CaptureFiles) -> tuple[Source, CaptureSettings]:
     """Open a capture of any format; return it, and the settings with what it says itself."""
-    source = open_capture(CaptureFiles(paths, settings, header, scratch))
+    source, settings = open_capture(files), files.settings
     if 16 * source.receivers * (source.samples or 1) > MAX_PULSE:
         raise CaptureError(
             f"{source.name}: a pulse of {source.receivers} receivers and {source.samples} samples "
@@ -191,7 +214,7 @@ def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str])
         return _segments_of_times(source, source.times, s, notes)
     assert s.prf_hz is not None  # as `_require_keys` found
     if s.frame_pulses is None and s.frame_s is None:
-        return PulseTimes.even(source.pulses, s.prf_hz)
+        return PulseTimes.even(source.pulses, s.prf_hz, s.frame_delay_s)
     if s.frame_pulses is None or s.frame_s is None:
         raise CaptureError(f"{header}: frame_pulses and frame_s must be given together")
     if s.frame_pulses / s.prf_hz > s.frame_s * (1 + 1e-6):
@@ -200,17 +223,18 @@ def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str])
             f"{s.frame_pulses} pulses at {s.prf_hz:g} Hz"
         )
     gap = s.frame_s - s.frame_pulses / s.prf_hz
-    if gap * s.prf_hz <= GAP:
+    if gap * s.prf_hz <= GAP and not source.is_part:
         prf = s.frame_pulses / s.frame_s
         notes.append(f"frames without gaps: slow time is uniform, {prf:.6g} pulses/s")
-        return PulseTimes.even(source.pulses, prf)
+        return PulseTimes.even(source.pulses, prf, s.frame_delay_s)
     first = np.arange(0, source.pulses, s.frame_pulses)
     notes.append(
         f"slow time is not uniform: {first.size} frames of {s.frame_pulses} pulses "
         f"({s.frame_pulses / s.prf_hz * 1e3:.4g} ms) every {s.frame_s * 1e3:.4g} ms, "
         f"{gap * 1e3:.4g} ms of each without a pulse"
     )
-    return PulseTimes(np.arange(first.size) * s.frame_s, first, source.pulses, s.prf_hz)
+    starts = np.arange(first.size) * s.frame_s + s.frame_delay_s
+    return PulseTimes(starts, first, source.pulses, s.prf_hz)
 
 
 def _segments_of_times(

@@ -215,7 +215,8 @@ def _parse_cfg(cfg: str, where: str, subframe: int) -> tuple[FrameHeader, float]
     try:
         header = parse_ti_cfg(cfg, where, subframe=subframe)
     except CaptureError:  # such as DDMA, whose points are sent as others are
-        return parse_frames(cfg, where)[0], 0.0
+        headers, _ = parse_frames(cfg, where)
+        return headers[min(subframe, len(headers) - 1)], 0.0
     return header, header.detection.bias
 
 

@@ -21,8 +21,12 @@ class LvdsFormat:
     is_q_first: bool
 
 
-def read_lvds_format(lines: Sequence[CfgLine]) -> LvdsFormat:
-    """Read the order of words from the lines of a .cfg; a demo without adcbufCfg has two lanes.
+def read_lvds_format(lines: Sequence[CfgLine], subframe: int) -> LvdsFormat:
+    """Read the order of words of a subframe; a demo without adcbufCfg has two lanes.
+
+    Args:
+        lines: Lines of a .cfg.
+        subframe: Number of the subframe, 0 of a frame without.
 
     Raises:
         CaptureError: A line cannot be read, or sends headers that are not read.
@@ -33,8 +37,26 @@ def read_lvds_format(lines: Sequence[CfgLine]) -> LvdsFormat:
             header = line.numbers["enableHeader"]
             if header:
                 raise line.refusal("enableHeader", header, "0: streams with headers are not read")
-        if line.name == "adcbufCfg":
+        if line.name == "adcbufCfg" and line.holds_for(subframe):
             numbers = line.numbers
             is_swapped = numbers["SampleSwap"] == 1
             is_interleaved = numbers["ChanInterleave"] == 0
     return LvdsFormat(4 if is_interleaved else 2, is_interleaved, is_swapped)
+
+
+def sends_samples(lines: Sequence[CfgLine], subframe: int) -> bool:
+    """Whether the stream has the samples of a subframe: not where dataFmt of its last line is 0.
+
+    Args:
+        lines: Lines of a .cfg.
+        subframe: Number of the subframe.
+
+    Raises:
+        CaptureError: A line lvdsStreamCfg cannot be read.
+    """
+    formats = [
+        line.numbers["dataFmt"]
+        for line in lines
+        if line.name == "lvdsStreamCfg" and line.holds_for(subframe)
+    ]
+    return formats[-1:] != [0]

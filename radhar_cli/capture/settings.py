@@ -34,6 +34,13 @@ class CaptureSettings(Section):
     transmitters: Annotated[int, Field(ge=1, le=512, strict=True)] = 1  # they take turns
     frame_pulses: Count | None = None  # of one transmitter; None where slow time has no frames
     frame_s: Above | None = None  # from the start of a frame to that of the next
+    frame_delay_s: Annotated[float, Field(ge=0, le=1e6)] = 0.0  # from there to its first pulse
+    # of frames of several subframes: number of the one that is read; None is all
+    subframe: Annotated[int, Field(ge=0, le=3, strict=True)] | None = None
+    # words from frame to frame of TI's stream where there are others than these pulses, and words
+    # of a frame before the first of them
+    frame_words: Annotated[int, Field(ge=1, le=2**40, strict=True)] | None = None
+    skipped_words: Annotated[int, Field(ge=0, le=2**40, strict=True)] = 0
     # of TI's LVDS stream; see dca1000.py
     lanes: Literal[2, 4] | None = None
     interleaved: Annotated[bool, Field(strict=True)] | None = None

@@ -31,6 +31,7 @@ class Source:
     read: Callable[[int, int], Parts]
     times: Float | None = None  # of the pulses [pulses], s, if the capture contains them
     step: int = 1  # pulses that are best read together
+    is_part: bool = False  # whether its files hold pulses of other subframes, too
     # fields of `CaptureSettings` that the capture itself contains
     settings: dict[str, Any] = field(default_factory=dict)
     notes: tuple[str, ...] = ()  # findings on opening it, in words
@@ -64,6 +65,7 @@ class CaptureFiles:
     settings: CaptureSettings  # header of the capture
     header: str  # file of the header, for messages
     scratch: Path  # folder for unpacked arrays
+    subframes: int = 1  # number of subframes of its frames, each of which is a recording
 
 
 @dataclass(frozen=True)
@@ -75,3 +77,4 @@ class CaptureFormat:
     # raises CaptureError where the capture is damaged, or does not fit its header
     open: Callable[[CaptureFiles], Source]
     is_split: bool = False  # whether one capture may be several files
+    has_subframes: bool = False  # whether pulses of several subframes may follow each other

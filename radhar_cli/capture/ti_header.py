@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from radhar_cli.capture.lvds_format import LvdsFormat, read_lvds_format
+from radhar_cli.capture.lvds_format import LvdsFormat, read_lvds_format, sends_samples
 from radhar_cli.capture.ti_lua import read_lua
 from radhar_cli.capture.ti_studio import read_studio
 from radhar_cli.errors import CaptureError
@@ -12,18 +12,27 @@ from radhar_cli.radar.frame_header import FrameHeader, Sampling
 from radhar_cli.radar.ti_cfg import MAX_CFG, parse_frames
 
 
-def read_ti_settings(path: Path) -> dict[str, Any]:
+def read_ti_settings(path: Path) -> dict[int, dict[str, Any]]:
     """Read the settings of a capture (fields of `CaptureSettings`) from a TI header.
 
     Args:
         path: mmWave Studio's JSON, or a .cfg of the SDK's demos.
+
+    Returns:
+        {number: settings} of each subframe in the order of the stream; 0 of a frame without.
 
     Raises:
         CaptureError: The file cannot be read, or describes what is not supported; names file,
             field, value and what would be right.
     """
     readers = {".json": read_studio, ".lua": read_lua}
-    header, stream = readers.get(path.suffix.lower(), _read_cfg)(path)
+    if reader := readers.get(path.suffix.lower()):
+        return {0: _settings_of(*reader(path))}
+    return {header.subframe: _settings_of(header, stream) for header, stream in _read_cfg(path)}
+
+
+def _settings_of(header: FrameHeader, stream: LvdsFormat) -> dict[str, Any]:
+    """Settings of a frame, or of a subframe of it."""
     return {
         "carrier_hz": header.carrier_hz,
         "bandwidth_hz": header.bandwidth_hz,
@@ -33,6 +42,7 @@ def read_ti_settings(path: Path) -> dict[str, Any]:
         "transmitters": len(header.masks),
         "frame_pulses": header.loops,
         "frame_s": header.period_s,
+        "frame_delay_s": header.delay_s,
         "receivers": len(header.receivers),
         "receiver_lanes": list(header.receivers),
         "complex": header.sampling is not Sampling.REAL,
@@ -43,6 +53,8 @@ def read_ti_settings(path: Path) -> dict[str, Any]:
     }
 
 
-def _read_cfg(path: Path) -> tuple[FrameHeader, LvdsFormat]:
-    header, lines = parse_frames(text_of(path, MAX_CFG, CaptureError), str(path))
-    return header, read_lvds_format(lines)
+def _read_cfg(path: Path) -> list[tuple[FrameHeader, LvdsFormat]]:
+    """Read the subframes that are in the stream: all, where the file sends none of them."""
+    headers, lines = parse_frames(text_of(path, MAX_CFG, CaptureError), str(path))
+    sent = [header for header in headers if sends_samples(lines, header.subframe)]
+    return [(header, read_lvds_format(lines, header.subframe)) for header in sent or headers]

@@ -2,12 +2,16 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from radhar_cli.commands.options import Replace, refuse_to_replace
 from radhar_cli.commands.tell import counted, report, tell
+from radhar_cli.errors import FolderError
+
+if TYPE_CHECKING:
+    from radhar_cli.capture.recording import RecordingInfo
 
 
 def import_(
@@ -49,15 +53,12 @@ def import_(
     import json
 
     from radhar_cli.capture.importing_points import is_point_capture
-    from radhar_cli.errors import FolderError
 
     named = {"label": label, "person": person}
     overrides = [f"{key}={json.dumps(value)}" for key, value in named.items() if value is not None]
     if missing := [str(path) for path in captures if not path.exists()]:
         raise FolderError(f"{missing[0]}: no such file")
-    if out.resolve() in {path.resolve() for path in captures}:
-        raise FolderError(f"{out}: is the capture itself; -o should name another file")
-    refuse_to_replace(out, overwrite, "walk.h5")
+    _require_new(out, captures, overwrite)
     values = [*(set_ or []), *overrides]
     if is_point_capture(captures[0]):
         _import_points(captures, out, radar, values, overwrite)
@@ -65,29 +66,59 @@ def import_(
         _import_samples(captures, out, radar, values, overwrite)
 
 
+def _require_new(out: Path, captures: Sequence[Path], overwrite: bool) -> None:
+    """Refuse a recording that is the capture itself, or that exists and is not to be replaced.
+
+    Raises:
+        FolderError: it is refused.
+    """
+    if out.resolve() in {path.resolve() for path in captures}:
+        raise FolderError(f"{out}: is the capture itself; -o should name another file")
+    refuse_to_replace(out, overwrite, "walk.h5")
+
+
 def _import_samples(
     captures: Sequence[Path], out: Path, radar: Path | None, values: Sequence[str], overwrite: bool
 ) -> None:
-    """Import a capture of samples, and say what was found."""
-    from radhar_cli.capture.content import SlowTime
-    from radhar_cli.capture.importing import import_capture, read_settings
+    """Import a capture of samples, a recording a subframe, and say what was found."""
+    from radhar_cli.capture.importing import import_subframes
+    from radhar_cli.capture.subframes import read_subframes, recording_of_subframe
 
-    settings = read_settings(radar, values)
-    info = import_capture(captures, out, settings, str(radar) if radar else "--set", overwrite)
+    subframes = read_subframes(radar, values)
+    if len(subframes) == 1:
+        recordings = dict.fromkeys([out], *subframes.values())
+    else:
+        recordings = {recording_of_subframe(out, n): s for n, s in subframes.items()}
+    for path in recordings:
+        _require_new(path, captures, overwrite)
+    where = str(radar) if radar else "--set"
+    infos = import_subframes(captures, recordings, where, overwrite)
+    results = list[dict[str, object]]()
+    for number, info in zip(subframes, infos, strict=True):
+        if len(infos) > 1:
+            tell(f"subframe {number}:")
+        results.append(_tell_recording(info))
+    more = {"subframes": results} if len(results) > 1 else {}
+    report(files=[*recordings], **results[0], **more)
+
+
+def _tell_recording(info: "RecordingInfo") -> dict[str, object]:
+    """Say what was found in the samples of a recording; return it by key."""
+    from radhar_cli.capture.content import SlowTime
+
     for line in info.source.findings:
         tell(f"  {line}")
     samples = None if isinstance(info.content, SlowTime) else info.content.samples
     shape = f"{counted(info.receivers, 'receiver')}, {samples or 'no'} samples a chirp, "
     tell(f"{info.pulses} pulses at {info.prf_hz:.6g} Hz: {shape}{info.carrier_hz / 1e9:.6g} GHz")
-    report(
-        files=[out],
-        found=info.source.findings,
-        receivers=info.receivers,
-        samples_per_chirp=samples,
-        pulses=info.pulses,
-        prf_hz=info.prf_hz,
-        carrier_hz=info.carrier_hz,
-    )
+    return {
+        "found": info.source.findings,
+        "receivers": info.receivers,
+        "samples_per_chirp": samples,
+        "pulses": info.pulses,
+        "prf_hz": info.prf_hz,
+        "carrier_hz": info.carrier_hz,
+    }
 
 
 def _import_points(

@@ -250,7 +250,7 @@ def parse_ti_cfg(
     )
 
 
-def parse_frames(text: str, where: str) -> tuple[FrameHeader, Sequence[CfgLine]]:
+def parse_frames(text: str, where: str) -> tuple[list[FrameHeader], Sequence[CfgLine]]:
     """Parse chirps, frames and samples of a .cfg, as a raw capture needs them.
 
     Args:
@@ -258,18 +258,14 @@ def parse_frames(text: str, where: str) -> tuple[FrameHeader, Sequence[CfgLine]]
         where: File that messages name.
 
     Returns:
-        The header, and all lines, in which other readers find their own.
+        The header of each subframe of a frame, in order, or of the frame; and all lines, in which
+        other readers find their own.
 
     Raises:
         CaptureError: A line on chirps, frames or samples cannot be read.
     """
     lines = _Lines(text, where)
-    headers = _read_subframes(lines, None)
-    if len(headers) > 1:
-        line = lines.of_name("advFrameCfg")[-1]
-        right = "1: captures of several subframes are not read"
-        raise line.refusal("numOfSubFrames", len(headers), right)
-    return headers[0], lines.lines
+    return _read_subframes(lines, None), lines.lines
 
 
 def make_frame_header(

@@ -54,10 +54,10 @@ def _bridge_frames(file: Keypoints, blends: list[JointMean], rate: float | None)
     """Read the fifteen joints of poses, of which some may be lost in some frames."""
     numbers = list(dict.fromkeys(number for mean in blends for number in mean.numbers))
     _require_frames(file, len(file.values))
-    read = file.bridged(numbers, rate)
+    bridged = file.bridged(numbers, rate)
     rate = rate or file.rate
     assert rate is not None
-    known: Bool = np.asarray(np.isfinite(read.positions).all(axis=2))
+    known: Bool = np.asarray(np.isfinite(bridged.positions).all(axis=2))
     complete: Bool = np.asarray(known.all(axis=1))
     for column, number in enumerate(numbers):
         if not known[:, column].any():
@@ -77,7 +77,7 @@ def _bridge_frames(file: Keypoints, blends: list[JointMean], rate: float | None)
         if first < a and b < last
     )
     is_whole = (first, last) == (0, len(complete) - 1)
-    p = read.positions
+    p = bridged.positions
     if not complete.all():
         p = _fill(p, known)
     return JointFrames(
@@ -85,7 +85,7 @@ def _bridge_frames(file: Keypoints, blends: list[JointMean], rate: float | None)
         rate,
         None if is_whole else (first / rate, last / rate),
         lost,
-        _describe_bridged(file, numbers, read.missing.tolist(), read.gaps.tolist(), rate),
+        _describe_bridged(file, numbers, bridged.missing.tolist(), bridged.gaps.tolist(), rate),
     )
 
 

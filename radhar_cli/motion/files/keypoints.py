@@ -58,6 +58,7 @@ class Keypoints:
 
     @property
     def parents(self) -> tuple[int | None, ...]:
+        """Parents of the joints: none, as there are no bones."""
         return (None,) * len(self.names)
 
     def positions(self, joints: Sequence[int]) -> Float:
@@ -105,6 +106,7 @@ class Keypoints:
         return self.names[joint] if self.is_named else f"joint {joint}"
 
     def place(self, frame: int) -> str:
+        """File and frame, counted from 1, as messages name them."""
         return f"{self.where}: frame {frame + 1}"
 
 

@@ -135,7 +135,9 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     for key in ("samples", "receivers"):
         if getattr(settings, key) is None:
             raise CaptureError(
-                f"{header}: {key} is missing; give it by --radar FILE or --set {key}=N"
+                f"{header}: {key} is missing; give it by --radar FILE or --set {key}=N "
+                f"({capture.paths[0].name} is taken for samples of a DCA1000, as it has no packet "
+                "of a TI demo's data port)"
             )
     interleaved, lanes = bool(settings.interleaved), settings.lanes
     stream = {"lanes": lanes or (4 if interleaved else 2), "interleaved": interleaved}

@@ -44,7 +44,10 @@ def open_capture(files: CaptureFiles) -> Source:
                 )
             return form.open(files)
     names = [*(form.name for form in FORMATS), "one of these in .xz, .gz or .bz2"]
-    raise CaptureError(f"{path}: unknown format; should be {', '.join(names[:-1])} or {names[-1]}")
+    right = (
+        f"{', '.join(names[:-1])} or {names[-1]}, or what a TI demo's data port or visualizer gave"
+    )
+    raise CaptureError(f"{path}: unknown format; should be {right}")
 
 
 def _unpack(files: CaptureFiles, path: Path) -> Path:

@@ -28,7 +28,8 @@ def import_(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Header: mmWave Studio's JSON or .lua, TI's .cfg, or YAML of radhar's keys.",
+            help="Header: mmWave Studio's JSON or .lua, TI's .cfg or a built-in radar's name, or "
+            "YAML of radhar's keys.",
         ),
     ] = None,
     set_: Annotated[
@@ -59,6 +60,10 @@ def import_(
     if missing := [str(path) for path in captures if not path.exists()]:
         raise FolderError(f"{missing[0]}: no such file")
     _require_new(out, captures, overwrite)
+    if empty := [str(path) for path in captures if path.is_file() and not path.stat().st_size]:
+        raise FolderError(f"{empty[0]}: is empty")
+    if radar is not None and not radar.exists():
+        radar = _built_in_cfg(str(radar)) or radar
     values = [*(set_ or []), *overrides]
     if is_point_capture(captures[0]):
         _import_points(captures, out, radar, values, overwrite)
@@ -75,6 +80,14 @@ def _require_new(out: Path, captures: Sequence[Path], overwrite: bool) -> None:
     if out.resolve() in {path.resolve() for path in captures}:
         raise FolderError(f"{out}: is the capture itself; -o should name another file")
     refuse_to_replace(out, overwrite, "walk.h5")
+
+
+def _built_in_cfg(name: str) -> Path | None:
+    """Path of the .cfg of a built-in radar that a name stands for; None of other names."""
+    from radhar_cli.config.documents import RADARS, name_of_radar
+
+    known = name_of_radar(name)
+    return None if known is None else RADARS.get(known)
 
 
 def _import_samples(

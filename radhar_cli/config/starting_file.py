@@ -186,7 +186,7 @@ def of_board(cfg: str, folder: Path) -> str:
     maps = ", ".join(_maps_of_board(text, device, board.period_s, chain))
     position = "" if board.pose else ", position_m: [0, 0, 1]"
     range_end = board.farthest_m
-    speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.loop_s)
+    speed = SPEED_OF_LIGHT / (4 * board.centre_hz * board.loop_s)
     nearest, farthest = min(1.5, range_end / 3), min(3.0, range_end / 1.5)
     activities = "punching, kicking, grabbing, sitting_down, standing_up"
     duration_s = max(3.0, 2 * board.period_s)

@@ -56,10 +56,10 @@ def draw_frames(content: BoardFrames, path: Path) -> None:
         name: map_.shown for name, map_ in content.products.items() if isinstance(map_, FrameMaps)
     }
     cloud, middles = content.products.get("cloud"), content.board.middles
-    chosen = np.linspace(0, content.board.frames - 1, COLUMNS).round().astype(int).tolist()
+    chosen = np.unique(np.linspace(0, content.board.frames - 1, COLUMNS).round().astype(int))
     rows = len(maps) + (cloud is not None)
-    figure = page(2.6 * COLUMNS + 1, 2.7 * rows + 0.6, apart=0.06)
-    grid = figure.subplots(rows, COLUMNS, squeeze=False)
+    figure = page(2.6 * max(chosen.size, 3) + 1, 2.7 * rows + 0.6, apart=0.06)
+    grid = figure.subplots(rows, chosen.size, squeeze=False)
     for row, (name, frame_maps) in zip(grid, maps.items(), strict=False):
         for axes, frame in zip(row, chosen, strict=True):
             drawn = _draw_map(axes, frame_maps, frame, content)

@@ -124,6 +124,11 @@ class FrameHeader:
         return self.profile.carrier_hz
 
     @property
+    def centre_hz(self) -> float:
+        """Middle of the sampled band, f_adc + K (N - 1)/(2 fs), Hz."""
+        return self.carrier_hz + self.slope_hz * (self.samples - 1) / (2 * self.adc_rate_hz)
+
+    @property
     def slope_hz(self) -> float:
         """Slope of a ramp, Hz per second."""
         return self.profile.slope_hz

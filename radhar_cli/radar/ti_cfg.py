@@ -12,6 +12,7 @@ from itertools import accumulate
 from math import inf
 
 from radhar_cli.errors import CaptureError
+from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.detection import Detection, Firmware
 from radhar_cli.radar.frame_header import ROUNDING, ChirpProfile, FrameHeader, RoomBox, Sampling
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
@@ -40,6 +41,7 @@ from radhar_cli.radar.ti_people import (
 )
 
 MAX_CFG = 2**16  # characters
+MOST_ANTENNAS = 4  # receivers, or transmitters, of a device
 MAX_CHIRPS = 512  # of a frame
 
 
@@ -220,6 +222,7 @@ def parse_ti_cfg(
     lines.require_none(Effect.NOT_SIMULATED)
     headers = _read_subframes(lines, device)
     if lines.family is not Family.L_SDK:
+        _require_antennas(lines.of_name("channelCfg")[-1], device)
         for subframe_header in headers:
             _require_simulated(subframe_header, lines)
     header = headers[min(subframe, len(headers) - 1)]
@@ -615,6 +618,25 @@ def _read_pose(lines: Sequence[CfgLine]) -> BoardPose | None:
         yaw_deg=0.0 - numbers["azimuthTilt"],
         tilt_deg=numbers["elevationTilt"],
     )
+
+
+def _require_antennas(line: CfgLine, device: str | None) -> None:
+    """Raise CaptureError for receivers or transmitters that are on and that the board lacks.
+
+    Args:
+        line: Line channelCfg.
+        device: Board that the file runs on; None for one of MOST_ANTENNAS of either.
+    """
+    array = DEVICES[device].array if device is not None and device in DEVICES else None
+    counts = {
+        "rxChannelEn": ("receivers", len(array.rx) if array else MOST_ANTENNAS),
+        "txChannelEn": ("transmitters", len(array.tx) if array else MOST_ANTENNAS),
+    }
+    for argument, (noun, count) in counts.items():
+        mask, most = int(line.numbers[argument]), 2**count - 1
+        if mask > most:
+            of = f"the {device} has {count} {noun}" if array else f"boards have {count} {noun}"
+            raise line.refusal(argument, mask, f"at most {most}: {of}")
 
 
 def _require_simulated(header: FrameHeader, lines: _Lines) -> None:

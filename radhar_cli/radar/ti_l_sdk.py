@@ -7,6 +7,7 @@ frame has several bursts, a loop is a burst; otherwise the chirps of the one bur
 from collections.abc import Sequence
 
 from radhar_cli.errors import CaptureError
+from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.frame_header import ROUNDING, ChirpProfile, FrameHeader, Sampling
 from radhar_cli.radar.ti_commands import CfgLine, describe_missing
 
@@ -75,7 +76,12 @@ def _antennas(line: CfgLine, argument: str, device: str) -> tuple[int, ...]:
     """Numbers of the antennas that are on, from 0 on."""
     mask = int(line.numbers[argument])
     width = 2 if device == IWRL6844 else 1
-    antennas = tuple(n for n in range(4) if mask >> n * width & (1 << width) - 1)
+    array = DEVICES[device].array
+    count = len(array.rx if argument == "rxChCtrlBitMask" else array.tx)
+    if mask >= 1 << count * width:
+        right = f"at most {(1 << count * width) - 1}: the {device} has {count} of these antennas"
+        raise line.refusal(argument, mask, right)
+    antennas = tuple(n for n in range(count) if mask >> n * width & (1 << width) - 1)
     if not antennas:
         raise line.refusal(argument, mask, "a mask of antennas of which one is on")
     return antennas

@@ -7,6 +7,7 @@ from helpers.boards import CFG, MARS
 from helpers.scatterers import ISK_CFG
 
 from radhar_cli.errors import CaptureError
+from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.detection import CA, CASO, Cfar
 from radhar_cli.radar.ti_cfg import BoardPose, parse_ti_cfg
 from radhar_cli.radar.ti_family import Family
@@ -337,3 +338,46 @@ def test_frame_of_the_mcu_plus_sdk_repeats_the_number_of_samples() -> None:
 def test_lines_of_other_subframes_do_not_count() -> None:
     lines = "clutterRemoval 1 0\ncfarCfg 1 0 0 8 4 4 1 15.0 1\n"
     assert parse_ti_cfg(CFG + lines).detection == parse_ti_cfg(CFG).detection
+
+
+OLDER = [name for name, device in DEVICES.items() if device.families != (Family.L_SDK,)]
+XWRL = """channelCfg 7 3 0
+chirpComnCfg 15 5 0 128 1 34 3
+chirpTimingCfg 6 26 1 47.95 60
+frameCfg 2 0 600 64 200 0
+"""
+
+
+@pytest.mark.parametrize("device", [*OLDER, None])
+@pytest.mark.parametrize("argument", ["rxChannelEn", "txChannelEn"])
+def test_antennas_that_the_device_lacks_are_refused(device: str | None, argument: str) -> None:
+    """Both the mask's name and the device's stand in the message; all that it has may be on."""
+    array = DEVICES[device].array if device else None
+    receivers, transmitters = (len(array.rx), len(array.tx)) if array else (4, 4)
+    masks = {"rxChannelEn": 2**receivers - 1, "txChannelEn": 2**transmitters - 1}
+    one = CFG.replace("chirpCfg 1 1 0 0 0 0 0 4\n", "").replace("chirpCfg 2 2 0 0 0 0 0 2\n", "")
+    one = one.replace("frameCfg 0 2", "frameCfg 0 0")
+
+    def with_masks() -> str:
+        numbers = f"{masks['rxChannelEn']} {masks['txChannelEn']} 0"
+        return one.replace("channelCfg 15 7 0", f"channelCfg {numbers}")
+
+    assert parse_ti_cfg(with_masks(), device=device).receivers == tuple(range(receivers))
+    masks[argument] = masks[argument] * 2 + 1
+    noun = "receivers" if argument == "rxChannelEn" else "transmitters"
+    message = f"channelCfg {argument} = {masks[argument]}: should be at most"
+    with pytest.raises(CaptureError, match=f"{message} .*{device or 'boards'} ha.* {noun}"):
+        parse_ti_cfg(with_masks(), device=device)
+
+
+@pytest.mark.parametrize(
+    ("masks", "message"),
+    [
+        ("15 3 0", "rxChCtrlBitMask = 15: should be at most 7: the IWRL6432BOOST has 3"),
+        ("7 7 0", "txChCtrlBitMask = 7: should be at most 3: the IWRL6432BOOST has 2"),
+    ],
+)
+def test_antennas_that_an_xwrl_board_lacks_are_refused(masks: str, message: str) -> None:
+    text = XWRL.replace("7 3 0", masks, 1)
+    with pytest.raises(CaptureError, match=message):
+        parse_ti_cfg(text, device="IWRL6432BOOST")

@@ -32,6 +32,10 @@ EQUAL = 1e-6  # relative difference of a rate and an interval that are the same
 ROUNDING = 1 + 1e-9  # of a sweep without a pause, whose length is 1/prf_hz
 
 
+NEEDED_COMMANDS = {
+    "people_tracking": "dynamicRACfarCfg and dynamicRangeAngleCfg",
+    "people_counting": "doaCfg and a cfarCfg of 12 numbers",
+}  # which tell the chains of people, as cfarCfg of 7 to 9 tells those of the out-of-box demo
 BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, "points_kind", *OF_FRAMES, "cube")
 
 
@@ -221,6 +225,8 @@ def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
     firmware, chain = board.firmware, c.cloud.chain
     if firmware is None and chain != "best":
         missing = (*board.missing, "cfarCfg is missing")[0]
+        if chain in NEEDED_COMMANDS and not board.missing:
+            missing = f"{NEEDED_COMMANDS[chain]} are missing"
         why = f"radar.cfg: {missing}" if isinstance(radar, BoardRadar) else "no firmware is known"
         yield Problem("cloud.chain", chain, f"should be best: {why}")
     elif chain not in ("best", "board", firmware):

@@ -419,8 +419,9 @@ _TI = """\
 TI's Industrial Visualizer has: x (right), y (ahead), z (up of the radar; m), Doppler (m/s, receding
 positive), SNR and noise (dB), and the track: here the person whose the point is, 255 nobody's.
 Of people tracking, all is rounded as its message TLV 1020 is, SNR is a ratio of powers and noise 0.
-`SAMPLE.bin`, of people tracking and of SDK 3, is what the board would have sent: frames of magic
-word, header of 40 bytes, and TLV 1020, or TLVs 1 and 7 (whose noise is 0)."""
+`SAMPLE.bin`, of every chain of the firmware, is what the board would have sent: frames of magic
+word, header of 40 bytes (36 of SDK 1), and the points: TLV 1020 of people tracking, 6 of people
+counting, 1 of SDK 1, 1 and 7 (SNR and noise, which is the level less the SNR) of SDK 3."""
 
 _READ_CSV = """\
 ```python

@@ -42,11 +42,13 @@ def import_(
     person: Annotated[str | None, typer.Option(help="Person who was recorded.")] = None,
     overwrite: Replace = False,
 ) -> None:
-    """Convert a capture of a real radar into a recording file, of samples or of points.
+    """Convert a capture of a real radar into a recording file.
 
     Example:
 
       radhar import adc_data_Raw_0.bin --radar setup.mmwave.json --label walking -o walk.h5
+
+    The recording is of samples, or of points that a board has sent.
 
     Prints what is found in the samples: offset binary, sign of the beat, gaps, losses, saturation.
     --set coding=signed and --set beat=positive override it. All keys: docs/guide/measured.md

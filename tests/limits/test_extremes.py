@@ -117,8 +117,6 @@ def test_limits_tells_of_the_end_of_a_number(base: str, key: str) -> None:
         if extreme.outcome == "fine":
             near = isclose(number, limit.value or 0.0, rel_tol=GAP)  # as an end is found
             is_behind = key == "motion.range_m" and number < 0  # no search gets there
-                key == "motion.range_m" and number < 0
-            )  # which no search reaches
             slower = limit.beyond.effect is Consequence.SLOWER
             assert inside or near or slower or is_behind, (number, limit)
         elif extreme.words != BLACK:

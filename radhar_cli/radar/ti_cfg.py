@@ -633,10 +633,11 @@ def _require_antennas(line: CfgLine, device: str | None) -> None:
         "txChannelEn": ("transmitters", len(array.tx) if array else MOST_ANTENNAS),
     }
     for argument, (noun, count) in counts.items():
-        mask, most = int(line.numbers[argument]), 2**count - 1
+        mask = int(line.numbers[argument])
+        most = 2**count - 1
         if mask > most:
-            of = f"the {device} has {count} {noun}" if array else f"boards have {count} {noun}"
-            raise line.refusal(argument, mask, f"at most {most}: {of}")
+            owner = f"the {device} has" if array else "boards have"
+            raise line.refusal(argument, mask, f"at most {most}: {owner} {count} {noun}")
 
 
 def _require_simulated(header: FrameHeader, lines: _Lines) -> None:

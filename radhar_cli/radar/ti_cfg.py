@@ -634,10 +634,10 @@ def _require_antennas(line: CfgLine, device: str | None) -> None:
     }
     for argument, (noun, count) in counts.items():
         mask = int(line.numbers[argument])
-        most = 2**count - 1
-        if mask > most:
+        largest = 2**count - 1
+        if mask > largest:
             owner = f"the {device} has" if array else "boards have"
-            raise line.refusal(argument, mask, f"at most {most}: {owner} {count} {noun}")
+            raise line.refusal(argument, mask, f"at most {largest}: {owner} {count} {noun}")
 
 
 def _require_simulated(header: FrameHeader, lines: _Lines) -> None:

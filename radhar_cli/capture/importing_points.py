@@ -272,13 +272,13 @@ class DumpFrames:
     subframe: int
     misfits: int = field(default=0, init=False)
     first_misfit: str = field(default="", init=False)
-    others: int = field(default=0, init=False)
+    packets_of_others: int = field(default=0, init=False)
 
     def __iter__(self) -> Iterator[PointFrame]:
         waiting: PointFrame | None = None  # tracks of its points come with the next packet
         for packet in self.dump.packets():
             if packet.subframe != self.subframe:
-                self.others += 1
+                self.packets_of_others += 1
                 continue
             frame = self._frame(packet)
             if frame is None:
@@ -314,9 +314,9 @@ class DumpFrames:
                 f"{self.misfits} frames have messages that do not fit and are left out; the first: "
                 f"{self.first_misfit}"
             )
-        if self.others:
+        if self.packets_of_others:
             sentences.append(
-                f"{self.others} packets of other subframes than {self.subframe} are left out "
-                "(--set subframe=N)"
+                f"{self.packets_of_others} packets of other subframes than {self.subframe} are "
+                "left out (--set subframe=N)"
             )
         return sentences

@@ -95,9 +95,9 @@ class MessageReader:
         """
         messages = packet.messages
         if self.is_people_counting:
-            points, targets = _counted(messages)
+            points, targets = _read_people_counting(messages)
         else:
-            points, targets = self._detected(messages, packet.points), _targets(messages)
+            points, targets = self._read_points(messages, packet.points), _targets(messages)
         rows = points.rows(self.steps)
         if not are_measurements(rows) or not are_measurements(targets[:, 1:]):
             raise MessageError("holds infinite or huge numbers")
@@ -111,17 +111,17 @@ class MessageReader:
                 return np.frombuffer(packet.messages[kind], "<u1").astype(float)
         return None
 
-    def _detected(self, messages: Mapping[int, bytes], count: int | None) -> TiPoints:
+    def _read_points(self, messages: Mapping[int, bytes], count: int | None) -> TiPoints:
         """Points of the out-of-box demos, of xWRL boards and of people tracking."""
         if COMPRESSED in messages:
-            return _compressed(messages[COMPRESSED])
+            return _unpack_compressed(messages[COMPRESSED])
         if EXTENDED in messages:
-            return _extended(messages[EXTENDED])
+            return _unpack_extended(messages[EXTENDED])
         if SPHERICAL in messages:
             message = messages[SPHERICAL]
             if len(message) % 16 or (len(message) // 16 != count and _has_units(message)):
-                return _compressed(message)
-            return _with_side_info(_spherical(message), messages.get(SIDE_INFO))
+                return _unpack_compressed(message)
+            return _with_side_info(_unpack_spherical(message), messages.get(SIDE_INFO))
         if DETECTED_POINTS not in messages:
             return TiPoints.empty()
         message = messages[DETECTED_POINTS]
@@ -193,7 +193,7 @@ def _has_units(message: bytes) -> bool:
     return bool(np.isfinite(units).all() and (units > 0).all() and (units < 1).all())
 
 
-def _compressed(message: bytes) -> TiPoints:
+def _unpack_compressed(message: bytes) -> TiPoints:
     """Points of TLV 1020 (6 of the labs): five units, then whole numbers of them."""
     if not _has_units(message):
         raise MessageError(
@@ -205,7 +205,7 @@ def _compressed(message: bytes) -> TiPoints:
     return _of_polar(unpack_points(packed, units.tolist()))
 
 
-def _spherical(message: bytes) -> TiPoints:
+def _unpack_spherical(message: bytes) -> TiPoints:
     """Points of TLV 1000: range, azimuth, elevation and Doppler as floats."""
     r, azimuth, elevation, doppler = np.frombuffer(message, "<f4").reshape(-1, 4).astype(float).T
     unknown = np.full(len(r), np.nan)
@@ -214,7 +214,7 @@ def _spherical(message: bytes) -> TiPoints:
     )
 
 
-def _extended(message: bytes) -> TiPoints:
+def _unpack_extended(message: bytes) -> TiPoints:
     """Points of TLV 301 of xWRL boards: units, two counts, then places and Doppler."""
     size = len(message) - EXTENDED_UNITS.itemsize
     if size < 0 or size % EXTENDED_POINT.itemsize:
@@ -228,11 +228,11 @@ def _extended(message: bytes) -> TiPoints:
     return TiPoints(places, doppler, amplitude_of(snr + noise), snr)
 
 
-def _counted(messages: Mapping[int, bytes]) -> tuple[TiPoints, Float]:
+def _read_people_counting(messages: Mapping[int, bytes]) -> tuple[TiPoints, Float]:
     """Points and targets of the people counting labs."""
     message, points, is_flat = messages.get(COUNTED, b""), TiPoints.empty(), False
     if _has_units(message):
-        points = _compressed(message)
+        points = _unpack_compressed(message)
     elif message and len(message) % 20 == 0 and not _is_flat(message, messages):
         points = _of_floats(message, columns=5)
     elif len(message) % 16 == 0:
@@ -240,7 +240,7 @@ def _counted(messages: Mapping[int, bytes]) -> tuple[TiPoints, Float]:
         points = _of_floats(message, columns=4)
     else:
         raise MessageError(f"TLV 6 has {len(message)} bytes; should be 16 or 20 a point")
-    return points, _counted_targets(messages.get(COUNTED_TARGETS, b""), is_flat)
+    return points, _read_counted_targets(messages.get(COUNTED_TARGETS, b""), is_flat)
 
 
 def _is_flat(message: bytes, messages: Mapping[int, bytes]) -> bool:
@@ -256,7 +256,7 @@ def _of_floats(message: bytes, columns: int) -> TiPoints:
     return _of_polar(Polar(r, azimuth, (elevation or [np.zeros_like(r)])[0], doppler, snr))
 
 
-def _counted_targets(message: bytes, is_flat: bool) -> Float:
+def _read_counted_targets(message: bytes, is_flat: bool) -> Float:
     """Targets of the people counting labs, of two or three dimensions."""
     forms = (TARGET_2D,) if is_flat else (TARGET_3D, TARGET_SHORT, TARGET_2D)
     for form in forms:

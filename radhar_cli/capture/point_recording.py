@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from radhar_cli import __version__
 from radhar_cli.capture.point_frames import NO_TRACK, TARGET_COLUMNS, PointFrame
-from radhar_cli.capture.recording import KIND_OF_POINTS, Label, SourceNote
+from radhar_cli.capture.recording import KIND_OF_POINTS, Label, SourceNote, is_of_kind
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.files.new_hdf5 import new_hdf5
@@ -247,11 +247,7 @@ def _write_columns(file: Any, clock: FrameClock, info: PointRecordingInfo) -> No
 
 def is_point_recording(path: Path) -> bool:
     """Whether a file describes itself as a recording of points."""
-    try:
-        with UntrustedFile(path) as file:
-            return file.has_attribute("kind") and file.text("kind") == KIND_OF_POINTS
-    except FolderError:
-        return False
+    return is_of_kind(path, KIND_OF_POINTS)
 
 
 class PointRecording(Closing):

@@ -281,9 +281,14 @@ def _blocks(info: RecordingInfo, stream: SampleStream) -> Iterator[tuple[slice, 
 
 def is_recording(path: Path) -> bool:
     """Whether a file describes itself as a recording."""
+    return is_of_kind(path, KIND)
+
+
+def is_of_kind(path: Path, kind: str) -> bool:
+    """Whether a file is HDF5 whose attribute `kind` is a text."""
     try:
         with UntrustedFile(path) as file:
-            return file.has_attribute("kind") and file.text("kind") == KIND
+            return file.has_attribute("kind") and file.text("kind") == kind
     except FolderError:
         return False
 

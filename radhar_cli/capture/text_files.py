@@ -59,7 +59,7 @@ def _open_text(capture: CaptureFiles) -> Source:
             raise CaptureError(
                 f"{path}: names {len(first)} columns; lines have {table.shape[1]} numbers"
             )
-        samples, times = _named(path, dict(zip(first, table.T, strict=True)), capture)
+        samples, times = _choose_columns(path, dict(zip(first, table.T, strict=True)), capture)
     elif table.shape[1] == 1:
         samples = table[:, 0]
     elif table.shape[1] == 2 and np.isrealobj(table) and settings.axes is None:
@@ -111,7 +111,7 @@ def _table(path: Path, lines: Sequence[str], first_line: int) -> NDArray[Any]:
     return table
 
 
-def _named(
+def _choose_columns(
     path: Path, columns: dict[str, NDArray[Any]], capture: CaptureFiles
 ) -> tuple[NDArray[Any], Float | None]:
     """Samples, and times where there are such, of columns by their names.
@@ -133,13 +133,13 @@ def _named(
         return samples, times
     if pair is not None:
         return columns[pair[0]] + 1j * columns[pair[1]], times
-    rest = [name for name in columns if name != clock]
-    if len(rest) != 1:
+    signals = [name for name in columns if name != clock]
+    if len(signals) != 1:
         raise CaptureError(
             f"{path}: has columns {', '.join([*columns][:20])}; --set dataset=NAME should name the "
             "samples, or dataset=NAME and imaginary=NAME I and Q"
         )
-    return columns[rest[0]], times
+    return columns[signals[0]], times
 
 
 def _is_of_glasgow(lines: Sequence[str]) -> bool:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from radhar_cli.config.documents import RADARS
 from radhar_cli.files.untrusted import read_text
-from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.ti_cfg import MAX_CFG, BoardHeader, parse_ti_cfg
 
@@ -35,16 +34,9 @@ class BuiltInRadar:
         return self.header.farthest_m / self.header.bins
 
     @property
-    def fastest_mps(self) -> float:
-        """Radial speed up to which Doppler is unambiguous, c/(4 f_c loop), m/s."""
-        swept_hz = self.header.slope_hz * (self.header.samples - 1) / self.header.adc_rate_hz
-        centre_hz = self.header.carrier_hz + swept_hz / 2
-        return SPEED_OF_LIGHT / (4 * centre_hz * self.header.loop_s)
-
-    @property
     def speed_step_mps(self) -> float:
         """Spacing of its Doppler bins, m/s."""
-        return 2 * self.fastest_mps / (1 << (self.header.loops - 1).bit_length())
+        return 2 * self.header.fastest_mps / (1 << (self.header.loops - 1).bit_length())
 
     @property
     def frames_per_s(self) -> float:
@@ -57,7 +49,7 @@ class BuiltInRadar:
         return (
             f"{self.chain}; {self.frames_per_s:.3g} frames a second, "
             f"ranges to {self.header.farthest_m:.3g} m in steps of "
-            f"{100 * self.range_step_m:.2g} cm, +-{self.fastest_mps:.2g} m/s in steps of "
+            f"{100 * self.range_step_m:.2g} cm, +-{self.header.fastest_mps:.2g} m/s in steps of "
             f"{self.speed_step_mps:.2g} m/s"
         )
 

@@ -384,9 +384,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
             return ()
         scale = 1.0
         if self.half_wavelength_m is not None:
-            swept = header.slope_hz * (header.samples - 1) / header.adc_rate_hz
-            centre = header.carrier_hz + swept / 2
-            scale = self.half_wavelength_m * 2 * centre / SPEED_OF_LIGHT
+            scale = self.half_wavelength_m * 2 * header.centre_hz / SPEED_OF_LIGHT
         return tuple(
             (scale * (array.tx[t][0] + array.rx[r][0]), scale * (array.tx[t][1] + array.rx[r][1]))
             for t in header.order

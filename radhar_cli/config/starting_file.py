@@ -29,7 +29,6 @@ from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.section import Section
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError
-from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
 from radhar_cli.radar.ti_elements import fitting_devices
@@ -186,7 +185,7 @@ def of_board(cfg: str, folder: Path) -> str:
     maps = ", ".join(_maps_of_board(text, device, board.period_s, chain))
     position = "" if board.pose else ", position_m: [0, 0, 1]"
     range_end = board.farthest_m
-    speed = SPEED_OF_LIGHT / (4 * board.centre_hz * board.loop_s)
+    speed = board.fastest_mps
     nearest, farthest = min(1.5, range_end / 3), min(3.0, range_end / 1.5)
     activities = "punching, kicking, grabbing, sitting_down, standing_up"
     duration_s = max(3.0, 2 * board.period_s)

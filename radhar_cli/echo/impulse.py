@@ -67,7 +67,8 @@ def steady_profile(
     if reflected is None:
         return _pulses(path, waveform)
     stepped = waveform.stepped(waveform.profile[1] * LONGEST)
-    return _summed(beat_of(path, stepped) * reflected(stepped.frequencies())[:, None], waveform)
+    echo = beat_of(path, stepped) * reflected(stepped.frequencies())[:, None]
+    return _sum_over_frequencies(echo, waveform)
 
 
 def _chunks(source: PathSource, waveform: Impulse) -> Iterator[tuple[slice, Paths]]:
@@ -97,10 +98,11 @@ def _pulses(paths: Paths, waveform: Impulse) -> Profiles:
 
 def _spectral(paths: Paths, waveform: Impulse) -> Profiles:
     """Range profiles r [samples, M] from the echo at even frequencies."""
-    return _summed(beat_of(paths, waveform.stepped(waveform.profile[1] * LONGEST)), waveform)
+    stepped = waveform.stepped(waveform.profile[1] * LONGEST)
+    return _sum_over_frequencies(beat_of(paths, stepped), waveform)
 
 
-def _summed(echo: Complex, waveform: Impulse) -> Profiles:
+def _sum_over_frequencies(echo: Complex, waveform: Impulse) -> Profiles:
     """Range profiles r [samples, M] of an echo S [N, M] at the frequencies of `stepped`."""
     f = waveform.stepped(waveform.profile[1] * LONGEST).frequencies()
     t = 2 * waveform.range_axis() / SPEED_OF_LIGHT

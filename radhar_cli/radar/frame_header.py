@@ -129,6 +129,11 @@ class FrameHeader:
         return self.carrier_hz + self.slope_hz * (self.samples - 1) / (2 * self.adc_rate_hz)
 
     @property
+    def fastest_mps(self) -> float:
+        """Radial speed up to which Doppler is unambiguous, c/(4 f_c loop), m/s."""
+        return SPEED_OF_LIGHT / (4 * self.centre_hz * self.loop_s)
+
+    @property
     def slope_hz(self) -> float:
         """Slope of a ramp, Hz per second."""
         return self.profile.slope_hz

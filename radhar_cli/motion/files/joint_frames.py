@@ -85,7 +85,7 @@ def _bridge_frames(file: Keypoints, blends: list[JointMean], rate: float | None)
         rate,
         None if is_whole else (first / rate, last / rate),
         lost,
-        _describe_bridged(file, numbers, bridged.missing.tolist(), bridged.gaps.tolist(), rate),
+        _describe_gaps(file, numbers, bridged.missing.tolist(), bridged.gaps.tolist(), rate),
     )
 
 
@@ -121,7 +121,7 @@ def _fill(p: Float, known: Bool) -> Float:
     return filled
 
 
-def _describe_bridged(
+def _describe_gaps(
     file: Keypoints, numbers: list[int], missing: list[int], gaps: list[int], rate: float
 ) -> str:
     """Say how many frames of which joints are bridged; "" where there are none."""

@@ -69,7 +69,7 @@ def init(
 
       radhar config init --radar list
     """
-    from radhar_cli.config.documents import WRITTEN_RADARS
+    from radhar_cli.config.documents import name_of_written
     from radhar_cli.config.starting_file import MINIMAL, as_commented_yaml, of_board, of_preset
     from radhar_cli.errors import FolderError, RadharError
     from radhar_cli.files.replacing import write_text
@@ -86,7 +86,7 @@ def init(
         write_text(out, of_board(radar, out.parent))
         report(file=out)
         device = "; radar.device should be the one that runs it"
-        tell(f"{out}: the radar of {radar}{device * (radar.lower() not in WRITTEN_RADARS)}")
+        tell(f"{out}: the radar of {radar}{device * (name_of_written(radar) is None)}")
         tell(f"  then        radhar simulate {out} --activity punching -o OUT")
         return
     if preset is not None:
@@ -106,14 +106,26 @@ def _list_radars() -> None:
     """Print the radars that radhar comes with, one a line."""
     from radhar_cli.config.built_in_radars import read_radars
     from radhar_cli.config.documents import WRITTEN_RADARS
-    from radhar_cli.config.starting_file import describe_written
 
     radars = {radar.name: radar.description for radar in read_radars()}
-    radars |= {name: describe_written(name) for name in WRITTEN_RADARS}
+    radars |= {name: _describe_written(name) for name in WRITTEN_RADARS}
     report(radars=radars)
     width = max(map(len, radars))
     for name, description in radars.items():
         tell(f"{name:{width}}  {description}")
+
+
+def _describe_written(name: str) -> str:
+    """Say what a radar is whose numbers stand in its config, and what it resolves."""
+    from radhar_cli.assembly.radar_figures import describe_figures, figures_of
+    from radhar_cli.config import load_config
+    from radhar_cli.config.documents import PRESETS
+    from radhar_cli.config.starting_file import describe_written
+    from radhar_cli.scene import draw_scene
+
+    config = load_config(PRESETS[f"boards/{name}"])
+    scene = draw_scene(config, config.chosen_activities[0], 0)
+    return f"{describe_written(name)}; {describe_figures(figures_of(scene))}"
 
 
 def show(

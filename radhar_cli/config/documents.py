@@ -115,6 +115,15 @@ def name_of_radar(value: str) -> str | None:
     return _names_of_radars().get(_plain_name(value))
 
 
+def name_of_written(value: str) -> str | None:
+    """Name of the radar of WRITTEN_RADARS that a text stands for; None for none.
+
+    Capitals, spaces, hyphens and underscores do not matter: K-LC6, EV-TINYRAD24G.
+    """
+    plain = re.sub(r"[-_ ]", "", value.lower()).removeprefix("ev").removeprefix("xethru")
+    return next((name for name in WRITTEN_RADARS if name.replace("_", "") == plain), None)
+
+
 @lru_cache(maxsize=1)
 def _names_of_radars() -> dict[str, str]:
     """Names of the built-in radars by their spellings without what does not matter in them."""

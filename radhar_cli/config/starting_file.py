@@ -22,6 +22,7 @@ from radhar_cli.config.documents import (
     PRESETS,
     cfg_text,
     name_of_radar,
+    name_of_written,
     read_on_bases,
 )
 from radhar_cli.config.identity import yaml_text
@@ -174,8 +175,8 @@ def of_board(cfg: str, folder: Path) -> str:
         ConfigError: the .cfg cannot be read.
         CaptureError: the .cfg is not one that boards of radhar can run.
     """
-    if (preset := f"boards/{cfg.lower()}") in PRESETS:
-        return of_preset(preset)  # a radar whose frames stand in its config
+    if (preset := f"boards/{name_of_written(cfg) or cfg.lower()}") in PRESETS:
+        return of_preset(preset)  # a radar whose numbers stand in its config
     text = cfg_text(cfg, Path(), "--radar")
     board = parse_ti_cfg(text, cfg)
     device, chain = _likely_device(board), board.firmware or "best"

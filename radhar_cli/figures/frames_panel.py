@@ -20,6 +20,7 @@ from radhar_cli.radar.board import Board
 from radhar_cli.single_scene.simulate import Simulation
 
 COLUMNS = 6
+SLOWER = 90  # per cent of the points whose speeds the colours tell apart
 TINY = float(np.finfo(np.float32).tiny)  # instead of the largest power of black maps
 
 
@@ -125,5 +126,15 @@ def _limits(content: BoardFrames) -> tuple[Float, float]:
     limits = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
     if len(places):
         limits = np.nanpercentile(places, [1, 99], axis=0) + np.array([[-0.4], [0.4]])
-    fastest = max(float(np.percentile(np.abs(points[:, 3]), 99)), 0.1) if len(points) else 1.0
-    return limits.T, fastest
+    return limits.T, speed_of_colours(points[:, 3])
+
+
+def speed_of_colours(speeds: Float) -> float:
+    """Speed at the ends of the colours of points, m/s: that which nine in ten do not exceed.
+
+    A few fast points, as of noise, which may be as fast as the radar sees, leave it as it is.
+
+    Args:
+        speeds: Approaching speeds of the points [n], m/s.
+    """
+    return max(float(np.percentile(np.abs(speeds), SLOWER)), 0.1) if len(speeds) else 1.0

@@ -71,8 +71,8 @@ class SideView:
 
 def colour_bar(figure: Figure, side: SideView, **where: Any) -> None:
     """Add the colour bar of the points' speed to a figure; `where` is that of `Figure.colorbar`."""
-    bar = figure.colorbar(side.points, **where)
-    bar.set_label("approaching (m/s)", fontsize=7)
+    bar = figure.colorbar(side.points, extend="both", **where)
+    bar.set_label("approaching (m/s); faster in the tips", fontsize=7)
     bar.ax.tick_params(labelsize=6)
 
 

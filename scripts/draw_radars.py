@@ -20,6 +20,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from page_parts import replace_part
+from PIL import Image
 
 from radhar_cli.assembly.radar_figures import RadarFigures, describe_figures, figures_of
 from radhar_cli.config import Config, load_config
@@ -159,7 +160,7 @@ def table_row(name: str, figures: RadarFigures, sheet: Sheet, level_db: float | 
         f"`{name}`",
         _range_cell(figures),
         _speed_cell(figures),
-        f"{figures.rate_hz:.4g} {'frames' if figures.has_frames else 'pulses'}",
+        f"{figures.rate_hz:.5g} {'frames' if figures.has_frames else 'pulses'}",
         _antenna_cell(figures),
         _sheet_cell(sheet),
         "-" if level_db is None else f"{level_db:.0f} dB",
@@ -192,8 +193,8 @@ def _antenna_cell(figures: RadarFigures) -> str:
 
 def _sheet_cell(sheet: Sheet) -> str:
     """What the maker says that was looked up; what is remembered; nothing that is calculated."""
-    said = [f"{value:.4g} {UNITS[key]}" for key, (value, source) in _with_source(sheet, False)]
-    remembered = [f"{value:.4g} {UNITS[key]}" for key, (value, source) in _with_source(sheet, True)]
+    said = [f"{value:.5g} {UNITS[key]}" for key, (value, source) in _with_source(sheet, False)]
+    remembered = [f"{value:.5g} {UNITS[key]}" for key, (value, source) in _with_source(sheet, True)]
     parts = [sheet.band, *said]
     if remembered:
         parts.append(f"from memory: {', '.join(remembered)}")
@@ -223,6 +224,7 @@ def draw_panels(walks: Mapping[str, Simulation], path: Path) -> None:
     for axes in grid.flat[3 * len(walks) :]:
         axes.set_axis_off()
     figure.savefig(path)
+    Image.open(path).convert("RGB").quantize(128).save(path, optimize=True)
 
 
 def _draw_radar(panels: Any, name: str, simulation: Simulation) -> None:

@@ -82,6 +82,8 @@ def _pulses(paths: Paths, waveform: Impulse) -> Profiles:
     """Range profiles r [samples, M], each pulse added at its delay."""
     step, (first, _) = 2 * waveform.range_step / SPEED_OF_LIGHT, waveform.profile
     half = int(REACH * waveform.width / step) + 1
+    if 2 * half + 1 > waveform.samples:
+        return _long_pulses(paths, waveform, half)
     around, pulse = np.arange(-half, half + 1)[:, None], np.arange(paths.delay.shape[1])
     type_ = complex if waveform.is_iq else float
     r = np.zeros((waveform.samples + 2 * half + 1, pulse.size), type_)  # those beyond the axis, too
@@ -94,6 +96,26 @@ def _pulses(paths: Paths, waveform: Impulse) -> Profiles:
         turned = a * unit_phasor(waveform.f0 * delay) if waveform.is_iq else a
         r[np.where(within, rows, waveform.samples), pulse] += turned * shape(rows * step - tau)
     return r[: waveform.samples]
+
+
+def _long_pulses(paths: Paths, waveform: Impulse, half: int) -> Profiles:
+    """Range profiles r [samples, M] of pulses that are longer than the axis.
+
+    Args:
+        paths: Paths, each pulse added at its delay.
+        waveform: The radar.
+        half: Samples to both sides of its middle at which a pulse is computed.
+    """
+    step, (first, _) = 2 * waveform.range_step / SPEED_OF_LIGHT, waveform.profile
+    rows = np.arange(waveform.samples)[:, None]
+    r = np.zeros((rows.size, paths.delay.shape[1]), complex if waveform.is_iq else float)
+    shape = waveform.envelope if waveform.is_iq else waveform.pulse
+    for delay, a in zip(paths.delay, paths.amplitude, strict=True):
+        tau = delay - 2 * first / SPEED_OF_LIGHT
+        near = np.abs(rows - np.rint(tau / step)) <= half
+        turned = a * unit_phasor(waveform.f0 * delay) if waveform.is_iq else a
+        r += np.where(near, turned * shape(rows * step - tau), 0)
+    return r
 
 
 def _spectral(paths: Paths, waveform: Impulse) -> Profiles:

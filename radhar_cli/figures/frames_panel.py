@@ -16,6 +16,7 @@ from radhar_cli.figures.sides import Advance, Film, SideView, bones, colour_bar
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, FrameMaps
 from radhar_cli.processing.points import Cloud
+from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
 from radhar_cli.single_scene.simulate import Simulation
 
@@ -65,7 +66,7 @@ def draw_frames(content: BoardFrames, path: Path) -> None:
         for axes, frame in zip(row, chosen, strict=True):
             drawn = _draw_map(axes, frame_maps, frame, content)
             axes.set_title(f"{FRAME_MAP_KINDS[name].title}, {middles[frame]:.2f} s", fontsize=8)
-        row[0].set_ylabel(f"{frame_maps.rows.name} ({frame_maps.rows.unit})", fontsize=7)
+        row[0].set_ylabel(label_of(frame_maps.rows), fontsize=7)
         figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB").ax.tick_params(labelsize=6)
     if cloud is not None:
         sides = [SideView(axes, "from the radar", *_limits(content)) for axes in grid[-1]]
@@ -89,9 +90,20 @@ def _draw_map(axes: Axes, maps: FrameMaps, frame: int, content: BoardFrames) -> 
         axes.set_ylim(maps.limits or (0, min(content.farthest or np.inf, maps.rows.edges[1])))
     if maps.columns.name == "azimuth":  # left of the radar is left
         axes.invert_xaxis()
-    axes.set_xlabel(f"{maps.columns.name} ({maps.columns.unit})", fontsize=7)
+    axes.set_xlabel(label_of(maps.columns), fontsize=7)
     axes.tick_params(labelsize=6)
+    if maps.columns.values.size == 1:  # whose cell is as wide as the panel
+        axes.set_xticks([])
+    if maps.rows.values.size == 1:
+        axes.set_yticks([])
     return drawn
+
+
+def label_of(axis: Axis) -> str:
+    """Label of an axis of a frame map; of a single value, the Doppler of one chirp, that it is."""
+    if axis.values.size == 1:
+        return f"no {axis.name}: one chirp a frame"
+    return f"{axis.name} ({axis.unit})"
 
 
 def draw_cloud(content: BoardFrames, path: Path, advance: Advance) -> None:

@@ -9,7 +9,7 @@ from helpers.command_line import ok, radhar
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.built_in_radars import BuiltInRadar, read_radars
-from radhar_cli.config.documents import RADARS, WRITTEN_RADARS, name_of_radar
+from radhar_cli.config.documents import RADARS, WRITTEN_RADARS, name_of_radar, name_of_written
 from radhar_cli.config.starting_file import of_board
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.ti_family import Family
@@ -81,6 +81,23 @@ def test_it_has_the_names_that_one_guesses(word: str, name: str | None) -> None:
     assert name_of_radar(word) == name
 
 
+@pytest.mark.parametrize(
+    ("word", "name"),
+    [
+        *((name, name) for name in WRITTEN_RADARS),
+        ("K-LC6", "klc6"),
+        ("EV-TINYRAD24G", "tinyrad24g"),
+        ("XeThru X4M03", "x4m03"),
+        ("uRAD CW", "urad_cw"),
+        ("Ancortek 580AD", "ancortek580ad"),
+        ("iwr6843isk", None),
+        ("", None),
+    ],
+)
+def test_a_written_radar_has_the_names_that_one_guesses(word: str, name: str | None) -> None:
+    assert name_of_written(word) == name
+
+
 def test_they_are_listed_and_no_file_is_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -88,6 +105,8 @@ def test_they_are_listed_and_no_file_is_written(
     lines = ok("config", "init", "--radar", "list").stdout.splitlines()
     assert [line.split()[0] for line in lines] == [*RADARS, *WRITTEN_RADARS]
     assert [*tmp_path.iterdir()] == []
+    (klc6,) = (line for line in lines if line.startswith("klc6"))
+    assert "2560 pulses a second" in klc6
     wrong = radhar("config", "init", "--radar", "iwr6843")
     assert wrong.returncode == 2
     assert all(name in wrong.stderr for name in RADARS)

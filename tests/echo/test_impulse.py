@@ -140,3 +140,20 @@ def test_the_doppler_of_who_approaches_is_positive() -> None:
     slow = impulse_echo(Approaching(), replace(IQ, prf=1000.0)).sum(axis=0)
     rate = np.diff(np.unwrap(np.angle(slow))).mean() * 1000 / (2 * np.pi)
     assert rate == pytest.approx(2 * 2e9 / SPEED_OF_LIGHT, rel=1e-3)
+
+
+@pytest.mark.parametrize("is_iq", [True, False])
+@pytest.mark.parametrize("bandwidth", [2e8, 1e6])
+def test_a_pulse_that_is_longer_than_the_axis_is_that_of_its_formula(
+    bandwidth: float, is_iq: bool
+) -> None:
+    radar = replace(RADAR, bandwidth=bandwidth, samples=64, is_iq=is_iq)
+    t = 2 * radar.range_axis() / SPEED_OF_LIGHT
+    expected = np.zeros(t.size, complex)
+    for delay, amplitude in zip(DELAY, AMPLITUDE, strict=True):
+        turn = np.exp(-2j * np.pi * radar.f0 * delay)
+        shape = radar.envelope(t - delay) * turn if is_iq else radar.pulse(t - delay)
+        expected += amplitude * shape
+    profiles = impulse_echo(Fixed(), radar)
+    assert profiles.shape == (64, radar.n_pulses)
+    assert np.abs(profiles - expected[:, None]).max() < 1e-12

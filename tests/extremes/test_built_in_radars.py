@@ -50,7 +50,7 @@ def test_its_data_set_is_built_and_verified(name: str, tmp_path: Path) -> None:
 
 @written
 def test_its_limits_are_found(name: str) -> None:
-    """At pulses that are longer than the range axis, too."""
+    """As many as there is time for; at pulses that are longer than the range axis, too."""
     config = f"configs/boards/{name}.yaml"
     said = ok("limits", config, "--key", "radar", "--minutes", "0.3").stdout
-    assert "radar.carrier_hz" in said or "radar.antenna_gain_dbi" in said
+    assert "\nradar." in said

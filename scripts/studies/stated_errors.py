@@ -25,10 +25,23 @@ from radhar_cli.numerics.arrays import Complex
 from radhar_cli.products.run import record
 from radhar_cli.scene import Scene, draw_scene
 
-# Bodies in the air or above a floor; in a closed room; before a stepped radar; a gate; a board.
-KINDS = ("points", "segments", "surfaces", "segments", "room", "stepped", "gate", "board")
+# Bodies in the air or above a floor; in a closed room; before a stepped radar; a gate; a board, in
+# the open and in a room.
+KINDS = (
+    "points",
+    "segments",
+    "surfaces",
+    "segments",
+    "room",
+    "stepped",
+    "gate",
+    "board",
+    "board in a room",
+)
 TOLERANCES_DB = (-80.0, -80.0, -80.0, -90.0, -100.0, -110.0, -120.0)
 BOARDS = Path(__file__).resolve().parents[2] / "configs" / "boards"
+OF_BOARDS = ("board", "board in a room")
+OF_ROOMS = ("room", "board in a room")
 CHUNK = 2**12  # pulses whose exact paths are in memory at once
 
 
@@ -44,20 +57,23 @@ class ErrorsOfScene(NamedTuple):
 def draw_config(rng: np.random.Generator, kind: str) -> dict[str, object]:
     """Draw a radar of 2 to 81 GHz, or a board, and a person of some body and surroundings."""
     body = kind if kind in ("points", "segments", "surfaces") else "points"
-    if kind in ("room", "stepped", "board"):
+    if kind in ("room", "stepped", *OF_BOARDS):
         body = str(rng.choice(["points", "segments", "surfaces"]))
     drawn: dict[str, object] = {
         "seed": int(rng.integers(2**31)),
         "snr_db": None,
-        "duration_s": float(rng.uniform(1.5, 3.0)) if kind not in ("room", "board") else 1.5,
+        "duration_s": float(rng.uniform(1.5, 3.0)) if kind not in OF_ROOMS + OF_BOARDS else 1.5,
         "body": {"scatterers": body},
         "motion": {"model": "human", "place": {"range_m": {"uniform": [2.5, 5.0]}}},
         "on_invalid": "keep",
     }
-    if kind == "board":
+    if kind in OF_ROOMS:
+        drawn |= draw_room(rng)
+    if kind in OF_BOARDS:
         name = str(rng.choice(["iwr1443_10Hz", "iwr1443_30Hz"]))
         commands = (BOARDS / f"{name}.cfg").read_text()
-        return drawn | {"radar": {"device": "IWR1443BOOST", "cfg": commands}}
+        place = [0.1, 0.0, 1.0]  # in the room
+        return drawn | {"radar": {"device": "IWR1443BOOST", "cfg": commands, "position_m": place}}
     carrier = float(rng.choice([2e9, 5.8e9, 24e9, 60e9, 77e9]))
     radar: dict[str, object] = {
         "carrier_hz": carrier,
@@ -73,12 +89,17 @@ def draw_config(rng: np.random.Generator, kind: str) -> dict[str, object]:
         processing |= {"range_sum": "gated", "gate_m": 0.5}
     drawn |= {"radar": radar, "processing": processing}
     if kind == "room":
-        names = ("floor", "left", "right", "back", "ceiling")
-        chosen = rng.permutation(names)[: int(rng.integers(2, 6))]
-        faces = {str(name): str(rng.choice(["concrete", "wood", "metal"])) for name in chosen}
-        box = {"x": [0, 7], "y": [-3, 3], "height": 2.6}
-        return drawn | {"room": {"box_m": box, "faces": faces, "order": 1}}
+        return drawn
     return drawn | {"room": {"faces": {"floor": "concrete"} if rng.random() < 0.2 else None}}
+
+
+def draw_room(rng: np.random.Generator) -> dict[str, object]:
+    """Draw a closed room of two to five faces, each of some material."""
+    names = ("floor", "left", "right", "back", "ceiling")
+    chosen = rng.permutation(names)[: int(rng.integers(2, 6))]
+    faces = {str(name): str(rng.choice(["concrete", "wood", "metal"])) for name in chosen}
+    box = {"x": [0, 7], "y": [-3, 3], "height": 2.6}
+    return {"room": {"box_m": box, "faces": faces, "order": 1}}
 
 
 def compare_errors(scenes: int, seed: int) -> Iterator[ErrorsOfScene]:
@@ -91,7 +112,7 @@ def compare_errors(scenes: int, seed: int) -> Iterator[ErrorsOfScene]:
         config = Config.model_validate(drawn | {"engine": {"tolerance_db": tolerance_db}})
         try:
             scene = draw_scene(config, activity, 0)
-            errors_of = errors_of_board if kind == "board" else errors_of_signal
+            errors_of = errors_of_board if kind in OF_BOARDS else errors_of_signal
             stated_db, true_db = errors_of(scene, tolerance_db)
         except (AccuracyError, SceneError) as error:
             print(f"{kind}, {activity.slug}, seed {drawn['seed']}: {error}", flush=True)

@@ -9,6 +9,7 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.number import FORMS
 from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
 from radhar_cli.errors import ConfigError
@@ -37,7 +38,11 @@ WRITTEN_RADARS = tuple(  # radars that are no TI board: their frames stand in a 
     for name in PRESETS
     if name.startswith("boards/") and "iwr" not in name
 )
-OTHER_NAMES = {"split.val": "split.validation"}  # as folders and options have them
+# Keys as folders and options have them, and as earlier versions had them.
+OTHER_NAMES = {
+    "split.val": "split.validation",
+    **{earlier: key for key, earlier in EARLIER_KEYS.items()},
+}
 _SHIPPED_PATHS = {f"configs/{name}.yaml": name for name in PRESETS}  # as documents name them
 MAX_CHAIN = 8  # files in a chain of bases
 _ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole
@@ -62,18 +67,42 @@ def read_document(path: Path) -> tuple[Document, Places]:
     if not isinstance(document, dict):
         raise ConfigError(f"{path}: should be a mapping of keys such as 'seed: 1'")
     places = {key: f"{path}:{line}" for key, line in lines.items()}
-    split = document.get("split")
-    if isinstance(split, dict):
-        for other, key in OTHER_NAMES.items():
-            short, name = other.removeprefix("split."), key.removeprefix("split.")
-            if short in split and name not in split:
-                split[name] = split.pop(short)
-                places[key] = places.pop(other, str(path))
+    _rename_keys(document, "", places)
+    people = document.get("people")
+    for number, person in enumerate(people if isinstance(people, list) else ()):
+        _rename_keys(person, f"people.{number}.", places)
     radar = document.get("radar")
     if isinstance(radar, dict) and "cfg" in radar:
         places[FILE_OF_CFG] = name_of_cfg(radar["cfg"])
         radar["cfg"] = cfg_text(radar["cfg"], path.parent, places.get("radar.cfg", str(path)))
     return document, places
+
+
+def _rename_keys(section: Any, prefix: str, places: Places) -> None:
+    """Give the keys of OTHER_NAMES their own names, unless those have values, too.
+
+    Args:
+        section: A document, or one of its people; changed in place.
+        prefix: What stands before its keys in `places`.
+        places: {dotted key: file:line}, changed in place.
+    """
+    for other, key in OTHER_NAMES.items():
+        *parents, name = key.split(".")
+        short, holder = other.rpartition(".")[2], parents[0]
+        place = section.get(holder) if isinstance(section, dict) else None
+        if not isinstance(place, dict) or short not in place:
+            continue
+        inner = place.setdefault(parents[1], {}) if parents[1:] else place
+        if not isinstance(inner, dict) or name in inner:
+            continue  # which the reader refuses
+        inner[name] = place.pop(short)
+        for known in [known for known in places if _is_below(known, prefix + other)]:
+            places[prefix + key + known.removeprefix(prefix + other)] = places.pop(known)
+
+
+def _is_below(key: str, parent: str) -> bool:
+    """Whether a dotted key is another one, or lies in it."""
+    return key == parent or key.startswith(f"{parent}.")
 
 
 def cfg_text(value: Any, folder: Path, where: str) -> Any:

@@ -743,3 +743,48 @@ def test_messages_show_numbers_as_yaml_has_them(tmp_path: Path, number: str) -> 
     (again,) = mistakes(tmp_path, "{}", f"motion.walking.speed_mps={json.dumps(shown)}")
     assert again.partition(" = ")[2] == line.partition(" = ")[2]
     assert "per_activity=" not in line
+
+
+EARLIER = """
+radar: {carrier_hz: 24e9, bandwidth_hz: 250e6, prf_hz: 2000}
+motion:
+  speed_mps: 0.7
+  lane_m: 2
+people:
+  - motion: {fall: backward, exercise_period: 1.5}
+"""
+PRESENT = """
+radar: {carrier_hz: 24e9, bandwidth_hz: 250e6, prf_hz: 2000}
+motion: {walking: {speed_mps: 0.7, lane_m: 2}}
+people:
+  - motion: {falling: {direction: backward}, exercises: {period: 1.5}}
+"""
+
+
+def test_keys_of_earlier_versions_are_read_as_what_they_are_now(tmp_path: Path) -> None:
+    (tmp_path / "earlier.yaml").write_text(EARLIER)
+    (tmp_path / "now.yaml").write_text(PRESENT)
+    (tmp_path / "over.yaml").write_text("base: earlier.yaml\nmotion: {walking: {lane_m: 3}}\n")
+    now = load_config(tmp_path / "now.yaml")
+    assert load_config(tmp_path / "earlier.yaml") == now
+    assert load_config(tmp_path / "now.yaml", ["motion.lane_m=2"]) == now
+    assert load_config(tmp_path / "over.yaml").motion.walking.lane_m == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("lane_m: -2", "motion.walking.lane_m = -2.0: should be from 0 to 1000"),
+        ("{lane_m: 2, walking: {lane_m: 3}}", "motion.lane_m = 2: is now motion.walking.lane_m"),
+        ("{lane_m: 2, walking: 3}", "motion.walking = 3: should be a mapping of keys"),
+    ],
+)
+def test_mistakes_in_keys_of_earlier_versions_name_their_line(
+    tmp_path: Path, text: str, line: str
+) -> None:
+    value = text if text.startswith("{") else f"{{{text}}}"
+    path = tmp_path / "x.yaml"
+    path.write_text(f"{PRESENT.splitlines()[1]}\nmotion: {value}\n")
+    with pytest.raises(ConfigError) as refused:
+        load_config(path)
+    assert f"{path}:2: {line}" in str(refused.value)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.motion.files.keypoints import TIME_UNITS, Keypoints, make_keypoints
-from radhar_cli.motion.files.npz import shape_positions, two_dimensional
+from radhar_cli.motion.files.position_arrays import shape_positions, two_dimensional
 from radhar_cli.motion.files.recording import MAX_FRAMES, MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.numerics.arrays import Float
 

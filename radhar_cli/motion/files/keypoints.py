@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.motion.files.gaps import Bridged, bridge_gaps
 from radhar_cli.motion.files.plain_names import canonical_name
+from radhar_cli.motion.files.position_arrays import refuse_images
 from radhar_cli.motion.files.recording import (
     LONGEST_NAME,
     MAX_FRAMES,
@@ -22,6 +23,7 @@ NO_RATE = (
     f"should have a frame rate of {RATES[0]:g} to {RATES[1]:g} Hz: rate_hz of its class (--rate HZ)"
 )
 LARGEST = 1e9  # units of the file
+SENTINELS = (-1.0, -999.0, -9999.0, 999.0, 9999.0, 99999.0, 1e6, -1e6)
 ROOTS = frozenset({"hip", "hips", "pelvis", "root", "midhip", "spinebase", "basespine"})
 ROOTS |= frozenset({"hipcenter", "hipscenter"})
 # Seconds of the units in which instants are written; ticks are of 100 ns, as the Kinect's.
@@ -64,6 +66,10 @@ class Keypoints:
     def positions(self, joints: Sequence[int]) -> Float:
         """Positions [frames, len(joints), 3] of some joints, as the file has them."""
         points: Float = self.values[:, list(joints)].astype(float)
+        # Trackers also write -1, -1, -1 or another number thrice where a joint is lost.
+        is_same = (points[..., :1] == points).all(axis=2, keepdims=True)
+        points = np.where(is_same & np.isin(points, SENTINELS), np.nan, points)
+        points[np.isinf(points)] = np.nan
         huge = np.argwhere(np.abs(points) >= LARGEST)
         if huge.size:
             frame, joint, axis = huge[0].tolist()
@@ -148,8 +154,14 @@ def make_keypoints(
         raise motion_file_error(where, f"has {len(values)} frames; should have 1 to {MAX_FRAMES}")
     if names is not None and any(len(name) > LONGEST_NAME for name in names):
         raise motion_file_error(where, f"names should have at most {LONGEST_NAME} characters each")
+    refuse_images(values[..., :3], where)
     if values.shape[2] == 4:
         values = np.where(values[..., 3:] == 0, np.nan, values[..., :3].astype(float))
+    if times is not None and times.shape == (len(values),) and times.dtype.kind in "iuf":
+        is_new = np.concatenate([[True], np.diff(times) != 0])
+        if 0.5 < is_new.mean() < 1:
+            times, values = times[is_new], values[is_new]
+            remarks = [*remarks, f"{int((~is_new).sum())} frames at the time of another left out"]
     if times is not None:
         times, rate, problem = _check_times(times, len(values), where)
         remarks = [*remarks, *problem]
@@ -177,16 +189,17 @@ def _check_times(
         )
     if not np.isfinite(times).all():
         raise motion_file_error(where, "times should be numbers")
-    steps = np.diff(times.astype(float) - float(times[0]))
-    if (steps <= 0).any():
-        frame = int(np.argmax(steps <= 0)) + 2
+    if (np.diff(times.astype(float) - float(times[0])) <= 0).any():
+        frame = int(np.argmax(np.diff(times.astype(float) - float(times[0])) <= 0)) + 2
         raise motion_file_error(
             f"{where}: frame {frame}", "its time should be after that of the frame before"
         )
     seconds = seconds_of(times) if frames > 1 else None
     if seconds is None:
         return None, None, ("its times are no frames at a camera's rate in s, ms, us or ticks",)
-    rate = float(1 / np.median(np.diff(seconds)))
+    steps = np.diff(seconds)
+    regular = steps[np.abs(steps / np.median(steps) - 1) < 0.5]  # but where frames are dropped
+    rate = float(1 / regular.mean())
     if not seconds[-1] * rate < MAX_FRAMES:
         raise motion_file_error(where, f"lasts {seconds[-1]:.4g} s; too long at its rate")
     return seconds, rate, ()
@@ -214,3 +227,12 @@ def seconds_of(times: Float, unit: str | None = None) -> Float | None:
         if low <= 1 / (step * seconds) <= high:
             fitting.append(name)
     return times * TIME_UNITS[fitting[0]] if len(fitting) == 1 else None
+
+
+def dates_of(texts: NDArray[Any] | Sequence[str]) -> NDArray[Any]:
+    """Dates and times of texts such as 2026-05-01T12:00:00.033 as NumPy's; the texts if not so."""
+    words = [t.decode("ascii", "replace") if isinstance(t, bytes) else str(t) for t in texts]
+    try:
+        return np.array([word.strip().removesuffix("Z") for word in words], "datetime64[ns]")
+    except ValueError:
+        return np.asarray(words)

@@ -8,18 +8,34 @@ import io
 import struct
 import zipfile
 import zlib
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable, Sequence
 from math import prod
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.motion.files.keypoints import TIME_UNITS, Keypoints, describe_array, make_keypoints
+from radhar_cli.errors import MotionFileError
+from radhar_cli.motion.files.joint_sets import JOINT_SETS
+from radhar_cli.motion.files.keypoints import (
+    TIME_UNITS,
+    Keypoints,
+    dates_of,
+    describe_array,
+    make_keypoints,
+)
+from radhar_cli.motion.files.plain_names import canonical_name
+from radhar_cli.motion.files.position_arrays import SIZES, shape_positions
 from radhar_cli.motion.files.recording import MAX_BYTES, MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.numerics.arrays import Float
 
 MAX_NAMES_BYTES = 2**20
+_PARTS = frozenset(
+    part.removeprefix("left").removeprefix("right")
+    for joint_set in JOINT_SETS.values()
+    for spellings in joint_set.spellings
+    for part in spellings
+)
 _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # as NumPy writes; others can ask for memory
 _DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, struct.error, RuntimeError),
@@ -32,9 +48,17 @@ _POSITIONS = (
     "data",
 )
 _NAMES = ("names", "joint_names", "keypoint_names")
-_RATES = ("rate", "rate_hz", "fps", "frame_rate", "framerate", "mocap_framerate")
-_TIMES = ("times", "time", "timestamps", "timestamp", "t")
-_CONFIDENCES = ("confidence", "confidences", "scores", "tracking_state")
+_RATES = (
+    *("rate", "rate_hz", "fps", "frame_rate", "framerate", "mocap_framerate", "hz", "fs", "freq"),
+    *("frequency", "sampling_rate", "samplingrate", "sample_rate", "samplerate"),
+    *("frames_per_second", "video_fps", "camera_fps"),
+)
+_STEPS = ("dt", "frame_time", "frametime", "frame_interval")  # s from frame to frame
+_TIMES = ("times", "time", "timestamps", "timestamp", "t", "ts", "frame_times")
+_CONFIDENCES = (
+    *("confidence", "confidences", "scores", "tracking_state", "visibility", "score", "conf"),
+    *("keypoint_scores", "likelihood", "valid", "tracked"),
+)
 _BODY_MODEL = frozenset({"poses", "pose_body", "root_orient", "betas", "fullpose", "body_pose"})
 _BODY_MODEL |= frozenset({"smpl_poses", "smpl_trans", "global_orient", "transl"})
 # The three lines of NumPy that make joints of what AMASS has.
@@ -74,97 +98,145 @@ def read_npy(data: bytes, where: str) -> Keypoints:
     return make_keypoints(where, None, shape_positions(positions, None, where))
 
 
-def shape_positions(
-    positions: NDArray[Any], names: Collection[str] | None, where: str
-) -> NDArray[Any]:
-    """Positions [frames, J, 3 or 4] of an array that has them in another usual shape.
-
-    That is [frames, 3 J], [3, frames, J] (ST-GCN's) or [frames, 3, J]; axes of one are dropped.
-
-    Raises:
-        MotionFileError: The array has two coordinates, or several people.
-    """
-    if positions.ndim > 3:
-        axes = [n for n in positions.shape[1:-1] if n != 1]
-        positions = positions.reshape(positions.shape[0], *axes, positions.shape[-1])
-        if positions.ndim > 3 and positions.shape[-1] == 1:
-            positions = positions[..., 0]
-    if positions.ndim == 2 and positions.shape[1] and positions.shape[1] % 3 == 0:
-        positions = positions.reshape(len(positions), -1, 3)
-    if positions.ndim != 3:
-        problem = (
-            f"positions should be [frames, J, 3] of one person, not {describe_array(positions)}"
-        )
-        raise motion_file_error(where, problem)
-    shape = positions.shape
-    fits = names is None or shape[1] == len(names)
-    if shape[2] in (3, 4) and fits:
-        return positions
-    if shape[0] == 3 and shape[2] > 4:
-        return np.moveaxis(positions, 0, 2)
-    if shape[1] == 3 and shape[2] > 4:
-        return np.moveaxis(positions, 1, 2)
-    if shape[2] == 2:
-        raise motion_file_error(where, two_dimensional("positions have two coordinates"))
-    return positions
-
-
-def two_dimensional(finding: str) -> str:
-    """What to say of poses in the plane of an image."""
-    return (
-        f"{finding}: pixels of an image; a radar needs 3-D positions in m, cm or mm, as "
-        "MediaPipe's world landmarks, a depth camera, several cameras or a lifting network give"
-    )
-
-
 def _read_archive(archive: zipfile.ZipFile, where: str) -> Keypoints:
     """Read the arrays of an npz file."""
     members = [name.removesuffix(".npy") for name in archive.namelist() if name.endswith(".npy")]
-    key = _first_of(_POSITIONS, members)
-    if key is None and _BODY_MODEL & set(members):
-        raise motion_file_error(where, OF_BODY_MODEL)
-    if key is None:
-        listed = ", ".join(name[:30] for name in members[:10]) or "nothing"
-        raise motion_file_error(
-            where,
-            "has no array 'positions'; should have names [J], positions [frames, J, 3] and rate "
-            f"(or times); it has {listed}",
-        )
-    names_key, names = _first_of(_NAMES, members), None
-    if names_key is not None:
-        names = _names(_read_array(archive, names_key, MAX_NAMES_BYTES, where), where)
-    positions = _read_array(archive, key, MAX_BYTES, where)
+    names = _find_names(archive, members, where)
+    positions, names = _find_positions(archive, members, names, where)
     times, rate = _times(archive, members, where), _rate(archive, members, where)
     values = shape_positions(positions, names, where)
     confidence_key = _first_of(_CONFIDENCES, members)
     if confidence_key is not None:
-        confidence = _read_array(archive, confidence_key, MAX_BYTES, where)
-        if confidence.shape == values.shape[:2] and confidence.dtype.kind in "iuf":
+        confidence = _read_array(archive, confidence_key, MAX_BYTES, where).squeeze()
+        if confidence.shape == values.shape[:2] and confidence.dtype.kind in "iufb":
             is_lost = (confidence == 0)[..., None]
             values = np.where(is_lost, np.nan, values[..., :3].astype(float))
     return make_keypoints(where, names, values, rate, None if rate else times)
 
 
-def _names(names: NDArray[Any], where: str) -> list[str]:
+def _find_names(archive: zipfile.ZipFile, members: Sequence[str], where: str) -> list[str] | None:
+    """Names of joints: texts under one of the usual names, or texts of which most are joints."""
+    key = _first_of(_NAMES, members)
+    if key is not None:
+        return _names(_read_array(archive, key, MAX_NAMES_BYTES, where), key, where)
+    for member in members:
+        if archive.getinfo(f"{member}.npy").file_size > MAX_NAMES_BYTES:
+            continue
+        texts = _try_array(archive, member, where)
+        if texts is None or texts.dtype.kind not in "US" or texts.ndim != 1:
+            continue
+        names = _names(texts, member, where) if 0 < texts.size <= MAX_JOINTS else []
+        if sum(_is_joint(name) for name in names) >= 5:
+            return names
+    return None
+
+
+def _find_positions(
+    archive: zipfile.ZipFile, members: Sequence[str], names: list[str] | None, where: str
+) -> tuple[NDArray[Any], list[str] | None]:
+    """Array of positions, and names of its joints where it has them.
+
+    Raises:
+        MotionFileError: Nothing is an array of positions, or several arrays may be.
+    """
+    is_body_model = bool(_BODY_MODEL & {name.lower() for name in members})
+    key = _first_of(_POSITIONS, members)
+    if key is not None and _read_array(archive, key, MAX_BYTES, where).dtype.kind in "US":
+        key = _first_of([name for name in _POSITIONS if name != key], members)
+    if key is not None:
+        return _read_array(archive, key, MAX_BYTES, where), names
+    stacked = _stack_arrays(archive, members, names, where)
+    if stacked is not None:
+        return stacked
+    possible = [name for name in members if _may_be_positions(archive, name, names, where)]
+    only_poses = [name.lower() for name in possible] == ["poses"] and not (
+        {"betas", "trans"} & {name.lower() for name in members}
+    )
+    if is_body_model and not only_poses:
+        raise motion_file_error(where, OF_BODY_MODEL)
+    if len(possible) == 1:
+        return _read_array(archive, possible[0], MAX_BYTES, where), names
+    listed = ", ".join(name[:30] for name in members[:10]) or "nothing"
+    raise motion_file_error(
+        where,
+        "has no array 'positions'; should have names [J], positions [frames, J, 3] and rate "
+        f"(or times); it has {listed}",
+    )
+
+
+def _stack_arrays(
+    archive: zipfile.ZipFile, members: Sequence[str], names: list[str] | None, where: str
+) -> tuple[NDArray[Any], list[str] | None] | None:
+    """Positions of an array [frames, 3] a joint, or of arrays x, y and z [frames, J], if so."""
+    of_joints = [name for name in members if _is_joint(name)]
+    by_axis = [axis for axis in (_first_of((axis,), members) for axis in "xyz") if axis]
+    if names is None and len(of_joints) >= 5:
+        keys, axis, labels = of_joints, 1, of_joints
+    elif len(by_axis) == 3:
+        keys, axis, labels = by_axis, 2, names or []
+    else:
+        return None
+    arrays = [_read_array(archive, key, MAX_BYTES // len(keys), where) for key in keys]
+    if any(array.shape != arrays[0].shape or array.ndim != 2 for array in arrays):
+        return None
+    return np.stack(arrays, axis=axis), labels or None
+
+
+def _may_be_positions(
+    archive: zipfile.ZipFile, name: str, names: list[str] | None, where: str
+) -> bool:
+    """Whether an array has an axis of three coordinates and one of as many joints as are usual."""
+    array = _try_array(archive, name, where)
+    if array is None or array.dtype.kind not in "iuf" or array.ndim not in (3, 4):
+        return False
+    sizes = SIZES if names is None else {len(names)}
+    return (3 in array.shape and bool(sizes & set(array.shape))) or array.shape[-1] in (4, 5)
+
+
+def _is_joint(name: str) -> bool:
+    """Whether a name is one of a joint: a part of the body, with its side."""
+    plain = canonical_name(name)
+    return plain.removeprefix("left").removeprefix("right") in _PARTS
+
+
+def _try_array(archive: zipfile.ZipFile, name: str, where: str) -> NDArray[Any] | None:
+    """Array of an archive; None where it is none of numbers or texts."""
+    try:
+        return _read_array(archive, name, MAX_BYTES, where)
+    except MotionFileError:
+        return None
+
+
+def _names(names: NDArray[Any], key: str, where: str) -> list[str]:
     """Names of joints."""
     if names.dtype.kind not in "US" or names.ndim != 1 or not 0 < names.size <= MAX_JOINTS:
         raise motion_file_error(
-            where, f"names should be 1 to {MAX_JOINTS} texts, not {describe_array(names)}"
+            where, f"{key} should be 1 to {MAX_JOINTS} texts, not {describe_array(names)}"
         )
     return [n.decode("utf-8", "replace") if isinstance(n, bytes) else n for n in names.tolist()]
 
 
 def _rate(archive: zipfile.ZipFile, members: Iterable[str], where: str) -> float | None:
     """Frames per second that an npz has; None where it has none."""
-    key = _first_of(_RATES, members)
+    members = list(members)
+    rate_key, step_key = _first_of(_RATES, members), _first_of(_STEPS, members)
+    key = rate_key or step_key
     if key is None:
         return None
-    rate = _read_array(archive, key, 1024, where)
-    if rate.size != 1 or rate.dtype.kind not in "iuf" or not RATES[0] <= rate.item() <= RATES[1]:
+    numbers = np.unique(_read_array(archive, key, MAX_BYTES // 16, where))
+    rate = None
+    if numbers.size == 1 and numbers.dtype.kind in "iufUS":
+        try:
+            rate = float(numbers.item())
+        except ValueError:
+            rate = None
+    if rate and key == step_key:
+        rate = 1 / rate
+    if rate is None or not RATES[0] <= rate <= RATES[1]:
         raise motion_file_error(
             where, f"{key} should be one number of {RATES[0]:g} to {RATES[1]:g} Hz"
         )
-    return float(rate.item())
+    return rate
 
 
 def _times(archive: zipfile.ZipFile, members: Iterable[str], where: str) -> Float | None:
@@ -176,6 +248,11 @@ def _times(archive: zipfile.ZipFile, members: Iterable[str], where: str) -> Floa
         if key is None:
             continue
         times = _read_array(archive, key, MAX_BYTES // 16, where).ravel()
+        if times.dtype.kind in "US":
+            times = dates_of(times)
+        if times.dtype.kind == "M":
+            nanoseconds = times.astype("datetime64[ns]").astype(np.int64)
+            return np.asarray((nanoseconds - nanoseconds[:1]) * 1e-9)
         return times if seconds is None or times.dtype.kind not in "iuf" else times * seconds
     return None
 
@@ -221,7 +298,12 @@ def parse_array(content: bytes, name: str, where: str) -> NDArray[Any]:
         )
         shape, fortran, dtype = read_header(data)
         if dtype.hasobject:
-            raise ValueError("of Python objects, which are not read")
+            raise ValueError(
+                "of Python objects, which are not read; np.savez(OUT, "
+                "names=[str(n) for n in names], ...) writes texts"
+                if name != "it"
+                else "of Python objects, which are not read: save an array of numbers"
+            )
         numbers = data.read()
         if dtype.itemsize * prod(shape) != len(numbers):
             raise ValueError("shorter or longer than it says")

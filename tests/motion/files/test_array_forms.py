@@ -1,0 +1,131 @@
+"""Arrays of one walker in the shapes, names, times and marks of lost joints that people save."""
+
+from pathlib import Path
+
+import joint_set_errors
+import numpy as np
+import pytest
+from helpers.poses import COCO, RATE, WALKER, T, names, npy_bytes, npz_bytes
+
+from radhar_cli.errors import MotionFileError
+from radhar_cli.motion.files.clip import Clip, make_clip
+from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.numerics.arrays import Float
+
+CERTAIN = np.concatenate([COCO, np.full((*COCO.shape[:2], 1), 0.9)], axis=2)
+CHANNELS = np.moveaxis(COCO, 2, 0)
+SHAPES = {
+    "[F, J, 3]": COCO,
+    "[J, F, 3]": np.moveaxis(COCO, 1, 0),
+    "[F, 3, J]": np.swapaxes(COCO, 1, 2),
+    "[J, 3, F]": np.moveaxis(COCO, 0, 2),
+    "[3, F, J]": CHANNELS,
+    "[3, J, F]": np.moveaxis(COCO, (0, 1, 2), (2, 1, 0)),
+    "[F, 3 J]": COCO.reshape(len(COCO), -1),
+    "[3 J, F]": COCO.reshape(len(COCO), -1).T,
+    "[F, J, 4]": CERTAIN,
+    "[F, 4 J]": CERTAIN.reshape(len(COCO), -1),
+    "[F, J, 5]": np.concatenate([CERTAIN, CERTAIN[..., 3:]], axis=2),
+    "[1, F, J, 3]": COCO[None],
+    "[F, 1, J, 3]": COCO[:, None],
+    "[1, 3, F, J, 1]": CHANNELS[None, ..., None],
+    "[3, F, J, 2], the second nobody": np.stack([CHANNELS, 0 * CHANNELS], axis=3),
+    "[2, F, J, 3], the second nobody": np.stack([COCO, COCO * np.nan]),
+    "float16": COCO.astype(np.float16),
+    "whole mm": (1000 * COCO).astype(np.int16),
+    "big-endian": COCO.astype(">f8"),
+}
+LABELS = names("coco17")
+DATES = np.datetime64("2026-05-01T12:00:00.000") + np.round(1000 * T).astype("timedelta64[ms]")
+REVERSED = {"joints": COCO[:, ::-1], "fps": 30}
+ARCHIVES: dict[str, dict[str, object]] = {
+    "kpts3d": {"kpts3d": COCO, "names": LABELS, "fps": 30},
+    "arr_0": {"arr_0": COCO, "arr_1": LABELS, "fps": 30},
+    "poses, but no parameters": {"poses": COCO, "names": LABELS, "fps": 30},
+    "an array a joint": {**{n: COCO[:, i] for i, n in enumerate(LABELS)}, "fps": 30},
+    "x, y and z": {**{a: COCO[..., i] for i, a in enumerate("xyz")}, "names": LABELS, "fps": 30},
+    "names as bytes": {"joints": COCO, "names": np.array(LABELS, "S"), "fps": 30},
+    "names under labels, in another order": {**REVERSED, "labels": LABELS[::-1]},
+    "names under marker_names": {**REVERSED, "marker_names": LABELS[::-1]},
+    "positions under keypoints, names under joints": {
+        **{"keypoints": COCO[:, ::-1], "joints": LABELS[::-1], "fps": 30}
+    },
+    "sampling_rate": {"joints": COCO, "names": LABELS, "sampling_rate": 30},
+    "dt": {"joints": COCO, "names": LABELS, "dt": 1 / 30},
+    "a rate a frame": {"joints": COCO, "names": LABELS, "fps": np.full(len(T), 30.0)},
+    "a rate as text": {"joints": COCO, "names": LABELS, "fps": "30"},
+    "dates": {"joints": COCO, "names": LABELS, "times": DATES},
+    "dates as texts": {"joints": COCO, "names": LABELS, "timestamps": DATES.astype(str)},
+    "whole ms since 1970": {
+        **{"joints": COCO, "names": LABELS, "timestamps": np.round(1e3 * (T + 1.7e9))}
+    },
+    "a frame twice": {
+        **{"joints": np.insert(COCO, 50, COCO[50], 0), "names": LABELS},
+        "times": np.insert(T, 50, T[50]),
+    },
+}
+
+
+def clip_of(path: Path, data: bytes, rate: float | None = None) -> Clip:
+    path.write_bytes(data)
+    return make_clip(read_motion(path).recording(path.name), rate=rate)
+
+
+def largest_error(clip: Clip) -> float:
+    return float(joint_set_errors.joint_errors(WALKER[:, :13], clip.positions[:, :13]).max())
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_axes_are_found_in_any_order(shape: str, tmp_path: Path) -> None:
+    array = SHAPES[shape]
+    named = clip_of(tmp_path / "x.npz", npz_bytes(names=LABELS, positions=array, rate=RATE))
+    nameless = clip_of(tmp_path / "x.npy", npy_bytes(array), rate=RATE)
+    assert largest_error(named) < 0.01
+    assert largest_error(nameless) < 0.01
+
+
+@pytest.mark.parametrize("kind", ARCHIVES)
+def test_arrays_are_found_by_their_names_or_their_kind(kind: str, tmp_path: Path) -> None:
+    clip = clip_of(tmp_path / "x.npz", npz_bytes(**ARCHIVES[kind]))
+    assert largest_error(clip) < 0.01
+    assert clip.rate == pytest.approx(RATE, rel=1e-3)
+
+
+@pytest.mark.parametrize("mark", [np.nan, np.inf, 0.0, -1.0, -9999.0, 1e6])
+def test_marks_of_lost_joints_are_gaps(mark: float, tmp_path: Path) -> None:
+    p = COCO.copy()
+    p[40:46, LABELS.index("left_elbow")] = mark
+    clip = clip_of(tmp_path / "x.npz", npz_bytes(names=LABELS, positions=p, rate=RATE))
+    assert "bridged: left_elbow" in clip.bridged
+    assert largest_error(clip) < 0.02
+
+
+@pytest.mark.parametrize("third", [0.0, 1.0, np.linspace(0.4, 1, 17)])
+def test_pixels_with_a_confidence_are_no_positions(third: float | Float, tmp_path: Path) -> None:
+    """As they were taken in silence: a body on its side in the plane of the image."""
+    p = np.stack([300 + 100 * COCO[..., 1], 400 - 100 * COCO[..., 2], 0 * COCO[..., 0]], axis=2)
+    p[..., 2] = third
+    data = npz_bytes(names=LABELS, positions=p, rate=RATE)
+    with pytest.raises(MotionFileError, match="lie in a plane, as x, y and a confidence do: pix"):
+        clip_of(tmp_path / "x.npz", data)
+
+
+@pytest.mark.parametrize(
+    ("arrays", "message"),
+    [
+        ({"positions": np.stack([COCO, COCO + 1])}, r"2 people; .*positions=p\[0, :, :, :\]"),
+        ({"positions": np.stack([COCO, COCO + 1], 1)}, r"2 people; .*positions=p\[:, 0, :, :\]"),
+        ({"positions": COCO, "times": np.where(np.arange(len(T)) == 9, 0, T)}, "frame 10: its ti"),
+    ],
+)
+def test_what_has_no_one_meaning_is_refused(
+    arrays: dict[str, object], message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(MotionFileError, match=message):
+        clip_of(tmp_path / "x.npz", npz_bytes(**{"names": LABELS, **arrays}))
+
+
+def test_names_that_are_python_objects_are_not_read(tmp_path: Path) -> None:
+    data = npz_bytes(names=np.array(LABELS, object), positions=COCO, rate=RATE)
+    with pytest.raises(MotionFileError, match=r"np\.savez\(OUT, names=\[str\(n\)"):
+        clip_of(tmp_path / "x.npz", data)

@@ -148,14 +148,16 @@ def _choose_person(
         if not is_fitting or shape[1] > shape[0] or (shape[3] != 3 and xyz != 3):
             continue
         ordered = np.transpose(positions, (people, frames, joints, xyz))
-        there = [n for n, body in enumerate(ordered) if _is_there(body[..., :3])]
-        if len(there) == 1:
-            person: NDArray[Any] = ordered[there[0]]
+        present = [n for n, body in enumerate(ordered) if _is_there(body[..., :3])]
+        if len(present) == 1:
+            person: NDArray[Any] = ordered[present[0]]
             return person
-        index = ", ".join(str(there[0] if there else 0) if n == people else ":" for n in range(4))
+        index = ", ".join(
+            str(present[0] if present else 0) if n == people else ":" for n in range(4)
+        )
         raise motion_file_error(
             where,
-            f"has {len(there)} people; should be one: np.savez(OUT, positions=p[{index}], ...) "
+            f"has {len(present)} people; should be one: np.savez(OUT, positions=p[{index}], ...) "
             "writes the first, p its array",
         )
     return positions

@@ -30,6 +30,7 @@ OFFSETS: dict[str, tuple[str, float, float, float]] = {
     "necknose": ("head", 0.07, 0.0, -0.08),
     "head": ("head", 0.0, 0.0, 0.0),
     "headtop": ("head", 0.0, 0.0, 0.12),
+    "jaw": ("head", 0.07, 0.0, -0.06),
     "lefteye": ("head", 0.09, 0.033, 0.03),
     "lefteyeinner": ("head", 0.09, 0.02, 0.03),
     "lefteyeouter": ("head", 0.08, 0.045, 0.03),
@@ -46,11 +47,35 @@ OFFSETS: dict[str, tuple[str, float, float, float]] = {
     "leftbigtoe": ("left_ankle", 0.18, -0.02, -0.05),
     "leftsmalltoe": ("left_ankle", 0.15, 0.04, -0.05),
 }
-HIPS = {"hip", "pelvis", "midhip", "spinebase", "basespine", "hipcenter", "root"}
+HIPS = {"hip", "hips", "pelvis", "midhip", "spinebase", "basespine", "hipcenter", "root"}
 NECKS = {"neck", "thorax", "upperneck", "spineshoulder", "shouldercenter", "throat", "spine4"}
 # Joints that are elsewhere than their names say: Human3.6M's feet are its ankles.
 MISNAMED = {
     "h36m17": {"head": "headtop", "rightfoot": "rightankle", "leftfoot": "leftankle"},
+    "h36m32": {"head": "headtop", "rightfoot": "rightankle", "leftfoot": "leftankle"},
+    "mpi_inf17": {"head": "necknose"},  # as Human3.6M's, whose names it has
+    "xsens23": {
+        **{"l5": "spine1", "l3": "spine1", "t12": "spine2", "t8": "spine3"},
+        **{
+            f"{side}{theirs}": f"{side}{part}"
+            for side in ("right", "left")
+            for theirs, part in {
+                **{"shoulder": "collar", "upperarm": "shoulder", "forearm": "elbow"},
+                **{"hand": "wrist", "upperleg": "hip", "lowerleg": "knee", "foot": "ankle"},
+            }.items()
+        },
+    },
+    "kit21": {
+        **{"bp": "spine1", "bt": "spine3", "bln": "neck", "bun": "head"},
+        **{
+            f"{side[0]}{theirs}": f"{side}{part}"
+            for side in ("right", "left")
+            for theirs, part in {
+                **{"s": "shoulder", "e": "elbow", "w": "wrist", "h": "hip", "k": "knee"},
+                **{"a": "ankle", "mrot": "heel", "f": "toe"},
+            }.items()
+        },
+    },
 }
 # Share of the way from hip to shoulders of points of the spine, which are behind the trunk's axis.
 SPINES = {
@@ -127,6 +152,8 @@ def _joint(
     ahead, _, up = axes
     if name in HIPS:
         return hip
+    if name.startswith("face"):
+        name = "nose"
     if name == "torso" and own_torso:
         return joints["torso"]
     if name in NECKS:

@@ -26,6 +26,7 @@ MOST = 0.5  # least share of the frames in which the head is above the feet
 STAYS = 0.03  # most that hips move in the plane which stay where they are, over the stature
 SLIPS = 0.1  # least speed of a foot that is not at rest, statures per second
 BENT = 0.01  # least distance of knees before the line from hip to ankle, over the stature
+NO_HEAD = "it has no head: taken on the line of the trunk, above the shoulders"
 # Two passes of an order of 2 are 3 dB down, each 1.5 dB, at 0.802 of the corner of one.
 ORDER, TWO_PASSES = 2, (sqrt(2) - 1) ** 0.25
 
@@ -129,6 +130,9 @@ def make_clip(
             joints, remark = find_joint_order(file)
             remarks += (remark,)
     means = joint_means(file, joints or {})
+    head = means[_HEAD]
+    if head is not None and head.is_of_trunk:
+        remarks += (NO_HEAD,)
     has_hip_joints = None not in means
     chosen = [mean or means[_HIP] for mean in means]
     blends = [mean for mean in chosen if mean is not None]

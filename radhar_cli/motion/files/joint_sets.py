@@ -112,6 +112,48 @@ _MAXINE = (
     "left_pinky_knuckle right_pinky_knuckle left_middle_tip right_middle_tip left_index_knuckle "
     "right_index_knuckle left_thumb_tip right_thumb_tip"
 )
+_WHOLE_BODY = " ".join(
+    [
+        f"{_COCO} left_big_toe left_small_toe left_heel right_big_toe right_small_toe right_heel",
+        *(f"face_{n}" for n in range(68)),
+        *(f"{side}_hand_{n}" for side in ("left", "right") for n in range(21)),
+    ]
+)
+_FINGERS = " ".join(
+    f"{side}_{finger}{n}"
+    for side in ("left", "right")
+    for finger in ("index", "middle", "pinky", "ring", "thumb")
+    for n in (1, 2, 3)
+)
+_H36M_32 = (
+    "Hips RHip RKnee RFoot RToe right_toe_end LHip LKnee LFoot LToe left_toe_end Spine Thorax "
+    "Neck/Nose Head HeadTop LCollar LShoulder LElbow LWrist left_thumb left_thumb_tip left_hand "
+    "left_hand_tip RCollar RShoulder RElbow RWrist right_thumb right_thumb_tip right_hand "
+    "right_hand_tip"
+)
+_PANOPTIC = (
+    "Neck Nose MidHip|BodyCenter lShoulder lElbow lWrist lHip lKnee lAnkle rShoulder rElbow rWrist "
+    "rHip rKnee rAnkle lEye lEar rEye rEar"
+)
+_MPI_INF_17 = (
+    "head_top neck right_shoulder right_elbow right_wrist left_shoulder left_elbow left_wrist "
+    "right_hip right_knee right_ankle left_hip left_knee left_ankle pelvis spine head"
+)
+_HUMANEVA = (
+    "pelvis thorax left_shoulder left_elbow left_wrist right_shoulder right_elbow right_wrist "
+    "left_hip left_knee left_ankle right_hip right_knee right_ankle head"
+)
+_LSP = (
+    "right_ankle right_knee right_hip left_hip left_knee left_ankle right_wrist right_elbow "
+    "right_shoulder left_shoulder left_elbow left_wrist neck head_top"
+)
+_XSENS = (
+    "Pelvis L5 L3 T12 T8 Neck Head RightShoulder RightUpperArm RightForeArm RightHand LeftShoulder "
+    "LeftUpperArm LeftForeArm LeftHand RightUpperLeg RightLowerLeg RightFoot RightToe LeftUpperLeg "
+    "LeftLowerLeg LeftFoot LeftToe"
+)
+_KIT = "root BP BT BLN BUN LS LE LW RS RE RW LH LK LA LMrot LF RH RK RA RMrot RF"
+_PARTS_OF_KIT = {"S": "shoulder", "E": "elbow", "W": "hand", "H": "hip_joint", "K": "knee"}
 # {key that a config or --joints names: the set}; order tells which comes first in messages.
 JOINT_SETS: dict[str, JointSet] = {
     "coco17": JointSet("COCO", tuple(_COCO.split())),
@@ -146,6 +188,30 @@ JOINT_SETS: dict[str, JointSet] = {
     "zed34": JointSet("ZED BODY_34", tuple(_ZED_34.split())),
     "zed38": JointSet("ZED BODY_38", tuple(_ZED_38.split())),
     "maxine34": JointSet("NVIDIA Maxine", tuple(_MAXINE.split())),
+    "coco133": JointSet("COCO-WholeBody", tuple(_WHOLE_BODY.split())),
+    "smplx55": JointSet(
+        "SMPL-X", (*_SMPL.split(), "jaw", "left_eye", "right_eye", *_FINGERS.split())
+    ),
+    "smplh52": JointSet("SMPL-H, AMASS", (*_SMPL.split(), *_FINGERS.split())),
+    "h36m32": JointSet(
+        "Human3.6M, all", tuple(_H36M_32.split()), {"head": ("Neck/Nose", "Head"), "hip": ("Hips",)}
+    ),
+    "panoptic19": JointSet("CMU Panoptic", tuple(_PANOPTIC.split()), {"hip": ("MidHip",)}),
+    "mpi_inf17": JointSet(
+        "MPI-INF-3DHP, tested", tuple(_MPI_INF_17.split()), {"head": ("head", "head_top")}
+    ),
+    "humaneva15": JointSet("HumanEva", tuple(_HUMANEVA.split())),
+    "lsp14": JointSet("LSP, 3DPW", tuple(_LSP.split())),
+    "xsens23": JointSet("Xsens MVN", tuple(_XSENS.split())),
+    "kit21": JointSet(
+        "KIT-ML",
+        tuple(_KIT.split()),
+        {
+            **{f"right_{part}": (f"R{key}",) for key, part in _PARTS_OF_KIT.items()},
+            **{f"left_{part}": (f"L{key}",) for key, part in _PARTS_OF_KIT.items()},
+            **{"right_ankle": ("RA",), "left_ankle": ("LA",), "hip": ("root",), "head": ("BUN",)},
+        },
+    ),
 }
 
 

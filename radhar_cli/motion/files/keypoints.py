@@ -84,6 +84,15 @@ class Keypoints:
                 points[is_zero, column] = np.nan  # a tracker's way to say that a joint is lost
         return points
 
+    def seen_shares(self) -> Float:
+        """Shares [J] of the frames in which the joints are not lost."""
+        is_seen = np.isfinite(self.values).all(axis=2) & (self.values != 0).any(axis=2)
+        shares: Float = is_seen.mean(axis=0)
+        for joint in np.flatnonzero(shares < 1):
+            if self._may_be_root(int(joint)) and np.isfinite(self.values[:, joint]).all():
+                shares[joint] = 1.0
+        return shares
+
     def _may_be_root(self, joint: int) -> bool:
         """Whether a joint may be the origin of poses: a hip, or the first of nameless joints."""
         return canonical_name(self.names[joint]) in ROOTS or (not self.is_named and joint == 0)

@@ -15,6 +15,7 @@ from radhar_cli.motion.files.keypoints import Keypoints
 from radhar_cli.motion.files.plain_names import canonical_name, plain_name
 from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
 from radhar_cli.motion.skeleton import JOINTS, SKELETON, TORSO
+from radhar_cli.numerics.arrays import Float
 
 HIP_JOINTS = ("right_hip_joint", "left_hip_joint")
 WANTED = (*JOINTS, *HIP_JOINTS)
@@ -70,12 +71,22 @@ _LINKS = {joint.name: joint.link[2] for joint in SKELETON}
 # Share of the way from the hip to the middle of the shoulders at which the torso of radhar is.
 TORSO_SHARE = -_LINKS["hip"] / (_LINKS["right_shoulder"] - _LINKS["hip"])
 
+# The same of the head, for poses that have no joint at the head at all.
+HEAD_SHARE = (_LINKS["head"] - _LINKS["hip"]) / (_LINKS["right_shoulder"] - _LINKS["hip"])
+EAR_SHARE = 0.19  # half the distance of the ears over that of the shoulders
+WELL_SEEN = 0.9  # share of the frames of the best joint in which a joint of the head should be seen
+
 
 class JointMean(NamedTuple):
     """A joint of ours as a weighted mean of a file's joints, given by their numbers."""
 
     numbers: tuple[int, ...]
     weights: tuple[float, ...]
+
+    @property
+    def is_of_trunk(self) -> bool:
+        """Whether a head is a point on the line of the trunk: beyond the hip, which it is off."""
+        return self.weights[0] < 0
 
     @classmethod
     def of(cls, numbers: Sequence[int]) -> "JointMean":
@@ -117,7 +128,7 @@ def joint_means(file: MotionRecording, configured: JointNames) -> list[JointMean
     _name_joints(means, names, _table_of(file))
     _hang_hip_joints(means, file, configured)
     if isinstance(file, Keypoints):
-        _add_means(means, names)
+        _add_means(means, names, file.seen_shares())
     missing = [joint for joint in JOINTS if means[joint] is None]
     if missing:
         raise motion_file_error(
@@ -190,8 +201,22 @@ def _hang_hip_joints(
             means[joint] = JointMean.of([parent])
 
 
-def _add_means(means: dict[str, JointMean | None], names: Sequence[str]) -> None:
-    """Make hip, head and torso of other joints of a pose where it has none of their own."""
+def _add_means(means: dict[str, JointMean | None], names: Sequence[str], shares: Float) -> None:
+    """Make hip, head and torso of other joints of a pose where it has none of their own.
+
+    Args:
+        means: Means of the joints that are known; completed in place.
+        names: Names of the file's joints.
+        shares: Shares [J] of the frames in which they are seen: an ear that is not seen for long
+            is left out, and so is a head that is never seen.
+    """
+    well_seen = shares >= WELL_SEEN * shares.max()
+    head = means["head"]
+    if head is not None and not shares[list(head.numbers)].all():
+        means["head"] = None
+    names = [
+        name if seen or name in WANTED else "" for name, seen in zip(names, well_seen, strict=True)
+    ]
     numbers = {canonical_name(name): n for n, name in reversed([*enumerate(names)])}
     for joint, choices in _MEANS.items():
         for sources in choices:
@@ -204,11 +229,33 @@ def _add_means(means: dict[str, JointMean | None], names: Sequence[str]) -> None
             known = [part for part in parts if part is not None]
             if len(known) == len(parts):
                 means[joint] = _weigh(known, [1 / len(known)] * len(known))
+    if means["head"] is None or means["head"].numbers == (numbers.get("nose"),):
+        means["head"] = _beside_ear(means, numbers) or means["head"]
     hip, shoulders = means["hip"], [means[f"{side}_shoulder"] for side in ("right", "left")]
     torso = JOINTS[TORSO]
     if means[torso] is None and hip is not None and None not in shoulders:
-        known = [hip, *(shoulder for shoulder in shoulders if shoulder is not None)]
-        means[torso] = _weigh(known, [1 - TORSO_SHARE, TORSO_SHARE / 2, TORSO_SHARE / 2])
+        means[torso] = _along_trunk(hip, shoulders, TORSO_SHARE)
+    if means["head"] is None and hip is not None and None not in shoulders:
+        means["head"] = _along_trunk(hip, shoulders, HEAD_SHARE)
+
+
+def _beside_ear(
+    means: Mapping[str, JointMean | None], numbers: Mapping[str, int]
+) -> JointMean | None:
+    """Middle of the head beside the only ear that is seen, along the line of the shoulders."""
+    for side, other in (("right", "left"), ("left", "right")):
+        ear = numbers.get(f"{side}ear")
+        shoulder, far = means[f"{side}_shoulder"], means[f"{other}_shoulder"]
+        if ear is not None and shoulder is not None and far is not None:
+            parts = [JointMean.of([ear]), far, shoulder]
+            return _weigh(parts, [1.0, EAR_SHARE, -EAR_SHARE])
+    return None
+
+
+def _along_trunk(hip: JointMean, shoulders: Sequence[JointMean | None], share: float) -> JointMean:
+    """Point on the line from the hip to the middle of the shoulders, at a share of its length."""
+    known = [hip, *(shoulder for shoulder in shoulders if shoulder is not None)]
+    return _weigh(known, [1 - share, share / 2, share / 2])
 
 
 def _mean_of_number(number: int | None) -> JointMean | None:

@@ -129,3 +129,27 @@ def test_names_that_are_python_objects_are_not_read(tmp_path: Path) -> None:
     data = npz_bytes(names=np.array(LABELS, object), positions=COCO, rate=RATE)
     with pytest.raises(MotionFileError, match=r"np\.savez\(OUT, names=\[str\(n\)"):
         clip_of(tmp_path / "x.npz", data)
+
+
+FACE = [LABELS.index(name) for name in ("nose", "left_eye", "right_eye", "left_ear", "right_ear")]
+
+
+@pytest.mark.parametrize(
+    ("lost", "until"),
+    [(FACE[3:4], 60), (FACE[3:4], None), (FACE[1:], 60), (FACE[1:], None), (FACE, None)],
+)
+def test_a_head_is_made_of_what_is_seen(lost: list[int], until: int | None, tmp_path: Path) -> None:
+    """From the side a camera does not see the far ear; who walks away has no face."""
+    p = COCO.copy()
+    p[:until, lost] = np.nan
+    clip = clip_of(tmp_path / "x.npz", npz_bytes(names=LABELS, positions=p, rate=RATE))
+    assert largest_error(clip) < (0.12 if len(lost) > 1 else 0.02)  # a nose is 11 cm ahead
+    assert not clip.lost
+    assert any("no head" in remark for remark in clip.remarks) == (len(lost) == len(FACE))
+
+
+def test_a_pose_without_a_head_has_one_above_the_shoulders(tmp_path: Path) -> None:
+    data = npz_bytes(names=LABELS[5:], positions=COCO[:, 5:], rate=RATE)
+    clip = clip_of(tmp_path / "x.npz", data)
+    assert largest_error(clip) < 0.03
+    assert "no head" in clip.remarks[0]

@@ -84,7 +84,9 @@ def test_order_alone_tells_the_set_where_one_makes_a_body(key: str, walker: Floa
 def test_an_order_that_makes_no_body_is_refused(walker: Float) -> None:
     p = joint_set_errors.poses_of(JOINT_SETS["coco17"], walker)
     shuffled = p[:, np.random.default_rng(0).permutation(17)]
-    with pytest.raises(MotionFileError, match=r"17 joints without names; coco17, h36m17 \(in none"):
+    with pytest.raises(
+        MotionFileError, match=r"17 joints without names; coco17, h36m17, mpi_inf17 \(in none"
+    ):
         make_clip(make_keypoints("x", None, shuffled, 30.0))
     with pytest.raises(MotionFileError, match=r"13 joints without names; no set .*--joints SET"):
         make_clip(make_keypoints("x", None, p[:, :13], 30.0))

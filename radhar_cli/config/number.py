@@ -22,6 +22,8 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
+from radhar_cli.numerics.rounding import show_beside
+
 MAX_NUMBER = 1e30
 NORMAL_CUT = 6.0
 
@@ -333,7 +335,8 @@ class Bounds:
             reach = (
                 ""
                 if smallest == largest
-                else f" (this one reaches from {smallest:g} to {largest:g})"
+                else f" (this one reaches from {show_beside(smallest, self.low)} to "
+                f"{show_beside(largest, self.high)})"
             )
             raise value_error(f"should be {wording}{reach}")
         return number

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.numerics.rounding import exact, half_up
+from radhar_cli.numerics.rounding import exact, half_up, show_beside
 
 
 @pytest.mark.parametrize(
@@ -39,3 +39,29 @@ def test_a_float_is_the_decimal_it_was_written_as() -> None:
     assert exact(0.1) == Fraction(1, 10)
     assert exact(77e9) == 77 * 10**9
     assert exact(3) == 3
+
+
+@pytest.mark.parametrize(
+    ("number", "other", "text"),
+    [
+        (0.001, 0.0010000001, "0.001"),
+        (0.0010000001, 0.001, "0.0010000001"),
+        (1 / 2998, 0.000333556, "0.0003335557"),
+        (0.03, 0.03 * (1 + 1e-6), "0.03"),
+        (5.0, 7.0, "5"),
+        (5.0, 5.0, "5"),
+    ],
+)
+def test_a_number_is_written_with_digits_enough_to_differ(
+    number: float, other: float, text: str
+) -> None:
+    assert show_beside(number, other) == text
+
+
+@given(st.floats(1e-12, 1e12), st.floats(-1e-3, 1e-3))
+def test_numbers_that_differ_never_read_alike(number: float, change: float) -> None:
+    other = number * (1 + change)
+    texts = show_beside(number, other), show_beside(other, number)
+    assert (texts[0] == texts[1]) == (number == other)
+    if number != other:
+        assert (float(texts[0]) < other) == (number < other)

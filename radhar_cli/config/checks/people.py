@@ -17,6 +17,7 @@ from radhar_cli.config.number import MAX_NUMBER, support
 from radhar_cli.config.request import Request
 from radhar_cli.config.section import PerActivity, Problem, for_activity
 from radhar_cli.config.sequence import SequenceConfig
+from radhar_cli.numerics.rounding import show_beside
 
 
 def people_problems(c: Request) -> Iterator[Problem]:
@@ -125,5 +126,6 @@ def human_problems(c: Request) -> Iterator[Problem]:
         smallest, largest = min(end[0] for end in ends), max(end[1] for end in ends)
         if smallest < low or largest > high:
             right = f"should be from {low:g} to {high:g} with motion.model: human"
-            right = f"{right} (this one reaches from {smallest:g} to {largest:g})"
+            reach = f"{show_beside(smallest, low)} to {show_beside(largest, high)}"
+            right = f"{right} (this one reaches from {reach})"
             yield Problem(key, number, right)

@@ -20,7 +20,7 @@ from radhar_cli.config.radar import (
 )
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
-from radhar_cli.numerics.rounding import half_up
+from radhar_cli.numerics.rounding import half_up, show_beside
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.impulse import impulse
 from radhar_cli.radar.ti_family import Family
@@ -115,7 +115,8 @@ def _step_problems(radar: ImpulseRadar) -> Iterator[Problem]:
     if step <= widest * (1 + 1e-9):
         return
     fewest = ceil((last - first) / widest * (1 - 1e-9))
-    right = f"should be {fewest} or more: steps of {step:.4g} m are coarser than {widest:.4g} m"
+    steps = show_beside(step, widest, digits=4), show_beside(widest, step, digits=4)
+    right = f"should be {fewest} or more: steps of {steps[0]} m are coarser than {steps[1]} m"
     if not is_iq:
         right += ", which real samples need; or radar.output: iq"
     yield Problem("radar.profile_samples", radar.profile_samples, right)
@@ -168,16 +169,19 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
     given_rate = None if radar.prf_hz is None else radar.prf_hz * transmitters
     if given_rate is not None and abs(interval * given_rate - 1) > EQUAL:
         turns = f" times the {transmitters} transmitters" if transmitters > 1 else ""
-        right = f"should be 1/(frame.interval_s{turns}) = {1 / (interval * transmitters):g} Hz"
+        rate = show_beside(1 / (interval * transmitters), radar.prf_hz or 0)
+        right = f"should be 1/(frame.interval_s{turns}) = {rate} Hz"
         yield Problem("radar.prf_hz", radar.prf_hz, f"{right}, or be left out")
         return
     if radar.chirp_s > interval * ROUNDING:
-        right = f"should be at most the time from chirp to chirp, {interval:g} s"
+        longest = show_beside(interval, radar.chirp_s)
+        right = f"should be at most the time from chirp to chirp, {longest} s"
         yield Problem("radar.chirp_s", radar.chirp_s, right)
         return
     chirps = radar.frame.chirps * transmitters
     if radar.frame.period_s is not None and chirps * interval > radar.frame.period_s * ROUNDING:
-        right = f"should be at least {chirps * interval:.6g} s, {chirps} chirps of {interval:g} s"
+        least = show_beside(chirps * interval, radar.frame.period_s)
+        right = f"should be at least {least} s, {chirps} chirps of {interval:g} s"
         yield Problem("radar.frame.period_s", radar.frame.period_s, right)
         return
     yield from _frame_problems(c, radar)
@@ -205,10 +209,12 @@ def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
     """Find what does not fit frames: durations, clutter, detection."""
     clutter, board = c.processing.clutter, radar.header
     if support(c.duration_s)[0] < board.period_s:
-        right = f"should hold a frame of {board.period_s:g} s"
+        frame = show_beside(board.period_s, support(c.duration_s)[0])
+        right = f"should hold a frame of {frame} s"
         yield Problem("duration_s", c.duration_s, right)
     elif board.loops == 1 and support(c.duration_s)[0] < 2 * board.period_s:
-        right = f"should hold two frames of a loop, {2 * board.period_s:g} s"
+        frames = show_beside(2 * board.period_s, support(c.duration_s)[0])
+        right = f"should hold two frames of a loop, {frames} s"
         yield Problem("duration_s", c.duration_s, right)
     chirps = support(c.duration_s)[1] / board.period_s * board.loops * len(board.order)
     samples = chirps * len(board.receivers) * board.samples
@@ -282,9 +288,11 @@ def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
     shortest_interval = 1 / support(radar.prf_hz)[1]
     samples = "ADC samples per chirp (adc_rate_hz * chirp_s is"
     if support(radar.chirp_s)[1] > shortest_interval * ROUNDING:
-        right = f"should be at most the pulse interval 1/prf_hz = {shortest_interval:g} s"
+        longest = support(radar.chirp_s)[1]
+        interval = show_beside(shortest_interval, longest)
+        right = f"should be at most the pulse interval 1/prf_hz = {interval} s"
         if isinstance(radar, SfcwRadar):
-            right = f"{right} (steps * dwell_s is {radar.chirp_s:g} s)"
+            right = f"{right} (steps * dwell_s is {show_beside(longest, shortest_interval)} s)"
             yield Problem("radar.steps", radar.steps, right)
         else:
             yield Problem("radar.chirp_s", radar.chirp_s, right)

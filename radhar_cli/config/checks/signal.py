@@ -17,6 +17,7 @@ from radhar_cli.config.radar import MIN_WINDOW, ArrayRadar
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.numerics.rounding import show_beside
 from radhar_cli.processing.map_kind import MAP_KINDS
 
 MAX_PULSES = 2**24
@@ -134,10 +135,12 @@ def _gate_problems(c: AnyRequest) -> Iterator[Problem]:
         half_band = c.radar.header.farthest_m
     if isinstance(within, tuple):
         if within[1] >= half_band:
-            right = f"should end before the range half-band does, at {half_band:.4g} m"
+            end = show_beside(half_band, within[1], digits=4)
+            right = f"should end before the range half-band does, at {end} m"
             yield Problem("processing.gate_m", list(within), right)
     elif 2 * within >= half_band:
-        right = f"should be less than half the range half-band of {half_band:.4g} m"
+        end = show_beside(half_band, 2 * within, digits=4)
+        right = f"should be less than half the range half-band of {end} m"
         yield Problem("processing.gate_m", within, right)
     if not isinstance(c.radar, ArrayRadar):
         yield from _bin_problems(c, "processing.range_sum", "gated", "the gate")
@@ -180,8 +183,9 @@ def _image_problems(c: AnyRequest) -> Iterator[Problem]:
     shortest = waveform_at(c, *HIGHEST_F0)
     fastest = shortest.highest_speed
     if max(-limits[0], limits[1]) > fastest * (1 + 1e-9):
+        limit = show_beside(fastest, -limits[0], limits[1])
         right = (
-            f"should be within the unambiguous band, -{fastest:.6g} to {fastest:.6g} m/s "
+            f"should be within the unambiguous band, -{limit} to {limit} m/s "
             f"(c prf_hz / 4 f0: {prf_in_words(c, shortest)})"
         )
         yield Problem("image.doppler_limits_mps", list(limits), right)

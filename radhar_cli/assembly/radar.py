@@ -84,9 +84,15 @@ def middle_of(tx: Vector, rx: Vector) -> Vector:
 
 
 def detection_of(radar: ArrayRadar, processing: ProcessingConfig) -> Detection:
-    """Read detection from the .cfg, as far as the board heeds it; clutter is the config's."""
-    detection = replace(radar.header.detection, remove_mean=processing.clutter == "mean")
-    device = DEVICES.get(str(radar.device)) if isinstance(radar, BoardRadar) else None
+    """Read detection from the .cfg, as far as the board heeds it; clutter is the config's.
+
+    A radar without a file of its own has the settings that hold without one.
+    """
+    remove_mean = processing.clutter == "mean"
+    if not isinstance(radar, BoardRadar):
+        return Detection(remove_mean=remove_mean)
+    detection = replace(radar.header.detection, remove_mean=remove_mean)
+    device = DEVICES.get(str(radar.device))
     return detection if device is None or device.heeds_limits else detection.without_limits()
 
 

@@ -6,7 +6,6 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processing.points import COLUMNS
 from radhar_cli.radar.frame_header import FrameHeader
 
@@ -32,11 +31,12 @@ class RadarSteps:
 
     @classmethod
     def of_header(cls, header: FrameHeader, bias_m: float = 0.0) -> "RadarSteps":
-        """Steps of a board: transforms of the next power of two, as TI's demos have."""
-        samples, loops = (1 << (n - 1).bit_length() for n in (header.samples, header.loops))
-        speed = SPEED_OF_LIGHT / (2 * header.start_hz * header.loop_s * loops)
-        rate, slope = header.adc_rate_hz, header.slope_hz
-        return cls(SPEED_OF_LIGHT * rate / (2 * slope * samples), speed, bias_m)
+        """Return the steps that TI's demos take for those of a board.
+
+        The speed of a Doppler bin is that at the frequency where a ramp starts, as the firmware
+        has it, and not at the middle of the sampled band: one or two percent larger.
+        """
+        return cls(header.range_step_m, header.doppler_step_mps(header.start_hz), bias_m)
 
     def range_bins(self, ranges: Float) -> Float:
         """Range bins [n] of ranges [n], m; NaN where the step is unknown."""

@@ -29,16 +29,6 @@ class BuiltInRadar:
         return self.header.firmware or "best"
 
     @property
-    def range_step_m(self) -> float:
-        """Spacing of its range bins, m."""
-        return self.header.farthest_m / self.header.bins
-
-    @property
-    def speed_step_mps(self) -> float:
-        """Spacing of its Doppler bins, m/s."""
-        return 2 * self.header.fastest_mps / (1 << (self.header.loops - 1).bit_length())
-
-    @property
     def frames_per_s(self) -> float:
         """Frames per second."""
         return 1 / self.header.period_s
@@ -46,11 +36,12 @@ class BuiltInRadar:
     @property
     def description(self) -> str:
         """Line that says what it is for."""
+        header = self.header
         return (
             f"{self.chain}; {self.frames_per_s:.3g} frames a second, "
-            f"ranges to {self.header.farthest_m:.3g} m in steps of "
-            f"{100 * self.range_step_m:.2g} cm, +-{self.header.fastest_mps:.2g} m/s in steps of "
-            f"{self.speed_step_mps:.2g} m/s"
+            f"ranges to {header.farthest_m:.3g} m in steps of "
+            f"{100 * header.range_step_m:.2g} cm, +-{header.fastest_mps:.2g} m/s in steps of "
+            f"{header.doppler_step_mps():.2g} m/s"
         )
 
 

@@ -46,7 +46,9 @@ from radhar_cli.radar.board import (
     longest_rows,
     sidelobe,
 )
-from radhar_cli.radar.detection import Chain
+from radhar_cli.radar.detection import Chain, Firmware
+from radhar_cli.radar.frame_header import FrameHeader
+from radhar_cli.radar.written_frames import WrittenFrames
 
 if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader
@@ -335,9 +337,24 @@ class ArrayRadar(_Emission[N], Generic[N]):
     chirps_key: ClassVar[str]  # as messages name what says how many loops a frame has
 
     @property
-    def header(self) -> "BoardHeader":
+    def header(self) -> FrameHeader:
         """Chirps, frames and samples of the radar."""
         raise NotImplementedError
+
+    @property
+    def firmware(self) -> Firmware | None:
+        """Chain of TI's firmware whose commands the radar's file has; None without a file."""
+        return None
+
+    @property
+    def removes_mean(self) -> bool:
+        """Whether the mean of each frame is removed unless the config says otherwise."""
+        return True
+
+    @property
+    def stated_pose(self) -> dict[str, Any]:
+        """Place and angles by the radar's file, {key of the radar: number}; {} without a file."""
+        return {}
 
     @property
     def elements(self) -> Array | None:
@@ -425,10 +442,9 @@ class ArrayRadar(_Emission[N], Generic[N]):
     @property
     def likely_chain(self) -> Chain:
         """The firmware's chain whose commands the file has, unless elements or masks do not fit."""
-        firmware = self.header.firmware
-        if firmware is None or self.why_no_points(firmware) is not None:
+        if self.firmware is None or self.why_no_points(self.firmware) is not None:
             return "best"
-        return firmware
+        return self.firmware
 
     def why_no_points(self, chain: Chain) -> str | None:
         """Say why a chain does not find points with the radar; None if it does."""
@@ -440,9 +456,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
         Firmware takes the elements of a row for neighbours, but for people tracking, whose .cfg has
         their places. `best` knows them, but takes high sidelobes of a sparse row for targets.
         """
-        if chain == "people_tracking" or (
-            chain == "board" and self.header.firmware == "people_tracking"
-        ):
+        if "people_tracking" in (chain, self.firmware if chain == "board" else None):
             return None
         places = self.virtual_places
         row = [places[v][0] for v in longest_rows(places, 0)[0]] if places else []
@@ -496,6 +510,21 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
         from radhar_cli.radar.ti_cfg import parse_ti_cfg  # slow to import, and of boards alone
 
         return parse_ti_cfg(self.cfg, device=self.device, subframe=self.subframe)
+
+    @property
+    def firmware(self) -> Firmware | None:
+        """Chain of TI's firmware whose commands `cfg` has; None without any."""
+        return self.header.firmware
+
+    @property
+    def removes_mean(self) -> bool:
+        """Whether `cfg` has the mean of each frame removed."""
+        return self.header.detection.remove_mean
+
+    @property
+    def stated_pose(self) -> dict[str, Any]:
+        """Place and angles by sensorPosition of `cfg`; {} without that line."""
+        return {} if self.header.pose is None else vars(self.header.pose)
 
     @property
     def other_subframes(self) -> dict[str, int]:
@@ -565,7 +594,7 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
         The out-of-box firmware takes two chirps alone, of TX1 and TX3, on a 1642 of TX1 and TX2.
         """
         header = self.header
-        firmware = header.firmware if chain == "board" else chain
+        firmware = self.firmware if chain == "board" else chain
         if header.bpm is None or firmware not in ("sdk1", "sdk3"):
             return None
         masks = {"16": (3,), "18": (5,), "68": (5,)}.get(str(self.device)[3:5], (3, 5, 6))
@@ -652,10 +681,8 @@ class FramesRadar(ArrayRadar[N], Generic[N]):
         return self.chirp_s
 
     @property
-    def header(self) -> "BoardHeader":
-        """Header of a board that sends these frames."""
-        from radhar_cli.radar.written_frames import WrittenFrames  # slow to import
-
+    def header(self) -> FrameHeader:
+        """Header of these frames."""
         return WrittenFrames(
             carrier_hz=self.carrier_hz,
             bandwidth_hz=self.bandwidth_hz,

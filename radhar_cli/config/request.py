@@ -575,7 +575,7 @@ def _by_our_names(number: PerActivity[Any], known: Mapping[str, Activity]) -> Pe
 def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, Any]]) -> None:
     """Note the defaults that a board has of its own, of what was not given."""
     try:
-        header = radar.header
+        _ = radar.header
     except CaptureError as error:
         raise value_error(str(error)) from None
     if "snr_db" not in c.model_fields_set:
@@ -583,15 +583,14 @@ def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, 
     if "noise_figure_db" not in c.receiver.model_fields_set:
         changed.setdefault("receiver", {})["noise_figure_db"] = radar.usual_noise_figure_db
     if "clutter" not in c.processing.model_fields_set:
-        clutter = "mean" if header.detection.remove_mean else "none"
+        clutter = "mean" if radar.removes_mean else "none"
         changed.setdefault("processing", {})["clutter"] = clutter
     if "range_sum" not in c.processing.model_fields_set:
         changed.setdefault("processing", {})["range_sum"] = "gated"
     if "chain" not in c.cloud.model_fields_set:
         changed.setdefault("cloud", {})["chain"] = radar.likely_chain
-    pose = {} if header.pose is None else vars(header.pose)
-    for key in pose.keys() - radar.model_fields_set:
-        changed.setdefault("radar", {})[key] = pose[key]
+    for key in radar.stated_pose.keys() - radar.model_fields_set:
+        changed.setdefault("radar", {})[key] = radar.stated_pose[key]
 
 
 @cache

@@ -16,7 +16,7 @@ from radhar_cli.assembly.room import echo_ways_of
 from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import FRAME_MAPS
-from radhar_cli.config.radar import ArrayRadar
+from radhar_cli.config.radar import ArrayRadar, BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import (
     combine_transmitters,
@@ -101,36 +101,41 @@ class CloudChain:
     """How points are found in the frames of a board.
 
     Attributes:
-        firmware: whose firmware finds them; None for as well as the data allow.
         detection: settings of an out-of-box demo's .cfg.
-        people: settings of people tracking or counting; None for neither.
         pfa: rate of false alarms of a cell, where not the firmware finds them.
         quantises: whether numbers are rounded as the firmware's are.
         refers_to_start: whether speeds refer to the frequency at which ramps start.
+        firmware: whose firmware finds them; None for as well as the data allow.
+        people: settings of people tracking or counting; None for neither.
         box: box of the room whose points alone are kept; None for all points.
     """
 
-    firmware: Firmware | None
     detection: Detection
-    people: PeopleTracking | PeopleCounting | None
     pfa: float
     quantises: bool
     refers_to_start: bool
+    firmware: Firmware | None = None
+    people: PeopleTracking | PeopleCounting | None = None
     box: RoomBox | None = None
 
     @classmethod
     def of(cls, config: Config) -> "CloudChain":
-        """Read `cloud` and the detection of `radar.cfg` of a config."""
-        assert isinstance(config.radar, ArrayRadar)
-        cloud, header = config.cloud, config.radar.header
-        return cls(
-            None if cloud.chain == "best" else header.firmware,
-            detection_of(config.radar, config.processing),
-            header.people,
-            cloud.pfa,
-            cloud.quantise,
-            cloud.doppler_carrier == "start",
-            header.box if cloud.boundary_box else None,
+        """Read `cloud` and, of a board, the detection and the box of `radar.cfg`."""
+        radar, cloud = config.radar, config.cloud
+        assert isinstance(radar, ArrayRadar)
+        chain = cls(
+            detection=detection_of(radar, config.processing),
+            pfa=cloud.pfa,
+            quantises=cloud.quantise,
+            refers_to_start=cloud.doppler_carrier == "start",
+        )
+        if not isinstance(radar, BoardRadar):
+            return chain
+        return replace(
+            chain,
+            firmware=None if cloud.chain == "best" else radar.firmware,
+            people=radar.header.people,
+            box=radar.header.box if cloud.boundary_box else None,
         )
 
 

@@ -29,6 +29,9 @@ class Cfar(NamedTuple):
     threshold_db: float
 
 
+NO_CFAR = Cfar(CASO, 8, 4, False, 15.0)  # along range, where nothing sets it
+
+
 class Demo(NamedTuple):
     """What tells the firmware of one out-of-box demo from another's.
 
@@ -51,7 +54,7 @@ DEMO_OF_SDK_1 = Demo()
 
 @dataclass(frozen=True)
 class Detection:
-    """Detection settings of a .cfg.
+    """Settings of the detection of points: those of a .cfg, or what holds without one.
 
     Attributes:
         along_range: CFAR along range.
@@ -70,7 +73,7 @@ class Detection:
         demo: What the firmware does that no line of the .cfg sets.
     """
 
-    along_range: Cfar
+    along_range: Cfar = NO_CFAR
     along_doppler: Cfar | None = None
     grouping: tuple[bool, bool] = (False, False)
     first_bin: int = 0

@@ -1,4 +1,4 @@
-"""Chirps, frames and samples of a TI radar, whichever file says them."""
+"""Chirps, frames and samples of a radar that sends frames, whichever file says them."""
 
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -78,7 +78,9 @@ class ChirpProfile:
 
 @dataclass(frozen=True)
 class FrameHeader:
-    """What a TI radar sends, and the samples that it takes: all that a raw capture tells.
+    """What a radar sends in frames, and the samples that it takes: all that a raw capture tells.
+
+    A board of TI, whose file says more, has a header of its own (`ti_cfg.BoardHeader`).
 
     Attributes:
         profile: Ramp and samples of every chirp.
@@ -88,11 +90,11 @@ class FrameHeader:
         period_s: Time from frame to frame, s.
         receivers: Numbers of the receivers that are on, from 0 on.
         sampling: Kind of the samples.
+        loop_s: Time from loop to loop, s.
         adc_bits: Number of bits of a sample.
         bpm: Places in the loop of the chirps that have the sum and the difference of two
             transmitters; None where transmitters take turns.
         averaged: Number of chirps in a row of which one sample is the mean.
-        loop_s: Time from loop to loop, s.
         subframe: Number of the subframe that these are the chirps of, from 0 on.
         subframes: Number of subframes of a frame.
         delay_s: Time from the start of a frame to that of the subframe, s.
@@ -105,13 +107,36 @@ class FrameHeader:
     period_s: float
     receivers: tuple[int, ...]
     sampling: Sampling
-    adc_bits: int
-    bpm: tuple[int, int] | None
-    averaged: int
     loop_s: float
+    adc_bits: int = field(default=16, kw_only=True)
+    bpm: tuple[int, int] | None = field(default=None, kw_only=True)
+    averaged: int = field(default=1, kw_only=True)
     subframe: int = field(default=0, kw_only=True)
     subframes: int = field(default=1, kw_only=True)
     delay_s: float = field(default=0.0, kw_only=True)
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Numbers of the transmitters in their order within a loop, from 0 on.
+
+        Of two that send together the lower takes the place of their sum.
+        """
+        order = [mask.bit_length() - 1 for mask in self.masks]
+        if self.bpm is not None:
+            lower, higher = transmitters_of(self.masks[self.bpm[0]])
+            order[self.bpm[0]], order[self.bpm[1]] = lower, higher
+        return tuple(order)
+
+    @property
+    def antennas(self) -> list[tuple[int, int]]:
+        """Transmitter and receiver of each virtual element, from 0 on."""
+        return [(t, r) for t in self.order for r in self.receivers]
+
+    @property
+    def frames_apart(self) -> bool:
+        """Whether there is time between the last chirp of a frame and the next frame."""
+        chirps_s = self.loops * self.loop_s
+        return abs(self.period_s - chirps_s) >= 1e-9 * self.period_s
 
     @property
     def start_hz(self) -> float:
@@ -132,6 +157,16 @@ class FrameHeader:
     def fastest_mps(self) -> float:
         """Radial speed up to which Doppler is unambiguous, c/(4 f_c loop), m/s."""
         return SPEED_OF_LIGHT / (4 * self.centre_hz * self.loop_s)
+
+    def doppler_step_mps(self, carrier_hz: float | None = None) -> float:
+        """Spacing of the Doppler bins, c/(2 f loop N_D), m/s.
+
+        Args:
+            carrier_hz: Frequency f that speeds refer to, Hz; None for f_c, the middle of the
+                sampled band, which is the one that is right.
+        """
+        doppler_bins = 1 << (self.loops - 1).bit_length()
+        return SPEED_OF_LIGHT / (2 * (carrier_hz or self.centre_hz) * self.loop_s * doppler_bins)
 
     @property
     def slope_hz(self) -> float:
@@ -171,6 +206,11 @@ class FrameHeader:
         return SPEED_OF_LIGHT * self.adc_rate_hz / (2 * share * self.slope_hz)
 
     @property
+    def range_step_m(self) -> float:
+        """Spacing of the range bins, c fs/(2 K N_FFT), m."""
+        return self.farthest_m / self.bins
+
+    @property
     def bandwidth_hz(self) -> float:
         """Frequency swept while the samples are taken, Hz."""
         return self.slope_hz * self.samples / self.adc_rate_hz
@@ -179,6 +219,11 @@ class FrameHeader:
     def prf_hz(self) -> float:
         """Chirps of one transmitter per second, within a frame."""
         return 1 / self.loop_s
+
+
+def transmitters_of(mask: int) -> tuple[int, ...]:
+    """Numbers of the transmitters of a mask, from 0 on."""
+    return tuple(n for n in range(mask.bit_length()) if mask >> n & 1)
 
 
 @dataclass(frozen=True)

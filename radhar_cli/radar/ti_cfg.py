@@ -27,7 +27,6 @@ from radhar_cli.radar.ti_commands import (
 from radhar_cli.radar.ti_detection import read_detection
 from radhar_cli.radar.ti_elements import (
     CORRECTIONS,
-    Antennas,
     FileElements,
     read_rows_and_columns,
 )
@@ -119,9 +118,11 @@ class BoardPose:
     tilt_deg: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class BoardHeader(FrameHeader):
     """What a .cfg says of a board that is simulated, whichever device it runs on.
+
+    That is more than its frames: how its firmware finds points, and where the board stands.
 
     Attributes:
         family: Software that the file is for.
@@ -160,19 +161,6 @@ class BoardHeader(FrameHeader):
         return "sdk3" if self.family in (Family.SDK_3, Family.MCU_PLUS) else "sdk1"
 
     @property
-    def order(self) -> tuple[int, ...]:
-        """Numbers of the transmitters in their order within a loop, from 0 on.
-
-        Of two that send together the lower takes the place of their sum.
-        """
-        return order_of(self)
-
-    @property
-    def antennas(self) -> Antennas:
-        """Transmitter and receiver of each virtual element, from 0 on."""
-        return antennas_of(self)
-
-    @property
     def elements(self) -> FileElements:
         """Elements that the detection of the file takes the board for, and factors of its feeds.
 
@@ -194,12 +182,6 @@ class BoardHeader(FrameHeader):
         if not corrections and self.firmware is not None:
             corrections = (1,) * len(self.antennas)
         return replace(self.grid, phases=corrections, of_phases=(CORRECTIONS,))
-
-    @property
-    def frames_apart(self) -> bool:
-        """Whether there is time between the last chirp of a frame and the next frame."""
-        chirps_s = self.loops * self.loop_s
-        return abs(self.period_s - chirps_s) >= 1e-9 * self.period_s
 
 
 @lru_cache(maxsize=16)
@@ -245,7 +227,7 @@ def parse_ti_cfg(
         box=_read_box(lines.with_effect(Effect.BOX)),
         grid=read_rows_and_columns(
             {line.name: line for line in lines.with_effect(Effect.ELEMENTS)},
-            antennas_of(header),
+            header.antennas,
             family,
         ),
         unknown=tuple(dict.fromkeys(line.name[:40] for line in lines.lines if not line.command)),
@@ -316,33 +298,10 @@ def make_frame_header(
         period_s=timing.period_ms * 1e-3,
         receivers=tuple(n for n in range(4) if receiver_mask >> n & 1),
         sampling=sampling,
+        loop_s=turns * profile.slot_s,
         adc_bits=adc_bits,
         bpm=bpm,
-        averaged=1,
-        loop_s=turns * profile.slot_s,
     )
-
-
-def order_of(header: FrameHeader) -> tuple[int, ...]:
-    """Numbers of the transmitters in their order within a loop, from 0 on.
-
-    Of two that send together the lower takes the place of their sum.
-    """
-    order = [mask.bit_length() - 1 for mask in header.masks]
-    if header.bpm is not None:
-        lower, higher = transmitters_of(header.masks[header.bpm[0]])
-        order[header.bpm[0]], order[header.bpm[1]] = lower, higher
-    return tuple(order)
-
-
-def antennas_of(header: FrameHeader) -> Antennas:
-    """Transmitter and receiver of each virtual element, from 0 on."""
-    return [(t, r) for t in order_of(header) for r in header.receivers]
-
-
-def transmitters_of(mask: int) -> tuple[int, ...]:
-    """Numbers of the transmitters of a mask, from 0 on."""
-    return tuple(n for n in range(mask.bit_length()) if mask >> n & 1)
 
 
 def count_turns(masks: Sequence[Hashable]) -> int:

@@ -4,11 +4,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TypeAlias
 
-from radhar_cli.radar.detection import CASO, Cfar, Detection, demo_of_sdk3, ti_threshold_db
+from radhar_cli.radar.detection import Cfar, Detection, demo_of_sdk3, ti_threshold_db
 from radhar_cli.radar.ti_commands import CfgLine, lines_of_detection
 
 Numbers: TypeAlias = Mapping[str, float]
-NO_CFAR = Cfar(CASO, 8, 4, False, 15.0)  # along range, where no line sets it
 
 
 def read_detection(
@@ -25,7 +24,7 @@ def read_detection(
     Raises:
         CaptureError: A line cannot be read.
     """
-    detection = Detection(along_range=NO_CFAR)
+    detection = Detection()
     for line in lines_of_detection(lines, subframe):
         numbers = line.numbers
         if line.name == "cfarCfg" and "thresholdScale" in numbers:

@@ -60,10 +60,9 @@ def read_l_sdk(lines: Sequence[CfgLine], where: str, device: str | None) -> Fram
         period_s=frame.numbers["framePeriodicity"] * 1e-3,
         receivers=receivers,
         sampling=Sampling.REAL,
-        adc_bits=16,
+        loop_s=loop_s,
         bpm=bpm,
         averaged=averaged,
-        loop_s=loop_s,
     )
 
 

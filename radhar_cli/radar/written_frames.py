@@ -1,16 +1,9 @@
-"""Frames of a radar by its data sheet's numbers, as the header of a board that sends them."""
+"""Frames of a radar by its data sheet's numbers."""
 
 from dataclasses import dataclass
 
 from radhar_cli.numerics.rounding import half_up
-from radhar_cli.radar.detection import Detection
-from radhar_cli.radar.frame_header import ChirpProfile, Sampling
-from radhar_cli.radar.ti_cfg import BoardHeader
-from radhar_cli.radar.ti_detection import NO_CFAR
-from radhar_cli.radar.ti_elements import FileElements
-from radhar_cli.radar.ti_family import Family
-
-ADC_BITS = 16
+from radhar_cli.radar.frame_header import ChirpProfile, FrameHeader, Sampling
 
 
 @dataclass(frozen=True)
@@ -52,9 +45,9 @@ class WrittenFrames:
         return half_up(self.adc_rate_hz, self.chirp_s)
 
     @property
-    def header(self) -> BoardHeader:
-        """Header of a board that sends these frames and finds no points by itself."""
-        return BoardHeader(
+    def header(self) -> FrameHeader:
+        """Header of these frames."""
+        return FrameHeader(
             profile=self._profile,
             masks=tuple(1 << n for n in range(self.transmitters)),
             loops=self.chirps,
@@ -62,20 +55,7 @@ class WrittenFrames:
             period_s=self.busy_s if self.period_s is None else self.period_s,
             receivers=tuple(range(self.receivers)),
             sampling=Sampling.REAL if self.is_real else Sampling.COMPLEX,
-            adc_bits=ADC_BITS,
-            bpm=None,
-            averaged=1,
             loop_s=self.transmitters * self.interval_s,
-            family=Family.ANY,
-            detection=Detection(along_range=NO_CFAR, remove_mean=True),
-            has_cfar=False,
-            people=None,
-            missing=(),
-            pose=None,
-            box=None,
-            grid=FileElements(),
-            unknown=(),
-            not_simulated=(),
         )
 
     @property

@@ -38,10 +38,11 @@ def config_warnings(config: Config) -> list[str]:
 def warnings_of_signal(config: Config) -> list[str]:
     """Say what aliases, and whether maps are noise alone, whatever keys have no effect."""
     radar = config.radar
-    header_lines = _header_warnings(config, radar) if isinstance(radar, ArrayRadar) else ()
     return [
         *tone_warnings(config),
-        *header_lines,
+        *(_unknown_commands(radar) if isinstance(radar, BoardRadar) else ()),
+        *(_window_warnings(config, radar) if isinstance(radar, ArrayRadar) else ()),
+        *(_header_warnings(config, radar) if isinstance(radar, BoardRadar) else ()),
         *noise_alone(config),
         *_folding_warnings(config),
         *_loose_tolerance(config),
@@ -59,14 +60,19 @@ def _loose_tolerance(config: Config) -> Iterator[str]:
         )
 
 
-def _header_warnings(config: Config, radar: ArrayRadar) -> Iterator[str]:
-    """Say which lines of a .cfg have no effect, and which key has none because of frames."""
+def _unknown_commands(radar: BoardRadar) -> Iterator[str]:
+    """Say which commands of a .cfg are not known."""
     header = radar.header
     if header.unknown:
         verb = "is not known and has" if len(header.unknown) == 1 else "are not known and have"
         hidden = len(header.unknown) - MAX_COMMANDS
         names = ", ".join(header.unknown[:MAX_COMMANDS]) + f" and {hidden} more" * (hidden > 0)
         yield f"radar.cfg: {names} {verb} no effect"
+
+
+def _window_warnings(config: Config, radar: ArrayRadar) -> Iterator[str]:
+    """Say that a window that is longer than the chirps of a frame is no longer than these."""
+    header = radar.header
     frame_s = header.loops * len(header.order) * header.slot_s
     window_s = config.processing.window_s if _gives_window(config) else None
     if window_s is not None and window_s > frame_s:
@@ -74,8 +80,11 @@ def _header_warnings(config: Config, radar: ArrayRadar) -> Iterator[str]:
             f"processing.window_s has no effect beyond the {frame_s:.3g} s of a frame's chirps "
             f"({radar.named}): it is {window_s:g} s"
         )
-    if not isinstance(radar, BoardRadar):
-        return
+
+
+def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
+    """Say which lines of a .cfg have no effect, or another one than on the board."""
+    header = radar.header
     if header.not_simulated:
         names = ", ".join(header.not_simulated)
         yield f"radar.cfg: {names}: what is set there is not simulated"

@@ -44,7 +44,8 @@ def test_its_comment_says_what_it_is(radar: BuiltInRadar) -> None:
     assert radar.device in text
     assert f"{radar.frames_per_s:.3g} frames a second" in text
     assert f"to {radar.header.farthest_m:.1f} m" in text or (
-        f"to {radar.header.farthest_m:.3g} m in steps of {100 * radar.range_step_m:.2g} cm" in text
+        f"to {radar.header.farthest_m:.3g} m in steps of {100 * radar.header.range_step_m:.2g} cm"
+        in text
     )
     assert radar.header.farthest_m > 6.5  # somebody at 6 m is within
 

@@ -150,6 +150,7 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
         yield Problem("radar.cfg", "chirpCfg, channelCfg", right)
         return
     yield from _frame_problems(c, radar)
+    yield from _detection_problems(c, radar)
     yield from _output_problems_of_board(c)
     yield from _missing_on_board(c)
 
@@ -185,6 +186,7 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
         yield Problem("radar.frame.period_s", radar.frame.period_s, right)
         return
     yield from _frame_problems(c, radar)
+    yield from _firmware_problems(c, radar)
     yield from _output_problems_of_board(c)
     yield from _missing_on_board(c)
 
@@ -206,7 +208,7 @@ def _place_problems(radar: FramesRadar) -> Iterator[Problem]:
 
 
 def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
-    """Find what does not fit frames: durations, clutter, detection."""
+    """Find what does not fit frames: durations, clutter."""
     clutter, board = c.processing.clutter, radar.header
     if support(c.duration_s)[0] < board.period_s:
         frame = show_beside(board.period_s, support(c.duration_s)[0])
@@ -225,19 +227,35 @@ def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
     if clutter not in ("mean", "none"):
         right = f"should be mean (of each frame) or none with {radar.named}"
         yield Problem("processing.clutter", clutter, right)
+
+
+def _detection_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
+    """Find what `cloud` asks for and the .cfg of a board does not have."""
+    board, chain = radar.header, c.cloud.chain
     if c.cloud.boundary_box and board.box is None:
-        right = f"should be false: {radar.named} has no boundaryBox"
-        yield Problem("cloud.boundary_box", True, right)
-    firmware, chain = board.firmware, c.cloud.chain
-    if firmware is None and chain != "best":
+        yield _boundary_problem(radar)
+    if board.firmware is None and chain != "best":
         missing = (*board.missing, "cfarCfg is missing")[0]
         if chain in NEEDED_COMMANDS and not board.missing:
             missing = f"{NEEDED_COMMANDS[chain]} are missing"
-        why = f"radar.cfg: {missing}" if isinstance(radar, BoardRadar) else "no firmware is known"
-        yield Problem("cloud.chain", chain, f"should be best: {why}")
-    elif chain not in ("best", "board", firmware):
-        right = f"should be {firmware} or best: radar.cfg has the commands of that firmware"
+        yield Problem("cloud.chain", chain, f"should be best: radar.cfg: {missing}")
+    elif chain not in ("best", "board", board.firmware):
+        right = f"should be {board.firmware} or best: radar.cfg has the commands of that firmware"
         yield Problem("cloud.chain", chain, right)
+
+
+def _firmware_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
+    """Find what `cloud` asks for and no radar has without the file of its firmware."""
+    if c.cloud.boundary_box:
+        yield _boundary_problem(radar)
+    if c.cloud.chain != "best":
+        yield Problem("cloud.chain", c.cloud.chain, "should be best: no firmware is known")
+
+
+def _boundary_problem(radar: ArrayRadar) -> Problem:
+    """Say that a radar has no box of the room that points could be cropped to."""
+    right = f"should be false: {radar.named} has no boundaryBox"
+    return Problem("cloud.boundary_box", True, right)
 
 
 def _output_problems_of_board(c: Request) -> Iterator[Problem]:

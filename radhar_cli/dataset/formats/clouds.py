@@ -89,7 +89,7 @@ def firmware_of(data: Dataset) -> Firmware | None:
     config = data.config
     if not isinstance(config, Config) or not isinstance(config.radar, ArrayRadar):
         return None
-    return None if config.cloud.chain == "best" else config.radar.header.firmware
+    return None if config.cloud.chain == "best" else config.radar.firmware
 
 
 def clouds_of(data: Dataset, row: int) -> Clouds:

@@ -7,13 +7,16 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.assembly.radar import board_of
-from radhar_cli.capture.chain import part_of
+from radhar_cli.capture.chain import even_columns, part_of
 from radhar_cli.capture.content import Beat, describe_difference
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.maps import FRAME_MAPS
+from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import CaptureError
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.products.images import scale_of
 from radhar_cli.products.plan import plan
 from radhar_cli.products.run import run
 from radhar_cli.products.table import products
@@ -22,7 +25,9 @@ from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.scene import fixed_radar
 
 # {map of a board: products of its recording that are behind it}
-OF_FRAMES = {name: (name,) for name in (*FRAME_MAPS, "cube")} | {"points": ("cloud",)}
+OF_FRAMES = {name: (name,) for name in (*ANGLE_TIME_MAPS, *FRAME_MAPS, "cube")} | {
+    "points": ("cloud",)
+}
 
 
 def frames_of_recording(
@@ -60,8 +65,19 @@ def frames_of_recording(
     for frame, pulse in enumerate(starts.tolist()):
         beat = recording.beat(pulse, pulse + board.loops).transpose(2, 0, 1)
         cube[frame] = beat.real if board.is_real else beat
-    inputs = {"cube": cube, "board": board}
-    return run(plan(products(config), names, inputs), inputs).products, board
+    inputs = {"cube": cube, "board": board, "image_scale": scale_of(config)}
+    products_of_frames = run(plan(products(config), names, inputs), inputs).products
+    middles = part.segments.times(part.segments.first[is_whole]) + board.loops * board.loop / 2
+    results = {
+        name: _at_times(product, middles) if isinstance(product, PowerMap) else product
+        for name, product in products_of_frames.items()
+    }
+    return results, board
+
+
+def _at_times(power_map: PowerMap, times: Float) -> PowerMap:
+    """Give a map of frames the times of the recording, where frames may be missing."""
+    return even_columns(replace(power_map, columns=replace(power_map.columns, values=times)))
 
 
 def _board(recording: Recording, config: Config) -> Board:

@@ -4,7 +4,7 @@ No difference and no window crosses a gap. The columns of a map are then put on 
 times. Powers of several receivers are added up.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -54,6 +54,14 @@ class Maps:
     # {product: what a board's frames gave}, and the board, where there is one
     frames: dict[str, Any] = field(default_factory=dict)
     board: Board | None = None
+
+    def add_products_of_frames(self, products: Mapping[str, Any]) -> None:
+        """Add what a board's frames gave: maps over time to the maps, all else to the frames."""
+        for name, product in products.items():
+            if isinstance(product, PowerMap):
+                self.maps[name] = product
+            else:
+                self.frames[name] = product
 
 
 @dataclass(frozen=True)
@@ -168,7 +176,7 @@ def maps_of(
         else:
             inputs["torso_track"] = track or StandingTrack(float(signal.ranges.mean()))
         results = process(signal, config, doppler, canceller=canceller, **inputs)
-        maps |= {name: _even(results[name]) for name in doppler}
+        maps |= {name: even_columns(results[name]) for name in doppler}
     return Maps({name: maps[name] for name in names}, track, signal.f0, list(dict.fromkeys(notes)))
 
 
@@ -365,7 +373,7 @@ def _windows(
     return signal, tuple(Frames(length, min(one.hop, length)) for one in (configured, fine))
 
 
-def _even(power_map: PowerMap) -> PowerMap:
+def even_columns(power_map: PowerMap) -> PowerMap:
     """Put a map of stretches on an even grid of times; where no column is near, the power is 0."""
     t = power_map.columns.values
     step = float(np.median(np.diff(t))) if t.size > 1 else 1.0

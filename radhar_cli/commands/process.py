@@ -84,7 +84,8 @@ def process(
         validated(ProcessedConfig, document, str(config), *loaded._places)
         results = maps_of(opened, fixed, signals, start, stop, receiver)
         if frames:
-            results.frames, results.board = frames_of_recording(opened, fixed, frames, start, stop)
+            products, results.board = frames_of_recording(opened, fixed, frames, start, stop)
+            results.add_products_of_frames(products)
     if gaps:
         tell(f"{counted(gaps, 'gap')}: the stretches between are processed separately")
     for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *results.notes]:

@@ -1,6 +1,7 @@
 """Conditions under which a key acts that several sections share."""
 
 from radhar_cli.config.annotations import OfRadar, OnlyMaps, Unless
+from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, RANGE
 from radhar_cli.processing.map_kind import DOPPLER_TIME_KINDS, MAP_KINDS, RTM, Transform
 
@@ -12,7 +13,11 @@ EVEN = Unless("radar.frames_apart", "the pauses between frames (radar.cfg or rad
 RANGE_TIME = OnlyMaps((str(RTM),))
 SIGNAL_MAPS = OnlyMaps(tuple(MAP_KINDS))
 OVER_RANGE = OnlyMaps(
-    (str(RTM), *(kind.name for kind in FRAME_MAP_KINDS.values() if kind.rows is RANGE))
+    (
+        str(RTM),
+        *(kind.name for kind in FRAME_MAP_KINDS.values() if kind.rows is RANGE),
+        *ANGLE_TIME_KINDS,
+    )
 )
 SPECTRA = OnlyMaps(tuple(map(str, DOPPLER_TIME_KINDS)))
 STFTS, FSSTS = (

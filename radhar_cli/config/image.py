@@ -78,8 +78,8 @@ class ImageConfig(Section):
         require(lambda value: 0 <= value[0] < value[1], "should be [near, far], 0 <= near < far"),
         OVER_RANGE,
     ] = None
-    """Ranges [near, far] at the edges of images of rtm and of a board's frame maps; null is where
-    people can be (model: human), or all."""
+    """Ranges [near, far] at the edges of images of rtm and of a board's frame maps, and over which
+    angle-time maps sum; null is where people can be (model: human), or all."""
 
     @field_validator("colour_map")
     @classmethod

@@ -6,16 +6,24 @@ from pydantic import AfterValidator
 
 from radhar_cli.config.number import value_error
 from radhar_cli.extensions import is_known, own_products
+from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import MAP_KINDS
 
 MAP_NAMES = tuple(MAP_KINDS)
+
+# Maps over time that frames of an array make.
+ANGLE_TIME_MAPS = tuple(ANGLE_TIME_KINDS)
 
 # Maps of a board, frame by frame: data sets hold them as arrays, and sheets of frames as images.
 MIN_LOOPS = 4  # of a frame: of 2 or fewer, a Hann window keeps one
 
 
 FRAME_MAPS = (*FRAME_MAP_KINDS, "points")
+
+
+# Every map that radhar makes, in the order of data sets.
+KNOWN_MAPS = (*MAP_NAMES, *ANGLE_TIME_MAPS, *FRAME_MAPS)
 
 
 # What comes with the points, and with any of these maps.
@@ -26,8 +34,8 @@ OF_FRAMES = ("skeleton", "skeleton_velocity")
 
 
 def _known_map(name: str) -> str:
-    if name not in (*MAP_NAMES, *FRAME_MAPS) and not is_known(name):
-        names = (*MAP_NAMES, *FRAME_MAPS, *(product.name for product in own_products()))
+    if name not in KNOWN_MAPS and not is_known(name):
+        names = (*KNOWN_MAPS, *(product.name for product in own_products()))
         right = " or ".join(filter(None, (", ".join(map(repr, names[:-1])), repr(names[-1]))))
         raise value_error(f"should be {right}")
     return name
@@ -41,9 +49,8 @@ def _maps_in_order(value: tuple[str, ...]) -> tuple[str, ...]:
         raise value_error("should name at least 1 map")
     if len(set(value)) != len(value):
         raise value_error("should name each map once")
-    known = (*MAP_NAMES, *FRAME_MAPS)
-    extensions = [name for name in value if name not in known]
-    return (*sorted(set(value) - set(extensions), key=known.index), *extensions)
+    extensions = [name for name in value if name not in KNOWN_MAPS]
+    return (*sorted(set(value) - set(extensions), key=KNOWN_MAPS.index), *extensions)
 
 
 Maps = Annotated[tuple[MapName, ...], AfterValidator(_maps_in_order)]

@@ -1,6 +1,6 @@
 """Which maps the radar of a config makes, and why not the others."""
 
-from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
+from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS, KNOWN_MAPS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.processing.map_kind import MAP_KINDS
@@ -12,7 +12,7 @@ def possible_maps(config: Request) -> tuple[str, ...]:
     Without those of a board whose frames are shorter than the filter of the denoised maps.
     """
     radar = config.radar
-    names = [*MAP_NAMES, *FRAME_MAPS, "cube"]
+    names = [*KNOWN_MAPS, "cube"]
     if isinstance(radar, ArrayRadar) and config.processing.savgol.frame > radar.header.loops:
         denoised = {name for name, kind in MAP_KINDS.items() if kind.treatment.denoised}
         names = [name for name in names if name not in denoised]
@@ -22,7 +22,7 @@ def possible_maps(config: Request) -> tuple[str, ...]:
 def why_no_map(config: AnyRequest, name: str) -> str | None:
     """Why the radar of a config cannot make a map of that name, or the cube; None if it can."""
     radar = config.radar
-    if name in (*FRAME_MAPS, "cube"):
+    if name in (*ANGLE_TIME_MAPS, *FRAME_MAPS, "cube"):
         why = radar.why_no_frames(name)
         if why is None and name == "points" and isinstance(radar, ArrayRadar):
             chain = config.cloud.chain if isinstance(config, Request) else "best"

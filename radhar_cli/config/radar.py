@@ -33,6 +33,7 @@ from radhar_cli.config.number import (
 )
 from radhar_cli.config.section import Filled, Flag, N, Section, VectorOf, default_draw
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import MapKind, Transform
 from radhar_cli.radar.board import (
@@ -429,7 +430,8 @@ class ArrayRadar(_Emission[N], Generic[N]):
                 f"the {self._loops} of a frame ({self.chirps_key}) show no Doppler; "
                 f"{MIN_LOOPS} do, or 1, whose Doppler is 0"
             )
-        axis = None if kind is None else kind.array_axis
+        of_angles = ANGLE_TIME_KINDS.get(name, kind)
+        axis = None if of_angles is None else of_angles.array_axis
         if axis is None:
             return None
         roll: Number = self.roll_deg  # type: ignore[assignment]  # of a config or a scene

@@ -54,14 +54,19 @@ _UNMEASURED = (
     *("squat", "reach_deg", "free_arm", "kneel_s", "look_deg", "recline_from"),
     *("step_asymmetry", "speed_ripple", "speed_ripple_asymmetry"),
 )
+_DOPPLER_TIME = (
+    *("spectrogram", "micro_doppler", "microdoppler"),
+    *("doppler_time", "time_doppler", "dtm"),
+)
 ABSENT = {
     **dict.fromkeys(("receivers", "transmitters", "channels", "antennas", "mimo"), _CHANNELS),
     **dict.fromkeys(("persons", "targets", "subjects"), _PEOPLE),
     **dict.fromkeys(("point_cloud", "pointcloud", "cloud"), "is called points"),
     **dict.fromkeys(("range_angle", "range_azimuth_map"), "is called range_azimuth"),
-    "doppler_angle": "is not there: boards have range_doppler and range_azimuth",
-    **dict.fromkeys(("spectrogram", "micro_doppler", "doppler_time"), "is called stft"),
-    "range_time": "is called rtm",
+    **dict.fromkeys(("doppler_angle", "angle_doppler"), "is called doppler_azimuth"),
+    **dict.fromkeys(("angle_time", "time_angle", "range_angle_time"), "is called azimuth_time"),
+    **dict.fromkeys(_DOPPLER_TIME, "is called stft"),
+    **dict.fromkeys(("range_time", "time_range"), "is called rtm"),
     "rise_overlap": "is now a dwell_s below 0",
     **dict.fromkeys(("stride_jitter", "width_jitter_m"), "now follows speed_variation"),
     **dict.fromkeys(_UNMEASURED, "is not there any more: nothing measured depends on it"),

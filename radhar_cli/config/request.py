@@ -131,7 +131,8 @@ class Request(Section):
     maps: Maps = ("stft",)
     """Maps of the data set: `rtm`, `stft`, `fsst`, the latter two also with `_denoised`,
     `_compensated`, `_compensated_denoised`; of boards also `range_doppler`, `range_azimuth`,
-    `range_elevation`, `doppler_azimuth`, `doppler_elevation`, `points`."""
+    `range_elevation`, `doppler_azimuth`, `doppler_elevation`, `azimuth_time`, `elevation_time`,
+    `points`."""
     split: SplitConfig = defaults_of(SplitConfig)
     engine: EngineConfig = defaults_of(EngineConfig)
     output: OutputConfig = defaults_of(OutputConfig)

@@ -14,7 +14,8 @@ import numpy as np
 from radhar_cli.activities.activity import Activity
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.numerics.arrays import Index
-from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
+from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
+from radhar_cli.processing.frame_maps import ANGLES, FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import MAP_KINDS
 
 # Of dataset.h5; 3: labels are 0 to C - 1 in the order of the config.
@@ -101,6 +102,9 @@ def row_axis(name: str) -> tuple[str, str]:
     if name in FRAME_MAP_KINDS:
         rows = FRAME_MAP_KINDS[name].rows
         return rows.quantity, rows.unit
+    if name in ANGLE_TIME_KINDS:
+        angle = ANGLES[ANGLE_TIME_KINDS[name].array_axis]
+        return angle.quantity, angle.unit
     if name not in MAP_KINDS:
         return "rows of the product", "1"
     return ("Doppler frequency", "Hz") if MAP_KINDS[name].is_doppler_time else ("range", "m")
@@ -113,7 +117,8 @@ def column_axis(name: str) -> tuple[str, str]:
     if name in FRAME_MAP_KINDS:
         columns = FRAME_MAP_KINDS[name].columns
         return columns.quantity, columns.unit
-    return TIME if name in MAP_KINDS else ("columns of the product", "1")
+    is_over_time = name in MAP_KINDS or name in ANGLE_TIME_KINDS
+    return TIME if is_over_time else ("columns of the product", "1")
 
 
 def row_bytes(config: AnyConfig) -> int:

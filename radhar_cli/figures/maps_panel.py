@@ -14,6 +14,7 @@ from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.map_kind import treatment_of
 from radhar_cli.processing.power_map import PowerMap
@@ -31,6 +32,7 @@ TITLES: Mapping[str, str] = {
     "fsst_denoised": "FSST, denoised",
     "fsst_compensated": "FSST, compensated",
     "fsst_compensated_denoised": "FSST, compensated, denoised",
+    **{kind.name: f"{kind.title} map" for kind in ANGLE_TIME_KINDS.values()},
 }
 ONE_ROW = 4
 MOST_COLUMNS = 4096  # of a map that is drawn, ten times the pixels of a panel

@@ -220,13 +220,13 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     sin^2(pi (i + 1)/(n + 1)); of several rows as long, powers are averaged. Axis 0 is azimuth,
     positive left, 1 elevation, positive up.
     """
-    beams = _beams_of_rows(board, axis)
-    level = _level_of_sum(hann(board.loops), board.n_doppler)
+    beams = beams_of_rows(board, axis)
+    level = level_of_sum(hann(board.loops), board.n_doppler)
     power = np.zeros((len(cube), board.n_bins, angles_of_beams(board).size), np.float32)
     for frames, x in spectra(cube, board, remove_mean):
         x = without_turns(x, board)
         for row, pairs in beams:
-            power[frames] += _powers_of_beams(x[:, :, row].transpose(0, 3, 2, 1), pairs)
+            power[frames] += powers_of_beams(x[:, :, row].transpose(0, 3, 2, 1), pairs)
     np.maximum(power, 0, out=power)  # of rounding
     power /= level * len(beams)
     return FrameMaps(power, RANGE.of(board), ANGLES[axis].of(board), board.middles)
@@ -239,20 +239,20 @@ def doppler_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> 
     summed and divided by what a steady echo in the middle of one leaves in all of them, so that it
     reads its power. Taper, rows and angles are those of `range_angle`.
     """
-    beams = _beams_of_rows(board, axis)
-    level = _level_of_sum(hann(board.samples), board.n_fft)
+    beams = beams_of_rows(board, axis)
+    level = level_of_sum(hann(board.samples), board.n_fft)
     power = np.zeros((len(cube), board.n_doppler, angles_of_beams(board).size), np.float32)
     order = ascending(board.n_doppler)
     for frames, x in spectra(cube, board, remove_mean):
         x = without_turns(x, board)[:, order]
         for row, pairs in beams:
-            power[frames] += _powers_of_beams(x[:, :, row], pairs)
+            power[frames] += powers_of_beams(x[:, :, row], pairs)
     np.maximum(power, 0, out=power)  # of rounding
     power /= level * len(beams)
     return FrameMaps(power, SPEED.of(board), ANGLES[axis].of(board), board.middles)
 
 
-def _beams_of_rows(board: Board, axis: int) -> list[tuple[list[int], Complex]]:
+def beams_of_rows(board: Board, axis: int) -> list[tuple[list[int], Complex]]:
     """Numbers of the n elements of each longest row, and weights of their covariances.
 
     The weights [angle, n n] are w_i w_k^* of the tapered steering vectors w, which make
@@ -269,12 +269,12 @@ def _beams_of_rows(board: Board, axis: int) -> list[tuple[list[int], Complex]]:
     return beams
 
 
-def _powers_of_beams(echo: Complex, pairs: Complex) -> Float:
+def powers_of_beams(echo: Complex, pairs: Complex) -> Float:
     """Powers [frame, cell, angle] of a row's echo [frame, cell, element, term], summed over terms.
 
     Args:
         echo: Spectra of the elements; terms are the bins that are summed.
-        pairs: Weights [angle, element element] of `_beams_of_rows`.
+        pairs: Weights [angle, element element] of `beams_of_rows`.
     """
     element = np.ascontiguousarray(echo)
     covariance = np.matmul(element, element.conj().swapaxes(2, 3))
@@ -283,7 +283,7 @@ def _powers_of_beams(echo: Complex, pairs: Complex) -> Float:
     return power
 
 
-def _level_of_sum(window: Float, bins: int) -> float:
+def level_of_sum(window: Float, bins: int) -> float:
     """Power that a steady echo of power 1 leaves in all bins of a windowed transform together."""
     return bins * float((window**2).sum() / window.sum() ** 2)
 

@@ -33,6 +33,7 @@ from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.randomness import NOISE, stream
+from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS, angle_time
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
 from radhar_cli.processing.cloud_limits import keep_in_box, keep_in_view
@@ -56,6 +57,7 @@ from radhar_cli.products.board_people import (
 )
 from radhar_cli.products.fallback import EchoAccuracy, Tolerance
 from radhar_cli.products.gated import gate_in_windows
+from radhar_cli.products.images import ImageForm, draw_map
 from radhar_cli.products.maps import image_name
 from radhar_cli.products.noise import noise_products
 from radhar_cli.products.plan import Product
@@ -143,6 +145,7 @@ def board_products(config: Config) -> Iterator[Product]:
     """Rows of the table of products that a config with `radar.cfg` has."""
     yield from _echo_rows(config)
     yield from _frame_rows(config)
+    yield from _angle_time_rows(config)
     yield from _people_rows()
     yield from _signal_rows(config)
     assert isinstance(config.radar, ArrayRadar)
@@ -229,6 +232,21 @@ def _frame_rows(config: Config) -> Iterator[Product]:
     yield Product("points_start", ("cloud",), starts_of, "first of each frame", is_array=True)
     sheet = partial(cloud_sheet, size=image.size_px)
     yield Product(image_name("points"), ("cloud",), sheet, "front views of frames")
+
+
+def _angle_time_rows(config: Config) -> Iterator[Product]:
+    """Rows of the maps of angles over time, and of their images."""
+    draw = partial(draw_map, form=ImageForm.of(config))
+    for kind in ANGLE_TIME_KINDS.values():
+        make = partial(
+            angle_time,
+            axis=kind.array_axis,
+            remove_mean=config.processing.clutter == "mean",
+            limits_m=config.image.range_limits_m,
+        )
+        does = f"{kind.title} map, powers summed over ranges and speeds"
+        yield Product(kind.name, ("cube", "board"), make, does, is_array=True)
+        yield Product(image_name(kind.name), (kind.name, "image_scale"), draw, "its image")
 
 
 def _people_rows() -> Iterator[Product]:

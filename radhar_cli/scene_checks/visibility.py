@@ -19,7 +19,7 @@ from radhar_cli.assembly.processing import frames_of
 from radhar_cli.assembly.radar import antennas_of, board_of, waveform_of
 from radhar_cli.assembly.room import wall_of
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.maps import FRAME_MAPS
+from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
@@ -101,8 +101,10 @@ def cell_gain_db(scene: Scene, name: str) -> float:
     if isinstance(scene.radar, ArrayRadar):
         board = board_of(scene.radar)
         channels = board.channels
-        if name in FRAME_MAPS:
-            is_of_angles = name in FRAME_MAP_KINDS and not FRAME_MAP_KINDS[name].shows_doppler
+        if name in (*ANGLE_TIME_MAPS, *FRAME_MAPS):
+            frame_map = FRAME_MAP_KINDS.get(name)
+            sums_speeds = frame_map is not None and not frame_map.shows_doppler
+            is_of_angles = sums_speeds or name in ANGLE_TIME_MAPS
             loops = 1.0 if is_of_angles else HANN * board.loops
             return 10 * log10(HANN * board.samples * loops * channels)
     w = waveform_of(scene)

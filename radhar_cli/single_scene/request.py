@@ -7,7 +7,7 @@ from typing import Literal
 from radhar_cli.activities.activity import MOVEMENTS, Activity, activity_named
 from radhar_cli.config.checks.signal import problems_of_maps
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
+from radhar_cli.config.maps import FRAME_MAPS, KNOWN_MAPS
 from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.reading import ABSENT
@@ -164,7 +164,7 @@ def map_names(chosen: list[str], config: Config) -> tuple[str, ...]:
     if [name.strip() for name in chosen] == [ALL]:
         return maps_of_radar(config)
     names = [name.strip() for name in chosen]
-    known = dict.fromkeys((*MAP_NAMES, *FRAMES, *config.maps))  # products of one's own, too
+    known = dict.fromkeys((*KNOWN_MAPS, *FRAMES, *config.maps))  # products of one's own, too
     for name in names:
         if name not in known:
             hint = did_you_mean(name, known, "there are " + ", ".join(known))

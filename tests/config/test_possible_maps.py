@@ -7,7 +7,7 @@ import pytest
 from helpers.boards import CFG
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
+from radhar_cli.config.maps import KNOWN_MAPS
 from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.reading import load_config
 from radhar_cli.errors import ConfigError
@@ -50,7 +50,7 @@ AT_FAULT = {
 @pytest.mark.parametrize("name", RADARS)
 def test_a_map_is_made_or_refused_in_a_line_that_lists_those_there_are(name: str) -> None:
     made = possible_maps(Config.model_validate(RADARS[name]))
-    for asked in (*MAP_NAMES, *FRAME_MAPS):
+    for asked in KNOWN_MAPS:
         document = RADARS[name] | {"maps": [asked]}
         if asked in made:
             assert Config.model_validate(document).maps == (asked,)

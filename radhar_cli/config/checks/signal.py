@@ -10,7 +10,7 @@ from radhar_cli.config.checks.smallest_waveform import (
     waveform_at,
     window_pulses,
 )
-from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES
+from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS, KNOWN_MAPS, MAP_NAMES
 from radhar_cli.config.number import support
 from radhar_cli.config.offered_maps import why_no_map
 from radhar_cli.config.radar import MIN_WINDOW, ArrayRadar
@@ -32,7 +32,7 @@ def map_problem(c: AnyRequest, names: Iterable[str]) -> Problem | None:
     reasons = {name: why for name in names if (why := why_no_map(c, name)) is not None}
     if not reasons:
         return None
-    possible = [name for name in (*MAP_NAMES, *FRAME_MAPS) if why_no_map(c, name) is None]
+    possible = [name for name in KNOWN_MAPS if why_no_map(c, name) is None]
     right = f"should be some of {', '.join(possible)}"
     return Problem("maps", list(reasons), f"{right}: {'; '.join(dict.fromkeys(reasons.values()))}")
 
@@ -67,7 +67,7 @@ def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
     if board:  # frames are cancelled, filtered and windowed one by one
         usable_pulses = board.header.loops
         pulses_meant = f"pulses of a frame, the loops of {board.named}"
-    doppler = [name for name in c.maps if name != "rtm" and name not in FRAME_MAPS]
+    doppler = [name for name in c.maps if name not in ("rtm", *ANGLE_TIME_MAPS, *FRAME_MAPS)]
     denoised = [n for n in doppler if n in MAP_KINDS and MAP_KINDS[n].treatment.denoised]
     duration_entry: tuple[str, object] = ("duration_s", c.duration_s)
     window_is_given = "window_s" in processing.model_fields_set and processing.window_s is not None
@@ -178,7 +178,7 @@ def _image_problems(c: AnyRequest) -> Iterator[Problem]:
         yield Problem("image.cfar.training", list(cfar.training), right)
     yield from _range_limit_problems(c)
     limits = c.image.doppler_limits_mps
-    if limits is None or not set(c.maps) - {"rtm", *FRAME_MAPS}:
+    if limits is None or not set(c.maps) - {"rtm", *ANGLE_TIME_MAPS, *FRAME_MAPS}:
         return
     shortest = waveform_at(c, *HIGHEST_F0)
     fastest = shortest.highest_speed

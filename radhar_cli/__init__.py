@@ -48,6 +48,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # for the completion of editors
     from radhar_cli.config import load_config as load_config
+    from radhar_cli.config import load_radars as load_radars
     from radhar_cli.dataset.on_demand import sample as sample
     from radhar_cli.dataset.reading import open_dataset as open_dataset
     from radhar_cli.learning.samples import Samples as Samples
@@ -60,6 +61,7 @@ __version__ = "0.1.0"
 
 _INTERFACE = {
     "load_config": "radhar_cli.config",
+    "load_radars": "radhar_cli.config",
     "simulate": "radhar_cli.single_scene.simulate",
     "open_dataset": "radhar_cli.dataset.reading",
     "sample": "radhar_cli.dataset.on_demand",

@@ -49,6 +49,9 @@ SCENE_KEYS = (
     "receiver",
     "image.cfar",
 )
+# Keys of what is a radar's own, where there are several.
+RADAR_KEYS = ("radar.", "snr_db", "receiver.", "image.cfar.")
+OTHER_RADARS = "other_radars"
 # Keys of what stays with a person whatever they do, and of what is not repeated exactly.
 PERSONAL, UNSTEADY = (
     tuple(key for key, key_mark in of_kind(Config, Mark) if key_mark is mark) for mark in Mark
@@ -117,6 +120,7 @@ class SeededDraw:
         attempt: Number of earlier draws of the person's motion that could not be used.
         subject: Number of a named person, whose personal numbers are drawn once; None without.
         person: Place in `people`, from 1 on; 0 for the sample's main person.
+        radar: Name of the radar where there are several, whose numbers are drawn one by one.
     """
 
     seed: int
@@ -125,6 +129,7 @@ class SeededDraw:
     attempt: int = 0
     subject: int | None = None
     person: int = 0
+    radar: str | None = None
 
     def number(self, key: str, number: Number) -> float:
         """Draw the number of a dotted key, by its quantile function."""
@@ -140,13 +145,27 @@ class SeededDraw:
 
     def _share(self, key: str) -> float:
         """Draw the share, 0 to 1, of a key's distribution that lies below its draw."""
-        name = EARLIER_KEYS.get(key, key)
+        name = _key_among_radars(EARLIER_KEYS.get(key, key), self.radar)
         if self.subject is not None and key in PERSONAL:
             return stream(self.seed, PERSON, self.subject, name=name).random()
         attempt = self.attempt if key.startswith(REDRAWN) else 0
         name = f"people.{self.person}.{name}" if self.person else name
         place = (self.activity.index, self.sample, attempt)
         return stream(self.seed, SCENE, *place, name=name).random()
+
+
+def _key_among_radars(key: str, radar: str | None) -> str:
+    """Key of a number of one of several radars, whichever of them a config is of.
+
+    Args:
+        key: dotted key in the config of a radar.
+        radar: name of that radar; None where there is one alone.
+    """
+    if key.startswith(f"{OTHER_RADARS}."):
+        return f"radars.{key.removeprefix(f'{OTHER_RADARS}.')}"
+    if radar is None or not key.startswith(RADAR_KEYS):
+        return key
+    return f"radars.{radar}.{key.removeprefix('radar.')}"
 
 
 @dataclass(frozen=True)
@@ -250,6 +269,17 @@ class Scene:
         return fixed_radar(self.config)
 
     @property
+    def of_each_radar(self) -> tuple["Scene", ...]:
+        """This scene as each of its radars has it, in the order of the alphabet of their names.
+
+        Of a radar alone it is the scene itself.
+        """
+        scenes = {str(self.config.radar_name): self}
+        for name in self.config.other_radars:
+            scenes[name] = replace(self, config=self.config.of_other_radar(name))
+        return tuple(scenes[name] for name in sorted(scenes))
+
+    @property
     def wall(self) -> WallConfig[float] | None:
         """Wall between radar and people; None in free space."""
         return cast(WallConfig[float] | None, self.config.wall)
@@ -328,7 +358,7 @@ def draw_scene(
             empty for none.
     """
     subject = subject_of(config, index)
-    draw = SeededDraw(config.seed, activity, index, attempt, subject)
+    draw = SeededDraw(config.seed, activity, index, attempt, subject, radar=config.radar_name)
     fixed = _draw_config(config, activity, draw, subject)
     if config.people:
         attempts = people_attempts or (0,) * len(config.people)
@@ -578,7 +608,8 @@ def _fixed_and_drawn(same: ByIdentity, activity: Activity) -> tuple[Config, dict
             drawn[key] = of_activity
         return nominal(of_activity)
 
-    sections = {key: each_number(at(config, key), key, fix) for key in SCENE_KEYS}
+    keys = (*SCENE_KEYS, OTHER_RADARS)
+    sections = {key: each_number(at(config, key), key, fix) for key in keys}
     if activity.slug != STREAM:  # whose activities are the classes of its labels
         sections["activities"] = (activity.slug,)
     return changed(config, sections), drawn

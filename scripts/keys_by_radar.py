@@ -215,6 +215,9 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "output.products": (["frames"], ["torso_track"]),
     "output.license": ("mit",),
     "recordings": ({},),
+    "radars": ({"other": {}},),
+    "radar_name": ("other",),
+    "other_radars": ({"other": {}},),
     "room.faces.floor": ("brick",),
 }
 

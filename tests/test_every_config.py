@@ -11,7 +11,7 @@ from helpers.command_line import ok
 from helpers.documents import PAGES, Block, blocks
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
 
-from radhar_cli.config import load_config
+from radhar_cli.config import load_radars
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIGS = sorted((ROOT / "configs").rglob("*.yaml"))
@@ -31,7 +31,7 @@ pytestmark = pytest.mark.slow
 
 def build(path: Path, folder: Path) -> None:
     """Build a config with a sample a class, or one of each person, and verify the data set."""
-    persons = load_config(path).split.subjects
+    persons = next(iter(load_radars(path).values())).split.subjects
     sets = ["--set", f"samples_per_class={persons or 1}"]
     if persons is None:
         sets += ["--set", "split={train: 1, validation: 0}"]

@@ -30,12 +30,15 @@ class Zone:
 
     Attributes:
         antennas: antennas of the radar.
+        looks_at: place before antennas without a pattern [2], m; None for antennas that look along
+            x.
         farthest: distance from the antennas, m, on average of the two.
         x: least and largest range, m.
         y: least and largest cross-range, m.
     """
 
     antennas: Antennas
+    looks_at: tuple[float, float] | None
     farthest: float
     x: tuple[float, float]
     y: tuple[float, float]
@@ -55,13 +58,19 @@ class Zone:
         reach = np.hypot(*(joints - torso[:, None])).max()
         distances = [np.hypot(body[0] - x, body[1] - y) for x, y, _ in self.antennas.places]
         misses.append(np.mean(distances, axis=0).max(axis=-1) + reach - self.farthest)
-        misses.append(NEAREST_M - distance_ahead(body, self.antennas).min(axis=-1))
+        ahead = distance_ahead(body, self.antennas, self.looks_at)
+        misses.append(NEAREST_M - ahead.min(axis=-1))
         worst: Float = np.max(misses, axis=0)
         return worst
 
 
-def zone_of(scene: Scene) -> Zone:
-    """Zone that a scene leaves for people, behind its wall and within its room."""
+def zone_of(scene: Scene, place: tuple[float, float]) -> Zone:
+    """Zone that the radar of a scene leaves for people, behind its wall and within its room.
+
+    Args:
+        scene: the scene.
+        place: place of a person (m), before which each of several radars is.
+    """
     wall, box, x, y = wall_of(scene), box_of(scene), (-inf, inf), (-inf, inf)
     farthest = waveform_of(scene).half_band_range - MARGIN_M
     if wall is not None:
@@ -73,15 +82,28 @@ def zone_of(scene: Scene) -> Zone:
     if box is not None:
         x = max(x[0], box.x[0] + MARGIN_M), box.x[1] - MARGIN_M
         y = box.y[0] + MARGIN_M, box.y[1] - MARGIN_M
-    return Zone(antennas_of(scene), farthest, x, y)
+    looks_at = place if scene.config.other_radars else None
+    return Zone(antennas_of(scene), looks_at, farthest, x, y)
 
 
-def distance_ahead(torso: Float, antennas: Antennas) -> Float:
+def distance_ahead(
+    torso: Float, antennas: Antennas, looks_at: tuple[float, float] | None = None
+) -> Float:
     """How far a torso [2 or 3, ...] is before the hindmost antenna [...], m.
 
     It is infinite where a radar looks down. Antennas without a pattern look along x.
+
+    Args:
+        torso: the torso, m.
+        antennas: the antennas.
+        looks_at: place on the ground (m) that antennas without a pattern look at instead.
     """
-    forward = np.array(antennas.aim.axes[0] if antennas.aim else (1.0, 0.0, 0.0))[:2]
+    forward = np.array((1.0, 0.0))
+    if antennas.aim is not None:
+        forward = np.array(antennas.aim.axes[0])[:2]
+    elif looks_at is not None:
+        forward = np.array(looks_at) - np.mean(antennas.places, axis=0)[:2]
+        forward = forward / max(float(np.hypot(*forward)), 1e-9)
     if np.hypot(*forward) < LOOKS_AHEAD:
         return np.full(torso.shape[1:], inf)
     hindmost = min(forward @ np.array(place)[:2] for place in antennas.places)
@@ -109,7 +131,8 @@ def start_of(person: Person, motion: Motion) -> tuple[float, float]:
     starts_of_instants = np.array([[x], [y]]) - torso[:, :: (count - 1) // (INSTANTS - 1)]
     if person.motion.cross_range_m is not None:
         starts_of_instants[1] = y
-    miss = zone_of(person.scene).miss(joints, torso, starts_of_instants)
+    zones = [zone_of(scene, (x, y)) for scene in person.scene.of_each_radar]
+    miss = np.max([zone.miss(joints, torso, starts_of_instants) for zone in zones], axis=0)
     possible = np.flatnonzero(miss <= max(0.0, miss.min()))
     chosen = possible[min(int(person.motion.place.instant * possible.size), possible.size - 1)]
     ahead, left = starts_of_instants[:, chosen]

@@ -44,13 +44,26 @@ def channel_of(scene: Scene, antennas: Antennas) -> str:
 
 
 def noise_stream(scene: Scene, name: str, channel: object = "") -> np.random.Generator:
-    """Random stream of a scene's noise.
+    """Random stream of the noise of a scene's radar.
 
     Args:
-        scene: the scene, whose seed, class and index name the stream.
+        scene: the scene, whose seed, class and index name the stream, and its radar of several.
         name: what the noise is.
         channel: name of the receive channel (`channel_of`).
     """
     key = (scene.activity.index, scene.index)
     name = f"{name} channel {channel}" if channel else name
+    if scene.config.radar_name is not None:
+        name = f"{name} radar {scene.config.radar_name}"
+    return stream(scene.config.seed, NOISE, *key, name=name)
+
+
+def surroundings_stream(scene: Scene, name: str) -> np.random.Generator:
+    """Random stream of what moves in a scene besides people, the same for all of its radars.
+
+    Args:
+        scene: the scene, whose seed, class and index name the stream.
+        name: what moves.
+    """
+    key = (scene.activity.index, scene.index)
     return stream(scene.config.seed, NOISE, *key, name=name)

@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 
 from radhar_cli.assembly.radar import antennas_of
-from radhar_cli.assembly.receiver import noise_stream
+from radhar_cli.assembly.receiver import surroundings_stream
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.room import DielectricConfig, LayerConfig
 from radhar_cli.motion.reflectors import TONES, Reflectors
@@ -112,7 +112,7 @@ def reflectors_of(scene: Scene) -> Reflectors | None:
     each, antennas = scene.room.reflectors, antennas_of(scene)
     if not each:
         return None
-    rng = noise_stream(scene, "room.reflectors")
+    rng = surroundings_stream(scene, "room.reflectors")
     return Reflectors(
         places=np.array([one.position_m for one in each]),
         rcs=10 ** (np.array([one.rcs_dbsm for one in each]) / 10),

@@ -131,6 +131,7 @@ def _output_folder(data: Path, out: Path | None) -> Path:
     from radhar_cli.commands.learning_options import refuse_output_inside_data
     from radhar_cli.dataset.audited import audit_folder
     from radhar_cli.dataset.files import refuse_links
+    from radhar_cli.dataset.radar_folders import refuse_several_radars
     from radhar_cli.errors import FolderError
 
     beside = audit_folder(data)
@@ -139,6 +140,7 @@ def _output_folder(data: Path, out: Path | None) -> Path:
         return beside
     if not data.exists():
         raise FolderError(f"{data}: no such file or folder")
+    refuse_several_radars(data)
     if out is None:
         raise FolderError(f"{data}: is no data set of `radhar generate`; -o should name a folder")
     if beside is None or out.resolve() != beside.resolve():

@@ -139,12 +139,15 @@ def show(
 
       radhar config show configs/quickstart.yaml --set snr_db=10
     """
-    from radhar_cli.config.identity import as_yaml, resolved
-    from radhar_cli.config.reading import load_section
+    from radhar_cli.config.identity import resolved, resolved_together, yaml_text
+    from radhar_cli.config.reading import load_section, load_sections
 
-    loaded = load_section(_kind(train), config, set_ or [])
-    report(**resolved(loaded))
-    tell(as_yaml(loaded), nl=False)
+    if train:
+        document = resolved(load_section(_kind(train), config, set_ or []))
+    else:
+        document = resolved_together(load_sections(config, set_ or []))
+    report(**document)
+    tell(yaml_text(document), nl=False)
 
 
 def schema(

@@ -1,18 +1,22 @@
 """`radhar generate`: a YAML file becomes a labelled data set."""
 
-from contextlib import nullcontext
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from radhar_cli.commands.options import Overrides, StartOver, Tolerance, resumable, with_tolerance
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import for_each_radar, tell
 from radhar_cli.errors import ConfigError
 from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from radhar_cli.config.data_set import AnyConfig, Config
+    from radhar_cli.dataset.parts import DataSetPart
     from radhar_cli.dataset.sample import RowFactory
 
 
@@ -80,45 +84,114 @@ def generate(
     The same command resumes an interrupted build; it does nothing if the folder is complete.
     """
     with resumable(f"what is finished in {out}"):
-        from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part, print_plan
+        from radhar_cli.commands.terminal import print_plan
         from radhar_cli.config.data_set import Config, ConfigOfRecordings
-        from radhar_cli.config.reading import load_config
-        from radhar_cli.dataset.build import build, build_part
-        from radhar_cli.dataset.estimate import jobs_that_pay
-        from radhar_cli.dataset.layout import Rows
+        from radhar_cli.config.reading import load_config, load_radars
         from radhar_cli.dataset.parts import DataSetPart
-        from radhar_cli.dataset.workers import cores, on_cluster
+        from radhar_cli.dataset.radar_folders import reserve_radars
         from radhar_cli.processes.worker_process import prepare_process
 
         prepare_process()
-        kind = Config if recordings is None else ConfigOfRecordings
-        loaded, factory = load_config(config, with_tolerance(set_, tolerance), kind), None
-        data_config: AnyConfig = loaded
+        overrides, factory = with_tolerance(set_, tolerance), None
+        configs: dict[str, AnyConfig] = {}
         if recordings is not None:
             if shard is not None or cluster is not None:
                 raise ConfigError("--recordings: cannot be combined with --shard or --cluster")
-            data_config, factory = _config_of_recordings(loaded, recordings)
-        elif loaded.recordings is not None:
-            raise ConfigError(
-                f"{config}: recordings: --recordings MANIFEST should say where they lie"
-            )
+            loaded = load_config(config, overrides, ConfigOfRecordings)
+            configs[""], factory = _config_of_recordings(loaded, recordings)
+        else:
+            configs |= load_radars(config, overrides, Config)
+            if next(iter(configs.values())).recordings is not None:
+                raise ConfigError(
+                    f"{config}: recordings: --recordings MANIFEST should say where they lie"
+                )
         if dry_run:
-            print_plan(data_config, jobs)
+            for_each_radar(configs, lambda _, one: print_plan(one, jobs))
             return
-        jobs = jobs or (cores() if factory else jobs_that_pay(loaded))
-        workers = min(jobs, len(Rows.of(data_config)))
-        processes = nullcontext(jobs) if cluster is None else on_cluster(cluster, workers)
-        if shard is not None:
-            part = DataSetPart.parse(shard)
-            with BarProgress() as bars, processes as jobs:
-                outcome = build_part(data_config, out, part, jobs, bars, overwrite, batch)
+        work = Work(jobs, batch, cluster, overwrite, factory)
+        part = None if shard is None else DataSetPart.parse(shard)
+        folders = {"": out} if [*configs] == [""] else reserve_radars(out, configs)
+
+        def build_radar(name: str, of_radar: "AnyConfig") -> None:
+            is_last = name == [*configs][-1]
+            if part is None:
+                work.build(of_radar, folders[name], is_last)
+            else:
+                work.build_part(of_radar, folders[name], part, out, is_last)
+
+        for_each_radar(configs, build_radar)
+
+
+@dataclass(frozen=True)
+class Work:
+    """How data sets are built, and by whom.
+
+    Attributes:
+        jobs: number of worker processes; None for as many as pay.
+        batch: number of samples that a worker makes before it writes them, or None.
+        cluster: address of a Dask scheduler, or None.
+        overwrite: whether a folder that holds another data set is started over.
+        factory: makes the rows of a data set of recordings; None of simulated ones.
+    """
+
+    jobs: int | None
+    batch: int | None
+    cluster: str | None
+    overwrite: bool
+    factory: "RowFactory | None"
+
+    @contextmanager
+    def processes(self, config: "AnyConfig") -> "Iterator[int]":
+        """Context in which so many processes work on a data set."""
+        from radhar_cli.config.data_set import Config
+        from radhar_cli.dataset.estimate import jobs_that_pay
+        from radhar_cli.dataset.layout import Rows
+        from radhar_cli.dataset.workers import cores, on_cluster
+
+        jobs = self.jobs or (jobs_that_pay(config) if isinstance(config, Config) else cores())
+        if self.cluster is None:
+            yield jobs
+            return
+        with on_cluster(self.cluster, min(jobs, len(Rows.of(config)))) as workers:
+            yield workers
+
+    def build(self, config: "AnyConfig", out: Path, is_last: bool) -> None:
+        """Build a data set, or resume it, and print what was made.
+
+        Args:
+            config: that of the data set.
+            out: its folder.
+            is_last: whether nothing is left to do after it.
+        """
+        from radhar_cli.commands.terminal import BarProgress, print_outcome
+        from radhar_cli.dataset.build import build
+
+        with BarProgress() as bars, self.processes(config) as jobs:
+            outcome = build(config, out, jobs, bars, self.overwrite, self.batch, self.factory)
+        if is_last:
+            interrupts.complete(str(out))
+        print_outcome(config, outcome)
+
+    def build_part(
+        self, config: "AnyConfig", out: Path, part: "DataSetPart", whole: Path, is_last: bool
+    ) -> None:
+        """Make a part of a data set, or resume it, and print what was made.
+
+        Args:
+            config: that of the data set.
+            out: its folder.
+            part: the part.
+            whole: folder that `radhar merge` takes: that one, or the one of several radars.
+            is_last: whether nothing is left to do after it.
+        """
+        from radhar_cli.commands.terminal import BarProgress, print_part
+        from radhar_cli.dataset.build import build_part
+
+        with BarProgress() as bars, self.processes(config) as jobs:
+            outcome = build_part(config, out, part, jobs, bars, self.overwrite, self.batch)
+        if is_last:
             interrupts.complete(f"part {part} of {out}")
-            print_part(outcome, out, str(part))
-            return
-        with BarProgress() as bars, processes as jobs:
-            outcome = build(data_config, out, jobs, bars, overwrite, batch, factory)
-        interrupts.complete(str(out))
-        print_outcome(data_config, outcome)
+        print_part(outcome, whole, str(part))
 
 
 def _config_of_recordings(config: "Config", manifest: Path) -> "tuple[AnyConfig, RowFactory]":

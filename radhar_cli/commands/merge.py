@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.options import resumable
+from radhar_cli.commands.tell import for_each_radar
 from radhar_cli.processes import interrupts
 
 
@@ -35,9 +36,18 @@ def merge(
     """
     from radhar_cli.commands.terminal import BarProgress, print_outcome
     from radhar_cli.dataset.merge import merge as merge_parts
+    from radhar_cli.dataset.radar_folders import folders_of_radars
     from radhar_cli.dataset.workers import cores
 
-    with resumable("every part"), BarProgress() as progress:
-        config, outcome = merge_parts(out, parts or [], jobs or cores(), progress)
-        interrupts.complete(str(out))
-    print_outcome(config, outcome)
+    folders = folders_of_radars(out)
+
+    def merge_radar(name: str, folder: Path) -> None:
+        inner = [one / name if name and (one / name).is_dir() else one for one in parts or []]
+        with BarProgress() as progress:
+            config, outcome = merge_parts(folder, inner, jobs or cores(), progress)
+        if name == [*folders][-1]:
+            interrupts.complete(str(out))
+        print_outcome(config, outcome)
+
+    with resumable("every part"):
+        for_each_radar(folders, merge_radar)

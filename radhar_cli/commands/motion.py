@@ -36,7 +36,7 @@ def motion(
 
       radhar motion configs/human/free_space_77GHz.yaml --activity walking -o walk.bvh
     """
-    from radhar_cli.config import load_config
+    from radhar_cli.config.reading import load_radars
     from radhar_cli.errors import ConfigError, UnfinishedError
     from radhar_cli.files.replacing import write_text
     from radhar_cli.single_scene.motion_file import scene_bvh
@@ -44,7 +44,7 @@ def motion(
     if out.suffix.lower() != ".bvh":
         raise ConfigError(f"{out}: should end in .bvh")
     refuse_to_replace(out, overwrite, "walk.bvh")
-    loaded = load_config(config, set_ or [])
+    loaded = next(iter(load_radars(config, set_ or []).values()))  # people are alike for all
     person_activity = find_activity(activity, loaded)
     text, frames = scene_bvh(loaded, person_activity, index=index, nominal=nominal, rate=rate)
     try:

@@ -62,8 +62,13 @@ Tolerance: TypeAlias = Annotated[
 ]
 
 
-def find_activity(name: str | None, config: "Config") -> "ActivityOfPeople":
+def find_activity(name: str | None, config: "Config", says_word: bool = True) -> "ActivityOfPeople":
     """Find the activity that --activity names, and say so where it is another word for it.
+
+    Args:
+        name: value of --activity, or None.
+        config: config whose activities are known.
+        says_word: whether it is said.
 
     Raises:
         ConfigError: there is no such activity, or none is named and the config has several.
@@ -76,7 +81,7 @@ def find_activity(name: str | None, config: "Config") -> "ActivityOfPeople":
         activity = activity_of(name, config)
     except ConfigError as error:
         raise ConfigError(f"--activity: {error}") from None
-    if name is not None and is_other_word(name, activity.slug):
+    if says_word and name is not None and is_other_word(name, activity.slug):
         tell(f"--activity: {name} is taken for {activity.slug}", err=True)
     return activity
 

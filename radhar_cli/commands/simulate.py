@@ -23,12 +23,12 @@ from radhar_cli.commands.scene_folder import (
     require_scene_folder,
     write_scene_folder,
 )
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import for_each_radar, tell
 
 FROM_FILE = "from_file"  # the class of `--motion` without `--activity`
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from radhar_cli.config.reading import Override
     from radhar_cli.single_scene.request import SceneRequest
@@ -120,7 +120,7 @@ def simulate(
         needs("view", ("plotly",))
 
     from radhar_cli.commands.terminal import BarProgress
-    from radhar_cli.config import load_config
+    from radhar_cli.config.reading import load_radars
     from radhar_cli.processes.worker_process import prepare_process
     from radhar_cli.single_scene.request import SceneRequest, map_names
     from radhar_cli.single_scene.simulate import simulate_scene
@@ -138,17 +138,39 @@ def simulate(
         "travel": travel,
     }
     overrides = _motion_overrides(activity or FROM_FILE, motion, reading)
-    loaded = load_config(config, [*overrides, *with_tolerance(set_, tolerance)])
-    chosen_maps = None if maps is None else map_names(maps.split(","), loaded)
-    person_activity = find_activity(activity, loaded)
-    request = SceneRequest(loaded, person_activity, seed, index, nominal, joint, chosen_maps, raw)
-    require_scene_folder(out, overwrite)
-    with BarProgress() as bars:
-        simulation = simulate_scene(request, bars)
-    for warning in (*_index_warnings(request, simulation), *simulation.warnings):
-        tell(f"warning: {warning}", err=True)
+    configs = load_radars(config, [*overrides, *with_tolerance(set_, tolerance)])
+    requests = dict[str, SceneRequest]()
+    for name, loaded in configs.items():
+        chosen_maps = None if maps is None else map_names(maps.split(","), loaded)
+        person = find_activity(activity, loaded, says_word=not requests)
+        scene = person, seed, index, nominal, joint
+        requests[name] = SceneRequest(loaded, *scene, chosen_maps, raw)
+    folders = _reserve_folders(out, configs, overwrite)
     outputs = SceneOutputs(raw, figures, overlay, html)
-    print_summary(simulation, write_scene_folder(simulation, out, outputs))
+
+    def simulate_radar(name: str, request: "SceneRequest") -> None:
+        with BarProgress() as bars:
+            simulation = simulate_scene(request, bars)
+        for warning in (*_index_warnings(request, simulation), *simulation.warnings):
+            tell(f"warning: {f'radar {name}: ' if name else ''}{warning}", err=True)
+        print_summary(simulation, write_scene_folder(simulation, folders[name], outputs))
+
+    for_each_radar(requests, simulate_radar)
+
+
+def _reserve_folders(out: Path, names: "Iterable[str]", overwrite: bool) -> dict[str, Path]:
+    """Take the folder of each radar of a scene: {"": out} of one that has no name.
+
+    Raises:
+        FolderError: one of them cannot take the files of a scene.
+    """
+    from radhar_cli.dataset.radar_folders import reserve_radars
+
+    listed = [*names]
+    folders = {"": out} if listed == [""] else reserve_radars(out, listed)
+    for folder in folders.values():
+        require_scene_folder(folder, overwrite)
+    return folders
 
 
 def _index_warnings(request: "SceneRequest", simulation: "Simulation") -> list[str]:

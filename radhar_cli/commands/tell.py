@@ -6,10 +6,10 @@ options to every command (`with_output_options`).
 
 import inspect
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from types import SimpleNamespace
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import typer
 
@@ -17,11 +17,12 @@ from radhar_cli.files.plain_json import plain
 from radhar_cli.files.untrusted import escaped
 from radhar_cli.processes import interrupts
 
+T = TypeVar("T")
 Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON, for programs.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors only.")]
 
 
-_output = SimpleNamespace(json=False, quiet=False)
+_output = SimpleNamespace(json=False, quiet=False, parts=None)
 
 
 def is_quiet() -> bool:
@@ -60,8 +61,32 @@ def report(**values: Any) -> None:
     interrupts.check()  # before it is called done
     for path in values.get("files", ()):
         tell(f"  {path}")
-    if _output.json:
+    if _output.parts is not None:
+        _output.parts |= values
+    elif _output.json:
         typer.echo(json.dumps(plain(values), allow_nan=False))
+
+
+def for_each_radar(work: Mapping[str, T], do: Callable[[str, T], None], **values: Any) -> None:
+    """Do a command's work for each of several radars, and report the results of all together.
+
+    Args:
+        work: {name of the radar: what is done for it}; {"": ...} of one that has no name.
+        do: does it, of (name, what), and reports.
+        values: further results, with several radars.
+    """
+    if [*work] == [""]:
+        do("", work[""])
+        return
+    results = dict[str, dict[str, Any]]()
+    for name, part in work.items():
+        tell(f"radar {name}")
+        results[name] = _output.parts = {}
+        try:
+            do(name, part)
+        finally:
+            _output.parts = None
+    report(radars=results, **values)
 
 
 def with_output_options(command: Callable[..., None]) -> Callable[..., None]:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.tell import counted, report, tell
+from radhar_cli.commands.tell import counted, for_each_radar, report, tell
 
 
 def verify(
@@ -31,6 +31,40 @@ def verify(
 
       radhar verify datasets/quickstart --samples 24
     """
+    from radhar_cli.dataset.radar_folders import folders_of_radars
+
+    folders, wrong = folders_of_radars(out), list[str]()
+
+    def verify_radar(name: str, folder: Path) -> None:
+        if not _is_sound(folder, samples, motion):
+            wrong.append(name)
+
+    for_each_radar(folders, verify_radar)
+    if len(folders) > 1 and not wrong:
+        wrong += _tell_of_other_scenes([*folders.values()])
+    if wrong:
+        raise typer.Exit(1)
+
+
+def _tell_of_other_scenes(folders: list[Path]) -> list[str]:
+    """Say whether the data sets of several radars are of the same scenes; return what differs."""
+    from radhar_cli.dataset.reading import open_dataset
+    from radhar_cli.dataset.same_scenes import differing_columns
+
+    different = list[str]()
+    with open_dataset(folders[0]) as first:
+        for folder in folders[1:]:
+            with open_dataset(folder) as other:
+                different += [f"{folder}: {name}" for name in differing_columns(first, other)]
+    for name in different:
+        tell(f"WRONG {name} is not as in {folders[0]}: should be of the same people")
+    if not different:
+        tell(f"{len(folders)} radars: the same people, labels and splits in every sample")
+    return different
+
+
+def _is_sound(out: Path, samples: int, motion: Path | None) -> bool:
+    """Verify the data set in a folder, say what is wrong, and return whether nothing is."""
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.verify import verify as verify_folder
 
@@ -46,7 +80,7 @@ def verify(
     if len(outcome.problems) > 20:
         tell(f"... and {len(outcome.problems) - 20} more")
     if outcome.problems:
-        raise typer.Exit(1)
+        return False
     within = f"within {outcome.worst_level} grey level"
     anew = f"synthesised again and equal {within if outcome.other_versions else 'byte for byte'}"
     tell(
@@ -57,6 +91,7 @@ def verify(
     if outcome.unmade:
         tell(f"{outcome.unmade} samples use motion files; --motion FOLDER checks them, too")
     tell(_leak_in_words(out))
+    return True
 
 
 def _leak_in_words(out: Path) -> str:

@@ -45,7 +45,7 @@ OTHER_NAMES = {
 }
 _SHIPPED_PATHS = {f"configs/{name}.yaml": name for name in PRESETS}  # as documents name them
 MAX_CHAIN = 8  # files in a chain of bases
-_ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole
+ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole
 
 
 def read_document(path: Path) -> tuple[Document, Places]:
@@ -71,10 +71,13 @@ def read_document(path: Path) -> tuple[Document, Places]:
     people = document.get("people")
     for number, person in enumerate(people if isinstance(people, list) else ()):
         _rename_keys(person, f"people.{number}.", places)
-    radar = document.get("radar")
-    if isinstance(radar, dict) and "cfg" in radar:
-        places[FILE_OF_CFG] = name_of_cfg(radar["cfg"])
-        radar["cfg"] = cfg_text(radar["cfg"], path.parent, places.get("radar.cfg", str(path)))
+    radar, radars = document.get("radar"), document.get("radars")
+    written = {f"radars.{k}": one for k, one in radars.items()} if isinstance(radars, dict) else {}
+    for key, value in {"radar": radar, **written}.items():
+        if isinstance(value, dict) and "cfg" in value:
+            places[f"{key}.cfg:"] = name_of_cfg(value["cfg"])
+            where = places.get(f"{key}.cfg", str(path))
+            value["cfg"] = cfg_text(value["cfg"], path.parent, where)
     return document, places
 
 
@@ -239,7 +242,7 @@ def _over(lower: Any, upper: Any, key: str, replaced: set[str]) -> Any:
     both = isinstance(lower, dict) and isinstance(upper, dict)
     if (
         not both
-        or upper.keys() & _ONE_VALUE
+        or upper.keys() & ONE_VALUE
         or ("per_activity" in upper) != ("per_activity" in lower)
     ):
         replaced.add(key)
@@ -248,6 +251,12 @@ def _over(lower: Any, upper: Any, key: str, replaced: set[str]) -> Any:
     for name, value in upper.items():
         inner = f"{key}.{name}" if key else name
         merged[name] = _over(lower[name], value, inner, replaced) if name in lower else value
+    return merged
+
+
+def lay_over(lower: Mapping[str, Any], upper: Mapping[str, Any]) -> Document:
+    """Lay a document over another, as a file lies over its base."""
+    merged: Document = _over(dict(lower), dict(upper), "", set())
     return merged
 
 

@@ -2,17 +2,50 @@
 
 import hashlib
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.config.section import Section
+from radhar_cli.config.several_radars import NAME_KEY, OTHERS_KEY, OWN_SECTIONS, RADARS_KEY
 
 NOT_IDENTITY = ("output.png", "output.license")
 
 
 def resolved(config: Section) -> dict[str, Any]:
-    """Return the config with every default, as plain JSON values."""
-    return config.model_dump(mode="json", exclude_none=False)
+    """Return the config with every default, as plain JSON values.
+
+    Keys of several radars are left out where there is one.
+    """
+    document = config.model_dump(mode="json", exclude_none=False)
+    if document.get(NAME_KEY) is None:
+        for key in (NAME_KEY, OTHERS_KEY):
+            document.pop(key, None)
+    return document
+
+
+def resolved_together(configs: Mapping[str, Section]) -> dict[str, Any]:
+    """Return the configs of several radars of the same scenes as one document, which reads back.
+
+    Args:
+        configs: {name of the radar: config}, as `load_radars` returns them; {"": config} is that
+            config alone.
+    """
+    documents = {name: resolved(config) for name, config in configs.items()}
+    if [*documents] == [""]:
+        return documents[""]
+    together, *others = documents.values()
+    differing = [key for key in OWN_SECTIONS if any(one[key] != together[key] for one in others)]
+    radars = {
+        name: document["radar"] | {key: document[key] for key in differing}
+        for name, document in documents.items()
+    }
+    of_one = {NAME_KEY, OTHERS_KEY, *differing}
+    return {
+        RADARS_KEY if key == "radar" else key: radars if key == "radar" else value
+        for key, value in together.items()
+        if key not in of_one
+    }
 
 
 def as_yaml(config: Section) -> str:

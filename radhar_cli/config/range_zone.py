@@ -1,7 +1,8 @@
 """Where people can be, by what a config draws: the range axis that images have by default."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from itertools import product
 from math import ceil, cos, hypot, pi, radians
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from radhar_cli.config.section import for_activity
 if TYPE_CHECKING:
     from radhar_cli.config.request import Request
 
+AXES = ("range_m", "cross_range_m")
 REACH_M = 1.0  # of a limb, and of what a person drifts and falls, beyond the feet
 
 
@@ -26,6 +28,9 @@ def range_zone(request: "Request") -> tuple[float, float]:
     """
     if request.stream is not None:
         zone = request.stream.zone
+        if request.radar_name is not None:
+            corners = [*product(zone.range_m, zone.cross_range_m)]
+            return 0.0, float(ceil(_farthest_corner(request, corners) + REACH_M))
         reach = hypot(max(map(abs, zone.range_m)), max(map(abs, zone.cross_range_m)))
         return 0.0, float(ceil(reach + REACH_M))
     ranges = [_farthest(request, activity) for activity in request.chosen_activities]
@@ -41,10 +46,26 @@ def _farthest(request: "Request", activity: Activity) -> float:
     motion, ahead = request.motion, max(-_nearest_antenna(request), 0.0)
     starts = for_activity(motion.range_m, activity) is not None
     holder: Any = motion if starts else motion.place
+    if request.radar_name is not None:  # one of several, which may look along any direction
+        places = [for_activity(getattr(holder, key), activity) for key in AXES]
+        x, y = ((0.0, 0.0) if one is None else support(one) for one in places)
+        corners = [*product(x, y)]
+        return _farthest_corner(request, corners) + _way(request, activity)
     along = max(_ends(for_activity(holder.range_m, activity)))
     across = max(_ends(for_activity(holder.cross_range_m, activity)))
     away = _share_away(request, activity) if starts else 1.0
     return hypot(along + ahead, across) + away * _way(request, activity)
+
+
+def _farthest_corner(request: "Request", corners: Iterable[tuple[float, float]]) -> float:
+    """Largest distance (m) of places on the ground from the places where antennas may be."""
+    radar = request.radar
+    return max(
+        hypot(x - a, y - b)
+        for x, y in corners
+        for key in radar.place_keys
+        for a, b in product(*map(support, getattr(radar, key)[:2]))
+    )
 
 
 def _nearest_antenna(request: "Request") -> float:

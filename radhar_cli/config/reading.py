@@ -3,7 +3,7 @@
 import difflib
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias, TypeVar
@@ -29,6 +29,16 @@ from radhar_cli.config.number import FORMS
 from radhar_cli.config.radar import RADARS, AnyRadar, FmcwRadar, class_of_radar
 from radhar_cli.config.section import PerActivity, Problem, Section
 from radhar_cli.config.sequence import PART_TAGS, SequenceConfig
+from radhar_cli.config.several_radars import (
+    NAME_KEY,
+    OTHERS_KEY,
+    RADARS_KEY,
+    RadarDocument,
+    documents_of_radars,
+    file_of_cfg,
+    problems_of_radars,
+    radar_names,
+)
 from radhar_cli.config.units import key_in_our_unit, unit_of, value_with_unit
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
@@ -122,17 +132,103 @@ def load_config(
             file (that or one under it, `base`), the line, the key, the value and what would be
             right.
     """
-    config, places, options = _load(kind, Path(path), overrides)
-    if kind is ConfigOfRecordings:
-        config = config.model_copy(update={"people": ()})  # which nobody has checked
-        config._places = places, options
+    configs = load_radars(path, overrides, kind)
+    if len(configs) == 1:
+        return next(iter(configs.values()))
+    _, places, options = _read_values(Path(path), overrides)
+    where = _locate(str(path), RADARS_KEY, places, options)
+    raise ConfigError(f"{where}: {one_radar_needed([*configs])}")
 
-    def refuse(key: str, value: object, right: str) -> ConfigError:
-        return ConfigError(
-            _locate(str(path), key, places, options) + _value_and_advice(Problem(key, value, right))
-        )
 
-    return resolve_files(config, Path(path).parent, refuse)
+def one_radar_needed(names: Iterable[str]) -> str:
+    """Say that several radars are given where one is needed, and how one is chosen."""
+    first, *_ = listed = [*names]
+    return (
+        f"has several radars, {' and '.join((', '.join(listed[:-1]), listed[-1]))}; should be one "
+        f"here: --set {NAME_KEY}={first}"
+    )
+
+
+def load_radars(
+    path: str | Path, overrides: Iterable[str | Override] = (), kind: type[Config] = Config
+) -> dict[str, Config]:
+    """Read the config of each radar of a data set's config file, as `load_config` reads one.
+
+    Args:
+        path: YAML file.
+        overrides: texts such as ``radars.side.yaw_deg=30``, as `--set` takes them, or `Override`.
+        kind: class of the configs.
+
+    Returns:
+        {name of the radar: config} of the file's `radars`, in the order of the alphabet, which all
+        have the same people; of a file with a single `radar`, or of which `radar_name` chooses one
+        radar, {"": config}.
+
+    Raises:
+        ConfigError: as `load_config`; a mistake that all radars share is told once.
+    """
+    path = Path(path)
+
+    def with_files(config: Config, located: tuple[Places, Options]) -> Config:
+        if kind is ConfigOfRecordings:
+            config = config.model_copy(update={"people": ()})  # which nobody has checked
+            config._places = located
+
+        def refuse(key: str, value: object, right: str) -> ConfigError:
+            problem = Problem(key, value, right)
+            return ConfigError(_locate(str(path), key, *located) + _value_and_advice(problem))
+
+        return resolve_files(config, path.parent, refuse)
+
+    return _load_radars(path, overrides, kind, with_files)
+
+
+def _load_radars(
+    path: Path,
+    overrides: Iterable[str | Override],
+    kind: type[Config],
+    finish: Callable[[Config, tuple[Places, Options]], Config],
+) -> dict[str, Config]:
+    """Read the config of each radar, and finish it with the places and options of its keys."""
+    document, places, options = _read_values(path, overrides)
+    if document.get(RADARS_KEY) is None:
+        config = validated(kind, document, str(path), places, options)
+        return {"": finish(config, (places, options))}
+    configs, mistakes = dict[str, Config](), dict[str, None]()
+    documents = _documents_of_radars(document, str(path), places, options)
+    for name, of_name in documents.items():
+        try:
+            of_radar = of_name.places(places)
+            values = {key: value for key, value in of_name.values.items() if key != OTHERS_KEY}
+            config = validated(kind, values, str(path), of_radar, options, of_name.key_in_file)
+            configs[name] = finish(config, (of_radar, options))
+        except ConfigError as error:
+            mistakes |= dict.fromkeys(str(error).splitlines())
+    if mistakes:
+        raise ConfigError("\n".join([*mistakes][:MAX_MISTAKES]))
+    radars = {name: config.radar for name, config in configs.items()}
+    for name, config in configs.items():  # checked in configs of their own
+        others = {other: radar for other, radar in radars.items() if other != name}
+        configs[name] = config.model_copy(update={OTHERS_KEY: others})
+    chosen = document.get(NAME_KEY)
+    return configs if chosen is None else {"": configs[chosen]}
+
+
+def _documents_of_radars(
+    document: dict[str, Any], where: str, places: Places, options: Mapping[str, str]
+) -> dict[str, RadarDocument]:
+    """Make the document of each radar of one that has `radars`.
+
+    Raises:
+        ConfigError: an entry of `radars` is none.
+    """
+    mistakes = [
+        _locate(where, problem.key, places, options) + _value_and_advice(problem)
+        for problem in problems_of_radars(document)
+    ]
+    if mistakes:
+        raise ConfigError("\n".join(mistakes[:MAX_MISTAKES]))
+    return documents_of_radars(document)
 
 
 def as_config(config: Config | str | Path) -> Config:
@@ -162,16 +258,22 @@ def load_section(kind: type[S], path: Path | None, overrides: Iterable[str | Ove
     Raises:
         ConfigError: as `load_config`.
     """
-    return _load(kind, path, overrides)[0]
-
-
-def _load(
-    kind: type[S], path: Path | None, overrides: Iterable[str | Override]
-) -> tuple[S, Places, Options]:
-    """Read a config, the places of its keys, and the options that gave some of them."""
     document, places, options = _read_values(path, overrides)
     where = str(path) if path else ", ".join(dict.fromkeys(options.values())) or "the defaults"
-    return validated(kind, document, where, places, options), places, options
+    return validated(kind, document, where, places, options)
+
+
+def load_sections(path: Path, overrides: Iterable[str | Override] = ()) -> dict[str, Config]:
+    """Read a data set's config file as `load_radars`, without looking for its motion files.
+
+    Args:
+        path: YAML file.
+        overrides: as of `load_radars`.
+
+    Raises:
+        ConfigError: as `load_radars`.
+    """
+    return _load_radars(path, overrides, Config, lambda config, _: config)
 
 
 def _read_values(
@@ -190,14 +292,17 @@ def _read_values(
             continue
         _apply(document, override)
         places = {k: v for k, v in places.items() if not _within(k, override.key)}
-        if override.key == "radar.cfg":
-            places[FILE_OF_CFG] = name_of_cfg(parse_yaml(override.text, override.option)[0])
+        if _is_cfg(names := override.key.split(".")):
+            key = FILE_OF_CFG if names[0] == "radar" else file_of_cfg(names[1])
+            places[key] = name_of_cfg(parse_yaml(override.text, override.option)[0])
         options[override.key] = override.option
     return document, places, options
 
 
 def read_values(path: Path, overrides: Iterable[str | Override] = ()) -> dict[str, Any]:
     """Read the plain values of a config file and its bases under overrides, unchecked.
+
+    Of several radars they are those of the chosen one.
 
     Args:
         path: YAML file.
@@ -206,7 +311,16 @@ def read_values(path: Path, overrides: Iterable[str | Override] = ()) -> dict[st
     Raises:
         ConfigError: a file cannot be read, or is no YAML.
     """
-    return _read_values(path, overrides)[0]
+    document, places, options = _read_values(path, overrides)
+    if document.get(RADARS_KEY) is None:
+        return document
+    documents = _documents_of_radars(document, str(path), places, options)
+    names = radar_names(document)
+    chosen = document.get(NAME_KEY, names[0] if len(names) == 1 else None)
+    if chosen is None:
+        where = _locate(str(path), RADARS_KEY, places, options)
+        raise ConfigError(f"{where}: {one_radar_needed(names)}")
+    return documents[chosen].values
 
 
 def config_of_values(values: dict[str, Any], folder: Path) -> Config:
@@ -232,7 +346,12 @@ def config_of_values(values: dict[str, Any], folder: Path) -> Config:
 
 
 def validated(
-    kind: type[S], document: Any, where: str, places: Places, options: Mapping[str, str] = {}
+    kind: type[S],
+    document: Any,
+    where: str,
+    places: Places,
+    options: Mapping[str, str] = {},
+    key_in_file: Callable[[str], str] = str,
 ) -> S:
     """Turn a parsed document into a config.
 
@@ -242,6 +361,7 @@ def validated(
         where: file that messages name for keys without a place.
         places: {dotted key: file:line} of what stands in it, or in a file under it.
         options: {dotted key: option} of what an option of the command line says instead.
+        key_in_file: returns the dotted key of the file for one of the document.
 
     Raises:
         ConfigError: the document is no such config; a line for each of MAX_MISTAKES mistakes.
@@ -251,7 +371,7 @@ def validated(
     except ValidationError as error:
         items = _mistakes_alone(error, document)
         mistakes = dict.fromkeys(
-            _locate(where, problem.key, places, options) + _value_and_advice(problem)
+            _locate(where, key_in_file(problem.key), places, options) + _value_and_advice(problem)
             if not _is_of_cfg(problem)
             else places.get(FILE_OF_CFG, "radar.cfg") + problem.right.removeprefix("radar.cfg")
             for problem in islice(_problems_of(kind, items, document), MAX_MISTAKES)
@@ -287,9 +407,16 @@ def _apply(document: dict[str, Any], override: Override) -> None:
             inner = {"files": inner}  # the short form of a class of files
         place[name] = place = inner if isinstance(inner, dict) else {}
     value, _ = parse_yaml(override.text, override.option)
-    if names == ["radar", "cfg"]:
+    if _is_cfg(names):
         value = cfg_text(value, Path(), override.option)
     place[names[-1]] = value
+
+
+def _is_cfg(names: list[str]) -> bool:
+    """Whether a key, by its names, is that of a TI .cfg: of `radar` or of one of `radars`."""
+    return names == ["radar", "cfg"] or (
+        len(names) == 3 and names[0] == RADARS_KEY and names[2] == "cfg"
+    )
 
 
 def _within(key: str, parent: str) -> bool:

@@ -97,6 +97,14 @@ class Request(Section):
     ] = None
     """Duration of a recording, s."""
     radar: Radar = defaults_of(FmcwRadar)
+    radars: Annotated[dict[str, Any] | None, Field(exclude=True)] = None
+    """Several radars of the same scenes, {name: keys of radar}, each over what `radar` has; a data
+    set of each is made (docs/guide/several_radars.md)."""
+    radar_name: str | None = None
+    """Name of the one of `radars` that is meant; null is all of them, or `radar`."""
+    other_radars: dict[str, Radar] = {}
+    """Other radars of the same scenes, {name: keys of radar}, in a config that is written for one
+    of `radars`: people are where all of them see them."""
     subject: SubjectConfig = defaults_of(SubjectConfig)
     motion: MotionConfig = defaults_of(MotionConfig)
     timing: TimingConfig = defaults_of(TimingConfig)
@@ -210,6 +218,8 @@ class Request(Section):
             changed.setdefault("", {})["snr_db"] = None
         if isinstance(self.radar, ArrayRadar):
             _fill_for_board(self, self.radar, changed)
+        if self.other_radars:
+            changed.setdefault("", {})["other_radars"] = self._filled_others()
         for name, value in changed.pop("", {}).items():
             object.__setattr__(self, name, value)
         for name, values in changed.items():
@@ -233,6 +243,19 @@ class Request(Section):
             object.__setattr__(self, "image", _with_defaults(self.image, limits))
         self._fill_width()
         return self
+
+    def _filled_others(self) -> dict[str, Any]:
+        """Other radars with their defaults, in the order of the alphabet."""
+        others = sorted(self.other_radars.items())
+        return {name: _filled_radar(radar, self.motion.model) for name, radar in others}
+
+    def of_other_radar(self, name: str) -> Self:
+        """Config of the same scenes with another of their radars in the place of this one."""
+        others = {key: one for key, one in self.other_radars.items() if key != name}
+        if self.radar_name is not None:
+            others = dict(sorted({**others, self.radar_name: self.radar}.items()))
+        changed = {"radar": self.other_radars[name], "radar_name": name, "other_radars": others}
+        return self.model_copy(update=changed)
 
     def _name_classes(self) -> None:
         """Call what is done by our names, and enter movements that are classes in `classes`."""
@@ -573,6 +596,33 @@ def _by_our_names(number: PerActivity[Any], known: Mapping[str, Activity]) -> Pe
     return PerActivity({names[word]: one for word, one in number.per_activity.items()})
 
 
+def _filled_radar(radar: Any, model: str) -> Any:
+    """A radar with the defaults of a model of motion, and the pose that a .cfg gives."""
+    missing = {
+        key.removeprefix("radar."): default.values.get(model)
+        for key, default in of_kind(Request, ByModel)
+        if key.startswith("radar.")
+    }
+    fields = type(radar).model_fields
+    filled = {k: v for k, v in missing.items() if k in fields and getattr(radar, k) is None}
+    return _with_defaults(radar, filled | _pose_of_cfg(radar))
+
+
+def _pose_of_cfg(radar: Any) -> dict[str, float]:
+    """Keys of a radar's place that its .cfg gives and its config does not.
+
+    Raises:
+        ValueError: the .cfg cannot be read.
+    """
+    if not isinstance(radar, ArrayRadar):
+        return {}
+    try:
+        pose = radar.stated_pose
+    except CaptureError as error:
+        raise value_error(str(error)) from None
+    return {key: number for key, number in pose.items() if key not in radar.model_fields_set}
+
+
 def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, Any]]) -> None:
     """Note the defaults that a board has of its own, of what was not given."""
     try:
@@ -590,8 +640,8 @@ def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, 
         changed.setdefault("processing", {})["range_sum"] = "gated"
     if "chain" not in c.cloud.model_fields_set:
         changed.setdefault("cloud", {})["chain"] = radar.likely_chain
-    for key in radar.stated_pose.keys() - radar.model_fields_set:
-        changed.setdefault("radar", {})[key] = radar.stated_pose[key]
+    for key, number in _pose_of_cfg(radar).items():
+        changed.setdefault("radar", {})[key] = number
 
 
 @cache

@@ -13,6 +13,7 @@ from radhar_cli.config.stream import frame_classes
 from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.folder import holds_samples, stored_identity
 from radhar_cli.dataset.identity import versions
+from radhar_cli.dataset.radar_folders import refuse_several_radars
 from radhar_cli.dataset.untrusted_hdf5 import Column, NumberColumn, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.extensions import any_name
@@ -287,6 +288,7 @@ def open_dataset(path: str | Path) -> Dataset:
     path = Path(path)
     file = path / layout.DATASET if path.is_dir() else path
     if not file.exists():
+        refuse_several_radars(path)
         raise FolderError(f"{file}: {_why_missing(path)}")
     return Dataset(file)
 

@@ -9,13 +9,14 @@ keys themselves, which are unique and hold a dot, which no other name does.
 
 from collections import Counter
 from collections.abc import Sequence
-from math import nan, pi
+from math import degrees, nan, pi
 from typing import NamedTuple
 
 import numpy as np
 
+from radhar_cli.assembly.aspect import aspect_at_middle
 from radhar_cli.assembly.motion import moving
-from radhar_cli.config.data_set import AnyConfig, MeasuredConfig
+from radhar_cli.config.data_set import AnyConfig, Config, MeasuredConfig
 from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.room import FacesConfig
 from radhar_cli.numerics.arrays import Float
@@ -45,6 +46,8 @@ LISTS = {"room.reflectors": "reflector", "receiver.tones": "tone", "wall.layers"
 PLACES = {"radar.array.tx": "array_tx", "radar.array.rx": "array_rx"}
 # When that begins which the class is named by: follows from timing.onset and what the person does.
 ONSET = Field("movement_onset_s", "movement_onset", "s", 1.0)
+# Aspect of the sample's main person to one of several radars, in the middle of the recording.
+ASPECT = Field("aspect_deg", "aspect", "rad", pi / 180)
 # The one number of a scene that is measured, not drawn.
 ERROR = Field("error_db", "error_db", "dB", 1.0)
 
@@ -73,7 +76,19 @@ def fields(config: AnyConfig) -> tuple[Field, ...]:
     keys += keys_of_people(config)
     onset = (ONSET,) if "timing.onset" in keys else ()
     measured = (ERROR,) if config.has_error else ()
-    return (*_make_names_unique([_field(key) for key in keys]), *onset, *measured)
+    aspects = _aspects(config)
+    return (*_make_names_unique([_field(key) for key in keys]), *aspects, *onset, *measured)
+
+
+def _aspects(config: Config) -> tuple[Field, ...]:
+    """Columns of the aspects of everybody to one of several radars; none with a radar alone."""
+    if config.radar_name is None:
+        return ()
+    others = [
+        ASPECT._replace(key=f"people.{n}.{ASPECT.key}", name=f"people_{n + 1}_{ASPECT.name}")
+        for n in range(len(config.people))
+    ]
+    return (ASPECT, *others)
 
 
 def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> Float:
@@ -85,6 +100,11 @@ def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> F
         error_db: measured error of the direct engine, for the field ERROR.
     """
     known = {ERROR.key: error_db}
+    if scene.config.radar_name is not None and ASPECT in columns:
+        known |= dict.fromkeys((field.key for field in _aspects(scene.config)), nan)
+        for person in scene.present:
+            key = f"{f'people.{person.number - 1}.' if person.number else ''}{ASPECT.key}"
+            known[key] = degrees(aspect_at_middle(scene, person))
     if ONSET in columns:
         known[ONSET.key] = movement_onset(scene)
     return np.array([known[f.key] if f.key in known else number_at(scene, f.key) for f in columns])
@@ -102,7 +122,9 @@ def movement_onset(scene: Scene) -> float:
 def _make_names_unique(columns: list[Field]) -> list[Field]:
     """Give longer names to columns whose names are taken or alike; return all columns."""
     for longer in (_name_with_section, lambda field: field.key):
-        counts = Counter([ERROR.name, ONSET.name, *TAKEN, *(field.name for field in columns)])
+        counts = Counter(
+            [ERROR.name, ONSET.name, ASPECT.name, *TAKEN, *(field.name for field in columns)]
+        )
         columns = [
             field._replace(name=longer(field)) if counts[field.name] > 1 else field
             for field in columns

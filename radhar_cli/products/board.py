@@ -452,6 +452,8 @@ def draw_channel_errors(scene: Scene, channels: int) -> Complex | None:
     name = "receiver.channel_errors"
     rng = noise_stream(scene, name)
     if receiver.channel_errors == "data_set":
+        radar = scene.config.radar_name
+        name = name if radar is None else f"{name} radar {radar}"
         rng = stream(scene.config.seed, NOISE, name=name)
     gain, phase = rng.standard_normal((2, channels))
     gain_db, phase_deg = gain * receiver.channel_gain_db, phase * receiver.channel_phase_deg

@@ -15,7 +15,12 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene import MAX_PLACES, Person, Redrawn, Scene, draw_scene, redrawn
 from radhar_cli.scene_checks.check_grid import GRID_HZ
 from radhar_cli.scene_checks.flags import Flags
-from radhar_cli.scene_checks.validity import HALF_BAND, SceneCheck, check_people, check_person
+from radhar_cli.scene_checks.validity import (
+    HALF_BAND,
+    RadarChecks,
+    SceneCheck,
+    check_by_each_radar,
+)
 
 MAX_ATTEMPTS = 1000
 # Draws after which there are no more where none comes near, without and with lists to choose from.
@@ -47,17 +52,18 @@ def draw_valid_scene(
     limit = MAX_ATTEMPTS if attempts is None else attempts
     while True:
         scene = draw_scene(config, activity, index, len(misses))
-        check = check_people(scene, scene.people[:1])
+        checks = check_by_each_radar(scene, scene.people[:1])
+        check = checks.decisive
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
-            flags = check.flags
+            flags = checks.by_radar.flags
             if any(kind == HALF_BAND for kind, _ in misses):
-                flags |= Flags.REDRAWN
+                flags |= _redrawn_for(config)
             return _add_others(config, scene, flags)
         misses.append(check.miss)
         if len(misses) >= limit or config.on_invalid != "redraw" or is_hopeless(misses, draws):
             break
-    reason = f"{check.invalid}{_describe_place(scene.people[0])}"
-    cure = suggest_cure(scene.people[0], check)
+    reason = f"{checks.invalid}{_describe_place(scene.people[0])}"
+    cure = suggest_cure(checks.scene.people[0], check)
     if config.on_invalid == "redraw":
         counted = "1 draw, and nothing is drawn again" if draws == 1 else f"{len(misses)} draws"
         raise SceneError(
@@ -103,13 +109,15 @@ def _add_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Flag
             person = next((one for one in scene.people if one.number == number), None)
             if person is None:
                 break
-            check = check_person(scene, person)
-            refusal = _refuse_place(config, person, check)
+            checks = check_by_each_radar(scene, (person,))
+            refusal = _refuse_place(config, person, checks)
             if refusal.reason is None and find_crowded(scene, number) is None:
-                flags |= check.flags & ~Flags.GATE  # which follows the sample's own person
+                flags |= (
+                    checks.by_radar.flags & ~Flags.GATE
+                )  # which follows the sample's own person
                 break
-            if refusal.reason is not None and check.miss[0] == HALF_BAND:
-                flags |= Flags.REDRAWN
+            if refusal.reason is not None and checks.decisive.miss[0] == HALF_BAND:
+                flags |= _redrawn_for(config)
             if refusal.reason is not None and config.on_invalid != "redraw":
                 reason = f"people.{number - 1}: {refusal.reason}"
                 raise SceneError(f"{scene.name}: {reason}; {refusal.cure}")
@@ -121,11 +129,17 @@ def _add_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Flag
     return scene, flags
 
 
-def _refuse_place(config: Config, person: Person, check: SceneCheck) -> _Refusal:
+def _redrawn_for(config: Config) -> Flags:
+    """Flag of a scene that is drawn again for one radar alone; none where it is for all radars."""
+    return Flags(0) if config.other_radars else Flags.REDRAWN
+
+
+def _refuse_place(config: Config, person: Person, checks: RadarChecks) -> _Refusal:
     """Find why one of the people is outside the model, unless such scenes are kept."""
-    if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
+    invalid, check = checks.invalid, checks.decisive
+    if invalid is None or (config.on_invalid == "keep" and not check.too_close):
         return _Refusal(None, CROWDED)
-    return _Refusal(check.invalid + _describe_place(person), _suggest_room(person, check))
+    return _Refusal(invalid + _describe_place(person), _suggest_room(person, check))
 
 
 def find_crowded(scene: Scene, last: int | None = None) -> int | None:

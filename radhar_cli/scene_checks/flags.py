@@ -67,8 +67,9 @@ WORDING = {
     "spot and has no speed; add the path of the hips to all positions, or let the feet tell it: "
     "travel: feet of the class (--travel feet)",
     Flags.REDRAWN: "drawn again, as somebody left the range half-band of this radar: a data set of "
-    "the same seed with another radar has other people in these scenes (nearer places, "
-    "motion.place or motion.range_m, or on_invalid: keep, give all radars the same people)",
+    "the same seed with another radar has other people in these scenes (`radars:` gives several "
+    "radars the same people, docs/guide/several_radars.md; so do nearer places, motion.place or "
+    "motion.range_m, or on_invalid: keep)",
     Flags.SWEEP: "positions are frozen during a sweep, in which a joint is so fast that its echo "
     "belongs more than a range cell elsewhere",
 }

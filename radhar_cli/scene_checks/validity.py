@@ -137,6 +137,47 @@ def check_person(scene: Scene, person: Person) -> SceneCheck:
         raise SceneError(f"{scene.name}: {error} ({keys})") from None
 
 
+class RadarChecks(NamedTuple):
+    """Checks of some people of a scene by each of its radars.
+
+    Attributes:
+        by_radar: check by the scene's own radar.
+        decisive: the one by which the scene is kept or not: where somebody comes too close to an
+            antenna, else the first that is invalid, else that of the own radar.
+        scene: the scene as the radar of the decisive check has it.
+    """
+
+    by_radar: SceneCheck
+    decisive: SceneCheck
+    scene: Scene
+
+    @property
+    def invalid(self) -> str | None:
+        """Why the scene lies outside the model, or None; names one of several radars."""
+        reason, config = self.decisive.invalid, self.scene.config
+        if reason is None or not config.other_radars:
+            return reason
+        return f"radar {config.radar_name}: {reason}"
+
+
+def check_by_each_radar(scene: Scene, people: tuple[Person, ...]) -> RadarChecks:
+    """Check some of the people of a scene, the sample's own person first, by each of its radars.
+
+    Raises:
+        SceneError: no body can do what is drawn.
+    """
+    scenes = scene.of_each_radar
+    checks = [check_people(one, people) for one in scenes]
+    by_radar = checks[[one is scene for one in scenes].index(True)]
+    order = sorted(
+        zip(checks, scenes, strict=True),
+        key=lambda pair: (not pair[0].too_close, pair[0].invalid is None),
+    )
+    if order[0][0].invalid is None:
+        return RadarChecks(by_radar, by_radar, scene)
+    return RadarChecks(by_radar, *order[0])
+
+
 @dataclass(frozen=True)
 class Surroundings:
     """What the motion of a person is checked against.
@@ -150,6 +191,7 @@ class Surroundings:
         gate_m: nearest and farthest range of a fixed gate, m, or None.
         freezes_sweeps: whether positions are frozen during a sweep.
         shares_grid: whether the motion is checked where the direct engine evaluates it.
+        one_of_several: whether the radar is one of several, which look at the person.
     """
 
     antennas: Antennas
@@ -160,6 +202,7 @@ class Surroundings:
     gate_m: tuple[float, float] | None
     freezes_sweeps: bool
     shares_grid: bool
+    one_of_several: bool = False
 
     @classmethod
     def of(cls, scene: Scene, person: Person) -> "Surroundings":
@@ -178,6 +221,7 @@ class Surroundings:
             gate_m=gate_m if is_gated and isinstance(gate_m, tuple) else None,
             freezes_sweeps=sweeps and not config.engine.motion_in_chirp,
             shares_grid=is_alone and not isinstance(config.radar, ArrayRadar),
+            one_of_several=bool(config.other_radars),
         )
 
 
@@ -188,6 +232,7 @@ class _Findings:
     flags: Flags
     approaches: list[Approach] = field(default_factory=list)
     torso_ahead: list[Float] = field(default_factory=list)  # of the hindmost antenna, m
+    looks_at: tuple[float, float] | None = None  # by antennas without a pattern, m
     inside_wall: float = 0.0
     beyond_band: float = 0.0
     outside: tuple[float, str] = (0.0, "")
@@ -198,7 +243,9 @@ class _Findings:
             self.flags |= Flags.FLOOR
         if _meets_antenna(torso, p[2].max(axis=0), around.antennas):
             self.flags |= Flags.RADAR
-        self.torso_ahead.append(distance_ahead(torso, around.antennas))
+        if around.one_of_several and not self.torso_ahead:
+            self.looks_at = float(torso[0, 0]), float(torso[1, 0])
+        self.torso_ahead.append(distance_ahead(torso, around.antennas, self.looks_at))
         if around.box is not None:
             self.outside = max(self.outside, around.box.farthest_outside(p))
         if around.wall is not None:

@@ -87,6 +87,7 @@ def _write_person(group: h5py.Group, truth: Truth, motion: Motion) -> None:
         "hip_joints": {"unit": "m", "axes": ["pulse", "right left", "x y z"]},
         "radial_velocity": {"unit": "m/s, positive receding"},
         "doppler": {"unit": "Hz, positive approaching, before aliasing"},
+        "aspect": {"unit": "rad, from where the person faces to the radar, positive to the left"},
         "phase_label": {"meaning": list(truth.phases)},
     }
     for name, attributes in attributes_of.items():
@@ -103,6 +104,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
     return {
         "activity": {"label": scene.activity.label, "slug": scene.activity.slug},
         "seed": scene.config.seed,
+        **({"radar": name} if (name := scene.config.radar_name) is not None else {}),
         "people": [other.person.activity.slug for other in simulation.others],
         "motion_file": _motion_file(simulation.motion),
         "joint": simulation.joint,

@@ -1,10 +1,11 @@
 """Simulate one scene: every map, every signal, the truth behind them."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from radhar_cli.activities.activity import Activity
+from radhar_cli.assembly.aspect import aspect_of
 from radhar_cli.assembly.bodies import Link, make_path_sources
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.room import reflectors_of
@@ -210,11 +211,16 @@ def _simulation_of(
         scene_notes: warnings of the scene itself.
     """
     radar = {name: results[name] for name in ("antennas", "wall", "waveform")}
-    truth = evaluate_truth(motions[0], **radar)
+    truths = [evaluate_truth(motion, **radar) for motion in motions]
+    if scene.config.radar_name is not None:
+        truths = [
+            replace(truth, aspect=aspect_of(motion, radar["antennas"], truth.time))
+            for motion, truth in zip(motions, truths, strict=True)
+        ]
+    truth = truths[0]
     accuracy: EchoAccuracy | None = results.products.get("accuracy")
     others = [
-        OtherPerson(person, motion, evaluate_truth(motion, **radar))
-        for person, motion in zip(scene.people[1:], motions[1:], strict=True)
+        OtherPerson(*other) for other in zip(scene.people[1:], motions[1:], truths[1:], strict=True)
     ]
     has_paths = len(motions) > 1 or bool(scene.config.room.faces)
     return Simulation(

@@ -36,6 +36,8 @@ class Truth:
         phase_label: number in `phases` of the movement that is under way [M].
         phases: names of the movements within the activity.
         hip_joints: where thighs begin, right and left [M, 2, 3], m; None where it is the hip.
+        aspect: angle [M] (rad) from where the person faces to one of several radars, positive where
+            it is to their left; None with a radar alone.
     """
 
     time: Float = field(repr=False)
@@ -45,6 +47,7 @@ class Truth:
     phase_label: Levels = field(repr=False)
     phases: tuple[str, ...]
     hip_joints: Float | None = field(default=None, repr=False)
+    aspect: Float | None = field(default=None, repr=False)
 
 
 class PathTruth(NamedTuple):
@@ -148,6 +151,7 @@ def truth_of_nobody(truth: Truth, slug: str) -> Truth:
         doppler=np.full_like(truth.doppler, np.nan),
         hip_joints=None if truth.hip_joints is None else np.full_like(truth.hip_joints, np.nan),
         phase_label=np.zeros_like(truth.phase_label),
+        aspect=None if truth.aspect is None else np.full_like(truth.aspect, np.nan),
         phases=(slug,),
     )
 

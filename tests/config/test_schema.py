@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from helpers.command_line import ROOT
 
-from radhar_cli.config import load_config
+from radhar_cli.config import load_radars
 from radhar_cli.config.reading import load_section
 from radhar_cli.config.section import Section
 from radhar_cli.learning.settings import TrainConfig
@@ -17,7 +17,7 @@ FILES = sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.y
 
 def read(path: Path) -> Section:
     training = path.parent.name == "train"
-    return load_section(TrainConfig, path) if training else load_config(path)
+    return load_section(TrainConfig, path) if training else next(iter(load_radars(path).values()))
 
 
 @pytest.mark.parametrize("name", FILES)

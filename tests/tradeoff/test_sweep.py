@@ -254,7 +254,11 @@ class TestSettings:
         assert settings["processing.range_sum: gated"].base == ("maps=[stft]",)
 
 
-SHIPPED = sorted(path for path in (ROOT / "configs").rglob("*.yaml") if path.parent.name != "train")
+SHIPPED = sorted(
+    path
+    for path in (ROOT / "configs").rglob("*.yaml")
+    if path.parent.name != "train" and "\nradars:" not in path.read_text()
+)
 
 
 @pytest.mark.slow

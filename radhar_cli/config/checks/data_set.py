@@ -8,7 +8,11 @@ from radhar_cli.config.checks.people import (
     people_problems,
     unknown_activities,
 )
-from radhar_cli.config.checks.radar import profile_problems, radar_problems
+from radhar_cli.config.checks.radar import (
+    profile_problems,
+    radar_problems,
+    waveform_problems,
+)
 from radhar_cli.config.checks.room import (
     back_wall_problems,
     room_problems,
@@ -18,6 +22,7 @@ from radhar_cli.config.checks.room import (
 from radhar_cli.config.checks.signal import processing_problems
 from radhar_cli.config.checks.streams import stream_problems
 from radhar_cli.config.maps import MAP_NAMES
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.request import MeasuredRequest, Request
 from radhar_cli.config.section import Problem
 
@@ -52,6 +57,7 @@ def problems(c: Request) -> Iterator[Problem]:
         yield from mistakes
         return
     yield from unknown_activities(c)
+    yield from _problems_of_several(c)
     yield from radar_problems(c)
     yield from processing_problems(c)
     yield from wall_problems(c)
@@ -74,6 +80,27 @@ def problems(c: Request) -> Iterator[Problem]:
             limit = f"stream.count = {c.stream.count}"
         right = f"should be at most {limit}: every person performs every activity"
         yield Problem("split.subjects", split.subjects, right)
+
+
+def _problems_of_several(c: Request) -> Iterator[Problem]:
+    """Find what is wrong with the other radars of the same scenes."""
+    if c.radars is not None:
+        right = "should be read from a file, by load_radars, which makes a config of each radar"
+        yield Problem("radars", [*c.radars], right)
+    if c.radar_name is None and c.other_radars:
+        right = "should have radar_name, which tells this one from the others"
+        yield Problem("other_radars", [*c.other_radars], right)
+    elif c.radar_name in c.other_radars:
+        right = "should be the name of none of other_radars"
+        yield Problem("radar_name", c.radar_name, right)
+    for name in c.other_radars:
+        other = c.of_other_radar(name)
+        mistakes = [*radar_problems(other), *room_problems(other)]
+        if not isinstance(other.radar, ArrayRadar):
+            mistakes += waveform_problems(other)
+        for key, value, right in mistakes:
+            if key.startswith("radar."):
+                yield Problem(f"other_radars.{name}.{key.removeprefix('radar.')}", value, right)
 
 
 def measured_problems(c: MeasuredRequest) -> Iterator[Problem]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import DATASET, SPLITS, is_incomplete
+from radhar_cli.dataset.radar_folders import refuse_several_radars
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.choices import Kind, sequences_of
 from radhar_cli.learning.images.folder import FilePixels, open_tree
@@ -78,7 +79,12 @@ def open_images(
 
 
 def is_tree(path: Path) -> bool:
-    """Whether a path is a folder that holds no data set, finished or not: a tree of images."""
+    """Whether a path is a folder that holds no data set, finished or not: a tree of images.
+
+    Raises:
+        FolderError: it holds data sets of several radars.
+    """
+    refuse_several_radars(path)
     return path.is_dir() and not is_h5(path) and not is_incomplete(path)
 
 

@@ -1,0 +1,88 @@
+"""The folder of several radars of the same scenes: one folder each, and a file that lists them."""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+
+from radhar_cli.dataset.files import refuse_links
+from radhar_cli.dataset.folder import refuse_file, refuse_foreign_files
+from radhar_cli.errors import FolderError
+from radhar_cli.files.replacing import write_text
+from radhar_cli.files.untrusted import read_json
+
+RADARS = "radars.json"
+
+
+def reserve_radars(folder: Path, names: Iterable[str]) -> dict[str, Path]:
+    """Take a folder for what is made of several radars, and write the file that lists them.
+
+    Args:
+        folder: the folder, which need not exist; what its radars' folders hold is not looked at.
+        names: names of the radars.
+
+    Returns:
+        {name: folder of the radar}, none of them made.
+
+    Raises:
+        FolderError: it is a file, or holds other files, or those of other radars.
+    """
+    listed = sorted(names)
+    refuse_file(folder)
+    held = radars_of(folder)
+    if held and held != listed:
+        raise FolderError(
+            f"{folder}: holds the radars {', '.join(held)}, not {', '.join(listed)}; choose an "
+            "empty folder"
+        )
+    if not held:
+        refuse_foreign_files(folder, f"{RADARS} of several radars", allowed=())
+    else:
+        refuse_foreign_files(folder, "radar of these names", allowed=(RADARS, *listed))
+    folders = {name: folder / name for name in listed}
+    for path in (*folders.values(), folder / RADARS):
+        refuse_links(folder, path)
+    if not held:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_text(folder / RADARS, json.dumps({"radars": listed}) + "\n")
+    return folders
+
+
+def radars_of(folder: Path) -> list[str]:
+    """Names of the radars whose folders a folder holds; none of any other folder.
+
+    Raises:
+        FolderError: its list of radars is damaged.
+    """
+    path = folder / RADARS
+    if not path.is_file():
+        return []
+    document = read_json(path)
+    names = document.get("radars") if isinstance(document, dict) else None
+    if not isinstance(names, list) or not names or not all(map(_is_name, names)):
+        raise FolderError(f"{path}: is damaged: should be the names of radars")
+    return sorted(names)
+
+
+def _is_name(name: object) -> bool:
+    """Whether a name is that of a folder inside of another one."""
+    return isinstance(name, str) and name.replace("-", "").replace("_", "").isalnum()
+
+
+def folders_of_radars(folder: Path) -> dict[str, Path]:
+    """Folders {name: path} of the radars of a folder; {"": the folder itself} of any other.
+
+    Raises:
+        FolderError: its list of radars is damaged.
+    """
+    return {name: folder / name for name in radars_of(folder)} or {"": folder}
+
+
+def refuse_several_radars(folder: Path) -> None:
+    """Refuse a folder of several radars where the data set of one of them is needed.
+
+    Raises:
+        FolderError: it is such a folder; the message names those of its radars.
+    """
+    if names := radars_of(folder):
+        one_each = ", ".join(str(folder / name) for name in names)
+        raise FolderError(f"{folder}: holds a data set of each of several radars; give {one_each}")

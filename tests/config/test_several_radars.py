@@ -1,0 +1,166 @@
+"""`radars`: a config of each radar, which lies over `radar`; and what is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from radhar_cli.assembly.radar import antennas_of
+from radhar_cli.config import Config, load_config, load_radars, resolved
+from radhar_cli.config.identity import as_yaml
+from radhar_cli.errors import ConfigError
+from radhar_cli.scene import nominal_scene
+
+BOARD = "{cfg: iwr1843boost, device: IWR1843BOOST}"
+
+
+def file_of(folder: Path, text: str) -> Path:
+    path = folder / "several.yaml"
+    path.write_text(text)
+    return path
+
+
+def test_what_radar_says_lies_under_each_entry(tmp_path):
+    path = file_of(
+        tmp_path,
+        "radar: {cfg: iwr1843boost, device: IWR1843BOOST, position_m: [0, 0, 1.2]}\n"
+        "maps: [range_azimuth]\n"
+        "processing: {clutter: none}\n"
+        "radars:\n  azimuth:\n  elevation: {roll_deg: 90, maps: [range_elevation], snr_db: 20}\n",
+    )
+    configs = load_radars(path)
+    azimuth, elevation = configs["azimuth"], configs["elevation"]
+    assert [*configs] == ["azimuth", "elevation"]
+    assert (azimuth.radar.roll_deg, elevation.radar.roll_deg) == (0, 90)
+    assert azimuth.radar.position_m == elevation.radar.position_m == (0, 0, 1.2)
+    assert (azimuth.maps, elevation.maps) == (("range_azimuth",), ("range_elevation",))
+    assert (azimuth.snr_db, elevation.snr_db) == (None, 20)
+    assert elevation.processing.clutter == "none"
+    assert azimuth.other_radars == {"elevation": elevation.radar}
+
+
+def test_order_of_entries_does_not_matter(tmp_path):
+    entries = ["a: {prf_hz: 1000}", "b: {prf_hz: 2000}", "c: {waveform: cw}"]
+    dumps = []
+    for order in (entries, entries[::-1], entries[1:] + entries[:1]):
+        configs = load_radars(file_of(tmp_path, f"radars: {{{', '.join(order)}}}\n"))
+        assert [*configs] == ["a", "b", "c"]
+        dumps.append([as_yaml(one) for one in configs.values()])
+    assert dumps[0] == dumps[1] == dumps[2]
+
+
+def test_one_radar_is_chosen_or_asked_for(tmp_path):
+    path = file_of(tmp_path, "seed: 2\nradars:\n  front: {}\n  side: {prf_hz: 500}\n")
+    with pytest.raises(ConfigError) as error:
+        load_config(path)
+    assert str(error.value) == (
+        f"{path}:2: radars: has several radars, front and side; should be one here: "
+        "--set radar_name=front"
+    )
+    chosen = load_config(path, ["radar_name=side", "radars.side.prf_hz=600"])
+    assert (chosen.radar_name, chosen.radar.prf_hz) == ("side", 600)
+    assert [*chosen.other_radars] == ["front"]
+    alone = load_config(file_of(tmp_path, "radars: {front: {}}\n"))
+    assert (alone.radar_name, alone.other_radars) == ("front", {})
+
+
+def test_config_of_a_radar_reads_back(tmp_path):
+    text = f"radars: {{a: {BOARD}, b: {{waveform: cw}}}}\nmaps: [stft]\n"
+    for config in load_radars(file_of(tmp_path, text)).values():
+        again = load_config(file_of(tmp_path, as_yaml(config)))
+        assert again.without_other_words() == config.without_other_words()
+
+
+def test_radar_alone_has_no_new_keys():
+    assert not {"radars", "radar_name", "other_radars"} & resolved(Config()).keys()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("radars: [{}, {}]", ":1: radars = [{}, {}]: should be a mapping of names"),
+        ("radars: {}", ":1: radars = {}: should be a mapping of names"),
+        ("radars: {a/b: {}}", ':1: radars = "a/b": should have a name of letters'),
+        ("radars: {a: {}, A: {}}", "should differ from a by more than capitals"),
+        ("radars: {a: 3}", ":1: radars.a = 3: should be a mapping of keys of radar"),
+        ("radars: {a: {}}\nradar_name: b", ':2: radar_name = "b": should be one of radars: a'),
+        (
+            "radars:\n  a: {}\n  b: {prf_hz: -1}",
+            ":3: radars.b.prf_hz = -1: should be above 0",
+        ),
+        (
+            "radar: {prf_hz: -1}\nradars: {a: {}, b: {}}",
+            ":1: radar.prf_hz = -1: should be above 0",
+        ),
+        (
+            "radars:\n  a: {}\n  b:\n    people: []",
+            ":4: radars.b.people = []: is an unknown key",
+        ),
+        (
+            "radars:\n  a: {}\n  b: {maps: [range_azimuth]}",
+            ':3: radars.b.maps = ["range_azimuth"]: should be some of',
+        ),
+        ("radars: {a: {waveform: impulse}}", "radars.a.profile_m: is required"),
+        (
+            "radars: {a: {aspect: {angle_deg: 90}}}",
+            'radars.a.aspect = {"angle_deg": 90}: should have distance_m, about_m, too',
+        ),
+        (
+            "radars: {a: {aspect: {angle_deg: x, distance_m: 0, about_m: 3}}}",
+            "radars.a.aspect.distance_m = 0: should be a number above 0",
+        ),
+        (
+            f"radars: {{a: {BOARD[:-1]}, yaw_deg: 3, "
+            "aspect: {angle_deg: 0, distance_m: 3, about_m: [3, 0]}}}",
+            "radars.a.yaw_deg = 3: should be left out with aspect",
+        ),
+        ("radars: {" + ", ".join(f"r{n}: {{}}" for n in range(9)) + "}", "8 radars at most"),
+        ("radars: {a: {cfg: none.cfg}}", ':1: radar.cfg = "none.cfg": should be the path'),
+        ("other_radars: {b: {}}", "other_radars"),
+    ],
+)
+def test_mistake_is_told_once_with_the_key_of_the_file(tmp_path, text, message):
+    with pytest.raises(ConfigError) as error:
+        load_radars(file_of(tmp_path, text))
+    lines = str(error.value).splitlines()
+    assert [line for line in lines if message in line], lines
+    assert len(lines) == len({*lines})
+
+
+def test_mistake_of_an_override_names_it(tmp_path):
+    path = file_of(tmp_path, "radars: {a: {}, b: {}}")
+    with pytest.raises(ConfigError, match=r"^--set radars.b.prf_hz = \"x\": should"):
+        load_radars(path, ["radars.b.prf_hz=x"])
+
+
+@pytest.mark.parametrize("angle_deg", [0, 45, 90, -120])
+@pytest.mark.parametrize(
+    "radar", ["{beam: {pan_deg: 0}}", "{waveform: cw}", BOARD, "{frame: {chirps: 64}}"]
+)
+def test_aspect_looks_at_the_place_from_its_distance(tmp_path, radar, angle_deg):
+    aspect = f"{{angle_deg: {angle_deg}, distance_m: 4, about_m: [3, 1]}}"
+    text = f"radar: {radar}\nradars: {{a: {{aspect: {aspect}}}}}\nmaps: [stft]\n"
+    config = load_config(file_of(tmp_path, text))
+    antennas = antennas_of(nominal_scene(config, config.chosen_activities[0]))
+    ahead = np.array([np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))])
+    middle = np.mean(antennas.places, axis=0)[:2]
+    tolerance = 0.05 if "cfg" in radar else 1e-9  # of the first channel of a board
+    assert middle + 4 * ahead == pytest.approx([3, 1], abs=tolerance)
+    if antennas.aim is not None:
+        assert antennas.aim.axes[0][:2] == pytest.approx(ahead)
+    across = np.subtract(antennas.rx, antennas.tx)[:2]
+    assert across @ ahead == pytest.approx(0, abs=1e-9)
+
+
+def test_an_entry_may_be_a_board_by_a_path(tmp_path):
+    from radhar_cli.config.documents import RADARS
+
+    (tmp_path / "own.cfg").write_text(RADARS["iwr1843boost"].read_text())
+    text = {"radars": {"a": {"cfg": "own.cfg", "device": "IWR1843BOOST"}, "b": {}}}
+    configs = load_radars(file_of(tmp_path, yaml.safe_dump(text)))
+    assert configs["a"].radar.kind == "board"
+    bad = RADARS["iwr1843boost"].read_text().replace("frameCfg", "frameCfgs")
+    (tmp_path / "own.cfg").write_text(bad)
+    with pytest.raises(ConfigError, match=r"^own\.cfg"):
+        load_radars(file_of(tmp_path, yaml.safe_dump(text)))

@@ -106,7 +106,7 @@ def generate(
                     f"{config}: recordings: --recordings MANIFEST should say where they lie"
                 )
         if dry_run:
-            for_each_radar(configs, lambda _, one: print_plan(one, jobs))
+            for_each_radar(configs, lambda _, of_radar: print_plan(of_radar, jobs))
             return
         work = Work(jobs, batch, cluster, overwrite, factory)
         part = None if shard is None else DataSetPart.parse(shard)
@@ -173,7 +173,7 @@ class Work:
         print_outcome(config, outcome)
 
     def build_part(
-        self, config: "AnyConfig", out: Path, part: "DataSetPart", whole: Path, is_last: bool
+        self, config: "AnyConfig", out: Path, part: "DataSetPart", merged: Path, is_last: bool
     ) -> None:
         """Make a part of a data set, or resume it, and print what was made.
 
@@ -181,7 +181,7 @@ class Work:
             config: that of the data set.
             out: its folder.
             part: the part.
-            whole: folder that `radhar merge` takes: that one, or the one of several radars.
+            merged: folder that `radhar merge` takes: that one, or the one of several radars.
             is_last: whether nothing is left to do after it.
         """
         from radhar_cli.commands.terminal import BarProgress, print_part
@@ -191,7 +191,7 @@ class Work:
             outcome = build_part(config, out, part, jobs, bars, self.overwrite, self.batch)
         if is_last:
             interrupts.complete(f"part {part} of {out}")
-        print_part(outcome, whole, str(part))
+        print_part(outcome, merged, str(part))
 
 
 def _config_of_recordings(config: "Config", manifest: Path) -> "tuple[AnyConfig, RowFactory]":

@@ -12,6 +12,7 @@ from radhar_cli.motion.files.joint_order import find_joint_order
 from radhar_cli.motion.files.keypoints import Keypoints
 from radhar_cli.motion.files.names import JointMean, JointNames, joint_means
 from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
+from radhar_cli.motion.files.side_swaps import undo_side_swaps
 from radhar_cli.motion.files.travel import travel_by_feet
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
@@ -137,7 +138,9 @@ def make_clip(
     chosen = [mean or means[_HIP] for mean in means]
     blends = [mean for mean in chosen if mean is not None]
     frames = read_frames(file, blends, rate)
-    p = frames.positions
+    p, exchanged = undo_side_swaps(frames.positions) if has_hip_joints else (frames.positions, 0)
+    if exchanged:
+        remarks += (f"left and right are exchanged in {exchanged} frames, which are put right",)
     legs = np.linalg.norm(p[:, len(JOINTS) :] - p[:, _KNEES], axis=2)
     legs += np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
     units = float(np.median(legs)) / LEG  # stature in units of the file

@@ -32,6 +32,10 @@ NORMALISED = (
     "has landmarks of an image, which lie from 0 to 1 and have no scale in depth; write "
     "pose_world_landmarks, which are in m"
 )
+ONE_FRAME = (
+    "is one frame of CMU Panoptic; make one file of all: frames = [json.load(open(f)) for f in "
+    "sorted(glob.glob('FOLDER/*.json'))]; json.dump(frames, open('clip.json', 'w'))"
+)
 
 
 def read_json_poses(data: bytes, where: str) -> Keypoints:
@@ -50,6 +54,8 @@ def read_json_poses(data: bytes, where: str) -> Keypoints:
         keys = _lower(document)
         if "people" in keys:
             raise motion_file_error(where, _of_openpose(keys["people"]))
+        if "bodies" in keys:
+            raise motion_file_error(where, ONE_FRAME)
         names, rate = _names(keys, where), _rate(keys, where)
         series = next((keys[key] for key in (*_FRAMES, *_JOINTS) if key in keys), None)
         if series is None and any(key in keys for key in _IMAGE):
@@ -166,6 +172,7 @@ def _read_frame(frame: Any, place: str) -> tuple[Float | None, Any, str | None, 
         keys = _lower(frame)
         if "people" in keys:
             raise motion_file_error(place, _of_openpose(keys["people"]))
+        keys = _of_panoptic(keys, place)
         for key in _TIMES:
             for ending in ("", *(f"_{unit}" for unit in TIME_UNITS)):
                 if instant is None and _is_number(keys.get(key + ending)):
@@ -183,6 +190,24 @@ def _read_frame(frame: Any, place: str) -> tuple[Float | None, Any, str | None, 
 
 
 _NOTHING = object()
+
+
+def _of_panoptic(keys: dict[str, Any], place: str) -> dict[str, Any]:
+    """Keys of a frame of CMU Panoptic with its only body's joints [19][4] as `joints`.
+
+    Raises:
+        MotionFileError: It has several bodies.
+    """
+    bodies = keys.get("bodies")
+    if not isinstance(bodies, list):
+        return keys
+    if len(bodies) > 1:
+        raise motion_file_error(place, f"has {len(bodies)} people; should be one")
+    body = _lower(bodies[0]) if bodies and isinstance(bodies[0], dict) else {}
+    flat = next((body[key] for key in ("joints19", "joints15", "joints26") if key in body), None)
+    rows = [flat[n : n + 4] for n in range(0, len(flat), 4)] if isinstance(flat, list) else []
+    instant = {"timestamp_ms": keys["univtime"]} if "univtime" in keys else {}
+    return {**keys, **instant, "joints": [None if row[-1:] == [-1] else row for row in rows]}
 
 
 def _is_joint(value: Any) -> bool:
@@ -218,6 +243,8 @@ def _read_joint(joint: Any, place: str) -> list[float]:
         return [float("nan")] * 3
     if isinstance(joint, dict):
         keys = _lower(joint)
+        if any(keys.get(key, 1) == 0 for key in ("visibility", "confidence", "score")):
+            return [float("nan")] * 3
         joint = [keys.get(axis) for axis in "xyz"]
         if joint[2] is None and None not in joint[:2]:
             raise motion_file_error(place, two_dimensional("a joint has x and y, but no z"))
@@ -227,4 +254,6 @@ def _read_joint(joint: Any, place: str) -> list[float]:
         raise motion_file_error(place, "a joint should be [x, y, z], or have x, y and z")
     if not all(value is None or _is_number(value) for value in joint):
         raise motion_file_error(place, "coordinates should be numbers")
+    if len(joint) == 4 and joint[3] == 0:  # a confidence
+        return [float("nan")] * 3
     return [float("nan") if value is None else float(value) for value in joint[:3]]

@@ -16,11 +16,19 @@ MAX_TEXT = 2**26  # bytes
 MAX_COLUMNS = 10 * MAX_JOINTS
 TRC_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 _AXIS_LAST = re.compile(
-    r"^(?P<name>.+?)[ _.:\-\[(]*(?P<axis>[xyz])[\])]?(?:[ _]?\(?(?:mm|cm|m)\)?)?$", re.I
+    r"^(?P<name>.+?)(?:[ _.:\-]*(?:position|pos|location|translation))?"
+    r"[ _.:\-\[(]*(?P<axis>[xyz])[\])]?(?:[ _]?[(\[]?(?:mm|cm|m)[)\]]?)?$",
+    re.I,
+)
+_CONFIDENCE = re.compile(
+    r"^(?P<name>.+?)[ _.:\-\[(]*(?:visibility|vis|confidence|conf|likelihood|score|v|c)[\])]?$",
+    re.I,
 )
 _AXIS_FIRST = re.compile(r"^(?P<axis>[xyz])[ _.:\-]*(?P<name>.+)$", re.I)
 _TIME = re.compile(
-    r"^(?:time|times|timestamp|timestamps|t)(?:[ _(\[]*(?P<unit>s|ms|us|ns)[)\]]?)?$", re.I
+    r"^(?:time|times|timestamp|timestamps|elapsed|elapsed_time|t)"
+    r"(?:[ _(\[]*(?:(?P<unit>s|ms|us|ns)|sec|secs|seconds)[)\]]?)?$",
+    re.I,
 )
 _LOST = frozenset({"", "nan", "null", "none", "na", "n/a"})
 
@@ -32,6 +40,7 @@ class _Columns(NamedTuple):
     places: list[tuple[int, int, int]]
     time: int | None
     unit: str | None
+    confidences: list[int | None]  # columns of which 0 is a lost joint
 
 
 def read_csv(data: bytes, where: str) -> Keypoints:
@@ -45,7 +54,10 @@ def read_csv(data: bytes, where: str) -> Keypoints:
         MotionFileError: Names the line and what is odd.
     """
     lines = _lines(data, where)
-    heading = next((n for n, line in enumerate(lines) if line.strip()), None)
+    heading = next(
+        (n for n, line in enumerate(lines) if line.strip() and not line.startswith(("#", "%"))),
+        None,
+    )
     if heading is None:
         raise motion_file_error(where, "is empty")
     delimiter = max(",;\t", key=lines[heading].count)
@@ -62,6 +74,9 @@ def read_csv(data: bytes, where: str) -> Keypoints:
     columns = _find_columns(head, where)
     numbers = _numbers(rows, len(head), where, heading + 2)
     values = numbers[:, np.array(columns.places).ravel()].reshape(len(numbers), -1, 3)
+    for joint, column in enumerate(columns.confidences):
+        if column is not None:
+            values[numbers[:, column] == 0, joint] = np.nan
     times = None if columns.time is None else numbers[:, columns.time]
     if times is not None and columns.unit:
         times = times * TIME_UNITS[columns.unit]
@@ -144,7 +159,9 @@ def _find_columns(head: Sequence[str], where: str) -> _Columns:
     if len(complete) > MAX_JOINTS:
         raise motion_file_error(where, f"has {len(complete)} joints; should have 1 to {MAX_JOINTS}")
     places = [(axes["x"], axes["y"], axes["z"]) for axes in complete.values()]
-    return _Columns([*complete], places, time, unit)
+    matches = [(number, _CONFIDENCE.match(name)) for number, name in enumerate(head)]
+    confidences = {m["name"].strip(" _.:-"): number for number, m in matches if m}
+    return _Columns([*complete], places, time, unit, [confidences.get(name) for name in complete])
 
 
 def _numbers(rows: Sequence[Sequence[str]], width: int, where: str, first: int) -> Float:

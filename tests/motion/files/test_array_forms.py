@@ -1,14 +1,16 @@
 """Arrays of one walker in the shapes, names, times and marks of lost joints that people save."""
 
+import json
 from pathlib import Path
 
 import joint_set_errors
 import numpy as np
 import pytest
-from helpers.poses import COCO, RATE, WALKER, T, names, npy_bytes, npz_bytes
+from helpers.poses import COCO, RATE, WALKER, T, camera, csv_text, names, npy_bytes, npz_bytes
 
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import Clip, make_clip
+from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.numerics.arrays import Float
 
@@ -153,3 +155,67 @@ def test_a_pose_without_a_head_has_one_above_the_shoulders(tmp_path: Path) -> No
     clip = clip_of(tmp_path / "x.npz", data)
     assert largest_error(clip) < 0.03
     assert "no head" in clip.remarks[0]
+
+
+ELBOW = LABELS.index("left_elbow")
+SWAPPED = [0, *(n + (1 if n % 2 else -1) for n in range(1, 17))]  # left_eye, right_eye, ...
+
+
+@pytest.mark.parametrize("part", ["all", "legs", "from the start"])
+def test_sides_that_are_exchanged_for_some_frames_are_put_right(part: str, tmp_path: Path) -> None:
+    p = COCO.copy()
+    rows = slice(0, 20) if part == "from the start" else slice(60, 67)
+    swapped = p[rows][:, SWAPPED]
+    first = LABELS.index("left_hip") if part == "legs" else 0
+    p[rows, first:] = swapped[:, first:]
+    clip = clip_of(tmp_path / "x.npz", npz_bytes(names=LABELS, positions=p, rate=RATE))
+    assert largest_error(clip) < 0.01
+    assert f"exchanged in {rows.stop - rows.start} frames" in clip.remarks[0]
+
+
+HEADINGS = ["{}_{}", "{} {}", "{}.{}", "{}:{}", "{}({})", "{}[{}]", "{}_pos_{}", "{}_position_{}"]
+
+
+@pytest.mark.parametrize("heading", [*HEADINGS, "{}_{} [mm]", "{}_{}_mm"])
+def test_columns_are_named_in_other_ways(heading: str, tmp_path: Path) -> None:
+    unit = 1000 if "mm" in heading else 1
+    text = "# made by a camera\n" + csv_text(unit * COCO, LABELS, heading)
+    assert largest_error(clip_of(tmp_path / "x.csv", text.encode())) < 0.01
+
+
+@pytest.mark.parametrize("word", ["visibility", "confidence", "v", "score"])
+def test_a_column_of_confidence_says_what_is_lost(word: str, tmp_path: Path) -> None:
+    p, certain = COCO.copy(), np.ones(COCO.shape[:2])
+    p[40:46, ELBOW] += 0.3
+    certain[40:46, ELBOW] = 0
+    head = ["time", *(f"{name}_{axis}" for name in LABELS for axis in ("x", "y", "z", word))]
+    cells = np.concatenate([p, certain[..., None]], axis=2).reshape(len(p), -1)
+    rows = [[t, *row] for t, row in zip(T.tolist(), cells.tolist(), strict=True)]
+    text = "\n".join(",".join(map(str, row)) for row in [head, *rows])
+    clip = clip_of(tmp_path / "x.csv", text.encode())
+    assert "bridged: left_elbow" in clip.bridged
+    assert largest_error(clip) < 0.02
+    frames = [
+        [
+            {"name": n, "x": x, "y": y, "z": z, word: c}
+            for n, (x, y, z), c in zip(LABELS, body, sure, strict=True)
+        ]
+        for body, sure in zip(p.tolist(), certain.tolist(), strict=True)
+    ]
+    if word != "v":
+        document = {"fps": RATE, "frames": frames}
+        clip = clip_of(tmp_path / "x.json", json.dumps(document).encode())
+        assert "bridged: left_elbow" in clip.bridged
+
+
+def test_frames_of_panoptic_are_read_as_a_list(tmp_path: Path) -> None:
+    p = 100 * camera(joint_set_errors.poses_of(JOINT_SETS["panoptic19"], WALKER))
+    rows = np.concatenate([p, np.ones((*p.shape[:2], 1))], axis=2).reshape(len(p), -1)
+    frames = [
+        {"univTime": 1000 * t + 5e4, "bodies": [{"id": 0, "joints19": row}]}
+        for t, row in zip(T.tolist(), rows.tolist(), strict=True)
+    ]
+    clip = clip_of(tmp_path / "x.json", json.dumps(frames).encode())
+    assert largest_error(clip) < 0.01
+    with pytest.raises(MotionFileError, match=r"one frame of CMU Panoptic; .*json\.dump\(frames"):
+        clip_of(tmp_path / "y.json", json.dumps(frames[0]).encode())

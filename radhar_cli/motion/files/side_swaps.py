@@ -39,11 +39,11 @@ _SIDES = ("right", "left")
 
 def _swapped_frames(right: Float, left: Float) -> Bool:
     """Whether joints [frames, 3] are exchanged in each frame [frames]."""
-    own = np.linalg.norm(np.diff(right, axis=0), axis=1)
-    own += np.linalg.norm(np.diff(left, axis=0), axis=1)
-    other = np.linalg.norm(right[1:] - left[:-1], axis=1)
-    other += np.linalg.norm(left[1:] - right[:-1], axis=1)
+    unchanged = np.linalg.norm(np.diff(right, axis=0), axis=1)
+    unchanged += np.linalg.norm(np.diff(left, axis=0), axis=1)
+    exchanged = np.linalg.norm(right[1:] - left[:-1], axis=1)
+    exchanged += np.linalg.norm(left[1:] - right[:-1], axis=1)
     width = np.median(np.linalg.norm(right - left, axis=1))
-    is_jump = (other < NEARER * own) & (own > width) & (width > 0)
+    is_jump = (exchanged < NEARER * unchanged) & (unchanged > width) & (width > 0)
     state: Bool = np.concatenate([[0], np.cumsum(is_jump)]) % 2 == 1
     return ~state if state.mean() > 0.5 else state

@@ -22,6 +22,7 @@ from radhar_cli.products.run import run
 from radhar_cli.products.table import products
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.fmcw_timing import FmcwTiming
+from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.scene import fixed_radar
 
 # {map of a board: products of its recording that are behind it}
@@ -54,20 +55,20 @@ def frames_of_recording(
     """
     board = _board(recording, config)
     part = part_of(recording, start, stop)
-    is_whole = part.segments.lengths == board.loops
-    if not is_whole.any():
+    starts = _starts_of_frames(part.segments, board.loops, config.radar.frames_apart)
+    if not starts:
         raise CaptureError(f"{recording.path}: holds no whole frame of {board.loops} loops there")
-    board = replace(board, frames=int(is_whole.sum()))
+    board = replace(board, frames=len(starts))
     _require_kind_of_samples(recording, board)
     shape = board.frames, board.loops, board.channels, board.samples
     cube = np.empty(shape, np.float32 if board.is_real else np.complex64)
-    starts = part.first + part.segments.first[is_whole]
-    for frame, pulse in enumerate(starts.tolist()):
+    for frame, start in enumerate(starts):
+        pulse = part.first + start
         beat = recording.beat(pulse, pulse + board.loops).transpose(2, 0, 1)
         cube[frame] = beat.real if board.is_real else beat
     inputs = {"cube": cube, "board": board, "image_scale": scale_of(config)}
     products_of_frames = run(plan(products(config), names, inputs), inputs).products
-    middles = part.segments.times(part.segments.first[is_whole]) + board.loops * board.loop / 2
+    middles = part.segments.times(np.array(starts)) + board.loops * board.loop / 2
     results = {
         name: _at_times(product, middles) if isinstance(product, PowerMap) else product
         for name, product in products_of_frames.items()
@@ -78,6 +79,24 @@ def frames_of_recording(
 def _at_times(power_map: PowerMap, times: Float) -> PowerMap:
     """Give a map of frames the times of the recording, where frames may be missing."""
     return even_columns(replace(power_map, columns=replace(power_map.columns, values=times)))
+
+
+def _starts_of_frames(segments: PulseTimes, loops: int, frames_apart: bool) -> list[int]:
+    """Numbers of the first pulses of whole frames.
+
+    Args:
+        segments: stretches of pulses, each a frame if there are pauses between frames.
+        loops: number of pulses of a frame.
+        frames_apart: whether there are.
+    """
+    if frames_apart:
+        starts: list[int] = segments.first[segments.lengths == loops].tolist()
+        return starts
+    return [
+        start
+        for pulses in segments.slices
+        for start in range(pulses.start, pulses.stop - loops + 1, loops)
+    ]
 
 
 def _board(recording: Recording, config: Config) -> Board:

@@ -128,10 +128,17 @@ def numbers_of(content: Content) -> dict[str, Any]:
     return {name: value for name, value in asdict(content).items() if name != "is_iq"}
 
 
-def describe_difference(content: Content, expected: Content) -> str | None:
+def describe_difference(
+    content: Content, expected: Content, tolerance: float = TOLERANCE
+) -> str | None:
     """Say in what a content differs from another of the same radar, or return None.
 
     The text is such as "prf_hz = 200: should be 256".
+
+    Args:
+        content: content of a recording.
+        expected: content that it should have.
+        tolerance: relative difference of numbers that are taken for the same.
     """
     if content.noun != expected.noun:
         return f"holds {content.noun}: should hold {expected.noun}"
@@ -139,7 +146,7 @@ def describe_difference(content: Content, expected: Content) -> str | None:
     # The number of samples comes first, as the bandwidth follows from it.
     for name in sorted(numbers | expected_numbers, key=lambda name: name != "samples"):
         value, number = numbers.get(name, False), expected_numbers.get(name, False)
-        if abs(value - number) > TOLERANCE * abs(number):
+        if abs(value - number) > tolerance * abs(number):
             return f"{name} = {value:.10g}: should be {number:.10g}"
     return None
 

@@ -1,38 +1,48 @@
-"""Estimate a simulation config from recordings: waveform, SNR, ranges and noise floor.
+"""Estimate a simulation config from recordings: radar, SNR, ranges and noise floor.
 
 A receiver's noise is the floor of its range-Doppler maps; the person is what moves above it. With
 range bins S_k = sum_n s[n] exp(...) of N samples, white noise of variance sigma^2 has
 |S_k|^2 = N sigma^2 and a path of amplitude A has sum_k |S_k|^2 = N^2 A^2: SNR = P_s/sigma^2 as in
-model.md.
+model.md. Samples of a profile are bins as they are, and a pulse is spread over sum_k g(t_k)^2 of
+them, g being its envelope; slow time has a bin.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import pi, sqrt
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.fft
 
-from radhar_cli.capture.chain import bins_of_part, part_of
-from radhar_cli.capture.content import Beat
+from radhar_cli.capture.chain import (
+    RecordingPart,
+    analytic,
+    bins_of_part,
+    part_of,
+    slow_time_of_part,
+)
+from radhar_cli.capture.content import Beat, Content, SlowTime
+from radhar_cli.capture.fitted_radar import (
+    differing_key,
+    frames_in,
+    place_of,
+    radar_of_recording,
+)
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import WINDOW_S, hann_in_range, track_torso, without_static
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.number import nominal
-from radhar_cli.config.radar import FmcwRadar
-from radhar_cli.config.reading import validated
+from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.processing.frames import Frames
-from radhar_cli.radar.fmcw_timing import FmcwTiming
+from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
-RADAR = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz", "prf_hz")  # keys that are fitted
-TOLERANCE = 1e-3  # relative difference of the numbers of one radar, as clocks differ
 MIN_SNRS = 3  # SNRs needed to fit a spread
 MIN_S = 0.5  # shortest duration of the longest recording
 PART_S = 4.0  # length of a part, which gives one SNR
@@ -63,8 +73,10 @@ class Fit:
     """Estimates from all recordings."""
 
     parts: list[Estimates]  # the estimates of each part
-    timing: FmcwTiming  # common to all recordings
+    radar: Mapping[str, Any]  # section of a config, common to all recordings
+    ranges: Float | None  # of the range bins [K], m; None of slow time
     seconds: float  # median duration of the recordings
+    overrides: Sequence[str] = ()  # KEY=VALUE of a config
 
     @property
     def snr_db(self) -> Float:
@@ -86,99 +98,100 @@ class Fit:
         """
         from scipy.stats import theilslopes  # slow to import
 
-        floor = self.floor_db
-        return {
+        numbers = {
             "parts": len(self.parts),
             "snr_db": float(np.median(self.snr_db)),
             "noise_floor_db": 10 * float(np.log10(np.median([p.noise for p in self.parts]))),
-            "noise_over_range_db": float(theilslopes(floor, np.linspace(0, 1, floor.size)).slope),
         }
+        if self.ranges is not None:
+            floor = self.floor_db
+            slope = float(theilslopes(floor, np.linspace(0, 1, floor.size)).slope)
+            numbers["noise_over_range_db"] = slope
+        return numbers
 
     @cached_property
     def document(self) -> dict[str, Any]:
-        """Config of the estimates, as plain values by key."""
-        snr, defaults = self.snr_db, FmcwRadar()
+        """Config of the estimates, as plain values by key.
+
+        Raises:
+            ConfigError: it is none, with what the overrides say.
+        """
+        snr = self.snr_db
         middle = round(float(snr.mean()), 2)
         spread = round(float(snr.std()), 2) if snr.size >= MIN_SNRS else 0
         document: dict[str, Any] = {
-            "duration_s": round(self.seconds, 3),
-            "radar": {key: float(f"{getattr(self.timing, key):.9g}") for key in RADAR},
+            "duration_s": round(self.seconds, 6),
+            "radar": dict(self.radar),
             "snr_db": {"normal": [middle, spread]} if spread > 0 else middle,
         }
+        if self.radar.get("output") == "rf":  # whose real samples have no other map as they are
+            document["maps"] = ["rtm"]
         ranges = np.concatenate([part.ranges for part in self.parts])
         if ranges.size:
-            antennas = (nominal(defaults.tx_m[0]) + nominal(defaults.rx_m[0])) / 2
+            antennas = place_of(validated(Config, document, "radar", {}).radar)
             low, high = (np.percentile(ranges, [5, 95]) + antennas).round(2).tolist()
             distance: Any = {"uniform": [low, high]} if high > low else low
             document["motion"] = {"place": {"range_m": distance}}
-        return document
+        return with_overrides(document, self.overrides)
 
 
-def fit(paths: Sequence[Path]) -> Fit:
-    """Estimate waveform, SNR, ranges and noise floor from recordings of one radar.
+def fit(paths: Sequence[Path], overrides: Sequence[str] = ()) -> Fit:
+    """Estimate radar, SNR, ranges and noise floor from recordings of one radar.
+
+    Args:
+        paths: the recordings.
+        overrides: KEY=VALUE of the config; those of `radar` say what recordings do not, such as
+            where receivers stand.
 
     Raises:
-        CaptureError: radars differ, recordings are too short, or nobody moves in them.
+        CaptureError: radars differ, recordings are too short, nobody moves in them, or no config
+            has their radar.
+        ConfigError: an override cannot be used.
     """
-    timing, seconds = _timing(paths)
+    radar, seconds = _common_radar(paths, overrides)
     parts = [part for path in paths for part in parts_of(path)]
     if not any(np.isfinite(part.snr_db) for part in parts):
         raise CaptureError(f"{paths[0]}: nobody moves faster than {SLOW_MPS} m/s in any recording")
-    fitted = Fit(parts, timing, seconds)
+    others = [text for text in overrides if not text.strip().startswith("radar.")]
+    fitted = Fit(parts, radar, _ranges_of(paths[0]), seconds, others)
     validated(Config, fitted.document, str(paths[0]), {})
     return fitted
 
 
-def _timing(paths: Sequence[Path]) -> tuple[FmcwTiming, float]:
-    """Common timing of all recordings, and their median duration, s."""
-    timing: FmcwTiming | None = None
+def _common_radar(paths: Sequence[Path], overrides: Sequence[str]) -> tuple[dict[str, Any], float]:
+    """Section `radar` of all recordings, and their median duration, s."""
+    radar: dict[str, Any] | None = None
     seconds = []
     for path in paths:
         with Recording(path) as recording:
-            content = recording.info.content
-            if not isinstance(content, Beat):
-                raise CaptureError(f"{path}: holds {content.noun}; should be {Beat.noun}")
-            timing = timing or content.timing
-            if (name := content.timing.first_difference(timing, TOLERANCE)) is not None:
-                values = getattr(content.timing, name), getattr(timing, name)
-                raise CaptureError(
-                    f"{path}: differs in radar from {paths[0]}: {name} = {values[0]:.10g}, not "
-                    f"{values[1]:.10g}"
-                )
-            seconds.append(recording.segments.duration)
+            section = radar_of_recording(recording, overrides)
+            radar = section if radar is None else radar
+            if difference := differing_key(section, radar):
+                raise CaptureError(f"{path}: differs in radar from {paths[0]}: {difference}")
+            seconds.append(_seconds_of(recording.segments))
     if max(seconds) < MIN_S:
         raise CaptureError(
             f"{paths[0]}: the longest recording lasts {max(seconds):.3g} s; should last at least "
             f"{MIN_S:g} s"
         )
-    assert timing is not None
-    return timing, float(np.median(seconds))
+    assert radar is not None
+    return radar, float(np.median(seconds))
 
 
-def refuse_frames_and_receivers(path: Path) -> None:
-    """Refuse a recording of frames or of several receivers: the radar of a fitted config has none.
+def _seconds_of(segments: PulseTimes) -> float:
+    """Duration of a recording, s, with the pause after its last frame if that is whole."""
+    frames = frames_in(segments)
+    if frames is None or segments.lengths[-1] < frames.pulses:
+        return segments.duration
+    return float(segments.start[-1] - segments.start[0]) + frames.period_s
 
-    Raises:
-        CaptureError: says what would differ, and what to do.
-    """
+
+def _ranges_of(path: Path) -> Float | None:
+    """Ranges of the bins of a recording [K], m; None of slow time."""
     with Recording(path) as recording:
-        info, segments = recording.info, recording.segments
-    differences = []
-    period = float(np.median(np.diff(segments.start))) if len(segments) > 1 else 0.0
-    is_regular = np.allclose(np.diff(segments.start), period, rtol=0.01)
-    if len(segments) > 1 and is_regular and np.ptp(segments.lengths[:-1]) == 0:
-        pulses = segments.lengths[0]
-        differences.append(
-            f"{len(segments)} frames of {pulses:g} pulses every {period * 1e3:.4g} ms (fitted: "
-            "pulses without a pause)"
-        )
-    if info.receivers > 1:
-        differences.append(f"{info.receivers} receivers (fitted: one)")
-    if differences:
-        raise CaptureError(
-            f"{path}: has {' and '.join(differences)}, which fit does not keep: "
-            "write a config by hand, whose radar has these frames and this array"
-        )
+        if isinstance(recording.info.content, SlowTime):
+            return None
+        return recording.info.waveform().range_axis()
 
 
 def parts_of(path: Path) -> Iterator[Estimates]:
@@ -187,60 +200,111 @@ def parts_of(path: Path) -> Iterator[Estimates]:
     Parts without noise, or without a complete pulse, are left out.
     """
     with Recording(path) as recording:
-        content, length = recording.info.ranging, recording.segments.duration
-        w = recording.info.waveform()
+        content, length = recording.info.content, recording.segments.duration
+        cells = DopplerCells.of_content(content, recording.samples.parts == 2)
         count = min(max(int(length / PART_S), 1), MAX_PARTS)
         for start in np.linspace(0, max(length - PART_S, 0), count).tolist():
             part = part_of(recording, start, min(start + PART_S, length), receiver=0)
             if part.lost.all():
                 continue
-            bins = bins_of_part(part, content, w)[0]
-            estimates = _part(without_static(bins), part.segments, w)
+            estimates = _part(without_static(_bins(part, cells)), part.segments, cells)
             if estimates.noise > 0:
                 yield estimates
 
 
-def _part(moving: Complex, segments: PulseTimes, w: Waveform) -> Estimates:
+@dataclass(frozen=True)
+class DopplerCells:
+    """Cells of range-Doppler maps of a recording, and what they make of noise and of an echo."""
+
+    f0: float  # frequency at which Doppler is read, Hz
+    prf: float  # pulses per second, Hz
+    waveform: Waveform | None  # None of slow time
+    is_tapered: bool  # whether Hann's window is laid over range
+    is_real: bool  # whether samples of profiles are real
+    noise: float  # power of a bin of white noise of variance 1
+    signal: float  # power of all bins of a path of P_s = 1
+
+    @classmethod
+    def of_content(cls, content: Content, is_iq: bool) -> "DopplerCells":
+        """Cells of a recording of a content.
+
+        Args:
+            content: content of the recording.
+            is_iq: whether samples are complex.
+        """
+        if isinstance(content, SlowTime):
+            return cls(content.carrier_hz, content.prf_hz, None, False, False, 1.0, 1.0)
+        w = content.waveform(1.0)
+        if isinstance(content, Beat):
+            # Real samples are the real part of echo and noise, of half the noise's variance; in the
+            # half band a quarter of the echo's power is left.
+            share = 1.0 if is_iq else 0.5
+            gains = HANN_GAIN * w.n_adc, share * HANN_GAIN * w.n_adc**2
+            return cls(w.f0, w.prf, w, True, False, *gains)
+        assert isinstance(w, Impulse)
+        spread = w.width * sqrt(pi) * SPEED_OF_LIGHT / (2 * w.range_step)  # sum_k g(t_k)^2
+        parts = 1.0 if is_iq else 2.0  # an analytic signal has twice the power
+        return cls(w.f0, w.prf, w, False, not is_iq, parts, parts * spread)
+
+
+def _bins(part: RecordingPart, cells: DopplerCells) -> Complex:
+    """Range bins [K, M] of a part of one receiver, real profiles as analytic ones."""
+    if cells.waveform is None:
+        samples = slow_time_of_part(part)
+    else:
+        samples = bins_of_part(part, part.recording.info.ranging, cells.waveform)
+    bins: Complex = (analytic(samples) if cells.is_real else samples)[0]
+    return bins
+
+
+def _part(moving: Complex, segments: PulseTimes, cells: DopplerCells) -> Estimates:
     """Estimate SNR, ranges and floor from range bins [K, M] with static echoes removed."""
-    maps, middle, white = _range_doppler(moving, segments, w)
-    length = maps.shape[2]
+    maps, middle, window_power = _range_doppler(moving, segments, cells)
+    length, white = maps.shape[2], cells.noise * window_power
     # |.|^2 of noise is exponential; the lower quartile of a frame contains little of the person,
     # and the median over frames little of those in which a person fills the bin.
     floor = np.median(np.quantile(maps, QUARTILE, axis=2), axis=0)
     nobody = Estimates(np.nan, np.empty(0), floor / (-np.log(1 - QUARTILE) * white))
-    track = track_torso(moving[None], segments, w)
-    if track is None or not nobody.noise > 0:
+    near = np.ones(maps.shape[:2], bool)
+    ranges: Float = np.empty(0)
+    if cells.waveform is not None:
+        track = track_torso(moving[None], segments, cells.waveform)
+        if track is None:
+            return nobody
+        of_frame = track.range_at(segments.times(middle))[:, None]
+        reach = REACH_M + 2 * cells.waveform.range_step
+        near = np.abs(cells.waveform.range_axis() - of_frame) <= reach
+        ranges = track.range[track.confidence >= SURE]
+    if not nobody.noise > 0:
         return nobody
-    range_of_frame = track.range_at(segments.times(middle))
-    near = np.abs(w.range_axis() - range_of_frame[:, None]) <= REACH_M + 2 * w.range_step
     # Curtains and fans move slowly, and would be mistaken for a person.
     slowest_hz = (
-        SLOW_MPS * 2 * w.f0 / SPEED_OF_LIGHT + 2 * w.prf / length
+        SLOW_MPS * 2 * cells.f0 / SPEED_OF_LIGHT + 2 * cells.prf / length
     )  # beside Hann's main lobe
-    fast = np.abs(np.fft.fftfreq(length, 1 / w.prf)) > slowest_hz
+    fast = np.abs(np.fft.fftfreq(length, 1 / cells.prf)) > slowest_hz
     cell = nobody.noise * white
     signal = _power_near(maps.sum(axis=2), near, cell * length)
     fast_signal = _power_near(maps[:, :, fast].sum(axis=2), near, cell * np.count_nonzero(fast))
     if not (signal > 0 and fast_signal > FAST_SHARE * signal):
         return nobody
-    snr = signal / (length * white * w.n_adc) / nobody.noise
-    reliable_ranges = track.range[track.confidence >= SURE]
-    return nobody._replace(snr_db=10 * float(np.log10(snr)), ranges=reliable_ranges)
+    snr = signal / (length * window_power * cells.signal) / nobody.noise
+    return nobody._replace(snr_db=10 * float(np.log10(snr)), ranges=ranges)
 
 
 def _range_doppler(
-    moving: Complex, segments: PulseTimes, w: Waveform
+    moving: Complex, segments: PulseTimes, cells: DopplerCells
 ) -> tuple[Float, Index, float]:
-    """Power [frame, bin, Doppler], the pulse in the middle of each frame, and the noise's gain.
+    """Power [frame, bin, Doppler], the pulse in the middle of each frame, and the window's power.
 
-    Frames cross no gap. The gain is the power in a cell of white noise of variance 1.
+    Frames cross no gap. The window's power is sum_m w[m]^2.
     """
-    length = min(max(round(WINDOW_S * w.prf), 8), int(segments.lengths.max()))
+    length = min(max(round(WINDOW_S * cells.prf), 8), int(segments.lengths.max()))
     window = np.hanning(length + 2)[1:-1]
     starts = Frames(length, length).starts(segments.slices)
-    frames = (hann_in_range(moving[:, at : at + length]) * window for at in starts.tolist())
-    maps = np.stack([np.abs(scipy.fft.fft(frame, axis=1)) ** 2 for frame in frames])
-    return maps, starts + length // 2, HANN_GAIN * w.n_adc * float(np.sum(window**2))
+    frames = [moving[:, at : at + length] for at in starts.tolist()]
+    tapered = [hann_in_range(frame) for frame in frames] if cells.is_tapered else frames
+    maps = np.stack([np.abs(scipy.fft.fft(frame * window, axis=1)) ** 2 for frame in tapered])
+    return maps, starts + length // 2, float(np.sum(window**2))
 
 
 def _power_near(power: Float, near: Bool, noise: float) -> float:
@@ -259,13 +323,17 @@ def _power_near(power: Float, near: Bool, noise: float) -> float:
 
 
 def draw(fit: Fit, path: Path) -> None:
-    """Write a figure of the noise floor over range, and of the SNRs of the parts."""
+    """Write a figure of the noise floor over range, if there are ranges, and of the SNRs."""
     figure = page(10.0, 3.5)
-    floor, snrs = figure.subplots(1, 2)
-    floor.plot(fit.timing.waveform(fit.seconds).range_axis(), fit.floor_db, label="measured")
-    floor.axhline(0, color="k", linestyle="--", linewidth=0.8, label="fitted: the same everywhere")
-    floor.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
-    floor.legend()
+    axes = figure.subplots(1, 1 if fit.ranges is None else 2, squeeze=False)
+    *floors, snrs = axes[0]
+    for floor in floors:
+        floor.plot(fit.ranges, fit.floor_db, label="measured")
+        floor.axhline(
+            0, color="k", linestyle="--", linewidth=0.8, label="fitted: the same everywhere"
+        )
+        floor.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
+        floor.legend()
     snr = fit.snr_db
     snrs.hist(snr, bins=min(20, max(3, snr.size // 2)), label="measured")
     snrs.axvline(snr.mean(), color="k", linestyle="--", label="mean")

@@ -3,6 +3,8 @@
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -297,7 +299,16 @@ def _info(
         receiver_delay_s=[n // per_turn * chirp for n in range(source.receivers)],
         labels=[] if s.label is None else [Label(label=s.label, person=s.person)],
         source=SourceNote(format=name, files=[path.name for path in source.files], findings=notes),
+        radar=_radar_note(s, content),
     )
+
+
+def _radar_note(s: CaptureSettings, content: Content) -> dict[str, Any]:
+    """What the header says of the radar, by keys of a config; frames even where they are joined."""
+    note = dict(s.radar or {})
+    if isinstance(content, Beat) and s.frame_pulses is not None and s.frame_s is not None:
+        note.setdefault("frame", {"chirps": s.frame_pulses, "period_s": s.frame_s})
+    return note
 
 
 def _content(source: Source, s: CaptureSettings, prf_hz: float, notes: list[str]) -> Content:
@@ -386,14 +397,27 @@ def _require_beat(probed: list[Parts], source: Source, s: CaptureSettings) -> No
     )
 
 
+class SimulatedPulses(NamedTuple):
+    """Pulses of a simulated board.
+
+    Attributes:
+        times: Times of the pulses.
+        delays: Delay of the pulses of each receiver, s.
+        bpm: Places in a loop of the chirps in which two transmitters send; None for none.
+    """
+
+    times: PulseTimes
+    delays: Sequence[float] = (0.0,)
+    bpm: tuple[int, int] | None = None
+
+
 def write_simulated(
     out: Path,
     beat: Complex | Float,
     waveform: Waveform,
     label: Label,
-    segments: PulseTimes | None = None,
-    delays: Sequence[float] = (0.0,),
-    bpm: tuple[int, int] | None = None,
+    pulses: SimulatedPulses | None = None,
+    radar: Mapping[str, Any] = MappingProxyType({}),
 ) -> RecordingInfo:
     """Write simulated samples as a recording: of chirps, of range profiles, or of slow time.
 
@@ -403,15 +427,14 @@ def write_simulated(
             makes a recording of slow time.
         waveform: waveform; that of an impulse radar makes a recording of range profiles.
         label: activity and person.
-        segments: times of the pulses; None is without gaps.
-        delays: delay of the pulses of each receiver, s.
-        bpm: places in a board's loop of the chirps in which two transmitters send; None for none.
+        pulses: pulses of a board; None is one receiver without gaps.
+        radar: section `radar` of the scene's config, plain values.
 
     Raises:
         UnfinishedError: it cannot be written.
     """
-    receivers, samples, pulses = beat.shape
-    segments = segments or PulseTimes.even(pulses, waveform.prf)
+    receivers, samples, count = beat.shape
+    pulses = pulses or SimulatedPulses(PulseTimes.even(count, waveform.prf))
     content: Content = SlowTime(waveform.f0, waveform.prf)
     if isinstance(waveform, Impulse):
         content = RangeProfiles(
@@ -421,19 +444,21 @@ def write_simulated(
             waveform.prf,
             waveform.profile[0],
             waveform.range_step,
+            waveform.is_iq,
         )
     elif samples > 1:
         content = Beat(FmcwTiming.of_waveform(waveform))
     info = RecordingInfo(
         content=content,
         receivers=receivers,
-        pulses=pulses,
-        receiver_delay_s=delays,
+        pulses=count,
+        receiver_delay_s=pulses.delays,
         labels=[label],
         source=SourceNote(format="simulated"),
-        bpm=bpm,
+        bpm=pulses.bpm,
+        radar=radar,
     )
     parts = 2 if np.iscomplexobj(beat) else 1
     values = np.ascontiguousarray(beat).view(beat.real.dtype).reshape(*beat.shape, parts)
     stream = SampleStream(values.dtype, parts, [(0, values)])
-    return write_recording(out, info, stream, segments)
+    return write_recording(out, info, stream, pulses.times)

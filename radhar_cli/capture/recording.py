@@ -5,8 +5,8 @@ Range profiles are samples over range, real ones of an impulse radar; slow time 
 """
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -123,6 +123,8 @@ class RecordingInfo:
     labels: Sequence[Label] = ()
     # places in a loop of the chirps in which two transmitters send together, of a simulated board
     bpm: tuple[int, int] | None = None
+    # keys of a config's section `radar` that the header said, such as where the receivers stand
+    radar: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def carrier_hz(self) -> float:
@@ -251,6 +253,8 @@ def write_recording(
             file.attrs["kind"] = KIND
             file.attrs["schema_version"] = SCHEMA_VERSION
             file.attrs["recording"] = json.dumps(info.document())
+            if info.radar:
+                file.attrs["radar"] = json.dumps(dict(info.radar))
             file.attrs["radhar_version"] = __version__
     except FileExistsError:
         raise FolderError(
@@ -301,6 +305,7 @@ class Recording(Closing):
         samples: numbers [receiver, sample, pulse], of slow time [receiver, pulse].
         segments: times of the pulses.
         flags: uint8 [pulse]: 1 samples lost, 2 clipped.
+        radar: what the header said of the radar, by keys of a config's section `radar`, unchecked.
 
     Raises:
         FolderError: the file is no recording, or is damaged.
@@ -337,6 +342,8 @@ class Recording(Closing):
                 self.info = replace(self.info, content=of_type)
             self.flags: NDArray[np.uint8] = self._file.column("flags", "u1", (info.pulses,))[:]
             self.segments = self._read_segments()
+            radar = self._file.json("radar") if self._file.has_attribute("radar") else {}
+            self.radar: dict[str, Any] = radar if isinstance(radar, dict) else {}
         except BaseException:
             self._file.close()
             raise

@@ -1,7 +1,7 @@
 """Settings that are needed to read a capture, from its header or from the command line."""
 
 from math import prod
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field
 
@@ -71,6 +71,8 @@ class CaptureSettings(Section):
             "should name each axis once, including pulse",
         ),
     ] = None
+    # keys of a config's section `radar` that samples do not tell: array, position_m and so on
+    radar: dict[str, Any] | None = None
     label: Text | None = None  # of the whole recording, as the person
     person: Text | None = None
 

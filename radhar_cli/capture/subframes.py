@@ -8,9 +8,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from radhar_cli.capture.config_header import read_yaml_settings
+from radhar_cli.capture.fitted_radar import require_known_keys
 from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.ti_header import read_ti_settings
-from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.errors import CaptureError
 
@@ -21,7 +22,8 @@ def read_subframes(header: Path | None, overrides: Sequence[str]) -> dict[int, C
     """Read the settings of each subframe of a capture from its header and from overrides.
 
     Args:
-        header: TI's JSON, .lua or .cfg, or YAML with radhar's keys; None for overrides alone.
+        header: TI's JSON, .lua or .cfg, YAML with radhar's keys, or a config; None for overrides
+            alone.
         overrides: KEY=VALUE of each, which hold for every subframe; subframe=N chooses one.
 
     Returns:
@@ -34,12 +36,14 @@ def read_subframes(header: Path | None, overrides: Sequence[str]) -> dict[int, C
     documents: dict[int, dict[str, Any]] = {0: {}}
     if header is not None:
         ti = header.suffix.lower() in TI_HEADERS
-        documents = read_ti_settings(header) if ti else {0: read_document(header)[0]}
+        documents = read_ti_settings(header) if ti else read_yaml_settings(header)
     where = str(header) if header else "--set"
     subframes = {
         number: validated(CaptureSettings, with_overrides(document, overrides), where, {})
         for number, document in documents.items()
     }
+    for settings in subframes.values():
+        require_known_keys(settings.radar or {}, where)
     chosen = next(iter(subframes.values())).subframe
     if chosen is not None and chosen not in subframes:
         numbers = " or ".join(map(str, subframes))

@@ -1,11 +1,15 @@
 """The header of a capture with a TI radar: mmWave Studio's JSON, or the .cfg of the SDK's demos."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from radhar_cli.capture.lvds_format import LvdsFormat, read_lvds_format, sends_samples
 from radhar_cli.capture.ti_lua import read_lua
 from radhar_cli.capture.ti_studio import read_studio
+from radhar_cli.config.built_in_radars import device_of
+from radhar_cli.config.documents import RADARS
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import text_of
 from radhar_cli.radar.frame_header import FrameHeader, Sampling
@@ -27,12 +31,43 @@ def read_ti_settings(path: Path) -> dict[int, dict[str, Any]]:
     """
     readers = {".json": read_studio, ".lua": read_lua}
     if reader := readers.get(path.suffix.lower()):
-        return {0: _settings_of(*reader(path))}
-    return {header.subframe: _settings_of(header, stream) for header, stream in _read_cfg(path)}
+        header, stream = reader(path)
+        return {0: settings_of_frames(header) | _settings_of_stream(stream)}
+    built_in = {"device": device_of(path.stem)} if path in RADARS.values() else {}
+    return read_cfg_settings(text_of(path, MAX_CFG, CaptureError), str(path), built_in)
 
 
-def _settings_of(header: FrameHeader, stream: LvdsFormat) -> dict[str, Any]:
-    """Settings of a frame, or of a subframe of it."""
+def read_cfg_settings(
+    text: str, where: str, radar: Mapping[str, Any] = MappingProxyType({})
+) -> dict[int, dict[str, Any]]:
+    """Read the settings of a capture from the text of a .cfg.
+
+    Args:
+        text: the .cfg.
+        where: its path, for messages.
+        radar: keys of a config's section `radar` that are known besides it, such as the device.
+
+    Returns:
+        {number: settings} of each subframe in the order of the stream; 0 of a frame without.
+
+    Raises:
+        CaptureError: as `read_ti_settings`.
+    """
+    settings = dict[int, dict[str, Any]]()
+    for header, stream in _read_cfg(text, where):
+        section = {"cfg": text, **radar} | (
+            {"subframe": header.subframe} if header.subframe else {}
+        )
+        settings[header.subframe] = {
+            **settings_of_frames(header),
+            **_settings_of_stream(stream),
+            "radar": section,
+        }
+    return settings
+
+
+def settings_of_frames(header: FrameHeader) -> dict[str, Any]:
+    """Settings of a frame, or of a subframe of it, whatever holds its samples."""
     return {
         "carrier_hz": header.carrier_hz,
         "bandwidth_hz": header.bandwidth_hz,
@@ -47,14 +82,20 @@ def _settings_of(header: FrameHeader, stream: LvdsFormat) -> dict[str, Any]:
         "receiver_lanes": list(header.receivers),
         "complex": header.sampling is not Sampling.REAL,
         "adc_bits": header.adc_bits,
+    }
+
+
+def _settings_of_stream(stream: LvdsFormat) -> dict[str, Any]:
+    """Settings of TI's stream of words."""
+    return {
         "lanes": stream.lanes,
         "interleaved": stream.is_interleaved,
         "iq": "qi" if stream.is_q_first else "iq",
     }
 
 
-def _read_cfg(path: Path) -> list[tuple[FrameHeader, LvdsFormat]]:
+def _read_cfg(text: str, where: str) -> list[tuple[FrameHeader, LvdsFormat]]:
     """Read the subframes that are in the stream: all, where the file sends none of them."""
-    headers, lines = parse_frames(text_of(path, MAX_CFG, CaptureError), str(path))
+    headers, lines = parse_frames(text, where)
     sent = [header for header in headers if sends_samples(lines, header.subframe)]
     return [(header, read_lvds_format(lines, header.subframe)) for header in sent or headers]

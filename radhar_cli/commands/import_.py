@@ -28,8 +28,8 @@ def import_(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Header: mmWave Studio's JSON or .lua, TI's .cfg or a built-in radar's name, or "
-            "YAML of radhar's keys.",
+            help="Header: mmWave Studio's JSON or .lua, TI's .cfg, a built-in radar's name, "
+            "YAML of radhar's keys, or a config.",
         ),
     ] = None,
     set_: Annotated[
@@ -65,7 +65,7 @@ def import_(
     if empty := [str(path) for path in captures if path.is_file() and not path.stat().st_size]:
         raise FolderError(f"{empty[0]}: is empty")
     if radar is not None and not radar.exists():
-        radar = _built_in_cfg(str(radar)) or radar
+        radar = _built_in_header(str(radar))
     values = [*(set_ or []), *overrides]
     if is_point_capture(captures[0]):
         _import_points(captures, out, radar, values, overwrite)
@@ -84,12 +84,26 @@ def _require_new(out: Path, captures: Sequence[Path], overwrite: bool) -> None:
     refuse_to_replace(out, overwrite, "walk.h5")
 
 
-def _built_in_cfg(name: str) -> Path | None:
-    """Path of the .cfg of a built-in radar that a name stands for; None of other names."""
-    from radhar_cli.config.documents import RADARS, name_of_radar
+def _built_in_header(name: str) -> Path:
+    """Path of the .cfg, or of the preset, of a built-in radar that a name stands for.
+
+    Raises:
+        FolderError: there is no such radar; lists them.
+    """
+    from radhar_cli.config.documents import PRESETS, RADARS, WRITTEN_RADARS, name_of_radar
+    from radhar_cli.errors import did_you_mean
 
     known = name_of_radar(name)
-    return None if known is None else RADARS.get(known)
+    if known is not None:
+        return RADARS[known]
+    if name in WRITTEN_RADARS:
+        return PRESETS[f"boards/{name}"]
+    names = [*RADARS, *WRITTEN_RADARS]
+    hint = did_you_mean(name, names, "")
+    raise FolderError(
+        f"--radar {name}: no such file, and no radar that radhar comes with; "
+        f"{hint}{' ' * bool(hint)}there are {', '.join(names)}"
+    )
 
 
 def _import_samples(

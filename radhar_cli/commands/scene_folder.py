@@ -76,21 +76,25 @@ def write_scene_folder(simulation: "Simulation", out: Path, outputs: SceneOutput
 
 def _write_recordings(simulation: "Simulation", out: Path) -> list[Path]:
     """Write the samples of a scene as a recording, of a board one a subframe; return the paths."""
-    from radhar_cli.capture.importing import write_simulated
+    from radhar_cli.capture.config_header import radar_note
+    from radhar_cli.capture.importing import SimulatedPulses, write_simulated
     from radhar_cli.capture.recording import Label
 
     label, paths = Label(label=simulation.activity.slug), list[Path]()
+    radar = radar_note(simulation.config)
     for end, (board, frames) in simulation.all_subframes.items():
         cube = frames["cube"]  # [frame, loop, virtual, sample]
         beat = cube.reshape(-1, *cube.shape[2:]).transpose(1, 2, 0)
         delays = [k * board.slot for k, _ in board.pairs]
         paths.append(out / RECORDING.format(end))
-        waveform, pulses = board.waveform, board.pulses
-        write_simulated(paths[-1], beat, waveform, label, pulses, delays, board.bpm)
+        note = radar | ({"subframe": board.subframe} if board.subframe else {})
+        pulses = SimulatedPulses(board.pulses, delays, board.bpm)
+        write_simulated(paths[-1], beat, board.waveform, label, pulses, note)
     if simulation.board is None:
         assert simulation.beat is not None
         paths.append(out / RECORDING.format(""))
-        write_simulated(paths[-1], simulation.beat[None], simulation.waveform, label)
+        beat, waveform = simulation.beat[None], simulation.waveform
+        write_simulated(paths[-1], beat, waveform, label, radar=radar)
     return paths
 
 

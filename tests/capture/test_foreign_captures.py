@@ -212,7 +212,7 @@ def test_missing_keys_are_all_named_at_once_with_a_command(tmp_path):
     assert f"radhar import {tmp_path / 'x.npy'} --set carrier_hz" in done.stderr
 
 
-def test_fit_refuses_what_it_does_not_keep(tmp_path):
+def test_fit_asks_where_receivers_stand(tmp_path):
     rng = np.random.default_rng(3)
     np.save(tmp_path / "x.npy", rng.standard_normal((25, 3, 64, 32)))
     ok("import", tmp_path / "x.npy", "-o", tmp_path / "r.h5", "--set", "carrier_hz=58.5e9",
@@ -220,8 +220,8 @@ def test_fit_refuses_what_it_does_not_keep(tmp_path):
        "--set", "frame_s=0.1", "--set", "axes=[frame, receiver, pulse, sample]")  # fmt: skip
     done = radhar("fit", tmp_path / "r.h5", "-o", tmp_path / "fitted.yaml")
     assert done.returncode == 2
-    assert "25 frames of 64 pulses every 100 ms" in done.stderr
-    assert "3 receivers" in done.stderr
+    assert "has 3 receivers" in done.stderr
+    assert "--set 'radar.array.rx=[[0,0],[1,0],[2,0]]'" in done.stderr
     assert not (tmp_path / "fitted.yaml").exists()
 
 

@@ -1,0 +1,305 @@
+"""The section `radar` of a config whose simulations have the maps of a recording.
+
+Samples and times tell carrier, band, sampling and frames. What they do not tell (where receivers
+stand, a TI board's .cfg, whether frequencies are steps) a recording has in its attribute `radar`,
+from the header of the import or from the config that simulated it.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from radhar_cli.capture.content import Beat, Content, RangeProfiles, SlowTime, describe_difference
+from radhar_cli.capture.recording import Recording
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.number import nominal
+from radhar_cli.config.radar import (
+    RADARS,
+    AnyRadar,
+    ArrayRadar,
+    BoardRadar,
+    SfcwRadar,
+    class_of_radar,
+)
+from radhar_cli.config.reading import validated, with_overrides
+from radhar_cli.errors import CaptureError, did_you_mean
+from radhar_cli.radar.fmcw_timing import FmcwTiming
+from radhar_cli.radar.pulse_times import PulseTimes
+
+TOLERANCE = 1e-3  # relative difference of the numbers of one radar, as clocks differ
+KEYS = frozenset(key for kind in RADARS for key in kind.model_fields)
+HOW = "docs/guide/measured.md"
+
+
+class RecordedFrames(NamedTuple):
+    """Frames of a recording: so many pulses, so often.
+
+    Attributes:
+        pulses: Number of pulses of each transmitter in a frame.
+        period_s: Time from frame to frame, s.
+    """
+
+    pulses: int
+    period_s: float
+
+    @property
+    def text(self) -> str:
+        """Words for them in messages."""
+        return f"frames of {self.pulses} pulses every {self.period_s * 1e3:.4g} ms"
+
+
+def require_known_keys(radar: Mapping[str, Any], where: str) -> None:
+    """Require that what a header says of a radar has keys of a config's section `radar`.
+
+    Raises:
+        CaptureError: names the first key that it has not.
+    """
+    for key in radar:
+        if key not in KEYS:
+            hint = did_you_mean(str(key), KEYS, "it has the keys of radar: in a config")
+            raise CaptureError(f"{where}: radar.{key} is an unknown key; {hint}")
+
+
+def frames_in(segments: PulseTimes) -> RecordedFrames | None:
+    """Frames that the stretches of a recording are; None where there are no such.
+
+    All have the same pulses but the last, which may be cut off. Frames may be missing.
+    """
+    lengths, steps = segments.lengths, np.diff(segments.start)
+    if len(segments) < 2 or np.ptp(lengths[:-1]) or lengths[-1] > lengths[0]:
+        return None
+    period = float(np.median(steps))
+    counts = np.rint(steps / period)
+    if counts.min() < 1 or np.abs(steps / period - counts).max() > 0.01:
+        return None
+    return RecordedFrames(int(lengths[0]), float(steps.sum() / counts.sum()))
+
+
+def radar_of_recording(recording: Recording, overrides: Sequence[str] = ()) -> dict[str, Any]:
+    """Section `radar` of a config that has the radar of a recording.
+
+    Args:
+        recording: the recording.
+        overrides: KEY=VALUE of a config; those of `radar` say what the recording does not.
+
+    Raises:
+        CaptureError: the recording has what no radar of a config has, or does not say where its
+            receivers stand.
+        ConfigError: an override, or what the recording says of its radar, cannot be used.
+    """
+    of_radar = [text for text in overrides if text.strip().startswith("radar.")]
+    note = with_overrides({"radar": dict(recording.radar)}, of_radar)["radar"]
+    where = str(recording.path)
+    require_known_keys(note, where)
+    if note.get("cfg") is not None:
+        return _board(recording, note)
+    content = recording.info.content
+    frames = frames_in(recording.segments)
+    match content:
+        case Beat():
+            section = _chirps(recording, content, note, frames)
+        case SlowTime() | RangeProfiles():
+            _require_plain_pulses(recording, frames)
+            section = _pulses(content, note, recording.samples.parts == 2)
+    kind = class_of_radar(section)
+    assert kind is not None
+    return {key: value for key, value in section.items() if key in kind.model_fields}
+
+
+def differing_key(section: Any, other: Any, key: str = "radar") -> str | None:
+    """Say which key of a section differs from that of another by more than TOLERANCE, or None."""
+    if isinstance(section, dict) and isinstance(other, dict):
+        keys = [*dict.fromkeys([*section, *other])]
+        pairs = [(section.get(name), other.get(name), f"{key}.{name}") for name in keys]
+    elif isinstance(section, (list, tuple)) and isinstance(other, (list, tuple)):
+        if len(section) != len(other):
+            return f"{key} = {section}: should be {other}"
+        pairs = [(a, b, f"{key}.{n}") for n, (a, b) in enumerate(zip(section, other, strict=True))]
+    else:
+        numbers = isinstance(section, (int, float)) and isinstance(other, (int, float))
+        same = section == other
+        if numbers and not same:
+            same = abs(section - other) <= TOLERANCE * abs(other)
+        if same:
+            return None
+        return f"{key} = {_shown(section)}: should be {_shown(other)}"
+    return next(filter(None, (differing_key(*pair) for pair in pairs)), None)
+
+
+def _shown(value: Any) -> str:
+    """A plain value as a message shows it."""
+    return f"{value:.10g}" if isinstance(value, float) else str(value)[:60]
+
+
+def _number(value: float) -> float:
+    """A number without the digits that are rounding."""
+    return float(f"{value:.9g}")
+
+
+def _chirps(
+    recording: Recording, content: Beat, note: Mapping[str, Any], frames: RecordedFrames | None
+) -> dict[str, Any]:
+    """Radar that sends chirps: with frames and an array, or plain ones of one antenna pair."""
+    info, timing = recording.info, content.timing
+    waves = {
+        "carrier_hz": _number(timing.carrier_hz),
+        "bandwidth_hz": _number(timing.bandwidth_hz),
+        "adc_rate_hz": _number(timing.adc_rate_hz),
+        "chirp_s": _number(timing.chirp_s),
+    }
+    known = note.get("frame") or {}
+    turns = len({round(delay * timing.prf_hz, 6) for delay in info.receiver_delay_s})
+    if frames is None and "chirps" not in known:
+        if why := _why_frames(recording, content, turns):
+            raise CaptureError(
+                f"{recording.path}: {why}; a radar of a config has that with frames, which the "
+                "recording does not tell: --set radar.frame.chirps=64 says how many chirps of a "
+                f"transmitter a frame has ({HOW})"
+            )
+        if note.get("waveform") == "sfcw":
+            steps = {"steps": timing.samples, "dwell_s": _number(1 / timing.adc_rate_hz)}
+            section = dict(note) | waves | steps | {"prf_hz": _number(timing.prf_hz)}
+            return {key: section[key] for key in section if key in SfcwRadar.model_fields}
+        return dict(note) | waves | {"prf_hz": _number(timing.prf_hz), "waveform": "fmcw"}
+    interval = _number(1 / (timing.prf_hz * turns))
+    frame: dict[str, Any] = {"chirps": known.get("chirps"), "interval_s": interval}
+    period = known.get("period_s")
+    if frames is not None:
+        frame["chirps"] = frames.pulses
+        period = frames.period_s
+    is_apart = period is not None and period > frame["chirps"] * turns * interval * (1 + 1e-6)
+    if period is not None and is_apart:
+        frame["period_s"] = _number(period)
+    section = dict(note) | waves | {"frame": frame}
+    section["output"] = "iq" if recording.samples.parts == 2 else "real"
+    section["array"] = _elements(recording, note, turns)
+    return {key: value for key, value in section.items() if key not in ("prf_hz", "waveform")}
+
+
+def _why_frames(recording: Recording, content: Beat, turns: int) -> str | None:
+    """Say why a plain radar of chirps is not that of a recording; None if it is."""
+    receivers = recording.info.receivers
+    if turns > 1:
+        return f"has {turns} transmitters that take turns"
+    if receivers > 1:
+        return f"has {receivers} receivers"
+    if content.is_whole:
+        return "has echoes in both halves of the band"
+    if recording.samples.parts == 1:
+        return "has real samples"
+    return None
+
+
+def _elements(recording: Recording, note: Mapping[str, Any], turns: int) -> dict[str, Any]:
+    """Places of transmitters and receivers.
+
+    Raises:
+        CaptureError: nothing says where they are, or other numbers of them.
+    """
+    receivers = recording.info.receivers // turns
+    array = dict(note.get("array") or {})
+    sizes = {"tx": turns, "rx": receivers}
+    names = {"tx": "transmitter", "rx": "receiver"}
+    missing = [side for side, size in sizes.items() if size > 1 and side not in array]
+    if missing:
+        counts = " and ".join(f"{sizes[s]} {names[s]}s" for s in missing)
+        sets = " ".join(f"--set 'radar.array.{s}={_row(sizes[s])}'" for s in missing)
+        raise CaptureError(
+            f"{recording.path}: has {counts}, whose places nothing says: {sets} with your places, "
+            "[left, up] in half wavelengths, looking out of the radar, which are these of a row"
+        )
+    for side, size in sizes.items():
+        places = array.setdefault(side, [[0.0, 0.0]])
+        if isinstance(places, (list, tuple)) and len(places) != size:
+            raise CaptureError(
+                f"{recording.path}: radar.array.{side} has {len(places)} places; the recording has "
+                f"{size} {names[side]}{'s' * (size > 1)}"
+            )
+    return array
+
+
+def _row(count: int) -> str:
+    """Places of a row of elements, half a wavelength apart, as --set takes them."""
+    return "[" + ",".join(f"[{n},0]" for n in range(count)) + "]"
+
+
+def _require_plain_pulses(recording: Recording, frames: RecordedFrames | None) -> None:
+    """Refuse slow time and profiles of frames or of several receivers, which no radar has.
+
+    Raises:
+        CaptureError: says what would differ, and what to do.
+    """
+    info = recording.info
+    problems = [] if frames is None else [f"{len(recording.segments)} {frames.text}"]
+    problems += [f"{info.receivers} receivers"] if info.receivers > 1 else []
+    if problems:
+        raise CaptureError(
+            f"{recording.path}: has {' and '.join(problems)}; the radar of a config that makes "
+            f"{info.content.noun} has one receiver and sends without a pause: import one receiver "
+            "of one burst, or write the config by hand"
+        )
+
+
+def _pulses(content: Content, note: Mapping[str, Any], is_iq: bool) -> dict[str, Any]:
+    """Radar that takes a sample a pulse, or one that samples range profiles."""
+    numbers: dict[str, Any] = {"prf_hz": _number(content.prf_hz)}
+    if isinstance(content, SlowTime):
+        numbers |= {"waveform": "cw", "carrier_hz": _number(content.carrier_hz)}
+        return dict(note) | numbers | {"output": "iq" if is_iq else "real"}
+    assert isinstance(content, RangeProfiles)
+    w = content.waveform(1.0)
+    return dict(note) | {
+        **numbers,
+        "waveform": "impulse",
+        "output": "iq" if is_iq else "rf",
+        "carrier_hz": _number(w.fc),
+        "bandwidth_hz": _number(w.bandwidth),
+        "profile_m": [_number(content.first_range_m), _number(w.half_band_range)],
+        "profile_samples": content.samples,
+    }
+
+
+def _board(recording: Recording, note: Mapping[str, Any]) -> dict[str, Any]:
+    """Radar of a TI board, whose .cfg has to be that of the recording.
+
+    Raises:
+        CaptureError: it is not, or nothing says where the antennas are.
+    """
+    where = str(recording.path)
+    section = {key: value for key, value in note.items() if key in BoardRadar.model_fields}
+    if "\n" not in str(section["cfg"]).strip():
+        raise CaptureError(f"{where}: radar.cfg should be the text of a .cfg, of several lines")
+    if section.get("device") is None and section.get("array") is None:
+        raise CaptureError(
+            f"{where}: has {recording.info.receivers} virtual receivers, and the .cfg does not say "
+            "where they are: --set radar.device=IWR1443BOOST with your board, or --set "
+            "'radar.array={tx: [[0,0]], rx: [[0,0],[1,0]]}' with the places of all, [left, up] in "
+            "half wavelengths"
+        )
+    radar = validated(Config, {"radar": section, "maps": ["stft"]}, where, {}).radar
+    assert isinstance(radar, ArrayRadar)
+    header = radar.header
+    timing = FmcwTiming(
+        header.carrier_hz,
+        header.bandwidth_hz,
+        header.adc_rate_hz,
+        header.samples,
+        header.prf_hz,
+    )
+    difference = describe_difference(recording.info.content, Beat(timing), TOLERANCE)
+    channels = len(header.order) * len(header.receivers)
+    if recording.info.receivers != channels:
+        difference = f"receivers = {recording.info.receivers}: should be {channels}"
+    frames = frames_in(recording.segments)
+    if frames is not None and frames.pulses != header.loops:
+        difference = f"frame_pulses = {frames.pulses}: should be {header.loops}"
+    if difference is not None:
+        raise CaptureError(f"{where}: {difference}, as the .cfg of the import has it")
+    return section
+
+
+def place_of(radar: AnyRadar[Any]) -> float:
+    """Distance x of the antennas of a radar along the x axis, m, numbers at their middle."""
+    places = [getattr(radar, key) for key in radar.place_keys]
+    return float(np.mean([nominal(place[0]) for place in places]))

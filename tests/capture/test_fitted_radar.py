@@ -1,0 +1,147 @@
+"""A radar comes back from recordings that were simulated with it, and its maps have their axes."""
+
+from dataclasses import asdict
+
+import h5py
+import numpy as np
+import pytest
+import yaml
+from helpers.command_line import ok, radhar
+
+from radhar_cli.capture.fitted_radar import differing_key, frames_in
+from radhar_cli.config import load_config
+from radhar_cli.config.radar import ArrayRadar
+from radhar_cli.radar.pulse_times import PulseTimes
+
+CHIRPS = {
+    "carrier_hz": 24e9, "bandwidth_hz": 250e6, "adc_rate_hz": 1e6, "chirp_s": 128e-6,
+}  # fmt: skip
+L_SHAPE = [[0, 0], [1, 0], [1, 1]]
+PAUSED = {"chirps": 64, "interval_s": 250e-6, "period_s": 0.05}
+X4 = {"waveform": "impulse", "carrier_hz": 6.54e9, "bandwidth_hz": 1.5e9, "prf_hz": 256,
+      "profile_m": [0.3, 6.3], "profile_samples": 128, "output": "iq"}  # fmt: skip
+RADARS = {
+    "fmcw": CHIRPS | {"prf_hz": 2000},
+    "frames": CHIRPS | {"prf_hz": 2000, "frame": {"chirps": 64}},
+    "array_iq": CHIRPS | {"frame": PAUSED, "array": {"rx": L_SHAPE}, "tilt_deg": 5},
+    "array_real": CHIRPS | {"frame": PAUSED, "array": {"rx": L_SHAPE}, "output": "real"},
+    "turns": CHIRPS | {"frame": PAUSED | {"chirps": 32},
+                       "array": {"tx": [[0, 0], [2, 0]], "rx": [[0, 0], [1, 0]]}},
+    "sfcw": {"waveform": "sfcw", "steps": 64, "dwell_s": 1e-5, "carrier_hz": 2e9,
+             "bandwidth_hz": 1e9, "prf_hz": 500},
+    "cw_iq": {"waveform": "cw", "carrier_hz": 24e9, "prf_hz": 4000},
+    "cw_real": {"waveform": "cw", "carrier_hz": 24e9, "prf_hz": 4000, "output": "real"},
+    "impulse_rf": {"waveform": "impulse", "carrier_hz": 0.7e9, "bandwidth_hz": 1.6e9,
+                   "prf_hz": 128, "profile_m": [0, 6]},
+    "impulse_iq": X4,
+    "board": {"cfg": "iwr1443boost", "device": "IWR1443BOOST"},
+}  # fmt: skip
+SNR_DB = {"impulse_rf": 30, "impulse_iq": 30}
+
+
+def written(folder, name, snr_db):
+    document = {
+        "radar": RADARS[name], "activities": ["walking"], "duration_s": 2, "snr_db": snr_db,
+        "motion": {"range_m": 3}, "maps": ["rtm"],
+    }  # fmt: skip
+    if name.startswith(("cw", "board")):
+        document["maps"] = ["stft"]
+    (folder / "radar.yaml").write_text(yaml.safe_dump(document))
+    return folder / "radar.yaml"
+
+
+def recorded(folder, name):
+    path = written(folder, name, SNR_DB.get(name, 15))
+    ok("simulate", path, "--raw", "--no-figures", "-o", folder / "raw", "--seed", 1)
+    return path, folder / "raw" / "recording.h5"
+
+
+def same(radar, other):
+    """What differs in two radars, whichever keys say their times; None for nothing."""
+    documents = []
+    for one in (radar, other):
+        document = one.model_dump(mode="json")
+        if isinstance(one, ArrayRadar):
+            document |= {"frame": None, "prf_hz": None, "array": str(one.elements)}
+            document["header"] = asdict(one.header)
+        documents.append(document)
+    return differing_key(*documents)
+
+
+@pytest.mark.parametrize("name", RADARS)
+def test_the_radar_comes_back(tmp_path, name):
+    path, recording = recorded(tmp_path, name)
+    ok("fit", recording, "-o", tmp_path / "fitted.yaml")
+    fitted = load_config(tmp_path / "fitted.yaml").filled()
+    assert same(fitted.radar, load_config(path).filled().radar) is None
+    print(name, fitted.snr_db)
+    if name in ("fmcw", "frames", "array_iq", "array_real", "turns"):
+        assert fitted.snr_db == pytest.approx(15, abs=3)
+
+
+@pytest.mark.parametrize("name", ["fmcw", "array_real", "sfcw", "cw_iq", "impulse_iq"])
+def test_a_config_is_the_header_of_an_import(tmp_path, name):
+    path, recording = recorded(tmp_path, name)
+    dataset = {"c": "slow_time", "i": "profiles"}.get(name[0], "beat")
+    kind = "[receiver,pulse]" if dataset == "slow_time" else "[receiver,sample,pulse]"
+    sets = [f"dataset={dataset}", f"axes={kind}"] + ["holds=beat"] * (dataset == "beat")
+    options = [part for text in sets for part in ("--set", text)]
+    ok("import", recording, "--radar", path, *options, "-o", tmp_path / "again.h5")
+    ok("fit", tmp_path / "again.h5", "-o", tmp_path / "fitted.yaml")
+    fitted = load_config(tmp_path / "fitted.yaml").filled()
+    assert same(fitted.radar, load_config(path).filled().radar) is None
+
+
+def axes_in(file):
+    """Values of every axis of a file of maps, by path."""
+    values = {}
+
+    def visit(path, item):
+        if isinstance(item, h5py.Dataset) and path.startswith("axes/"):
+            values[path] = item[()]
+
+    file.visititems(visit)
+    return values
+
+
+@pytest.mark.parametrize("name", ["array_iq", "array_real", "frames"])
+def test_maps_of_the_fitted_config_have_the_axes_of_the_recording(tmp_path, name):
+    _, recording = recorded(tmp_path, name)
+    fitted = tmp_path / "fitted.yaml"
+    sets = ("--set", "activities=[walking]", "--set", "maps=[stft,range_doppler]")
+    ok("fit", recording, "-o", fitted, *sets)
+    ok("process", recording, "--config", fitted, "-o", tmp_path / "maps", "--no-figures")
+    ok("simulate", fitted, "-o", tmp_path / "scene", "--no-figures")
+    with h5py.File(tmp_path / "maps/maps.h5") as one, h5py.File(tmp_path / "scene/scene.h5") as two:
+        if name != "frames":  # without a pause, windows of recordings are longer than a frame
+            assert one["maps/stft"].shape == two["maps/stft"].shape
+        measured, simulated = axes_in(one), axes_in(two)
+        kinds = ("axes/range_doppler",) if name == "frames" else ("axes/",)
+        shared = [axis for axis in measured if axis.startswith(kinds) and axis in simulated]
+        assert shared
+        for axis in shared:
+            assert measured[axis].size == simulated[axis].size
+            steps = np.diff(measured[axis]), np.diff(simulated[axis])
+            np.testing.assert_allclose(*steps, rtol=1e-4, atol=1e-9)
+
+
+def test_frames_may_be_missing_and_the_last_cut_off():
+    starts, first = np.array([0, 0.1, 0.3, 0.4]), np.arange(4) * 8
+    assert frames_in(PulseTimes(starts, first, 30, 1000.0)) == (8, pytest.approx(0.1))
+    assert frames_in(PulseTimes(np.array([0, 0.1, 0.37]), first[:3], 24, 1000.0)) is None
+    assert frames_in(PulseTimes.even(30, 1000.0)) is None
+
+
+def test_an_unknown_radar_lists_those_that_there_are(tmp_path):
+    np.save(tmp_path / "x.npy", np.ones((64, 40)))
+    done = radhar("import", tmp_path / "x.npy", "--radar", "bgt60tr13", "-o", tmp_path / "y.h5")
+    assert done.returncode == 2
+    assert "did you mean 'bgt60tr13c'?" in done.stderr
+    assert "there are iwr" in done.stderr
+    (tmp_path / "maps.yaml").write_text("maps: [stft]\nimage: {size_px: 64}\n")
+    done = radhar(
+        "import", tmp_path / "x.npy", "--radar", tmp_path / "maps.yaml", "-o", tmp_path / "y.h5"
+    )
+    assert done.returncode == 2
+    assert "is a config without `radar`" in done.stderr
+    assert len(done.stderr.splitlines()) == 1

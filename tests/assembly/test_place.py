@@ -108,10 +108,10 @@ def test_a_start_by_activity_leaves_the_others_their_place() -> None:
 
 def test_zone_lies_behind_the_wall_and_in_the_room() -> None:
     config = Config.model_validate(SURROUNDINGS["wall"])
-    zone = zone_of(draw_scene(config, activity_named("walking"), 0))
+    zone = zone_of(draw_scene(config, activity_named("walking"), 0), (3, 0))
     assert zone.x[0] > 1.12
     assert zone.farthest < 30
-    room = zone_of(draw_scene(Config.model_validate(ROOM), activity_named("walking"), 0))
+    room = zone_of(draw_scene(Config.model_validate(ROOM), activity_named("walking"), 0), (3, 0))
     assert room.x[1] < 9
     assert room.y[1] < 3
     scene, _ = draw_valid_scene(config, activity_named("walking"), 0)
@@ -119,6 +119,6 @@ def test_zone_lies_behind_the_wall_and_in_the_room() -> None:
     config = Config.model_validate({"room": {"back_wall_m": 9.5}})
     for index in range(8):
         scene = draw_scene(config, activity_named("walking"), index)
-        assert zone_of(scene).x[1] < 9.5
+        assert zone_of(scene, (3, 0)).x[1] < 9.5
         x = moving(scene.people[0]).positions(np.linspace(0, 6, 61))[0]
         assert x.max() < 9.8  # a walk may be longer than the room is deep

@@ -127,3 +127,39 @@ def test_a_row_alone_has_no_elevation_until_it_is_rolled() -> None:
 def _row(roll_deg: float) -> BoardRadar:
     array = {"tx": [[0, 0], [0, 0], [0, 0]], "rx": [[0, 0], [1, 0], [2, 0], [3, 0]]}
     return BoardRadar.model_validate({"cfg": CFG, "array": array, "roll_deg": roll_deg})
+
+
+NINE = {"tx": [[0, 0]], "rx": [[left, up] for up in range(3) for left in range(3)]}
+SQUARE = {
+    **{"carrier_hz": 60e9, "bandwidth_hz": 2e9, "adc_rate_hz": 4e6, "chirp_s": 32e-6},
+    **{"frame": {"chirps": 32, "interval_s": 1e-4, "period_s": 0.05}, "array": NINE},
+}
+
+
+@pytest.mark.parametrize("roll_deg", [0, 90, 180, -90, 37])
+@pytest.mark.parametrize(("tilt_deg", "yaw_deg"), [(0, 0), (15, 25), (-20, 25)])
+def test_a_reflector_is_seen_where_it_stands(roll_deg: int, tilt_deg: int, yaw_deg: int) -> None:
+    target, place = np.array([3.0, 0.6, 1.5]), np.array([0.0, 0.2, 1.0])
+    turned = {"roll_deg": roll_deg, "tilt_deg": tilt_deg, "yaw_deg": yaw_deg}
+    config = Config.model_validate(
+        {
+            "radar": SQUARE | turned | {"position_m": place.tolist()},
+            "maps": ["points"],
+            "activities": ["nobody"],
+            "duration_s": 0.2,
+            "snr_db": None,
+            "processing": {"clutter": "none"},
+            "room": {"reflectors": [{"position_m": target.tolist()}]},
+        }
+    )
+    scene = nominal_scene(config, config.chosen_activities[0])
+    points = record(scene, ["points"])["points"]
+    yaw, tilt = np.radians([yaw_deg, tilt_deg])
+    ahead = _direction(yaw_deg, -tilt_deg)
+    left = np.array([-np.sin(yaw), np.cos(yaw), 0.0])
+    axes = np.array([ahead, left, np.cross(ahead, left)])
+    assert axes[2, 2] == pytest.approx(np.cos(tilt))
+    np.testing.assert_allclose(
+        points[:, :3], np.tile(axes @ (target - place), (len(points), 1)), atol=0.02
+    )
+    assert len(points) == 4  # a point in every frame

@@ -374,7 +374,9 @@ def _windows(
 
 
 def even_columns(power_map: PowerMap) -> PowerMap:
-    """Put a map of stretches on an even grid of times; where no column is near, the power is 0."""
+    """Put a map of stretches over time on an even grid; where no column is near, the power is 0."""
+    if power_map.columns.name != "time":
+        return power_map
     t = power_map.columns.values
     step = float(np.median(np.diff(t))) if t.size > 1 else 1.0
     grid = t[0] + step * np.arange(round((t[-1] - t[0]) / step) + 1)

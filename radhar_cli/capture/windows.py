@@ -310,7 +310,9 @@ class WindowFactory:
         images: dict[str, MapImage] = {}
         for name in config.maps:
             power_map = results.maps[name]
-            columns = replace(power_map.columns, values=power_map.columns.values - start)
+            columns = power_map.columns
+            if columns.name == "time":
+                columns = replace(columns, values=columns.values - start)
             images[name] = draw_measured_map(config, replace(power_map, columns=columns))
         confidence = nan if results.track is None else float(results.track.confidence.mean())
         return SampleRow(StoredSample(images), np.array([number, start, confidence]))

@@ -3,7 +3,7 @@
 from radhar_cli.config.annotations import OfRadar, OnlyMaps, Unless
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, RANGE
-from radhar_cli.processing.map_kind import DOPPLER_TIME_KINDS, MAP_KINDS, RTM, Transform
+from radhar_cli.processing.map_kind import CADENCE_KINDS, MAP_KINDS, RTM, Transform
 
 BOARD = OfRadar("board", "frames")
 NO_BOARD = OfRadar("fmcw", "sfcw", "cw", "impulse")
@@ -11,7 +11,8 @@ CHIRPS = OfRadar("fmcw", "sfcw", "board", "frames")
 NO_IMPULSE = OfRadar("fmcw", "sfcw", "cw", "board", "frames")
 EVEN = Unless("radar.frames_apart", "the pauses between frames (radar.cfg or radar.frame)")
 RANGE_TIME = OnlyMaps((str(RTM),))
-SIGNAL_MAPS = OnlyMaps(tuple(MAP_KINDS))
+SIGNAL_MAPS = OnlyMaps((*MAP_KINDS, *CADENCE_KINDS))
+CADENCES = OnlyMaps(tuple(CADENCE_KINDS))
 OVER_RANGE = OnlyMaps(
     (
         str(RTM),
@@ -19,9 +20,10 @@ OVER_RANGE = OnlyMaps(
         *ANGLE_TIME_KINDS,
     )
 )
-SPECTRA = OnlyMaps(tuple(map(str, DOPPLER_TIME_KINDS)))
+_DOPPLER = {n: k for n, k in (MAP_KINDS | CADENCE_KINDS).items() if k.is_doppler_time}
+SPECTRA = OnlyMaps(tuple(_DOPPLER))
 STFTS, FSSTS = (
-    OnlyMaps(tuple(str(kind) for kind in DOPPLER_TIME_KINDS if kind.transform is transform))
+    OnlyMaps(tuple(name for name, kind in _DOPPLER.items() if kind.transform is transform))
     for transform in (Transform.STFT, Transform.FSST)
 )
-DENOISED = OnlyMaps(tuple(str(kind) for kind in DOPPLER_TIME_KINDS if kind.treatment.denoised))
+DENOISED = OnlyMaps(tuple(name for name, kind in _DOPPLER.items() if kind.treatment.denoised))

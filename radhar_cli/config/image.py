@@ -4,7 +4,7 @@ from typing import Annotated, Generic, Literal
 
 from pydantic import BeforeValidator, Field, field_validator
 
-from radhar_cli.config.acting import OVER_RANGE, SPECTRA
+from radhar_cli.config.acting import CADENCES, OVER_RANGE, SPECTRA
 from radhar_cli.config.annotations import ActsIf
 from radhar_cli.config.number import DECIBEL, POSITIVE, Real, require, uniform, value_error, within
 from radhar_cli.config.section import N, Section, default_draw, defaults_of
@@ -80,6 +80,9 @@ class ImageConfig(Section):
     ] = None
     """Ranges [near, far] at the edges of images of rtm and of a board's frame maps, and over which
     angle-time maps sum; null is where people can be (model: human), or all."""
+
+    cadence_limit_hz: Annotated[float, Field(gt=0, le=1000, strict=True), CADENCES] = 8.0
+    """Highest cadence of the diagrams `_cadence`, Hz; half the windows a second bound it."""
 
     @field_validator("colour_map")
     @classmethod

@@ -3,7 +3,7 @@
 from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS, KNOWN_MAPS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.request import AnyRequest, Request
-from radhar_cli.processing.map_kind import MAP_KINDS
+from radhar_cli.processing.map_kind import kind_of, treatment_of
 
 
 def possible_maps(config: Request) -> tuple[str, ...]:
@@ -14,8 +14,7 @@ def possible_maps(config: Request) -> tuple[str, ...]:
     radar = config.radar
     names = [*KNOWN_MAPS, "cube"]
     if isinstance(radar, ArrayRadar) and config.processing.savgol.frame > radar.header.loops:
-        denoised = {name for name, kind in MAP_KINDS.items() if kind.treatment.denoised}
-        names = [name for name in names if name not in denoised]
+        names = [name for name in names if not treatment_of(name).denoised]
     return tuple(name for name in names if why_no_map(config, name) is None)
 
 
@@ -28,9 +27,10 @@ def why_no_map(config: AnyRequest, name: str) -> str | None:
             chain = config.cloud.chain if isinstance(config, Request) else "best"
             why = radar.why_no_points(chain)
         return why
-    if name not in MAP_KINDS:  # of a user's own
+    kind = kind_of(name)
+    if kind is None:  # of a user's own
         return None
-    return radar.why_no_map(MAP_KINDS[name], _gating(config))
+    return radar.why_no_map(kind, _gating(config))
 
 
 def _gating(config: AnyRequest) -> str | None:

@@ -76,6 +76,7 @@ ABSENT = {
     **dict.fromkeys(("doppler_angle", "angle_doppler"), "is called doppler_azimuth"),
     **dict.fromkeys(("angle_time", "time_angle", "range_angle_time"), "is called azimuth_time"),
     **dict.fromkeys(_DOPPLER_TIME, "is called stft"),
+    **dict.fromkeys(("cvd", "cadence", "cadence_velocity", "stft_cvd"), "is called stft_cadence"),
     **dict.fromkeys(("range_time", "time_range"), "is called rtm"),
     "rise_overlap": "is now a dwell_s below 0",
     **dict.fromkeys(("stride_jitter", "width_jitter_m"), "now follows speed_variation"),

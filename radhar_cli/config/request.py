@@ -46,7 +46,7 @@ from radhar_cli.config.classes import (
 )
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.image import ImageConfig
-from radhar_cli.config.maps import FRAME_MAPS, MAP_NAMES, OF_FRAMES, OF_POINTS, Maps
+from radhar_cli.config.maps import CADENCE_MAPS, FRAME_MAPS, MAP_NAMES, OF_FRAMES, OF_POINTS, Maps
 from radhar_cli.config.motion import MotionConfig, TimingConfig
 from radhar_cli.config.number import Decibel, Positive, nominal, uniform, value_error, within
 from radhar_cli.config.output import OutputConfig, SplitConfig
@@ -138,7 +138,8 @@ class Request(Section):
     image: ImageConfig = defaults_of(ImageConfig)
     maps: Maps = ("stft",)
     """Maps of the data set: `rtm`, `stft`, `fsst`, the latter two also with `_denoised`,
-    `_compensated`, `_compensated_denoised`; of boards also `range_doppler`, `range_azimuth`,
+    `_compensated`, `_compensated_denoised`, and all of these with `_cadence`, their
+    cadence-velocity diagrams; of boards also `range_doppler`, `range_azimuth`,
     `range_elevation`, `doppler_azimuth`, `doppler_elevation`, `azimuth_time`, `elevation_time`,
     `points`."""
     split: SplitConfig = defaults_of(SplitConfig)
@@ -192,7 +193,7 @@ class Request(Section):
     @property
     def has_error(self) -> bool:
         """Whether the direct engine makes something whose error is measured."""
-        signals = set(self.maps) & set(MAP_NAMES) - {"rtm"}
+        signals = set(self.maps) & {*MAP_NAMES, *CADENCE_MAPS} - {"rtm"}
         return self.engine.kind == "direct" and (
             bool(signals) or isinstance(self.radar, ArrayRadar)
         )

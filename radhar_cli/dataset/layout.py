@@ -16,7 +16,7 @@ from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.numerics.arrays import Index
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import ANGLES, FRAME_MAP_KINDS
-from radhar_cli.processing.map_kind import MAP_KINDS
+from radhar_cli.processing.map_kind import CADENCE_KINDS, MAP_KINDS, kind_of
 
 # Of dataset.h5; 3: labels are 0 to C - 1 in the order of the config.
 SCHEMA_VERSION = 3
@@ -105,9 +105,10 @@ def row_axis(name: str) -> tuple[str, str]:
     if name in ANGLE_TIME_KINDS:
         angle = ANGLES[ANGLE_TIME_KINDS[name].array_axis]
         return angle.quantity, angle.unit
-    if name not in MAP_KINDS:
+    kind = kind_of(name)
+    if kind is None:
         return "rows of the product", "1"
-    return ("Doppler frequency", "Hz") if MAP_KINDS[name].is_doppler_time else ("range", "m")
+    return ("Doppler frequency", "Hz") if kind.is_doppler_time else ("range", "m")
 
 
 def column_axis(name: str) -> tuple[str, str]:
@@ -117,6 +118,8 @@ def column_axis(name: str) -> tuple[str, str]:
     if name in FRAME_MAP_KINDS:
         columns = FRAME_MAP_KINDS[name].columns
         return columns.quantity, columns.unit
+    if name in CADENCE_KINDS:
+        return "cadence", "Hz"
     is_over_time = name in MAP_KINDS or name in ANGLE_TIME_KINDS
     return TIME if is_over_time else ("columns of the product", "1")
 

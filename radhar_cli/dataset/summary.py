@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.config.identity import config_hash
-from radhar_cli.config.maps import ANGLE_TIME_MAPS, MAP_NAMES
+from radhar_cli.config.maps import ANGLE_TIME_MAPS, CADENCE_MAPS, MAP_NAMES
 from radhar_cli.dataset.folder import stored_identity
 from radhar_cli.dataset.identity import identity_hash
 from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
@@ -130,8 +130,6 @@ def _summarise_scene(path: Path) -> dict[str, Any]:
             raise FolderError(f"{path}: is not a complete scene file: entropy_bits is missing")
         maps = {name: file.shape(f"maps/{name}") for name in described["entropy_bits"]}
     for name, shape in maps.items():
-        if name not in (*MAP_NAMES, *ANGLE_TIME_MAPS) or len(shape) != 2:
-            raise FolderError(
-                f"{path}: /maps/{name}: should be a map [frequency, range or angle, time]"
-            )
+        if name not in (*MAP_NAMES, *CADENCE_MAPS, *ANGLE_TIME_MAPS) or len(shape) != 2:
+            raise FolderError(f"{path}: /maps/{name}: should be a map over time or cadence")
     return {**described, "kind": "scene", "path": str(path), "maps": maps}

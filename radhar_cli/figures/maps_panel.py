@@ -22,8 +22,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene import Scene
 from radhar_cli.single_scene.simulate import Simulation
 
-TITLES: Mapping[str, str] = {
-    "rtm": "range-time map",
+_DOPPLER_TIME_TITLES = {
     "stft": "STFT",
     "stft_denoised": "STFT, denoised",
     "stft_compensated": "STFT, compensated",
@@ -32,9 +31,14 @@ TITLES: Mapping[str, str] = {
     "fsst_denoised": "FSST, denoised",
     "fsst_compensated": "FSST, compensated",
     "fsst_compensated_denoised": "FSST, compensated, denoised",
+}
+TITLES: Mapping[str, str] = {
+    "rtm": "range-time map",
+    **_DOPPLER_TIME_TITLES,
+    **{f"{name}_cadence": f"cadence of {title}" for name, title in _DOPPLER_TIME_TITLES.items()},
     **{kind.name: f"{kind.title} map" for kind in ANGLE_TIME_KINDS.values()},
 }
-ONE_ROW = 4
+ONE_ROW, TWO_ROWS = 4, 10
 MOST_COLUMNS = 4096  # of a map that is drawn, ten times the pixels of a panel
 
 
@@ -143,7 +147,7 @@ def draw_maps(page_content: MapsPage, path: Path) -> None:
     names = [
         name for name in dict.fromkeys((*TITLES, *page_content.maps)) if name in page_content.maps
     ]
-    rows = 1 if len(names) <= ONE_ROW else 2
+    rows = 1 if len(names) <= ONE_ROW else 2 if len(names) <= TWO_ROWS else 3
     columns = -(-len(names) // rows)
     figure = page(max(11.0, 3.7 * columns + 1), 4.1 * rows, apart=0.12)
     panels = [figure.add_subplot(rows, columns, 1 + place) for place in range(len(names))]

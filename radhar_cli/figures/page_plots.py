@@ -169,7 +169,11 @@ def plot_map(view: SceneView, map_levels: MapLevels) -> Plot:
     if map_levels.times is not None:
         times = map_levels.times[: len(levels)][::frame_step]
         return plot | {"moves": [{"at": _nearest(times, view.time), "frames": {"z": frames}}]}
-    if view.curves and any(_shows_speed(view, axis) for axis in axes):
+    if (
+        view.curves
+        and map_levels.columns.name != "cadence"
+        and any(_shows_speed(view, axis) for axis in axes)
+    ):
         plot["data"] += _curves(view, treatment_of(map_levels.name).compensated)
     return plot | {"cursor": map_levels.columns.unit == "s"}
 
@@ -183,13 +187,14 @@ def _packed_frames(values: Float) -> list[Plot]:
 
 def _shows_speed(view: SceneView, axis: Axis) -> bool:
     """Whether an axis of Doppler is drawn in m/s."""
-    return axis.unit == "Hz" and bool(view.hertz)
+    return axis.unit == "Hz" and axis.name != "cadence" and bool(view.hertz)
 
 
 def _plot_axis(view: SceneView, axis: Axis, cells: int) -> tuple[tuple[float, float], Plot]:
     """Middle of the first cell and the step of an axis of so many cells, and its layout."""
     first, last = axis.edges
-    label = QUANTITIES.get(axis.unit, axis.name) + f" ({axis.unit})"
+    quantity = axis.name if axis.name == "cadence" else QUANTITIES.get(axis.unit, axis.name)
+    label = quantity + f" ({axis.unit})"
     if _shows_speed(view, axis):
         first, last = first / view.hertz, last / view.hertz
         label = f"approaching (m/s), 1 m/s = {view.hertz:.3g} Hz"

@@ -7,7 +7,7 @@ from radhar_cli.assembly.radar import board_of, waveform_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import RadharError
-from radhar_cli.processing.map_kind import MAP_KINDS, Transform
+from radhar_cli.processing.map_kind import Transform, kind_of
 from radhar_cli.scene import nominal_scene
 
 Counts = dict[str, float]
@@ -40,7 +40,7 @@ def counted_work(config: Config) -> Counts:
         "points": float(config.body.points_per_segment),
     }
     for transform, make in ((Transform.STFT, frames_of), (Transform.FSST, fsst_frames_of)):
-        kinds = [MAP_KINDS[name] for name in config.maps if name in MAP_KINDS]
+        kinds = [kind for name in config.maps if (kind := kind_of(name)) is not None]
         if any(kind.transform is transform for kind in kinds):
             frames = make(config, w.duration, w.prf, w.f0)
             length = config.processing.stft_fft_length or frames.length

@@ -51,6 +51,11 @@ class DopplerPower:
         """Outer edges (from, to of the time, s; from, to of the frequency, Hz)."""
         return (*self.time.edges, *self.frequency.edges)
 
+    def held(self) -> "DopplerPower":
+        """The same power, computed here and now, of which any number of results may be made."""
+        blocks = [*self.compute()]
+        return replace(self, compute=partial(iter, blocks))
+
     def as_map(self) -> PowerMap:
         """Map of the whole power [bins, frames] in float64, for unit transmit power."""
         power = np.concatenate(list(self.blocks()), dtype=float)

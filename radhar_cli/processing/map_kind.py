@@ -86,7 +86,16 @@ DOPPLER_TIME_KINDS = tuple(
 # {name: kind} of every map of a signal, in the order of data sets.
 MAP_KINDS = {str(kind): kind for kind in (RTM, *DOPPLER_TIME_KINDS)}
 
+# {name: Doppler-time map that it shows the cadences of} of every cadence-velocity diagram.
+CADENCE_KINDS = {f"{kind}_cadence": kind for kind in DOPPLER_TIME_KINDS}
+
+
+def kind_of(name: str) -> MapKind | None:
+    """Kind of the map of a signal that a name shows, itself or its cadences; None of others."""
+    return MAP_KINDS.get(name) or CADENCE_KINDS.get(name)
+
 
 def treatment_of(name: str) -> Treatment:
     """Treatment of the signal that a map of a name shows; none of a map of a user's own."""
-    return MAP_KINDS[name].treatment if name in MAP_KINDS else UNTREATED
+    kind = kind_of(name)
+    return UNTREATED if kind is None else kind.treatment

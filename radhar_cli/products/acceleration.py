@@ -6,7 +6,7 @@ from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.echo.compiled import MIN_TERMS
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.accelerators import installed
-from radhar_cli.processing.map_kind import MAP_KINDS
+from radhar_cli.processing.map_kind import kind_of
 
 
 def describe_acceleration(config: Config) -> str | None:
@@ -22,7 +22,7 @@ def describe_acceleration(config: Config) -> str | None:
     """
     if config.engine.precision == "double" or isinstance(config.radar, ArrayRadar):
         return None
-    kinds = (MAP_KINDS[name] for name in config.maps if name in MAP_KINDS)
+    kinds = [kind for name in config.maps if (kind := kind_of(name)) is not None]
     has_fsst = any(kind.transform == "fsst" for kind in kinds)
     has_sums = _has_compiled_sums(config)
     if not has_fsst and not has_sums:

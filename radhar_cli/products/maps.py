@@ -7,6 +7,7 @@ from typing import NamedTuple
 from radhar_cli.assembly.processing import frames_of, fsst_frames_of
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.extensions import own_products
+from radhar_cli.processing.cadence import cadence_map
 from radhar_cli.processing.doppler_power import (
     DopplerPower,
     compute_fsst_power,
@@ -14,7 +15,7 @@ from radhar_cli.processing.doppler_power import (
 )
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate
-from radhar_cli.processing.map_kind import DOPPLER_TIME_KINDS, RTM, MapKind, Transform
+from radhar_cli.processing.map_kind import CADENCE_KINDS, RTM, MapKind, Transform
 from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
 from radhar_cli.processing.scale import Scale
 from radhar_cli.processing.signal import Signal
@@ -41,6 +42,11 @@ class DopplerTransform(NamedTuple):
     description: str
 
 
+def power_name(kind: MapKind) -> str:
+    """Name of the product that is the held power of a Doppler-time map."""
+    return f"power:{kind}"
+
+
 def image_name(map_name: str) -> str:
     """Name of the product that is the image of a map."""
     return f"image:{map_name}"
@@ -62,10 +68,11 @@ def map_products(config: AnyConfig) -> Iterator[Product]:
         yield Product(
             image_name(name), (name, "image_scale"), draw, f"its {_describe_image(config)}"
         )
-    for kind in DOPPLER_TIME_KINDS:
+    for name, kind in CADENCE_KINDS.items():
         transform = doppler_transform(config, kind)
         if transform is not None:
-            yield from _doppler_rows(config, kind, transform)
+            yield from _doppler_rows(config, kind, transform, is_held=name in config.maps)
+            yield from _cadence_rows(config, name, kind, transform)
 
 
 def window_products() -> Iterator[Product]:
@@ -137,7 +144,7 @@ def doppler_transform(config: AnyConfig, kind: MapKind) -> DopplerTransform | No
 
 
 def _doppler_rows(
-    config: AnyConfig, kind: MapKind, transform: DopplerTransform
+    config: AnyConfig, kind: MapKind, transform: DopplerTransform, is_held: bool
 ) -> Iterator[Product]:
     """Rows of a Doppler-time map, in float64, and of its image, from float32 where that will do."""
     does = f"power of the {transform.description}"
@@ -150,7 +157,26 @@ def _doppler_rows(
         form=ImageForm.of(config),
     )
     does += f"{', in float32' * single}; its {_describe_image(config)}"
+    if is_held:  # for its cadences, too
+        draw = partial(draw_held_power, form=ImageForm.of(config))
+        yield Product(image_name(str(kind)), (power_name(kind), "image_scale"), draw, does)
+        return
     yield Product(image_name(str(kind)), ("image_scale", *transform.needs), draw, does)
+
+
+def _cadence_rows(
+    config: AnyConfig, name: str, kind: MapKind, transform: DopplerTransform
+) -> Iterator[Product]:
+    """Rows of the cadences of a Doppler-time map, and of their image, which share its power."""
+    highest_hz = config.image.cadence_limit_hz
+    compute = partial(transform.compute, single=fits_single(config))
+    hold = partial(hold_power, compute=compute)
+    yield Product(power_name(kind), transform.needs, hold, f"power of the {kind}, held")
+    make = partial(cadence_map, highest_hz=highest_hz)
+    yield Product(name, (str(kind),), make, f"cadences of the {kind}", is_array=True)
+    draw = partial(draw_cadences, form=ImageForm.of(config), highest_hz=highest_hz)
+    does = f"their {_describe_image(config)}"
+    yield Product(image_name(name), (power_name(kind), "image_scale"), draw, does)
 
 
 def fits_single(config: AnyConfig) -> bool:
@@ -203,6 +229,36 @@ def draw_doppler_map(
         form: size of the image, and whether it has decibels.
     """
     return draw_doppler_image(_compute(signal, frames, gate, compute), scale, form)
+
+
+def hold_power(
+    signal: Signal,
+    frames: Frames,
+    gate: Gate | None = None,
+    *,
+    compute: Callable[..., DopplerPower],
+) -> DopplerPower:
+    """Compute the power of a Doppler-time map once, for all that is made of it.
+
+    Args:
+        signal: signal, or range bins of a gate.
+        frames: windows.
+        gate: range bins that each window adds up; None for a signal of one row.
+        compute: computes the power.
+    """
+    return _compute(signal, frames, gate, compute).held()
+
+
+def draw_held_power(power: DopplerPower, scale: Scale, form: ImageForm) -> MapImage:
+    """Draw the image of a Doppler-time map whose power is held."""
+    return draw_doppler_image(power, scale, form)
+
+
+def draw_cadences(
+    power: DopplerPower, scale: Scale, form: ImageForm, highest_hz: float
+) -> MapImage:
+    """Draw the cadence-velocity diagram of a Doppler-time map whose power is held."""
+    return draw_map(cadence_map(power.as_map(), highest_hz), scale, form)
 
 
 def _compute(

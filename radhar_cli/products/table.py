@@ -22,7 +22,7 @@ from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.radar import ArrayRadar, CwRadar, FmcwRadar, ImpulseRadar, SfcwRadar
 from radhar_cli.errors import ConfigError
 from radhar_cli.extensions import own_products
-from radhar_cli.processing.map_kind import MAP_KINDS, TREATMENTS
+from radhar_cli.processing.map_kind import TREATMENTS, kind_of, treatment_of
 from radhar_cli.products.direct import direct_products
 from radhar_cli.products.exact import exact_products
 from radhar_cli.products.gated import gate_products, gated_direct_products
@@ -44,8 +44,10 @@ def plan_images(config: Config) -> Plan:
             that is no array.
     """
     extensions = {product.name for product in own_products()}
-    of_signals = [name for name in config.maps if name in MAP_KINDS and name not in extensions]
-    by_signal = sorted(of_signals, key=lambda name: TREATMENTS.index(MAP_KINDS[name].treatment))
+    of_signals = [
+        name for name in config.maps if kind_of(name) is not None and name not in extensions
+    ]
+    by_signal = sorted(of_signals, key=lambda name: TREATMENTS.index(treatment_of(name)))
     others = [name for name in config.maps if name not in of_signals]
     requested = [image_name(name) for name in (*by_signal, *others)]
     if config.has_error:

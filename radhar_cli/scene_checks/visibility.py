@@ -24,7 +24,7 @@ from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.look import noise_gain, weights
-from radhar_cli.processing.map_kind import MAP_KINDS, RTM
+from radhar_cli.processing.map_kind import RTM, kind_of
 from radhar_cli.products.noise import noise_law_of
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import amplitude, leg
@@ -108,7 +108,7 @@ def cell_gain_db(scene: Scene, name: str) -> float:
             loops = 1.0 if is_of_angles else HANN * board.loops
             return 10 * log10(HANN * board.samples * loops * channels)
     w = waveform_of(scene)
-    kind = MAP_KINDS.get(name)
+    kind = kind_of(name)
     if kind == RTM:
         over_range = w.peak_to_power if isinstance(w, Impulse) else w.window.gain(w.n_adc)
         window = 1.0

@@ -12,7 +12,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar, BoardRadar, CwRadar, ImpulseRadar
 from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.errors import SceneError
-from radhar_cli.processing.map_kind import MAP_KINDS
+from radhar_cli.processing.map_kind import kind_of
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.propagation import leg
@@ -152,7 +152,7 @@ def _describe_chain(chain: Chain, radar: BoardRadar) -> str:
 
 def _gives_window(config: Config) -> bool:
     """Whether a config gives the window of maps that it asks for."""
-    kinds = [MAP_KINDS[name] for name in config.maps if name in MAP_KINDS]
+    kinds = [kind for name in config.maps if (kind := kind_of(name)) is not None]
     has_windows = any(kind.is_doppler_time for kind in kinds)
     return has_windows and "window_s" in config.processing.model_fields_set
 

@@ -13,7 +13,7 @@ from radhar_cli.config.radar import (
     SfcwRadar,
 )
 from radhar_cli.config.room import WallConfig
-from radhar_cli.processing.map_kind import MAP_KINDS
+from radhar_cli.processing.map_kind import kind_of
 from radhar_cli.tradeoff.board_settings import board_settings, frame_settings
 from radhar_cli.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth, keyed
 
@@ -154,7 +154,7 @@ def radar_settings(config: Config) -> Iterator[Setting]:
 def processing_settings(config: Config) -> Iterator[Setting]:
     """Yield other overlaps, cancellers and sums over range."""
     processing = config.processing
-    has_doppler = any(name in MAP_KINDS and name != "rtm" for name in config.maps)
+    has_doppler = any(kind_of(name) is not None and name != "rtm" for name in config.maps)
     if has_doppler and not isinstance(config.radar, ArrayRadar):
         for share, worth in ((2, Worth.SAVES), (5, Worth.PROCESSING)):
             overlap = 1 - share * (1 - processing.overlap_fraction)

@@ -281,6 +281,7 @@ CHANGES: dict[str, object] = {
     "image.clipped": 0.05,
     "image.doppler_limits_mps": (-3.0, 3.0),
     "image.range_limits_m": (0.5, 5.0),
+    "image.cadence_limit_hz": 4.0,
     "image.cfar.guard": (9, 2),
     "image.cfar.training": (40, 10),
     "image.cfar.pfa": 0.1,

@@ -10,7 +10,14 @@ from radhar_cli.config.checks.smallest_waveform import (
     waveform_at,
     window_pulses,
 )
-from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS, KNOWN_MAPS, MAP_NAMES
+from radhar_cli.config.maps import (
+    ANGLE_TIME_MAPS,
+    CADENCE_MAPS,
+    FRAME_MAPS,
+    KNOWN_MAPS,
+    MAP_NAMES,
+    without_cadences,
+)
 from radhar_cli.config.number import support
 from radhar_cli.config.offered_maps import why_no_map
 from radhar_cli.config.radar import MIN_WINDOW, ArrayRadar
@@ -18,7 +25,7 @@ from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import show_beside
-from radhar_cli.processing.map_kind import MAP_KINDS
+from radhar_cli.processing.map_kind import treatment_of
 
 MAX_PULSES = 2**24
 MAX_BIN_SAMPLES = 2**27  # of range bins in memory, 16 bytes each
@@ -33,7 +40,7 @@ def map_problem(c: AnyRequest, names: Iterable[str]) -> Problem | None:
     if not reasons:
         return None
     possible = [name for name in KNOWN_MAPS if why_no_map(c, name) is None]
-    right = f"should be some of {', '.join(possible)}"
+    right = f"should be some of {', '.join(without_cadences(possible))}"
     return Problem("maps", list(reasons), f"{right}: {'; '.join(dict.fromkeys(reasons.values()))}")
 
 
@@ -44,7 +51,11 @@ def problems_of_maps(c: Request, names: tuple[str, ...]) -> list[Problem]:
 
 def processing_problems(c: AnyRequest) -> Iterator[Problem]:
     """Find what of the processing does not fit the radar or the maps."""
-    names = c.maps if isinstance(c, Request) else [one for one in c.maps if one in MAP_NAMES]
+    names = (
+        c.maps
+        if isinstance(c, Request)
+        else [n for n in c.maps if n in (*MAP_NAMES, *CADENCE_MAPS)]
+    )
     if (of_maps := map_problem(c, names)) is not None:
         yield of_maps
     if not isinstance(c.radar, ArrayRadar):
@@ -68,7 +79,7 @@ def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
         usable_pulses = board.header.loops
         pulses_meant = f"pulses of a frame, the loops of {board.named}"
     doppler = [name for name in c.maps if name not in ("rtm", *ANGLE_TIME_MAPS, *FRAME_MAPS)]
-    denoised = [n for n in doppler if n in MAP_KINDS and MAP_KINDS[n].treatment.denoised]
+    denoised = [n for n in doppler if treatment_of(n).denoised]
     duration_entry: tuple[str, object] = ("duration_s", c.duration_s)
     window_is_given = "window_s" in processing.model_fields_set and processing.window_s is not None
     window_entry = (
@@ -176,6 +187,10 @@ def _image_problems(c: AnyRequest) -> Iterator[Problem]:
             f"{list(cfar.guard)} on each side it takes {reach[0]} x {reach[1]}"
         )
         yield Problem("image.cfar.training", list(cfar.training), right)
+    cadences = [name for name in c.maps if name in CADENCE_MAPS]
+    if c.output.column_labels and cadences:
+        right = f"should be false with {', '.join(cadences)}, whose columns are no times"
+        yield Problem("output.column_labels", True, right)
     yield from _range_limit_problems(c)
     limits = c.image.doppler_limits_mps
     if limits is None or not set(c.maps) - {"rtm", *ANGLE_TIME_MAPS, *FRAME_MAPS}:

@@ -44,16 +44,16 @@ def cadence_map(doppler_time: PowerMap, highest_hz: float) -> PowerMap:
     count = int(places[-1]) + 1
     window = np.hanning(count + 2)[1:-1][places]
     bins = PADDING * count
-    shown = min(max(int(highest_hz * bins * step + 1e-9) + 1, 2), bins // 2 + 1)
-    diagram = np.empty((len(power), shown))
+    cadences = min(max(int(highest_hz * bins * step + 1e-9) + 1, 2), bins // 2 + 1)
+    diagram = np.empty((len(power), cadences))
     block = max(1, BLOCK_COEFFICIENTS // bins)
     for first in range(0, len(power), block):
         rows = slice(first, first + block)
         amplitude = np.sqrt(power[rows])
         amplitude -= (amplitude @ window / window.sum())[:, None]
-        even = np.zeros((len(amplitude), count))
-        even[:, places] = amplitude * window
-        spectrum = scipy.fft.rfft(even, bins, axis=1)[:, :shown] * (2 / window.sum())
+        weighted = np.zeros((len(amplitude), count))
+        weighted[:, places] = amplitude * window
+        spectrum = scipy.fft.rfft(weighted, bins, axis=1)[:, :cadences] * (2 / window.sum())
         diagram[rows] = spectrum.real**2 + spectrum.imag**2
-    cadence = np.arange(shown) / (bins * step)
+    cadence = np.arange(cadences) / (bins * step)
     return PowerMap(diagram, doppler_time.rows, Axis("cadence", "Hz", cadence))

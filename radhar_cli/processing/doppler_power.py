@@ -52,7 +52,7 @@ class DopplerPower:
         return (*self.time.edges, *self.frequency.edges)
 
     def held(self) -> "DopplerPower":
-        """The same power, computed here and now, of which any number of results may be made."""
+        """Compute the power here and now, and hold it for all that is made of it."""
         blocks = [*self.compute()]
         return replace(self, compute=partial(iter, blocks))
 

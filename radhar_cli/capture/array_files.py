@@ -167,7 +167,7 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
 def _hdf5(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberColumn]:
     file = UntrustedFile(path)
     named = settings.dataset, settings.times, settings.imaginary
-    names = list(dict.fromkeys([*file.numeric_names(), *filter(None, named)]))
+    names = list(dict.fromkeys([*file.numeric_paths(), *filter(None, named)]))
     shapes = {name: tuple(file.shape(name.strip("/"))) for name in names}
     return [file.samples(name.strip("/")) for name in _chosen(path, shapes, settings)]
 
@@ -381,7 +381,10 @@ def as_source(
     pulses = ArrayPulses(array, axes, transmitters)
     has_frames = "frame" in axes
     incomplete = pulses.chirps % pulses.turns
-    note = f"the last {incomplete} chirps (an incomplete transmitter cycle) are left out"
+    notes = [f"the last {incomplete} chirps (an incomplete transmitter cycle) are left out"]
+    notes = notes if incomplete else []
+    if settings.axes is None and "iq" in axes:
+        notes.append("the last axis, of two real numbers, is I and Q (axes=[...] says otherwise)")
     chunk = array.chunk[axes.index("frame" if has_frames else "pulse")]
     return Source(
         (path,),
@@ -394,7 +397,7 @@ def as_source(
         times=times,
         step=max(chunk * (pulses.per_frame if has_frames else 1) // pulses.turns, 1),
         settings={"frame_pulses": pulses.per_frame // pulses.turns} if has_frames else {},
-        notes=(note,) if incomplete else (),
+        notes=tuple(notes),
     )
 
 
@@ -470,7 +473,7 @@ def _axes(
 ) -> tuple[AxisName, ...]:
     """Names of the axes of an array, in the order of the file."""
     shape = array.shape[::-1] if of_matlab else array.shape
-    axes = s.axes or USUAL_AXES.get(len(shape), ())
+    axes = s.axes or _usual_axes(array.parts, shape, s)
     if of_matlab and s.axes is None and len(shape) == 2 and 1 in shape:  # a vector of MATLAB's
         axes = ("receiver", "pulse") if shape[0] == 1 else ("pulse", "receiver")
     sizes = dict(zip(axes, shape, strict=False))
@@ -494,6 +497,21 @@ def _axes(
             f"{problem}; --set axes=[...] should name each, outermost first"
         )
     return axes[::-1] if of_matlab else axes
+
+
+def _usual_axes(parts: int, shape: tuple[int, ...], s: CaptureSettings) -> tuple[AxisName, ...]:
+    """Names of axes that nobody has named; a last one of two real numbers is I and Q.
+
+    Args:
+        parts: 2 of complex numbers, 1 of real ones.
+        shape: sizes of the axes.
+        s: header of the capture.
+    """
+    others = USUAL_AXES.get(len(shape) - 1)
+    is_pair = parts == 1 and len(shape) > 1 and shape[-1] == 2 and shape[0] > 2
+    if is_pair and others is not None and s.receivers != 2 and s.complex:
+        return (*others, "iq")
+    return USUAL_AXES.get(len(shape), ())
 
 
 @contextmanager

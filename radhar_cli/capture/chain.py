@@ -159,6 +159,7 @@ def maps_of(
     else:
         signal, track = _range_signal(part, recording.info.content, config)
         notes += [] if track else ["nothing moves: no torso was found"]
+    _refuse_doppler_of_magnitudes(recording, signal, names)
     # What is global to a recording is done here; difference and windows cross no gap.
     clutter = config.processing.clutter
     canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, signal.prf)
@@ -229,7 +230,8 @@ def _range_signal(
         waveform = replace(waveform, window=chirp_window_of(processing))
     x = bins_of_part(part, content, waveform)
     is_real = isinstance(content, RangeProfiles) and part.recording.samples.parts == 1
-    moving_bins = without_static(analytic(x) if is_real else x)
+    has_signs = is_real and bool((x.real < 0).any())  # magnitudes have none
+    moving_bins = without_static(analytic(x) if has_signs else x)
     track = track_torso(moving_bins, part.segments, waveform)
     if isinstance(content, Beat):
         x *= unit_phasor(np.arange(waveform.n_bins)[:, None] * (waveform.n0 / waveform.n_fft))
@@ -386,6 +388,27 @@ def even_columns(power_map: PowerMap) -> PowerMap:
     has_column = np.abs(t[columns] - grid) <= step
     even_axis = replace(power_map.columns, values=grid)
     return PowerMap(power_map.power[:, columns] * has_column, power_map.rows, even_axis)
+
+
+def _refuse_doppler_of_magnitudes(
+    recording: Recording, signal: Signal, names: Sequence[str]
+) -> None:
+    """Refuse Doppler maps of real range profiles without a phase.
+
+    They are magnitudes, none of which is negative, or lie too far apart for the pulse as it comes.
+    """
+    content = recording.info.content
+    refused = [name for name in names if name != str(RTM)]
+    if not (isinstance(content, RangeProfiles) and recording.samples.parts == 1 and refused):
+        return
+    are_magnitudes = signal.x.real.min() >= 0
+    if are_magnitudes or not content.are_waves:
+        step = content.range_step_m
+        why = "are magnitudes" if are_magnitudes else f"are real, with steps of {step:g} m"
+        raise CaptureError(
+            f"{recording.path}: its range profiles {why}, and have no phase; {refused[0]} cannot "
+            "be made of them (maps: rtm)"
+        )
 
 
 def _refuse_without_ranges(recording: Recording, config: AnyConfig, names: Sequence[str]) -> None:

@@ -1,6 +1,6 @@
 """What the samples of a recording are: beat signals of chirps, range profiles, or slow time."""
 
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, ClassVar, TypeAlias
 
 from radhar_cli.config.radar import class_of_radar
@@ -82,6 +82,12 @@ class RangeProfiles:
     first_range_m: float  # range of the first sample
     range_step_m: float  # from one sample to the next
     is_iq: bool = False  # whether samples are complex, which their type tells
+
+    @property
+    def are_waves(self) -> bool:
+        """Whether steps are fine enough for real samples of the pulse as it comes."""
+        w = self.waveform(1.0)
+        return w.range_step <= replace(w, is_iq=False).coarsest_step * (1 + TOLERANCE)
 
     @property
     def noun(self) -> str:
@@ -186,7 +192,7 @@ def _radar_keys(content: Content, waveform: str) -> dict[str, Any]:
             w = content.waveform(1.0)
             return {
                 "waveform": "impulse",
-                "output": "iq" if content.is_iq else "rf",
+                "output": "iq" if content.is_iq or not content.are_waves else "rf",
                 "carrier_hz": w.fc,
                 "prf_hz": w.prf,
                 "bandwidth_hz": w.bandwidth,

@@ -140,6 +140,7 @@ class Damage:
 
     # lowest and highest number of the converter, reached by clipped samples only; None of floats
     full_scale: tuple[int, int] | None
+    lost_run: int = LOST_RUN  # zero samples in a row of which a pulse is lost
     clipped: int = 0  # number of clipped samples
     # of the pulses, uint8 [pulse] of each piece
     flags: list[NDArray[np.uint8]] = field(default_factory=list)
@@ -158,7 +159,7 @@ class Damage:
             clipped = (values <= low) | (values >= high)
             self.clipped += int(np.count_nonzero(clipped))
             flags[clipped.any(axis=(0, 1, 3))] |= CLIPPED
-        flags[lost(raw) | gone] |= LOST
+        flags[lost(raw, self.lost_run) | gone] |= LOST
         self.flags.append(flags)
 
     def findings(self) -> list[str]:
@@ -178,15 +179,15 @@ class Damage:
         return words
 
 
-def lost(values: Parts) -> Bool:
-    """Whether a pulse has LOST_RUN consecutive zero samples, or only zeros [pulse].
+def lost(values: Parts, longest: int = LOST_RUN) -> Bool:
+    """Whether a pulse has so many consecutive zero samples, or only zeros [pulse].
 
     Single zeros of slow time are not taken for losses.
     """
     if values.shape[1] == 1:
         return np.zeros(values.shape[2], bool)
     zero = (values == 0).all(axis=3)
-    run = min(LOST_RUN, zero.shape[1])
+    run = min(longest, zero.shape[1])
     if not zero.any():
         return np.zeros(zero.shape[2], bool)
     summed = np.cumsum(zero, axis=1, dtype=np.int32)

@@ -141,6 +141,8 @@ def _write_capture(
     is_whole = source.parts == 2 and findings.lies_beyond_half_band(probed, conjugated)
     info = _info(source, s, segments, notes, is_whole)
     damage = findings.Damage(findings.full_scale(source.dtype, coding, s.adc_bits))
+    if s.are_profiles and source.samples is not None:  # which are 0 where nothing echoes
+        damage.lost_run = source.samples
 
     def pieces() -> Iterator[tuple[int, Parts]]:
         for first, stop in source.pieces():
@@ -349,6 +351,7 @@ EXAMPLES = {
     "adc_rate_hz": "5e6",
     "first_range_m": "0.3",
     "range_step_m": "0.05",
+    "frame_s": "0.1",
 }
 
 
@@ -362,6 +365,8 @@ def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
     if source.samples is not None:
         beat, profiles = ["bandwidth_hz", "adc_rate_hz"], ["first_range_m", "range_step_m"]
         keys += profiles if s.are_profiles else beat
+    if s.frame_pulses is not None:
+        keys += ["frame_s"]
     missing = [key for key in keys if getattr(s, key) is None]
     if not missing:
         return

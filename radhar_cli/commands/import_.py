@@ -20,7 +20,8 @@ def import_(
         typer.Argument(
             metavar="CAPTURE...",
             help="Capture: .bin of a DCA1000 (name only the first), .npy, .npz, .mat, HDF5, .wav, "
-            "text; points: a dump of a TI demo's data port, or its visualizer's JSON.",
+            "text, or a folder of a file a frame; points: a dump of a TI demo's data port, or its "
+            "visualizer's JSON.",
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")],
@@ -61,6 +62,7 @@ def import_(
     overrides = [f"{key}={json.dumps(value)}" for key, value in named.items() if value is not None]
     if missing := [str(path) for path in captures if not path.exists()]:
         raise FolderError(f"{missing[0]}: no such file")
+    captures = [path for capture in captures for path in _files_of(capture)]
     _require_new(out, captures, overwrite)
     if empty := [str(path) for path in captures if path.is_file() and not path.stat().st_size]:
         raise FolderError(f"{empty[0]}: is empty")
@@ -82,6 +84,30 @@ def _require_new(out: Path, captures: Sequence[Path], overwrite: bool) -> None:
     if out.resolve() in {path.resolve() for path in captures}:
         raise FolderError(f"{out}: is the capture itself; -o should name another file")
     refuse_to_replace(out, overwrite, "walk.h5")
+
+
+def _files_of(capture: Path) -> list[Path]:
+    """Files of a capture: itself, or those of a folder in the order of the numbers in their names.
+
+    Raises:
+        FolderError: a folder has no files, or those of several kinds.
+    """
+    import re
+
+    if not capture.is_dir():
+        return [capture]
+    files = [path for path in capture.iterdir() if path.is_file() and path.name[0] != "."]
+    suffixes = sorted({path.suffix.lower() for path in files})
+    if len(suffixes) != 1:
+        raise FolderError(
+            f"{capture}: is a folder of {len(files)} files ({', '.join(suffixes) or 'none'}); "
+            "should hold those of a capture alone, a file a frame, or name the files"
+        )
+
+    def order(path: Path) -> list[tuple[int, str]]:
+        return [(int(p), "") if p.isdigit() else (-1, p) for p in re.split(r"(\d+)", path.name)]
+
+    return sorted(files, key=order)
 
 
 def _built_in_header(name: str) -> Path:

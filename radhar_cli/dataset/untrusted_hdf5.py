@@ -40,6 +40,7 @@ _DAMAGED = (
     ValueError,
     zlib.error,
 )
+DEEPEST_GROUP = 8
 MAX_TEXT = 2**20
 MAX_CHUNK = 2**27  # bytes of a chunk
 _DEFLATE, _SHUFFLE = h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE
@@ -283,19 +284,23 @@ class UntrustedFile(Closing):
                 raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
         return column
 
-    def numeric_names(self) -> list[str]:
-        """List the names of the datasets of numbers at the top of the file, at most 1000."""
-        names = []
+    def numeric_paths(self) -> list[str]:
+        """List the paths of the datasets of numbers, of at most 1000 links and 8 groups deep."""
+        paths, groups, links = list[str](), [("", self._file)], 0
         with _damage_as_folder_error(str(self.path)):
-            for name in islice(self._file, 1000):
-                if self._file.id.links.get_info(name.encode()).type != h5py.h5l.TYPE_HARD:
-                    continue
-                item = self._file[name]
-                if isinstance(item, h5py.Dataset) and item.shape:
-                    with suppress(FolderError):
-                        _numbers(item.dtype, name)
-                        names.append(name)
-        return names
+            for prefix, group in groups:
+                for name in islice(group, 1000 - links):
+                    links += 1
+                    if group.id.links.get_info(name.encode()).type != h5py.h5l.TYPE_HARD:
+                        continue
+                    item, path = group[name], f"{prefix}{name}"
+                    if isinstance(item, h5py.Group) and path.count("/") < DEEPEST_GROUP:
+                        groups.append((f"{path}/", item))
+                    elif isinstance(item, h5py.Dataset) and item.shape:
+                        with suppress(FolderError):
+                            _numbers(item.dtype, path)
+                            paths.append(path)
+        return [path for path in paths if not path.startswith("#")]  # MATLAB's own
 
     def shape(self, name: str) -> list[int]:
         """Shape of a dataset of any type; no values are read."""

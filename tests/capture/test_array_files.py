@@ -166,7 +166,7 @@ WRONG = [
     ("x.npy", cube(), ["axes=[sample, pulse]"], "has 3 axes, [3, 16, 40]"),
     ("x.npy", cube()[None, None], [], "has 5 axes"),
     ("x.npy", cube()[:, :1], [], "sample should have 2 or more"),
-    ("x.npy", cube(), ["frame_pulses=4"], "must be given together"),
+    ("x.npy", cube(), ["frame_pulses=4"], "frame_s is missing"),
     ("x.npy", cube(), ["frame_pulses=4", "frame_s=0.001"], "frame_s = 0.001: should be at least"),
     ("x.npy", cube().astype("U9"), [], "is of the type"),
     ("x.npz", cube(), ["dataset=baet"], "did you mean 'beat'"),

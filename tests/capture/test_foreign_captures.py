@@ -77,7 +77,47 @@ def npy_xz(path):
     path.write_bytes(lzma.compress(path.with_name("x.npy").read_bytes()))
 
 
+def csv_decimal_commas(path):
+    rows = [f"{n / RATE:.4f};{v.real:.5f};{v.imag:.5f}" for n, v in enumerate(tone())]
+    path.write_text("\n".join(["Time [s];I [V];Q [V]", *rows]).replace(".", ","))
+
+
+def csv_units(path):
+    rows = [f"{1e3 * n / RATE:.4f},{v.real:.5f},{v.imag:.5f}" for n, v in enumerate(tone())]
+    path.write_text("\n".join(["Time (ms),I (V),Q (V)", *rows]))
+
+
+def csv_preamble(path):
+    rows = [f"{v.real:.5f},{v.imag:.5f}" for v in tone()]
+    path.write_text("\n".join(["Device: a radar", "Fs = 1000 Hz", "", "I,Q", *rows]))
+
+
+def csv_gaps(path):
+    rows = [f"{n / RATE:.4f},{v.real:.5f},{v.imag:.5f}" for n, v in enumerate(tone())]
+    rows[40], rows[41] = "0.0400,nan,nan", "0.0410,,"
+    path.write_text("\n".join(["time,I,Q", *rows]))
+
+
+def npy_last_axis(path):
+    np.save(path, np.stack([tone().real, tone().imag], -1))
+
+
+def h5_group(path):
+    with h5py.File(path, "w") as file:
+        file["session/entry_0/frame"] = tone()[:, None]
+        file["session/entry_0/temperature"] = np.full(400, 25)
+
+
 SLOW_TIME = {
+    "commas.csv": (csv_decimal_commas, []),
+    "units.csv": (csv_units, []),
+    "preamble.csv": (csv_preamble, ["prf_hz=1000"]),
+    "gaps.csv": (csv_gaps, []),
+    "last.npy": (npy_last_axis, ["prf_hz=1000"]),
+    "group.h5": (
+        h5_group,
+        ["prf_hz=1000", "axes=[pulse, receiver]", "dataset=session/entry_0/frame"],
+    ),
     "iq.wav": (wav, []),
     "named.csv": (csv_named, []),
     "complex.txt": (text_complex, ["prf_hz=1000"]),
@@ -159,6 +199,41 @@ def test_beat_signals_are_not_taken_for_range_bins(tmp_path):
                 "adc_rate_hz=1e6", "prf_hz=1000",
             )  # fmt: skip
             assert info.content.dataset == "beat"
+
+
+def test_magnitudes_have_a_range_time_map_and_no_doppler(tmp_path):
+    values = np.round(3000 * np.abs(profiles())).astype("i2")
+    values[:, 120:] = 0
+    np.save(tmp_path / "a.npy", values)
+    places = ["first_range_m=0.3", "range_step_m=0.05144", "bandwidth_hz=1.5e9"]
+    taken(tmp_path, ["a.npy"], *PROFILE_KEYS, *places)
+    with Recording(tmp_path / "out.h5") as recording:
+        assert not recording.flags.any()  # zeros where nothing echoes are no losses
+    (tmp_path / "c.yaml").write_text(
+        "maps: [rtm]\nprocessing: {clutter: mean, range_sum: gated}\nimage: {size_px: 32}\n"
+    )
+    command = ("process", tmp_path / "out.h5", "--config", tmp_path / "c.yaml", "--no-figures")
+    ok(*command, "-o", tmp_path / "maps")
+    done = radhar(*command, "--maps", "stft", "-o", tmp_path / "doppler")
+    assert done.returncode == 2
+    assert "are magnitudes" in done.stderr
+
+
+def test_a_folder_is_its_files_in_the_order_of_their_numbers(tmp_path):
+    (tmp_path / "frames").mkdir()
+    for index in range(12):
+        np.save(tmp_path / "frames" / f"f{index}.npy", frame(index, 3.0))
+    sets = [part for key in (*FRAME_KEYS, "frame_s=0.1") for part in ("--set", key)]
+    ok("import", tmp_path / "frames", *sets, "-o", tmp_path / "out.h5")
+    with Recording(tmp_path / "out.h5") as recording:
+        assert recording.info.source.files == [f"f{index}.npy" for index in range(12)]
+
+
+def test_arrays_in_groups_are_listed_by_their_paths(tmp_path):
+    with h5py.File(tmp_path / "x.h5", "w") as file:
+        file["a/data"], file["b/data"] = np.ones((4, 9)), np.ones((4, 9))
+    with pytest.raises(CaptureError, match=r"there are a/data \[4, 9\], b/data \[4, 9\]"):
+        taken(tmp_path, ["x.h5"], *CARRIER, "prf_hz=1000")
 
 
 FRAME_KEYS = ["carrier_hz=77e9", "bandwidth_hz=1.28e9", "adc_rate_hz=3e6", "prf_hz=5555.6"]

@@ -26,7 +26,7 @@ from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Bool, Complex
 from radhar_cli.numerics.phasor import unit_phasor
-from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
+from radhar_cli.processing.canceller import NO_CANCELLER, Canceller, MeanRemoval
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.map_kind import RTM, treatment_of
 from radhar_cli.processing.power_map import PowerMap
@@ -160,10 +160,10 @@ def maps_of(
         signal, track = _range_signal(part, recording.info.content, config)
         notes += [] if track else ["nothing moves: no torso was found"]
     _refuse_doppler_of_magnitudes(recording, signal, names)
-    # What is global to a recording is done here; difference and windows cross no gap.
+    # The mean is taken out here; difference and windows cross no gap.
     clutter = config.processing.clutter
     canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, signal.prf)
-    signal = signal.with_samples(without_static(signal.x)) if clutter == "mean" else signal
+    signal = _without_mean(signal, config) if clutter == "mean" else signal
     maps: dict[str, PowerMap] = {}
     rtm = str(RTM)
     if rtm in names:
@@ -179,6 +179,15 @@ def maps_of(
         results = process(signal, config, doppler, canceller=canceller, **inputs)
         maps |= {name: even_columns(results[name]) for name in doppler}
     return Maps({name: maps[name] for name in names}, track, signal.f0, list(dict.fromkeys(notes)))
+
+
+def _without_mean(signal: Signal, config: AnyConfig) -> Signal:
+    """Take the mean out of a recording, of a radar with frames out of each frame, as simulated."""
+    if not isinstance(config.radar, ArrayRadar):
+        return signal.with_samples(without_static(signal.x))
+    if config.radar.header.loops == 1:  # of which the mean of a frame would leave nothing
+        return signal
+    return signal.cancelled(MeanRemoval())
 
 
 def _notes_of_lost_pulses(part: RecordingPart) -> list[str]:

@@ -7,9 +7,10 @@ from typing import Literal
 from radhar_cli.activities.activity import MOVEMENTS, Activity, activity_named
 from radhar_cli.config.checks.signal import problems_of_maps
 from radhar_cli.config.data_set import Config
+from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.maps import FRAME_MAPS, KNOWN_MAPS
 from radhar_cli.config.offered_maps import possible_maps
-from radhar_cli.config.radar import ArrayRadar
+from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.config.reading import ABSENT
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.motion.protocol import Motion, ScattererSubset
@@ -40,7 +41,8 @@ class SceneRequest:
         joint: the only scatterer of the main person to keep, alone in the scene; None keeps all.
         maps: names of maps; None for those of the config, "all" for every map that its radar
             makes, and the cube of a board.
-        raw: whether the raw beat matrix is computed too, static returns included.
+        raw: whether the raw beat matrix is computed too, static returns included. The maps are then
+            made of its samples (`engine.kind: cube`), so that it gives the same ones.
     """
 
     config: Config
@@ -69,8 +71,20 @@ class SceneRequest:
         if self.joint is not None and activity.is_nobody:
             raise ConfigError(f"joint = {self.joint!r}: should be left out; nobody is there")
         seed = self.config.seed if self.seed is None else self.seed
-        config = self.config.model_copy(update={"maps": maps, "seed": seed})
+        config = self.config.model_copy(update={"maps": maps, "seed": seed, "engine": self._engine})
         return scene_of(config, activity, self.index, self.nominal)
+
+    @property
+    def _engine(self) -> EngineConfig:
+        """Engine of the scene, which draws noise as the recording has it if there is to be one.
+
+        The direct engine draws noise after the sum over range, of the same law but not the same.
+        """
+        engine = self.config.engine
+        has_one_noise = isinstance(self.config.radar, ArrayRadar | ImpulseRadar)
+        if not self.raw or has_one_noise:
+            return engine
+        return engine.model_copy(update={"kind": "cube"})
 
     def _chosen_maps(self) -> tuple[str, ...]:
         if self.maps is None:
@@ -99,7 +113,7 @@ class SceneRequest:
             treatments |= {MAP_KINDS[name].treatment for name in names if name in MAP_KINDS}
         signals = {str(one): signal_name(one) for one in TREATMENTS if one in treatments}
         others = ["waveform", "antennas", "wall"] + ["board"] * is_board
-        others += ["accuracy"] if config.engine.kind == "direct" else []
+        others += ["accuracy"] if self._engine.kind == "direct" else []
         others += ["raw_echo"] if self.raw and not is_board else []
         names_of_maps = tuple(name for name in maps if name not in FRAMES)
         ends = config.radar.other_subframes if isinstance(config.radar, ArrayRadar) else ()

@@ -158,7 +158,7 @@ def simulate(  # noqa: PLR0913 - the documented interface, whose options are tho
         joint: keep only this scatterer of the sample's main person.
         maps: which to compute; None for those of the config, "all" for every map that its radar
             makes, and the cube of a board.
-        raw: compute the raw beat matrix too, static returns included.
+        raw: compute the raw beat matrix too, static returns included, and the maps of its samples.
         progress: is told of every product that is made.
 
     Raises:

@@ -9,11 +9,14 @@ import numpy as np
 from radhar_cli.motion.files.gaps import BRIDGED_S
 from radhar_cli.motion.files.joint_frames import LostSection, blend, read_frames
 from radhar_cli.motion.files.joint_order import find_joint_order
+from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.keypoints import Keypoints
 from radhar_cli.motion.files.names import JointMean, JointNames, joint_means
+from radhar_cli.motion.files.plain_names import canonical_name
 from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
 from radhar_cli.motion.files.side_swaps import undo_side_swaps
 from radhar_cli.motion.files.travel import travel_by_feet
+from radhar_cli.motion.files.up_axis import UPRIGHT, find_up_axis
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 
@@ -22,11 +25,10 @@ ANKLE = 0.039  # height of the ankle over the stature
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inches": 0.0254, "CMU's 0.0564 m": 0.0254 / 0.45}
 STATURES = (0.9, 2.3)  # m, of people
 FASTEST = 30.0  # m/s, of any joint
-UPRIGHT = 0.8  # least cosine of the angle to the vertical that tells which way is up
-MOST = 0.5  # least share of the frames in which the head is above the feet
 STAYS = 0.03  # most that hips move in the plane which stay where they are, over the stature
 SLIPS = 0.1  # least speed of a foot that is not at rest, statures per second
 BENT = 0.01  # least distance of knees before the line from hip to ankle, over the stature
+ONLY_NOSE = "of its head it has a nose only: the head is there, some 11 cm ahead of its middle"
 NO_HEAD = "it has no head: taken on the line of the trunk, above the shoulders"
 # Two passes of an order of 2 are 3 dB down, each 1.5 dB, at 0.802 of the corner of one.
 ORDER, TWO_PASSES = 2, (sqrt(2) - 1) ** 0.25
@@ -131,9 +133,7 @@ def make_clip(
             joints, remark = find_joint_order(file)
             remarks += (remark,)
     means = joint_means(file, joints or {})
-    head = means[_HEAD]
-    if head is not None and head.is_of_trunk:
-        remarks += (NO_HEAD,)
+    remarks += _head_remarks(file, joints, means[_HEAD])
     has_hip_joints = None not in means
     chosen = [mean or means[_HIP] for mean in means]
     blends = [mean for mean in chosen if mean is not None]
@@ -146,7 +146,9 @@ def make_clip(
     units = float(np.median(legs)) / LEG  # stature in units of the file
     stature = _stature(units, unit, file.unit, file.where)
     _refuse_jumps(file, p, frames.rate, stature / units)
-    up = up or _find_up_axis(file, blends, p)
+    if up is None:
+        up, doubt = _find_up_axis(file, blends, p, frames.rate, units)
+        remarks += (doubt,) if doubt else ()
     p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)
     p = _smooth(p, frames.rate, low_pass) / units
     if travel == "feet":
@@ -169,6 +171,20 @@ def make_clip(
         _marches(p, frames.rate),
         remarks,
     )
+
+
+def _head_remarks(
+    file: MotionRecording, joints: JointNames | None, head: JointMean | None
+) -> tuple[str, ...]:
+    """What to say of a head that the trunk tells, or that is a nose alone."""
+    if head is None:
+        return ()
+    if head.is_of_trunk:
+        return (NO_HEAD,)
+    names = JOINT_SETS[joints].names if isinstance(joints, str) else file.names
+    is_one = isinstance(file, Keypoints) and len(head.numbers) == 1
+    is_nose = is_one and canonical_name(names[head.numbers[0]].split("|")[0]) == "nose"
+    return (ONLY_NOSE,) if is_nose else ()
 
 
 def _marches(p: Float, rate: float) -> bool:
@@ -243,36 +259,30 @@ def _refuse_jumps(file: MotionRecording, p: Float, rate: float, metres: float) -
         )
 
 
-def _find_up_axis(file: MotionRecording, blends: list[JointMean], p: Float) -> str:
-    """Find the axis that points up: heads are above feet in most frames, or else in the rest pose.
+def _find_up_axis(
+    file: MotionRecording, blends: list[JointMean], p: Float, rate: float, units: float
+) -> tuple[str, str]:
+    """Find the axis that points up, and what to say where it is only assumed.
 
-    The rest pose comes second, for it need not stand: in games its root is turned by every frame.
+    Args:
+        file: Recording, which may have a rest pose.
+        blends: Means of its joints that ours are.
+        p: Positions [frames, 15, 3] in its unit.
+        rate: Frames per second.
+        units: Stature in its unit.
     """
-    from_frames = _axis_along(p[:, _HEAD] - p[:, _ANKLES].mean(axis=1))
-    if from_frames is not None:
-        return from_frames
+    rest = None
     if file.rest is not None:
-        numbers = [*range(len(file.names))]
-        rest = blend(file.rest[None], numbers, blends)[0]
-        from_rest = _axis_along((rest[_HEAD] - rest[_ANKLES].mean(axis=0))[None])
-        if from_rest is not None:
-            return from_rest
-    raise motion_file_error(
-        file.where,
-        "does not tell which axis points up, for nobody stands in it; up: y of its class would say "
-        "so (--up y)",
-    )
-
-
-def _axis_along(vectors: Float) -> str | None:
-    """Axis along which most vectors [frames, 3] lie, with its sign, if there is one."""
-    sizes = np.linalg.norm(vectors, axis=1)
-    for axis, name in enumerate("xyz"):
-        for sign in (1, -1):
-            along = sign * vectors[:, axis] > UPRIGHT * sizes
-            if along.mean() > MOST:
-                return ("-" if sign < 0 else "") + name
-    return None
+        rest = blend(file.rest[None], [*range(len(file.names))], blends)[0]
+    up = find_up_axis(p, rate, units, rest)
+    if up.name is None:
+        reason = up.remark or "for nobody stands in it"
+        raise motion_file_error(
+            file.where,
+            f"does not tell which axis points up, {reason}; up: y of its class would say so "
+            "(--up y)",
+        )
+    return up.name, up.remark
 
 
 def _is_mirrored(p: Float) -> bool:

@@ -148,6 +148,7 @@ def test_a_head_is_made_of_what_is_seen(lost: list[int], until: int | None, tmp_
     assert largest_error(clip) < (0.12 if len(lost) > 1 else 0.02)  # a nose is 11 cm ahead
     assert not clip.lost
     assert any("no head" in remark for remark in clip.remarks) == (len(lost) == len(FACE))
+    assert any("a nose only" in remark for remark in clip.remarks) == (lost == FACE[1:])
 
 
 def test_a_pose_without_a_head_has_one_above_the_shoulders(tmp_path: Path) -> None:

@@ -1,0 +1,187 @@
+"""Which axis of a file points up: somebody stands along it, on a floor, and falls down along it."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.numerics.arrays import Bool, Float
+
+UPRIGHT = 0.8  # least cosine of the angle to the vertical that tells which signed is up
+MAJORITY = 0.5  # least share of the frames in which the head is above the feet
+LEAST_SHARE = 0.03  # least share of the frames in which an axis is that of a body at all
+FLOOR = 0.25  # most that the lowest joint goes up and down who stays on a floor, over the stature
+CLIMB = 0.5  # least path along the body's own axis that makes somebody a crawler, statures
+FALL = 1.2  # least speed of a head that falls, statures per second; who gets up is slower
+IN_PLACE = 0.3  # most that hips go across the body of who takes no steps, over the stature
+NO_SQUAT = 0.08  # most that hips go along the body of who neither squats nor jumps, the same
+LEGS = 0.5  # least cosine of hips over feet to an axis that is up: who bends down lies in none
+BENT_LEG = 0.5  # most cosine of thighs to the line from feet to head of who sits or crawls
+USUAL = ("z", "y", "-y")  # the vertical of nearly all files
+
+_HEAD, _HIP = JOINTS.index("head"), JOINTS.index("hip")
+_ANKLES = [JOINTS.index(f"{s}_ankle") for s in ("right", "left")]
+_KNEES = [JOINTS.index(f"{s}_knee") for s in ("right", "left")]
+_HIP_JOINTS = [len(JOINTS), len(JOINTS) + 1]
+_AXES = [(sign, axis) for axis in range(3) for sign in (1, -1)]
+
+
+class UpAxis(NamedTuple):
+    """Axis that points up, if it is clear, and what there is to say of it."""
+
+    name: str | None  # "z", "-y", ...
+    remark: str = ""  # where it is assumed
+
+
+def find_up_axis(p: Float, rate: float, stature: float, rest: Float | None = None) -> UpAxis:
+    """Find the axis that points up of the frames of a person.
+
+    Of the axes along which the body is ever straight, those go that have no floor while another
+    one has, and those along which somebody seems to get up where another says that he falls. The
+    rest pose comes last, for it need not stand: in games its root is turned by every frame.
+
+    Args:
+        p: Positions [frames, 15, 3], the thirteen joints and the hip joints.
+        rate: Frames per second.
+        stature: Of the person in the unit of the positions.
+        rest: Positions [15, 3] of the rest pose, or None.
+    """
+    p = p / stature
+    feet = p[:, _ANKLES].mean(axis=1)
+    body, legs = _directions(p[:, _HEAD] - feet), _directions(p[:, _HIP] - feet)
+    shares = {
+        _name(*signed): float(
+            ((body @ _vector(*signed) > UPRIGHT) & (legs @ _vector(*signed) > LEGS)).mean()
+        )
+        for signed in _AXES
+    }
+    axes = [signed for signed in _AXES if shares[_name(*signed)] >= LEAST_SHARE]
+    standing = [signed for signed in axes if not _crawls_along(p, signed)]
+    of_rest = _axis_of_rest(rest)
+    clear = [signed for signed in standing if shares[_name(*signed)] > MAJORITY]
+    if len(axes) == 1 and clear:
+        name = _name(*clear[0])
+        doubt = "" if name == of_rest else _doubt(p, body, clear[0])
+        if doubt and of_rest:
+            return UpAxis(None, _name_choice([name, f"{of_rest} in its rest pose"]))
+        return UpAxis(name, doubt)
+    if not standing or (len(standing) == 1 and not (clear or _has_floor(p, standing[0]))):
+        return UpAxis(of_rest)
+    possible = _drop_fallen(p, body, rate, _keep_floors(p, standing))
+    usual = [signed for signed in possible if _name(*signed) in USUAL] or possible
+    if not usual or of_rest in {_name(*signed) for signed in usual}:
+        return UpAxis(of_rest)
+    if len(usual) != 1:
+        return UpAxis(None, _name_choice([_name(*signed) for signed in usual]))
+    name = _name(*usual[0])
+    others = [other for other in shares if other != name and shares[other] >= LEAST_SHARE]
+    if not others or shares[name] > 1 - LEAST_SHARE:
+        return UpAxis(name)
+    along = " and ".join(others)
+    return UpAxis(
+        name,
+        f"somebody lies along {along} for {max(shares[other] for other in others):.0%} of it if "
+        f"{name} points up, as is assumed; up: {others[0]} of its class (--up {others[0]}) would "
+        "say otherwise",
+    )
+
+
+def _name_choice(names: Sequence[str]) -> str:
+    """What to say where several axes may point up."""
+    return f"for somebody is upright along {' and '.join(names)}" if names else ""
+
+
+def _name(sign: int, axis: int) -> str:
+    return ("-" if sign < 0 else "") + "xyz"[axis]
+
+
+def _vector(sign: int, axis: int) -> Float:
+    vector: Float = sign * np.eye(3)[axis]
+    return vector
+
+
+def _directions(vectors: Float) -> Float:
+    """Unit vectors of vectors [..., 3]."""
+    unit: Float = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
+    return unit
+
+
+def _axis_of_rest(rest: Float | None) -> str | None:
+    """Axis along which the rest pose [15, 3] stands."""
+    if rest is None:
+        return None
+    body = _directions(rest[_HEAD] - rest[_ANKLES].mean(axis=0))
+    return next((_name(*signed) for signed in _AXES if body @ _vector(*signed) > UPRIGHT), None)
+
+
+def _floor_range(p: Float, axis: int, sign: int) -> float:
+    """How far the lowest joint goes up and down in nearly all frames, over the stature."""
+    low, high = np.percentile((sign * p[..., axis]).min(axis=1), [3, 97])
+    return float(high - low)
+
+
+def _has_floor(p: Float, signed: tuple[int, int]) -> bool:
+    return _floor_range(p, signed[1], signed[0]) < FLOOR
+
+
+def _keep_floors(p: Float, axes: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Axes along which the lowest joint stays; all of them where it stays along none."""
+    return [signed for signed in axes if _has_floor(p, signed)] or [*axes]
+
+
+def _crawls_along(p: Float, signed: tuple[int, int]) -> bool:
+    """Whether the hips go along the body's own axis and nowhere else: on all fours, or a ladder."""
+    axes = np.ptp(p[:, _HIP], axis=0)
+    others = np.delete(axes, signed[1]).max()
+    return bool(axes[signed[1]] > max(CLIMB, 2 * others)) and not _has_floor(p, signed)
+
+
+def _drop_fallen(
+    p: Float, body: Float, rate: float, axes: Sequence[tuple[int, int]]
+) -> list[tuple[int, int]]:
+    """Leave out axes along which a head would shoot up from a body that lies: it falls instead."""
+    velocity = np.diff(p[:, _HEAD], axis=0) * rate
+    possible = []
+    for signed in axes:
+        along = body @ _vector(*signed) > UPRIGHT
+        is_fall = any(
+            _falls(velocity @ _vector(*other), body @ _vector(*other) > UPRIGHT, along, rate)
+            for other in axes
+            if other != signed
+        )
+        if not is_fall:
+            possible.append(signed)
+    return possible
+
+
+def _falls(rise: Float, upright: Bool, lying: Bool, rate: float) -> bool:
+    """Whether a head comes down fast within a second before the body begins to lie.
+
+    Args:
+        rise: Speed of the head upwards [frames - 1], statures per second.
+        upright: Frames in which the body stands.
+        lying: Frames in which it lies.
+        rate: Frames per second.
+    """
+    second = max(1, round(rate))
+    for start in np.flatnonzero(np.diff(lying.astype(int)) > 0) + 1:
+        before = slice(max(0, start - second), start)
+        after = slice(max(0, start - second), start + second)
+        if upright[before].any() and rise[after].min(initial=0) < -FALL:
+            return True
+    return False
+
+
+def _doubt(p: Float, body: Float, signed: tuple[int, int]) -> str:
+    """What to say where a body is straight along one axis only, but who lies might be so, too."""
+    name = _name(*signed)
+    say = f"{name} is assumed to point up; up: AXIS of its class (--up AXIS) says otherwise"
+    thighs = _directions(p[:, _KNEES] - p[:, _HIP_JOINTS]).mean(axis=1)
+    across = np.abs((thighs * body).sum(axis=1)) < BENT_LEG
+    if across.mean() > MAJORITY:
+        return f"somebody sits, or is on all fours, for most of it: {say}"
+    axes = np.ptp(p[:, _HIP], axis=0)
+    if axes[signed[1]] < NO_SQUAT and np.delete(axes, signed[1]).max() < IN_PLACE:
+        return f"nobody steps away, squats or jumps, and who lies straight may look so: {say}"
+    return ""

@@ -8,7 +8,7 @@ import numpy as np
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Bool, Float
 
-UPRIGHT = 0.8  # least cosine of the angle to the vertical that tells which signed is up
+UPRIGHT = 0.8  # least cosine of the angle to the vertical that tells which way is up
 MAJORITY = 0.5  # least share of the frames in which the head is above the feet
 LEAST_SHARE = 0.03  # least share of the frames in which an axis is that of a body at all
 FLOOR = 0.25  # most that the lowest joint goes up and down who stays on a floor, over the stature

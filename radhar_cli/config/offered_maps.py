@@ -1,8 +1,10 @@
 """Which maps the radar of a config makes, and why not the others."""
 
-from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS, KNOWN_MAPS
+from radhar_cli.config.checks.smallest_waveform import fewest_windows
+from radhar_cli.config.maps import ANGLE_TIME_MAPS, CADENCE_MAPS, FRAME_MAPS, KNOWN_MAPS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.request import AnyRequest, Request
+from radhar_cli.processing.cadence import MIN_COLUMNS
 from radhar_cli.processing.map_kind import kind_of, treatment_of
 
 
@@ -30,7 +32,21 @@ def why_no_map(config: AnyRequest, name: str) -> str | None:
     kind = kind_of(name)
     if kind is None:  # of a user's own
         return None
-    return radar.why_no_map(kind, _gating(config))
+    why = radar.why_no_map(kind, _gating(config))
+    if why is None and name in CADENCE_MAPS and isinstance(config, Request):
+        return _why_no_cadence(config)
+    return why
+
+
+def _why_no_cadence(config: Request) -> str | None:
+    """Why the recordings of a config are too short for cadences; None if they are not."""
+    windows = fewest_windows(config)
+    if windows >= MIN_COLUMNS:
+        return None
+    return (
+        f"a cadence needs {MIN_COLUMNS} windows of a recording, which has {windows} (duration_s, "
+        "processing.window_s, processing.overlap_fraction)"
+    )
 
 
 def _gating(config: AnyRequest) -> str | None:

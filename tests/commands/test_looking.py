@@ -9,7 +9,7 @@ import numpy as np
 from helpers.command_line import ok, radhar
 from helpers.small import small_config
 
-from radhar_cli.config.maps import MAP_NAMES
+from radhar_cli.config.maps import CADENCE_MAPS, MAP_NAMES
 
 
 def test_simulate_writes_everything(tmp_path):
@@ -148,7 +148,7 @@ def test_simulate_makes_the_maps_of_the_config_or_all(tmp_path):
     scene = ("simulate", small_config(tmp_path), "-a", "S8", "--no-figures")
     for name, more, maps in (
         ("own", (), {"rtm", "stft", "fsst_compensated"}),
-        ("all", ("--maps", "all"), set(MAP_NAMES)),
+        ("all", ("--maps", "all"), {*MAP_NAMES, *CADENCE_MAPS}),
         ("one", ("--maps", "fsst"), {"fsst"}),
     ):
         ok(*scene, *more, "-o", tmp_path / name)

@@ -19,13 +19,13 @@ duration_s: 1.5
 radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 200}
 motion: {range_m: 3, angle_deg: 0}
 subject: {height_m: 1.75, chest_m: 0, heart_m: 0}
-classes: {wave: {files: [theirs.npz], joints: {head: Kopf}}}
+classes: {wave: {files: [theirs.npz], joints: {right_knee: Knie}}}
 """
 
 
 def test_a_motion_is_exported_and_read_back(tmp_path):
     path, bvh = tmp_path / "x.yaml", tmp_path / "kick.bvh"
-    names = [n if n != "head" else "Kopf" for n in WANTED]
+    names = [n if n != "right_knee" else "Knie" for n in WANTED]
     write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
     path.write_text(SMALL)
     common = [path, "--activity", "kicking", "--nominal"]
@@ -64,13 +64,13 @@ def test_our_own_motion_of_the_demo_can_be_simulated(tmp_path, activity):
 
 def test_simulate_motion_uses_the_joint_names_of_a_class(tmp_path):
     path = tmp_path / "x.yaml"
-    names = [n if n != "head" else "Kopf" for n in WANTED]
+    names = [n if n != "right_knee" else "Knie" for n in WANTED]
     write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
     path.write_text(SMALL)
     look = ["simulate", path, "--motion", tmp_path / "theirs.npz", "--no-figures", "--maps", "stft"]
     done = radhar(*look, "-o", tmp_path / "a")
     assert done.returncode == 2
-    assert "has no joint that is head by its name" in done.stderr
+    assert "no joint that is right_knee by its name" in done.stderr
     done = ok(*look, "-o", tmp_path / "a", "--activity", "wave")
 
 

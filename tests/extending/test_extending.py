@@ -22,6 +22,7 @@ from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.receiver import impairments_of
 from radhar_cli.config import Config, load_config
+from radhar_cli.config.maps import CADENCE_MAPS
 from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.receiver import ToneConfig
 from radhar_cli.dataset.build import build
@@ -261,7 +262,8 @@ def test_an_impairment_between_echo_and_processing(engine: str) -> None:
 @pytest.mark.parametrize("processing", [{}, {"range_sum": "gated", "gate_m": (0.0, 3.0)}])
 def test_an_impairment_is_in_every_map_of_every_engine(processing: dict[str, object]) -> None:
     scenes = [with_engine(kind, clutter="none", **processing) for kind in ("direct", "cube")]
-    for name in possible_maps(scenes[0].config):
+    steady = set(possible_maps(scenes[0].config)) - set(CADENCE_MAPS)  # which lose their mean
+    for name in sorted(steady):
         direct, cube = (
             record(scene, [name], [receiver_with(DcOffset())])[name].power.sum() for scene in scenes
         )

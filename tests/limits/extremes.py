@@ -314,7 +314,7 @@ EXTREMES = (
     Extreme("board", {"radar.cfg": ONE_CHANNEL, "maps": ["range_azimuth"]}, "refused", "maps = … should be some of rtm, stft, stft_denoised,"),
     Extreme("board", {"radar.cfg": ONE_LOOP}),
     Extreme("board", {"radar.cfg": ONE_LOOP, "processing.clutter": "none"}),
-    Extreme("board", {"radar.cfg": TWO_LOOPS}, "refused", "maps = … should be some of rtm, range_azimuth, range_"),
+    Extreme("board", {"radar.cfg": TWO_LOOPS}, "refused", "maps = … should be some of rtm, azimuth_time, "),
     Extreme("board", {"duration_s": 0.05}),
     Extreme("board", {"duration_s": 0.05, "maps": ["stft", "range_doppler"]}, "warned", "cloud has no effect"),
     Extreme("board", {"duration_s": 0.04}, "refused", "duration_s = … should hold a frame of 0.05 s"),

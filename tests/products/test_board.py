@@ -299,7 +299,7 @@ def fewer(path: Path, loops: int, receivers: int = 15) -> None:
 def test_what_frames_of_few_loops_show_is_made_and_the_rest_refused(path: Path, loops: int) -> None:
     fewer(path, loops)
     still = "processing.clutter=none"
-    possible = {"rtm", "range_azimuth", "range_elevation", "cube"}
+    possible = {"rtm", "range_azimuth", "range_elevation", "cube", "azimuth_time", "elevation_time"}
     if loops >= 4 or loops == 1:
         possible |= {"range_doppler", "doppler_azimuth", "doppler_elevation", "points"}
     possible |= {"stft", "stft_compensated"} if loops >= 8 else set()

@@ -3,6 +3,7 @@
 from radhar_cli.config.number import support
 from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.config.request import AnyRequest
+from radhar_cli.processing.frames import Frames
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import Waveform
 
@@ -29,6 +30,18 @@ def window_pulses(c: AnyRequest, w: Waveform) -> int:
     """Pulses of the STFT's window of a waveform, at most those of a board's frame."""
     length = c.processing.window_pulses(w.duration, w.prf, w.f0)
     return min(length, c.radar.header.loops) if isinstance(c.radar, ArrayRadar) else length
+
+
+def fewest_windows(c: AnyRequest) -> int:
+    """Fewest windows of a Doppler-time map of a config: of radars that pause, one a frame."""
+    w = waveform_at(c)
+    if isinstance(c.radar, ArrayRadar) and c.radar.frames_apart:
+        header = c.radar.header
+        fitting = int(w.duration / header.period_s + 1e-9)
+        return min(header.frames, fitting) if header.frames else fitting
+    windows = Frames.of(window_pulses(c, w), c.processing.overlap_fraction)
+    pulses = w.n_pulses - (c.processing.clutter == "difference")
+    return max(0, (pulses - windows.length) // windows.hop + 1)
 
 
 def prf_in_words(c: AnyRequest, w: Waveform) -> str:

@@ -133,6 +133,7 @@ SITUATIONS: dict[str, dict[str, Any]] = {
     "room.box_m.": {"room.faces": BACK_AND_MORE, "room.box_m": {"x": [-1, 6]}},
     "image.cfar.": SMALL_CFAR,
     "image.kind": {"image.cfar": SMALL_CFAR["image.cfar"]},
+    "image.cadence_limit_hz": {"duration_s": 1.0, "maps": ["stft_cadence"]},
     "output.column_labels": {"maps": ["stft"]},
     "output.power": {"maps": ["stft"]},
     "processing.range_sum": {"maps": ["stft"]},

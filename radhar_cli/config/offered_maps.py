@@ -4,8 +4,7 @@ from radhar_cli.config.checks.smallest_waveform import fewest_windows
 from radhar_cli.config.maps import ANGLE_TIME_MAPS, CADENCE_MAPS, FRAME_MAPS, KNOWN_MAPS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.request import AnyRequest, Request
-from radhar_cli.processing.cadence import MIN_COLUMNS
-from radhar_cli.processing.map_kind import kind_of, treatment_of
+from radhar_cli.processing.map_kind import MIN_CADENCE_WINDOWS, kind_of, treatment_of
 
 
 def possible_maps(config: Request) -> tuple[str, ...]:
@@ -41,11 +40,11 @@ def why_no_map(config: AnyRequest, name: str) -> str | None:
 def _why_no_cadence(config: Request) -> str | None:
     """Why the recordings of a config are too short for cadences; None if they are not."""
     windows = fewest_windows(config)
-    if windows >= MIN_COLUMNS:
+    if windows >= MIN_CADENCE_WINDOWS:
         return None
     return (
-        f"a cadence needs {MIN_COLUMNS} windows of a recording, which has {windows} (duration_s, "
-        "processing.window_s, processing.overlap_fraction)"
+        f"a cadence needs {MIN_CADENCE_WINDOWS} windows of a recording, which has {windows} "
+        "(duration_s, processing.window_s, processing.overlap_fraction)"
     )
 
 

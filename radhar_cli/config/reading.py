@@ -277,6 +277,17 @@ def load_sections(path: Path, overrides: Iterable[str | Override] = ()) -> dict[
     return _load_radars(path, overrides, Config, lambda config, _: config)
 
 
+def _refuse_other_radar(document: Mapping[str, Any], override: Override) -> None:
+    """Refuse an override of a key of one of `radars` that the config does not have."""
+    first, *rest = override.key.split(".")
+    names = radar_names(document)
+    if first == RADARS_KEY and len(rest) > 1 and names and rest[0] not in names:
+        raise ConfigError(
+            f"{override.option}: {rest[0]} is none of the config's radars; "
+            f"{did_you_mean(rest[0], names, 'it has ' + ', '.join(names))}"
+        )
+
+
 def _read_values(
     path: Path | None, overrides: Iterable[str | Override]
 ) -> tuple[dict[str, Any], Places, Options]:
@@ -291,6 +302,7 @@ def _read_values(
     for override in parsed:
         if override.key == BASE:
             continue
+        _refuse_other_radar(document, override)
         _apply(document, override)
         places = {k: v for k, v in places.items() if not _within(k, override.key)}
         if _is_cfg(names := override.key.split(".")):

@@ -9,10 +9,10 @@ import numpy as np
 import scipy.fft
 
 from radhar_cli.errors import RadharError
+from radhar_cli.processing.map_kind import MIN_CADENCE_WINDOWS
 from radhar_cli.processing.power_map import Axis, PowerMap
 
 PADDING = 4  # cadences a cell of the unpadded transform, so that peaks are seen where they are
-MIN_COLUMNS = 8  # of a Doppler-time map
 BLOCK_COEFFICIENTS = 2**20
 
 
@@ -31,12 +31,12 @@ def cadence_map(doppler_time: PowerMap, highest_hz: float) -> PowerMap:
         The diagram [Doppler, cadence] from cadence 0 on.
 
     Raises:
-        RadharError: the map has fewer than MIN_COLUMNS columns.
+        RadharError: the map has fewer than MIN_CADENCE_WINDOWS columns.
     """
     power, times = doppler_time.power, doppler_time.columns.values
-    if times.size < MIN_COLUMNS:
+    if times.size < MIN_CADENCE_WINDOWS:
         raise RadharError(
-            f"a cadence needs a Doppler-time map of at least {MIN_COLUMNS} windows; it has "
+            f"a cadence needs a Doppler-time map of at least {MIN_CADENCE_WINDOWS} windows; it has "
             f"{times.size} (duration_s, processing.window_s, processing.overlap_fraction)"
         )
     step = float(np.median(np.diff(times)))

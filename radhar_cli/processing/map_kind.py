@@ -86,6 +86,7 @@ DOPPLER_TIME_KINDS = tuple(
 # {name: kind} of every map of a signal, in the order of data sets.
 MAP_KINDS = {str(kind): kind for kind in (RTM, *DOPPLER_TIME_KINDS)}
 
+MIN_CADENCE_WINDOWS = 8  # of a recording, for its cadences
 # {name: Doppler-time map that it shows the cadences of} of every cadence-velocity diagram.
 CADENCE_KINDS = {f"{kind}_cadence": kind for kind in DOPPLER_TIME_KINDS}
 

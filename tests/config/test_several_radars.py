@@ -134,6 +134,14 @@ def test_mistake_of_an_override_names_it(tmp_path):
         load_radars(path, ["radars.b.prf_hz=x"])
 
 
+def test_an_override_makes_no_radar_of_a_mistyped_name(tmp_path):
+    path = file_of(tmp_path, "radars: {front: {}, side: {}}")
+    with pytest.raises(ConfigError, match=r"^--set radars\.sid\.prf_hz: sid is none of .* 'side'"):
+        load_radars(path, ["radars.sid.prf_hz=500"])
+    with pytest.raises(ConfigError, match="it has front, side$"):
+        load_radars(path, ["radars.x4.prf_hz=500"])
+
+
 @pytest.mark.parametrize("angle_deg", [0, 45, 90, -120])
 @pytest.mark.parametrize(
     "radar", ["{beam: {pan_deg: 0}}", "{waveform: cw}", BOARD, "{frame: {chirps: 64}}"]

@@ -138,7 +138,7 @@ def test_an_override_makes_no_radar_of_a_mistyped_name(tmp_path):
     path = file_of(tmp_path, "radars: {front: {}, side: {}}")
     with pytest.raises(ConfigError, match=r"^--set radars\.sid\.prf_hz: sid is none of .* 'side'"):
         load_radars(path, ["radars.sid.prf_hz=500"])
-    with pytest.raises(ConfigError, match="it has front, side$"):
+    with pytest.raises(ConfigError, match=r"it has front, side$"):
         load_radars(path, ["radars.x4.prf_hz=500"])
 
 

@@ -98,15 +98,16 @@ def draw_aspect(above: Any, below: Any, simulation: Simulation, name: str) -> No
 
 
 def draw_board(axis: Any, simulation: Simulation, name: str) -> None:
-    """Draw the mean frame of a board's range-angle map, with the true joints at its middle."""
+    """Draw the strongest frame of a board's range-angle map, with the true joints at its time."""
     key = f"range_{name}"
     maps = simulation.frames[key].shown
-    power = maps.power.mean(axis=0)
+    strongest = int(maps.power.sum(axis=(1, 2)).argmax())
+    power = maps.power[strongest]
     cells = maps.columns.values, maps.rows.values, decibels(power)
     axis.pcolormesh(*cells, vmin=-30, vmax=0, shading="nearest")
     board = simulation.board
     assert board is not None
-    middle = len(simulation.truth.time) // 2
+    middle = int(np.abs(simulation.truth.time - maps.times[strongest]).argmin())
     offset = simulation.truth.positions[middle] - np.array(board.position)
     x, y, z = offset.T
     angle = np.degrees(np.arctan2(y, x) if name == "azimuth" else np.arctan2(z, np.hypot(x, y)))
@@ -114,7 +115,7 @@ def draw_board(axis: Any, simulation: Simulation, name: str) -> None:
     unit = maps.columns.unit
     axis.plot(angle if unit.startswith("deg") else np.radians(angle), distance, "w.", ms=4)
     axis.set(
-        title=f"{name}: joints are dots",
+        title=f"{name}, {maps.times[strongest]:.2f} s: joints are dots",
         xlabel=f"{maps.columns.name} ({unit})",
         ylabel=f"{maps.rows.name} ({maps.rows.unit})",
         ylim=(1, 4.5),

@@ -6,7 +6,8 @@ import pytest
 from radhar_cli.config.data_set import Config
 from radhar_cli.errors import RadharError
 
-ELSEWHERE = {"recordings"}  # of `radhar generate --recordings`
+# Of `radhar generate --recordings`, and of several radars, which a config of one has not.
+ELSEWHERE = {"recordings", "radars", "other_radars"}
 
 
 def test_every_key_acts_or_says_that_it_does_not() -> None:

@@ -10,12 +10,15 @@ from radhar_cli.processing.map_kind import MIN_CADENCE_WINDOWS, kind_of, treatme
 def possible_maps(config: Request) -> tuple[str, ...]:
     """The maps that the radar of a config makes, and the cube of a board.
 
-    Without those of a board whose frames are shorter than the filter of the denoised maps.
+    Without those of a board whose frames are shorter than the filter of the denoised maps, and
+    without cadences where recordings have too few windows for them.
     """
     radar = config.radar
     names = [*KNOWN_MAPS, "cube"]
     if isinstance(radar, ArrayRadar) and config.processing.savgol.frame > radar.header.loops:
         names = [name for name in names if not treatment_of(name).denoised]
+    if fewest_windows(config) < MIN_CADENCE_WINDOWS:
+        names = [name for name in names if name not in CADENCE_MAPS]
     return tuple(name for name in names if why_no_map(config, name) is None)
 
 
@@ -31,21 +34,7 @@ def why_no_map(config: AnyRequest, name: str) -> str | None:
     kind = kind_of(name)
     if kind is None:  # of a user's own
         return None
-    why = radar.why_no_map(kind, _gating(config))
-    if why is None and name in CADENCE_MAPS and isinstance(config, Request):
-        return _why_no_cadence(config)
-    return why
-
-
-def _why_no_cadence(config: Request) -> str | None:
-    """Why the recordings of a config are too short for cadences; None if they are not."""
-    windows = fewest_windows(config)
-    if windows >= MIN_CADENCE_WINDOWS:
-        return None
-    return (
-        f"a cadence needs {MIN_CADENCE_WINDOWS} windows of a recording, which has {windows} "
-        "(duration_s, processing.window_s, processing.overlap_fraction)"
-    )
+    return radar.why_no_map(kind, _gating(config))
 
 
 def _gating(config: AnyRequest) -> str | None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.layout import column_axis, row_axis
 from radhar_cli.errors import ConfigError, RadharError
-from radhar_cli.processing.cadence import MIN_COLUMNS, cadence_map
+from radhar_cli.processing.cadence import MIN_CADENCE_WINDOWS, cadence_map
 from radhar_cli.processing.doppler_power import compute_stft_power
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.power_map import Axis, PowerMap
@@ -72,9 +72,11 @@ def test_the_diagram_ends_where_it_is_told_or_at_half_the_windows(
     assert cadences[-1] == pytest.approx(1 / 20 if end is None else end, abs=1 / 20)
 
 
-@pytest.mark.parametrize("count", [1, 2, MIN_COLUMNS - 1])
+@pytest.mark.parametrize("count", [1, 2, MIN_CADENCE_WINDOWS - 1])
 def test_too_few_windows_are_refused(count: int) -> None:
-    with pytest.raises(RadharError, match=f"at least {MIN_COLUMNS} windows; it has {count}"):
+    with pytest.raises(
+        RadharError, match=f"at least {MIN_CADENCE_WINDOWS} windows; it has {count}"
+    ):
         cadence_map(doppler_time(np.ones((2, count)), np.arange(count) / RATE), 8.0)
 
 

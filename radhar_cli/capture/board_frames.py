@@ -87,7 +87,7 @@ def _starts_of_frames(segments: PulseTimes, loops: int, frames_apart: bool) -> l
     Args:
         segments: stretches of pulses, each a frame if there are pauses between frames.
         loops: number of pulses of a frame.
-        frames_apart: whether there are.
+        frames_apart: whether the radar pauses between frames.
     """
     if frames_apart:
         starts: list[int] = segments.first[segments.lengths == loops].tolist()

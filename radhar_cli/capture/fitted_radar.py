@@ -123,12 +123,12 @@ def differing_key(section: Any, other: Any, key: str = "radar") -> str | None:
             same = abs(section - other) <= TOLERANCE * abs(other)
         if same:
             return None
-        return f"{key} = {_shown(section)}: should be {_shown(other)}"
+        return f"{key} = {_as_text(section)}: should be {_as_text(other)}"
     return next(filter(None, (differing_key(*pair) for pair in pairs)), None)
 
 
-def _shown(value: Any) -> str:
-    """A plain value as a message shows it."""
+def _as_text(value: Any) -> str:
+    """Write a plain value as a message shows it: 10 digits of a number, 60 characters at most."""
     return f"{value:.10g}" if isinstance(value, float) else str(value)[:60]
 
 

@@ -138,15 +138,15 @@ def load_config(
         return next(iter(configs.values()))
     _, places, options = _read_values(Path(path), overrides)
     where = _locate(str(path), RADARS_KEY, places, options)
-    raise ConfigError(f"{where}: {one_radar_needed([*configs])}")
+    raise ConfigError(f"{where}: {ask_for_one_radar([*configs])}")
 
 
-def one_radar_needed(names: Iterable[str]) -> str:
+def ask_for_one_radar(names: Iterable[str]) -> str:
     """Say that several radars are given where one is needed, and how one is chosen."""
-    first, *_ = listed = [*names]
+    *earlier, last = names
     return (
-        f"has several radars, {' and '.join((', '.join(listed[:-1]), listed[-1]))}; should be one "
-        f"here: --set {NAME_KEY}={first}"
+        f"has several radars, {', '.join(earlier)} and {last}; should be one here: "
+        f"--set {NAME_KEY}={earlier[0]}"
     )
 
 
@@ -332,7 +332,7 @@ def read_values(path: Path, overrides: Iterable[str | Override] = ()) -> dict[st
     chosen = document.get(NAME_KEY, names[0] if len(names) == 1 else None)
     if chosen is None:
         where = _locate(str(path), RADARS_KEY, places, options)
-        raise ConfigError(f"{where}: {one_radar_needed(names)}")
+        raise ConfigError(f"{where}: {ask_for_one_radar(names)}")
     return documents[chosen].values
 
 

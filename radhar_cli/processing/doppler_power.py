@@ -51,7 +51,7 @@ class DopplerPower:
         """Outer edges (from, to of the time, s; from, to of the frequency, Hz)."""
         return (*self.time.edges, *self.frequency.edges)
 
-    def held(self) -> "DopplerPower":
+    def hold_power(self) -> "DopplerPower":
         """Compute the power here and now, and hold it for all that is made of it."""
         blocks = [*self.compute()]
         return replace(self, compute=partial(iter, blocks))

@@ -246,7 +246,7 @@ def hold_power(
         gate: range bins that each window adds up; None for a signal of one row.
         compute: computes the power.
     """
-    return _compute(signal, frames, gate, compute).held()
+    return _compute(signal, frames, gate, compute).hold_power()
 
 
 def draw_held_power(power: DopplerPower, scale: Scale, form: ImageForm) -> MapImage:

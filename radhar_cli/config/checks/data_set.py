@@ -91,7 +91,7 @@ def _problems_of_several(c: Request) -> Iterator[Problem]:
         right = "should have radar_name, which tells this one from the others"
         yield Problem("other_radars", [*c.other_radars], right)
     elif c.radar_name in c.other_radars:
-        right = "should be the name of none of other_radars"
+        right = "should differ from the names in other_radars"
         yield Problem("radar_name", c.radar_name, right)
     for name in c.other_radars:
         other = c.of_other_radar(name)

@@ -271,10 +271,10 @@ def _find_up_axis(
         rate: Frames per second.
         units: Stature in its unit.
     """
-    rest = None
+    rest_pose = None
     if file.rest is not None:
-        rest = blend(file.rest[None], [*range(len(file.names))], blends)[0]
-    up = find_up_axis(p, rate, units, rest)
+        rest_pose = blend(file.rest[None], [*range(len(file.names))], blends)[0]
+    up = find_up_axis(p, rate, units, rest_pose)
     if up.name is None:
         reason = up.remark or "for nobody stands in it"
         raise motion_file_error(

@@ -75,14 +75,14 @@ def find_up_axis(p: Float, rate: float, stature: float, rest: Float | None = Non
     if len(usual) != 1:
         return UpAxis(None, _name_choice([_name(*signed) for signed in usual]))
     name = _name(*usual[0])
-    others = [other for other in shares if other != name and shares[other] >= LEAST_SHARE]
-    if not others or shares[name] > 1 - LEAST_SHARE:
+    lying = [axis for axis in shares if axis != name and shares[axis] >= LEAST_SHARE]
+    if not lying or shares[name] > 1 - LEAST_SHARE:
         return UpAxis(name)
-    along = " and ".join(others)
+    along = " and ".join(lying)
     return UpAxis(
         name,
-        f"somebody lies along {along} for {max(shares[other] for other in others):.0%} of it if "
-        f"{name} points up, as is assumed; up: {others[0]} of its class (--up {others[0]}) would "
+        f"somebody lies along {along} for {max(shares[axis] for axis in lying):.0%} of it if "
+        f"{name} points up, as is assumed; up: {lying[0]} of its class (--up {lying[0]}) would "
         "say otherwise",
     )
 
@@ -93,10 +93,12 @@ def _name_choice(names: Sequence[str]) -> str:
 
 
 def _name(sign: int, axis: int) -> str:
+    """Name of an axis with its sign, such as z or -y."""
     return ("-" if sign < 0 else "") + "xyz"[axis]
 
 
 def _vector(sign: int, axis: int) -> Float:
+    """Unit vector [3] of an axis with its sign."""
     vector: Float = sign * np.eye(3)[axis]
     return vector
 
@@ -122,6 +124,7 @@ def _floor_range(p: Float, axis: int, sign: int) -> float:
 
 
 def _has_floor(p: Float, signed: tuple[int, int]) -> bool:
+    """Whether the lowest joint stays at one height along an axis."""
     return _floor_range(p, signed[1], signed[0]) < FLOOR
 
 
@@ -132,9 +135,9 @@ def _keep_floors(p: Float, axes: Sequence[tuple[int, int]]) -> list[tuple[int, i
 
 def _crawls_along(p: Float, signed: tuple[int, int]) -> bool:
     """Whether the hips go along the body's own axis and nowhere else: on all fours, or a ladder."""
-    axes = np.ptp(p[:, _HIP], axis=0)
-    others = np.delete(axes, signed[1]).max()
-    return bool(axes[signed[1]] > max(CLIMB, 2 * others)) and not _has_floor(p, signed)
+    paths = np.ptp(p[:, _HIP], axis=0)
+    sideways = np.delete(paths, signed[1]).max()
+    return bool(paths[signed[1]] > max(CLIMB, 2 * sideways)) and not _has_floor(p, signed)
 
 
 def _drop_fallen(

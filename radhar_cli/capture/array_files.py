@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.capture.named_parts import find_pair
+from radhar_cli.capture.packed_files import MAX_PACKING
 from radhar_cli.capture.settings import USUAL_AXES, AxisName, CaptureSettings
 from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Parts, Source
 from radhar_cli.dataset.untrusted_hdf5 import NumberColumn, UntrustedFile
@@ -27,7 +28,6 @@ from radhar_cli.files.untrusted import regular_size
 from radhar_cli.numerics.arrays import Float
 
 MAX_RECEIVERS = 1024
-MAX_PACKING = 200  # growth of a file when it is unpacked
 MAX_MAT5 = 2**30  # bytes: SciPy holds a variable of the old format whole
 MAX_TIMES = 2**24
 DEEPEST_STRUCT = 8

@@ -203,44 +203,45 @@ def cut_packets(blocks: Iterable[bytes], length_at: int, damage: DumpDamage) -> 
             another within, or of a length beyond MAX_PACKET.
     """
     buffer = bytearray()
-    source, ended = iter(blocks), False
+    for block in blocks:
+        buffer += block
+        yield from _whole_packets(buffer, length_at, damage)
+    damage.truncated |= buffer.startswith(MAGIC)
+    damage.skipped += len(buffer)
+
+
+def _whole_packets(buffer: bytearray, length_at: int, damage: DumpDamage) -> Iterator[bytes]:
+    """Take whole packets from the front of a buffer, until what is left may still become one."""
     while True:
-        need = length_at + 4
         start = buffer.find(MAGIC)
         if start < 0:  # its end may be the start of a magic word
-            keep = min(len(buffer), len(MAGIC) - 1)
-            if ended:
-                damage.skipped += len(buffer)
-                return
-            damage.skipped += len(buffer) - keep
-            del buffer[: len(buffer) - keep]
+            start = max(0, len(buffer) - (len(MAGIC) - 1))
+        damage.skipped += start
+        del buffer[:start]
+        if not buffer.startswith(MAGIC) or len(buffer) < length_at + _WORD.size:
+            return
+        (length,) = _WORD.unpack_from(buffer, length_at)
+        skipped = _damaged_bytes(buffer, length, length_at + _WORD.size)
+        if skipped:
+            damage.damaged += 1
+            damage.skipped += skipped
+            del buffer[:skipped]
+        elif len(buffer) >= length:
+            yield bytes(buffer[:length])
+            del buffer[:length]
         else:
-            damage.skipped += start
-            del buffer[:start]
-            if len(buffer) >= need:
-                (length,) = _WORD.unpack_from(buffer, length_at)
-                if not need <= length <= MAX_PACKET:
-                    damage.damaged += 1
-                    damage.skipped += len(MAGIC)
-                    del buffer[: len(MAGIC)]
-                    continue
-                inner = buffer.find(MAGIC, len(MAGIC), min(length, len(buffer)))
-                if inner >= 0:
-                    damage.damaged += 1
-                    damage.skipped += inner
-                    del buffer[:inner]
-                    continue
-                if len(buffer) >= length:
-                    yield bytes(buffer[:length])
-                    del buffer[:length]
-                    continue
-            if ended:
-                damage.truncated = True
-                damage.skipped += len(buffer)
-                return
-        block = next(source, b"")
-        ended = not block
-        buffer += block
+            return
+
+
+def _damaged_bytes(buffer: bytearray, length: int, header: int) -> int:
+    """Count the bytes to leave out of a packet at the front of a buffer; 0 if it may be whole.
+
+    A packet is damaged if its length is less than its header or beyond MAX_PACKET, or if another
+    packet begins within it.
+    """
+    if not header <= length <= MAX_PACKET:
+        return len(MAGIC)
+    return max(0, buffer.find(MAGIC, len(MAGIC), min(length, len(buffer))))
 
 
 def _bytes_of(paths: Sequence[Path]) -> Iterator[bytes]:

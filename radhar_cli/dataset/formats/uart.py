@@ -78,12 +78,17 @@ def old_demo_frames(frames: Iterator[Float]) -> Iterator[bytes]:
     limits = np.iinfo(np.int16)
     for number, points in enumerate(frames):
         packed = np.zeros(len(points), Q_POINT)
-        x, y, z = points[:, :3].T
-        places = np.round(np.column_stack([-y, x, z]) * 2.0**Q_FORMAT)
+        places = np.round(_places_of(points) * 2.0**Q_FORMAT)
         packed["place"] = np.clip(places, limits.min, limits.max)
         packed["range"], packed["doppler"] = np.round(points[:, 6]), -np.round(points[:, 7])
         packed["peak"] = np.clip(np.round(points[:, 4]), 0, np.iinfo(np.uint16).max)
         yield encode_old_frame(number, packed)
+
+
+def _places_of(points: Float) -> Float:
+    """Places [n, (right, ahead, up)] in TI's axes of points [n, 8] in radhar's, m."""
+    x, y, z = points[:, :3].T
+    return np.column_stack([-y, x, z])
 
 
 def counting_frames(frames: Iterator[Float]) -> Iterator[bytes]:
@@ -116,8 +121,7 @@ def demo_frames(frames: Iterator[Float]) -> Iterator[bytes]:
     """
     limits = np.iinfo(np.int16)
     for number, points in enumerate(frames):
-        x, y, z, doppler = points[:, :4].T
-        places = np.column_stack([-y, x, z, -doppler]).astype("<f4")
+        places = np.column_stack([_places_of(points), -points[:, 3]]).astype("<f4")
         snr = np.round(points[:, 5] * TENTHS)
         level = np.round(20 * TENTHS * np.log10(np.maximum(points[:, 4], LEAST)))
         side = np.clip(np.column_stack([snr, level - snr]), limits.min, limits.max).astype("<i2")

@@ -1,5 +1,6 @@
 """Motion files of known motions, written by tests: no real recording is kept with the project."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -56,6 +57,13 @@ def write_bvh(path: Path, positions: Float, rate: float = 120.0) -> Path:
 def write_npz(path: Path, positions: Float, rate: float = 120.0, names: object = WANTED) -> Path:
     """Write positions as they are."""
     np.savez(path, names=np.array(names), positions=positions, rate=rate)
+    return path
+
+
+def write_json(path: Path, positions: Float, rate: float = 120.0) -> Path:
+    """Write positions as JSON, in whole mm."""
+    rows = np.round(1e3 * positions).astype(int).tolist()
+    path.write_text(json.dumps({"names": list(WANTED), "positions": rows, "rate": rate}))
     return path
 
 

@@ -267,7 +267,7 @@ def test_scripts_of_mmwave_studio_are_read_as_its_json_is(tmp_path):
     assert stream.lanes == 2
     for text, says in (
         (LUA.replace("ar1.FrameConfig", "x.FrameConfig"), "should call ar1.FrameConfig"),
-        (LUA.replace("SAMPLES, 10000", "os.getenv, 10000"), "all numbers, or names"),
+        (LUA.replace("SAMPLES, 10000", "os.getenv, 10000"), "argument 14 depends on os.getenv"),
         (LUA.replace("0, 0, 0, 1, 0, 0)\nar1.F", "0, 0, 0, 0, 0, 0)\nar1.F"), "transmitter on"),
         ("print('hello')", "should call ar1.ChanNAdcConfig, ar1.ProfileConfig"),
     ):

@@ -5,14 +5,15 @@
 Each radar of `radhar config init --radar list` is asked for its figures (range step and end, speed
 limit and step, rate, antennas, width of a beam), which stand beside those of its maker
 (scripts/radars_by_data_sheet.yaml, typed, each with its source). The same person then walks past
-each radar, 0.5 m to its left, from 4.2 m on, and radars.png has what it sees: ranges or a
-range-Doppler frame, speeds, and points from above where it has an array.
+each radar, 0.5 m to its left, from 4.2 m on. radars.png, and radars_ti.png of TI's boards, have
+what it sees: ranges or a range-Doppler frame, speeds, and points from above where it has an array.
 """
 
 import argparse
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -39,11 +40,13 @@ PAGE = ROOT / "docs/guide/radars.md"
 SHEETS = Path(__file__).with_name("radars_by_data_sheet.yaml")
 FROM_M, LEFT_M, SECONDS = 4.2, 0.5, 2.5
 NEAR_M = 3.0  # range of the torso at which levels are compared with the noise
-# Radars of the picture: every written one, and of TI's boards one a device.
-DRAWN = (
-    *WRITTEN_RADARS,
-    *(name for name in RADARS if name.endswith("_clouds") or name == "iwr1443boost"),
-)
+# Radars of each picture: every written one, and of TI's boards one a device.
+PICTURES = {
+    "radars.png": tuple(WRITTEN_RADARS),
+    "radars_ti.png": tuple(
+        name for name in RADARS if name.endswith("_clouds") or name == "iwr1443boost"
+    ),
+}
 HEAD = (
     "| name | range: step, to | speed: step, to | a second | antennas, beam "
     "| its maker | a walker at 3 m |\n| --- | --- | --- | --- | --- | --- | ---: |"
@@ -154,8 +157,8 @@ def _place_of(simulation: Simulation) -> Float:
     return (np.array(antennas.tx) + np.array(antennas.rx)) / 2
 
 
-def table_row(name: str, figures: RadarFigures, sheet: Sheet, level_db: float | None) -> str:
-    """Row of a radar in the table; without a level that cell is a dash."""
+def table_row(name: str, figures: RadarFigures, sheet: Sheet, level_db: float) -> str:
+    """Row of a radar in the table."""
     cells = [
         f"`{name}`",
         _range_cell(figures),
@@ -163,7 +166,7 @@ def table_row(name: str, figures: RadarFigures, sheet: Sheet, level_db: float | 
         f"{figures.rate_hz:.5g} {'frames' if figures.has_frames else 'pulses'}",
         _antenna_cell(figures),
         _sheet_cell(sheet),
-        "-" if level_db is None else f"{level_db:.0f} dB",
+        f"{level_db:.0f} dB",
     ]
     return f"| {' | '.join(cells)} |"
 
@@ -210,53 +213,59 @@ def _with_source(sheet: Sheet, is_memory: bool) -> list[tuple[str, tuple[float, 
 
 
 def draw_panels(walks: Mapping[str, Simulation], path: Path) -> None:
-    """Draw three panels a radar, two radars a row."""
-    rows = -(-len(walks) // 2)
-    figure = Figure(figsize=(15, 2.35 * rows), dpi=70, layout="constrained")
-    grid = figure.subplots(rows, 6, squeeze=False)
-    for number, (name, simulation) in enumerate(walks.items()):
-        row, first = number // 2, 3 * (number % 2)
-        _draw_radar(grid[row, first : first + 3], name, simulation)
+    """Draw three panels a radar, one radar a row, in letters that a page's width leaves legible."""
+    figure = Figure(figsize=(9.6, 2.2 * len(walks)), dpi=100, layout="constrained")
+    grid = figure.subplots(len(walks), 3, squeeze=False)
+    for panels, (name, simulation) in zip(grid, walks.items(), strict=True):
+        _draw_radar(panels, name, simulation)
     for axes in grid.flat:
-        axes.tick_params(labelsize=6)
-        axes.xaxis.label.set_size(7)
-        axes.yaxis.label.set_size(7)
-    for axes in grid.flat[3 * len(walks) :]:
-        axes.set_axis_off()
+        axes.tick_params(labelsize=9)
+        axes.xaxis.label.set_size(10)
+        axes.yaxis.label.set_size(10)
     figure.savefig(path)
-    Image.open(path).convert("RGB").quantize(128).save(path, optimize=True)
+    Image.open(path).convert("RGB").quantize(256).save(path, optimize=True)
 
 
 def _draw_radar(panels: Any, name: str, simulation: Simulation) -> None:
-    frames = simulation.frames.get("range_doppler")
-    if frames is not None:
-        moment = int(np.argmin(np.abs(_torso_at(simulation, frames.times) - NEAR_M)))
-        _draw_map(panels[0], frames.shown.power[moment], frames.extent)
-        panels[0].set(xlabel="m/s", ylabel="m", ylim=(0, 6))
-    elif "rtm" in simulation.maps:
-        shown = simulation.maps["rtm"]
-        _draw_map(panels[0], shown.power, shown.extent)
-        panels[0].set(xlabel="s", ylabel="m", ylim=(0, 6))
-    else:
-        assert isinstance(simulation.config.radar, CwRadar)
-        panels[0].set_axis_off()
-        panels[0].text(0.5, 0.5, "no range", ha="center", transform=panels[0].transAxes)
-    panels[0].set_title(name, fontsize=8, loc="left", weight="bold")
+    """Draw what a radar sees: ranges, speeds, and points or its figures in words."""
+    _draw_ranges(panels[0], simulation)
+    panels[0].set_title(name, fontsize=12, loc="left", weight="bold")
     if "stft" in simulation.maps:
         spectrogram = simulation.maps["stft"]
         hertz = SPEED_OF_LIGHT / (2 * simulation.waveform.f0)
         left, right, low, high = spectrogram.extent
         _draw_map(panels[1], spectrogram.power, (left, right, low * hertz, high * hertz))
-        panels[1].set(xlabel="s", ylabel="m/s")
+        panels[1].set(xlabel="time (s)", ylabel="speed (m/s)")
     else:
-        panels[1].set_axis_off()
-        panels[1].text(0.5, 0.5, "no Doppler", ha="center", transform=panels[1].transAxes)
+        _write_instead(panels[1], "no Doppler")
     if "cloud" in simulation.frames:
         _draw_cloud(panels[2], simulation)
     else:
-        lines = describe_figures(compute_figures(name)).replace(", ", "\n").replace(" in ", "\nin ")
-        panels[2].set_axis_off()
-        panels[2].text(0, 0.5, lines, va="center", fontsize=8, transform=panels[2].transAxes)
+        words = describe_figures(compute_figures(name)).replace("+-", "±")
+        _write_instead(panels[2], words.replace(", ", "\n").replace(" in ", "\nin "))
+
+
+def _draw_ranges(axes: Axes, simulation: Simulation) -> None:
+    """Draw the range-Doppler frame with the torso at 3 m, or ranges over time."""
+    frames = simulation.frames.get("range_doppler")
+    if frames is not None:
+        moment = int(np.argmin(np.abs(_torso_at(simulation, frames.times) - NEAR_M)))
+        _draw_map(axes, frames.shown.power[moment], frames.extent)
+        axes.set(xlabel="speed (m/s)", ylabel="range (m)", ylim=(0, 6))
+    elif "rtm" in simulation.maps:
+        shown = simulation.maps["rtm"]
+        _draw_map(axes, shown.power, shown.extent)
+        axes.set(xlabel="time (s)", ylabel="range (m)", ylim=(0, 6))
+    else:
+        assert isinstance(simulation.config.radar, CwRadar)
+        _write_instead(axes, "no range")
+
+
+def _write_instead(axes: Axes, words: str) -> None:
+    """Write words in the middle of a panel that has nothing to draw."""
+    axes.set_axis_off()
+    where = {"ha": "center", "va": "center", "transform": axes.transAxes}
+    axes.text(0.5, 0.5, words, fontsize=11, linespacing=1.4, **where)
 
 
 def _draw_map(axes: Axes, power: Float, extent: tuple[float, float, float, float]) -> None:
@@ -286,18 +295,21 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=7)
     arguments = parser.parse_args()
     sheets, sources, _ = read_sheets()
-    walks = {name: walk_to(name, arguments.seed) for name in DRAWN}
-    rows = []
+    drawn, rows = {*chain.from_iterable(PICTURES.values())}, []
+    walks = dict[str, Simulation]()
     for name in (*WRITTEN_RADARS, *RADARS):
-        level = level_above_noise(walks[name]) if name in walks else None
-        rows.append(table_row(name, compute_figures(name), sheets[name], level))
+        walk = walk_to(name, arguments.seed)
+        rows.append(table_row(name, compute_figures(name), sheets[name], level_above_noise(walk)))
         print(rows[-1], flush=True)
+        if name in drawn:
+            walks[name] = walk
     command = f"python scripts/draw_radars.py COMMIT --seed {arguments.seed}"
     note = f"(`{command}`, at {arguments.commit})"
     page = replace_part(PAGE.read_text(), "radars", "\n".join((HEAD, *rows, "", note)))
     listed = [f"- {name}: {where}" for name, where in sources.items() if name != CALCULATED]
     PAGE.write_text(replace_part(page, "sources", "\n".join(listed)))
-    draw_panels(walks, arguments.out / "radars.png")
+    for picture, names in PICTURES.items():
+        draw_panels({name: walks[name] for name in names}, arguments.out / picture)
 
 
 if __name__ == "__main__":

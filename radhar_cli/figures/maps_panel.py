@@ -12,6 +12,7 @@ from matplotlib.image import AxesImage
 
 from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.image import ImageConfig
+from radhar_cli.config.number import nominal
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
@@ -169,15 +170,20 @@ def title(simulation: Simulation) -> str:
 def describe_scene(scene: Scene, waveform: Waveform) -> list[str]:
     """Describe a scene: activity, radar, surroundings, noise and seed, a few words each."""
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
-    noise = "no noise" if figure is None else f"noise figure {figure:g} dB"
+    noise = "no noise" if figure is None else f"noise figure {_rounded(nominal(figure), 1)} dB"
     kind = scene.radar.kind
-    band = " CW" if kind == "cw" else f" + {waveform.bandwidth / 1e9:g} GHz"
+    band = " CW" if kind == "cw" else f" + {_rounded(waveform.bandwidth / 1e9, 4)} GHz"
     band += " impulses" if kind == "impulse" else ""
     rooms = scene.config.room.faces is not None
     return [
         f"{scene.activity.label} {scene.activity.slug.replace('_', ' ')}",
-        f"{waveform.fc / 1e9:g} GHz{band}, PRF {waveform.prf:g} Hz",
+        f"{_rounded(waveform.fc / 1e9, 3)} GHz{band}, PRF {_rounded(waveform.prf, 1)} Hz",
         "through a wall" if scene.config.wall else "in a room" if rooms else "free space",
-        noise if snr is None else f"SNR {snr:g} dB",
+        noise if snr is None else f"SNR {_rounded(nominal(snr), 1)} dB",
         f"seed {scene.config.seed}",
     ]
+
+
+def _rounded(value: float, decimals: int) -> str:
+    """Text of a number, which a law may have drawn, with so many decimals at most."""
+    return f"{round(value, decimals) + 0.0:.10g}"

@@ -57,7 +57,7 @@ def noise_alone(config: Config) -> list[str]:
     scene = nominal_scene(config, config.chosen_activities[0])
     losses = _losses_db(scene)
     if isinstance(law, Snr):
-        snr, noise = law.decibels, f"snr_db = {law.decibels:g}"
+        snr, noise = law.decibels, f"snr_db = {round(law.decibels, 1):g}"
         if config.snr_reference != "free_space":
             losses = {}
     else:

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from radhar_cli.activities.activity import activity_named
+from radhar_cli.assembly.radar import waveform_of
 from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.contact_sheet import draw_contact_sheet
 from radhar_cli.dataset.reading import open_dataset
@@ -14,15 +16,18 @@ from radhar_cli.figures.maps_panel import (
     MOST_COLUMNS,
     columns_that_show,
     decibels,
+    describe_scene,
     draw_maps,
     of_simulation,
 )
 from radhar_cli.figures.sides import UNCHANGED, gif_blocks
 from radhar_cli.figures.stickman import draw_stickman, frame_count
+from radhar_cli.scene import draw_scene
 from radhar_cli.single_scene.simulate import simulate
 
 ROOT = Path(__file__).resolve().parents[2]
 WALL = ROOT / "configs/paper/figures_through_wall.yaml"
+FREE = ROOT / "configs/paper/free_space.yaml"
 
 
 def colours(path):
@@ -42,6 +47,21 @@ def test_maps_are_drawn(activity, overrides, joint, maps, tmp_path):
     simulation = simulate(load_config(WALL, overrides), activity, joint=joint, maps=maps)
     draw_maps(of_simulation(simulation, overlay=True), tmp_path / "maps.png")
     assert colours(tmp_path / "maps.png") > 200
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (["snr_db={uniform: [15.01, 15.04]}"], "SNR 15 dB"),
+        (["snr_db=-0.01"], "SNR 0 dB"),
+        (["radar.carrier_hz=24.125e9"], "24.125 GHz + "),
+        (["radar.prf_hz={uniform: [1333.31, 1333.33]}"], "PRF 1333.3 Hz"),
+        (["radar.bandwidth_hz=767.5e6"], "+ 0.7675 GHz"),
+    ],
+)
+def test_title_rounds_what_laws_have_drawn(overrides, words):
+    scene = draw_scene(load_config(FREE, overrides), activity_named("walking"), 0)
+    assert words in "   |   ".join(describe_scene(scene, waveform_of(scene)))
 
 
 def test_stickman_plays_at_true_speed_and_moves(tmp_path):

@@ -72,6 +72,8 @@ def loaded_as_mars_model_py(folder):
     }
     assert {features.shape[1:] for features, _ in parts.values()} == {(8, 8, 5)}
     assert {labels.shape[1:] for _, labels in parts.values()} == {(57,)}
+    # 24066 frames of 8 x 8 x 5 are 61609088 bytes in the published files.
+    assert {array.dtype for part in parts.values() for array in part} == {np.dtype("<f8")}
     return parts
 
 
@@ -90,8 +92,8 @@ def test_mars_has_every_frame_with_its_points_and_joints(place):
             there = points[np.any(points != 0, axis=1)]
             mine = clouds.frame == frame
             assert len(there) == mine.sum()
-            assert there[:, :3].tolist() == sorted(clouds.xyz[mine].astype(np.float32).tolist())
-            assert sorted(there[:, 3]) == sorted(clouds.doppler[mine].astype(np.float32))
+            assert there[:, :3].tolist() == sorted(clouds.xyz[mine].tolist())
+            assert sorted(there[:, 3]) == sorted(clouds.doppler[mine])
             # x of all 19, y of all, z of all; these are ours under the Kinect's places.
             x_y_z = np.array([label[0:19], label[19:38], label[38:57]]).T
             ours = [JOINTS.index(name) for name in OURS_IN_MARS.values()]
@@ -186,6 +188,19 @@ def test_records_of_ros_are_yaml_with_the_fields_of_the_message(place):
         frames = len(data.products["points_start"][0]) - 1
     np.testing.assert_allclose(seconds % period, 0, atol=1e-9)
     assert 0 <= seconds.min() <= seconds.max() <= (frames - 1) * period + 1e-9
+
+
+@pytest.mark.parametrize(
+    ("to", "words"),
+    [
+        ("mars", "no frames in test: MARS_model.py"),
+        ("ros", "10 of 10 samples have fewer than 62 frames with points: RadHAR's voxels.py"),
+    ],
+)
+def test_what_stops_the_published_scripts_is_warned_of(place, tmp_path, to, words):
+    made = radhar("convert", place / "set", "-o", tmp_path / to, "--to", to, "-q")
+    assert made.returncode == 0
+    assert f"warning: {words}" in made.stderr
 
 
 READER = {"mars": "numpy as np", "ros": "yaml", "ti": "csv"}

@@ -55,6 +55,8 @@ MARS_JOINTS = (
 NECK, HIP_ASIDE, FOOT_AHEAD, FOOT_BELOW = 1 / 3, 0.23, 0.22, 0.2
 ROS_SPLITS = ("Train", "Validation", "Test")  # folders; RadHAR has the first and the last
 ROS_FRAME = "ti_mmwave"
+# RadHAR's voxels.py drops the last two frames of a file and needs a window of 60 in the rest.
+VOXEL_FRAMES = 62
 MAGNITUDES = ("sdk1", "sdk3")  # firmware whose intensity is a magnitude
 TI = ("frame", "x", "y", "z", "doppler", "snr", "noise", "track")
 NO_TRACK = 255  # of a point that belongs to nobody
@@ -117,7 +119,7 @@ def clouds_of(data: Dataset, row: int) -> Clouds:
     )
 
 
-def feature_map(clouds: Clouds, frame: int) -> NDArray[np.float32]:
+def feature_map(clouds: Clouds, frame: int) -> Float:
     """Arrange a frame of clouds as MARS does, [8, 8, 5]: x, y, z, Doppler, amplitude.
 
     Points are in ascending order of x, then y, then z; the first 64 stay, zeros follow.
@@ -126,7 +128,7 @@ def feature_map(clouds: Clouds, frame: int) -> NDArray[np.float32]:
     x, y, z = clouds.xyz[in_frame].T
     points = np.column_stack([x, y, z, clouds.doppler[in_frame], clouds.amplitude[in_frame]])
     points = points[np.lexsort((z, y, x))][: SIDE * SIDE]
-    features = np.zeros((SIDE * SIDE, 5), np.float32)
+    features = np.zeros((SIDE * SIDE, 5))
     features[: len(points)] = points
     return features.reshape(SIDE, SIDE, 5)
 
@@ -183,14 +185,14 @@ def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
             f"{len(JOINTS)}"
         )
     shapes = {"featuremap": (SIDE, SIDE, 5), "labels": (3 * len(MARS_JOINTS),), "frames": (3,)}
-    rows = Rows.of(data.config)
+    rows, empty = Rows.of(data.config), list[str]()
     for split, part in enumerate(MARS_SPLITS):
         of_people = [one for one in _of_split(data, split) if not rows[one.row][0].is_nobody]
         total, done = int(counts[[one.row for one in of_people]].sum()), 0
         features, labels, frames = (
             _new_array(
                 folder / f"{name}_{part}.npy",
-                np.dtype("<i8" if name == "frames" else "<f4"),
+                np.dtype("<i8" if name == "frames" else "<f8"),
                 (total, *shape),
             )
             for name, shape in shapes.items()
@@ -203,6 +205,13 @@ def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
                 frames[done] = entry.number, entry.place, frame
                 done += 1
             progress.advance(1)
+        if not total:
+            empty.append(part)
+    if empty:
+        progress.say(
+            f"warning: no frames in {', '.join(empty)}: MARS_model.py, which trains, validates and "
+            "tests, stops there; give split.train, split.validation and split.test a share each"
+        )
     _describe(data, folder, _MARS.format(names=", ".join(MARS_JOINTS)))
 
 
@@ -228,7 +237,7 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
         )
     header = radar.header
     middle = 2 ** (header.loops - 1).bit_length() // 2
-    rows = Rows.of(data.config)
+    rows, short = Rows.of(data.config), 0
     for split in data.present_splits:
         for entry in _of_split(data, split):
             path = folder / ROS_SPLITS[split] / entry.label / f"{rows.name(entry.row)}.txt"
@@ -236,7 +245,15 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
             clouds = clouds_of(data, entry.row)
             if len(clouds.frame):  # voxels.py stops at a file without a record
                 path.write_text(_radar_scans(clouds, header.period_s, middle), encoding="utf-8")
+            short += 0 < len(np.unique(clouds.frame)) < VOXEL_FRAMES
             progress.advance(1)
+    if short:
+        progress.say(
+            f"warning: {short} of {len(data)} samples have fewer than {VOXEL_FRAMES} frames with "
+            "points: RadHAR's voxels.py, which cuts windows of 60 frames, stops there; simulate "
+            f"for longer (duration_s; {VOXEL_FRAMES} frames of this radar take "
+            f"{VOXEL_FRAMES * header.period_s:.3g} s)"
+        )
     _describe(data, folder, _ROS)
 
 
@@ -381,8 +398,8 @@ _MARS = """\
 ```python
 import numpy as np
 
-features = np.load("featuremap_train.npy")    # [frame, 8, 8, 5]
-labels = np.load("labels_train.npy")          # [frame, 57]
+features = np.load("featuremap_train.npy")    # float64 [frame, 8, 8, 5]
+labels = np.load("labels_train.npy")          # float64 [frame, 57]
 activity, sample, frame = np.load("frames_train.npy").T
 ```
 
@@ -406,7 +423,9 @@ message RadarScan of TI's ROS driver (ti_mmwave_rospkg, SDK 2) and as RadHAR kee
 frame without points leaves no record and a sample without any no file; x (ahead), y (left), z (up
 of the radar) and range, m; velocity, m/s, positive receding; `doppler_bin`, zero Doppler in the
 middle one; bearing, degrees, positive left; intensity, 10 lg(magnitude + 1). RadHAR's voxels.py
-reads a folder of classes, such as `Train`, with these in its `sub_dirs`.
+reads a folder of classes, such as `Train`, with these in its `sub_dirs`. It cuts windows of 60
+frames with points, RadHAR's 2 s, and stops at a file that has fewer than 62; its classifiers load
+what it writes by the names of RadHAR's five classes.
 
 ```python
 import yaml

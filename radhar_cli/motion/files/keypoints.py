@@ -236,12 +236,3 @@ def seconds_of(times: Float, unit: str | None = None) -> Float | None:
         if low <= 1 / (step * seconds) <= high:
             fitting.append(name)
     return times * TIME_UNITS[fitting[0]] if len(fitting) == 1 else None
-
-
-def dates_of(texts: NDArray[Any] | Sequence[str]) -> NDArray[Any]:
-    """Dates and times of texts such as 2026-05-01T12:00:00.033 as NumPy's; the texts if not so."""
-    words = [t.decode("ascii", "replace") if isinstance(t, bytes) else str(t) for t in texts]
-    try:
-        return np.array([word.strip().removesuffix("Z") for word in words], "datetime64[ns]")
-    except ValueError:
-        return np.asarray(words)

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.errors import MotionFileError
+from radhar_cli.motion.files.instants import dates_of
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.keypoints import (
     TIME_UNITS,
     Keypoints,
-    dates_of,
     describe_array,
     make_keypoints,
 )

@@ -2,7 +2,7 @@
 
 import re
 
-_PREFIX = re.compile(r"^(?:.*:|bip\d+|mixamorig\d*)")
+_PREFIX = re.compile(r"^(?:.*:|bip\d+|mixamorig\d*|(?:k4abt_)?joint(?:type)?_)")
 _PARTS = (
     "hip knee ankle foot shoulder elbow wrist hand eye ear bigtoe smalltoe toe heel collar clavicle"
 ).replace(" ", "|")

@@ -14,14 +14,16 @@ from radhar_cli.motion.files.json_poses import read_json_poses
 from radhar_cli.motion.files.npz import read_npy, read_npz
 from radhar_cli.motion.files.ntu_skeleton import read_ntu_skeleton
 from radhar_cli.motion.files.recording import MAX_BYTES, MotionRecording, motion_file_error
-from radhar_cli.motion.files.text_tables import read_csv, read_trc
+from radhar_cli.motion.files.text_tables import read_table, read_trc
 
 # {suffix: reader of (bytes, name of the file in messages)}; an AMC needs its skeleton, too.
 _READERS: dict[str, Callable[[bytes, str], MotionRecording]] = {
     ".bvh": read_bvh,
     ".npz": read_npz,
     ".npy": read_npy,
-    ".csv": read_csv,
+    ".csv": read_table,
+    ".tsv": read_table,
+    ".txt": read_table,
     ".json": read_json_poses,
     ".trc": read_trc,
     ".c3d": read_c3d,

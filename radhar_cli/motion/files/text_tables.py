@@ -1,87 +1,117 @@
-"""Tables of positions as text: `.csv` with a line of names, `.trc` of OpenSim and Pose2Sim."""
-
-import csv
-import re
-from collections.abc import Sequence
-from typing import NamedTuple
+"""Tables of positions as text: `.csv`, `.tsv` and `.txt`; `.trc` of OpenSim and Pose2Sim."""
 
 import numpy as np
 
+from radhar_cli.motion.files.instants import seconds_of_texts
 from radhar_cli.motion.files.keypoints import TIME_UNITS, Keypoints, make_keypoints
-from radhar_cli.motion.files.position_arrays import two_dimensional
-from radhar_cli.motion.files.recording import MAX_FRAMES, MAX_JOINTS, motion_file_error
+from radhar_cli.motion.files.long_tables import find_long_heading, read_long
+from radhar_cli.motion.files.recording import MAX_JOINTS, motion_file_error
+from radhar_cli.motion.files.table_headings import (
+    UNITS,
+    Heading,
+    find_heading,
+    rate_above,
+    unit_above,
+)
+from radhar_cli.motion.files.text_cells import (
+    CellTable,
+    decode_text,
+    is_number,
+    number_of,
+    numbers_of,
+    rows_of,
+    split_cells,
+)
 from radhar_cli.numerics.arrays import Float
 
-MAX_TEXT = 2**26  # bytes
-MAX_COLUMNS = 10 * MAX_JOINTS
-TRC_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
-_AXIS_LAST = re.compile(
-    r"^(?P<name>.+?)(?:[ _.:\-]*(?:position|pos|location|translation))?"
-    r"[ _.:\-\[(]*(?P<axis>[xyz])[\])]?(?:[ _]?[(\[]?(?:mm|cm|m)[)\]]?)?$",
-    re.I,
-)
-_CONFIDENCE = re.compile(
-    r"^(?P<name>.+?)[ _.:\-\[(]*(?:visibility|vis|confidence|conf|likelihood|score|v|c)[\])]?$",
-    re.I,
-)
-_AXIS_FIRST = re.compile(r"^(?P<axis>[xyz])[ _.:\-]*(?P<name>.+)$", re.I)
-_TIME = re.compile(
-    r"^(?:time|times|timestamp|timestamps|elapsed|elapsed_time|t)"
-    r"(?:[ _(\[]*(?:(?P<unit>s|ms|us|ns)|sec|secs|seconds)[)\]]?)?$",
-    re.I,
-)
-_LOST = frozenset({"", "nan", "null", "none", "na", "n/a"})
 
-
-class _Columns(NamedTuple):
-    """Columns of a table: names of joints, their three columns each, the column of times."""
-
-    names: list[str]
-    places: list[tuple[int, int, int]]
-    time: int | None
-    unit: str | None
-    confidences: list[int | None]  # columns of which 0 is a lost joint
-
-
-def read_csv(data: bytes, where: str) -> Keypoints:
-    """Read a table whose first line names columns: `nose_x`, `nose_y`, `nose_z`, ..., and `time`.
+def read_table(data: bytes, where: str) -> Keypoints:
+    """Read a table of a row a frame, whose lines above name its columns, or of a row a joint.
 
     Args:
-        data: Bytes of the file; columns are separated by commas, semicolons or tabs.
+        data: Bytes of the file; columns are separated by commas, semicolons, tabs or spaces.
         where: Name of the file in messages.
 
     Raises:
         MotionFileError: Names the line and what is odd.
     """
-    lines = _lines(data, where)
-    heading = next(
-        (n for n, line in enumerate(lines) if line.strip() and not line.startswith(("#", "%"))),
-        None,
-    )
+    table = split_cells(decode_text(data, where), where)
+    table = _last_part(table)
+    long_heading = find_long_heading(table)
+    if long_heading is not None:
+        return _read_long(table, *long_heading)
+    heading = find_heading(table)
     if heading is None:
-        raise motion_file_error(where, "is empty")
-    delimiter = max(",;\t", key=lines[heading].count)
-    if lines[heading].count(delimiter) > MAX_COLUMNS:
-        raise motion_file_error(where, f"has more than {MAX_COLUMNS} columns")
-    try:
-        head, *rows = csv.reader(lines[heading:], delimiter=delimiter)
-    except csv.Error as error:
-        raise motion_file_error(where, f"is not a table ({error})") from None
-    head = [name.strip().lstrip("\ufeff") for name in head]
-    if _is_number(head[0]) and all(_is_number(word) or word.lower() in _LOST for word in head):
-        numbers = _numbers([head, *rows], len(head), f"{where}", heading + 1)
-        return _without_names(numbers, where)
-    columns = _find_columns(head, where)
-    numbers = _numbers(rows, len(head), where, heading + 2)
-    values = numbers[:, np.array(columns.places).ravel()].reshape(len(numbers), -1, 3)
-    for joint, column in enumerate(columns.confidences):
-        if column is not None:
-            values[numbers[:, column] == 0, joint] = np.nan
-    times = None if columns.time is None else numbers[:, columns.time]
-    if times is not None and columns.unit:
-        times = times * TIME_UNITS[columns.unit]
-    names = None if all(name.isdigit() for name in columns.names) else columns.names
-    return make_keypoints(where, names, values, times=times)
+        return _without_names(table)
+    columns = [column for place in heading.places for column in place]
+    numbers = numbers_of(table, heading.begin, columns, heading.width)
+    values = numbers.reshape(len(numbers), -1, 3)
+    lost = [column for column in heading.confidences if column is not None]
+    if lost:
+        certain = iter(numbers_of(table, heading.begin, lost, heading.width).T)
+        for joint, column in enumerate(heading.confidences):
+            if column is not None:
+                values[next(certain) <= 0, joint] = np.nan
+    times = _times_of(table, heading)
+    return make_keypoints(
+        where,
+        heading.names,
+        values,
+        None if times is not None else heading.rate,
+        times,
+        heading.unit,
+    )
+
+
+def _last_part(table: CellTable) -> CellTable:
+    """Part of a table of Vicon Nexus that has trajectories, below devices and model outputs."""
+    for number, row in enumerate(table.rows):
+        if (
+            number
+            and row
+            and row[0].strip().lower() == "trajectories"
+            and not any(map(str.strip, row[1:]))
+        ):
+            return CellTable(table.rows[number:], table.first + number, table.where)
+    return table
+
+
+def _read_long(table: CellTable, heading: int, xyz: tuple[int, int, int], joint: int) -> Keypoints:
+    """Recording of a table of a row for each joint of each frame."""
+    long = read_long(table, heading, xyz, joint)
+    times = (
+        None if long.instants is None else _instants(long.instants, long.time_unit, table, heading)
+    )
+    return make_keypoints(
+        table.where,
+        long.names,
+        long.values,
+        None if times is not None else rate_above(table, heading),
+        times,
+        unit_above(table, heading),
+        long.remarks,
+    )
+
+
+def _times_of(table: CellTable, heading: Heading) -> Float | None:
+    """Instants of the rows of a table; None where it has none, or nothing stands in the column."""
+    if heading.time is None:
+        return None
+    rows = rows_of(table, heading.begin, heading.width)
+    texts = [row[heading.time] for _, row in rows]
+    return _instants(texts, heading.time_unit, table, heading.begin)
+
+
+def _instants(texts: list[str], unit: str | None, table: CellTable, begin: int) -> Float | None:
+    """Instants of texts: numbers in a unit, dates with times, or times of a clock."""
+    if not any(text.strip() for text in texts):
+        return None
+    if not is_number(texts[0]):
+        seconds = seconds_of_texts(texts)
+        if seconds is not None:
+            return seconds
+    times = np.array([number_of(text, table.place(begin + n)) for n, text in enumerate(texts)])
+    return times * TIME_UNITS[unit] if unit else times
 
 
 def read_trc(data: bytes, where: str) -> Keypoints:
@@ -94,15 +124,15 @@ def read_trc(data: bytes, where: str) -> Keypoints:
     Raises:
         MotionFileError: Names the line and what is odd.
     """
-    lines = _lines(data, where)
+    lines = decode_text(data, where).splitlines()
     if len(lines) < 6 or not lines[0].startswith("PathFileType"):
         raise motion_file_error(where, "is not a TRC file: it should begin with PathFileType")
     keys, texts = lines[1].split(), lines[2].split()
     header = dict(zip(keys, texts, strict=False))
     rate, unit = header.get("DataRate", ""), header.get("Units", "").lower()
-    if not _is_number(rate):
+    if not is_number(rate):
         raise motion_file_error(f"{where}:3", f"DataRate {rate[:30]!r} should be a number")
-    if unit not in TRC_UNITS:
+    if unit not in UNITS:
         raise motion_file_error(f"{where}:3", f"Units {unit[:30]!r} should be m, cm, mm or in")
     names = [name.strip() for name in lines[3].split("\t")[2:] if name.strip()]
     if not 0 < len(names) <= MAX_JOINTS:
@@ -113,105 +143,21 @@ def read_trc(data: bytes, where: str) -> Keypoints:
     rows = [line.rstrip("\r\n").split("\t") for line in lines[first:]]
     width = 2 + 3 * len(names)
     rows = [[*row[:width], *[""] * (width - len(row))] for row in rows]
-    numbers = _numbers(rows, width, where, first + 1)
-    values = numbers[:, 2:].reshape(len(numbers), len(names), 3)
-    return make_keypoints(where, names, values, float(rate), unit=TRC_UNITS[unit])
+    numbers = numbers_of(CellTable(rows, first + 1, where), 0, range(2, width), width)
+    values = numbers.reshape(len(numbers), len(names), 3)
+    return make_keypoints(where, names, values, float(rate), unit=UNITS[unit])
 
 
-def _lines(data: bytes, where: str) -> list[str]:
-    """Lines of a text of bounded length."""
-    if len(data) > MAX_TEXT:
-        raise motion_file_error(where, f"is {len(data)} bytes; should be at most {MAX_TEXT}")
-    if b"\0" in data:
-        raise motion_file_error(where, "is not a text")
-    return data.decode("utf-8", "replace").splitlines()
-
-
-def _find_columns(head: Sequence[str], where: str) -> _Columns:
-    """Columns of the joints that a line of names has.
-
-    Raises:
-        MotionFileError: No joint has x, y and z.
-    """
-    parts: dict[str, dict[str, int]] = {}
-    time, unit = None, None
-    for number, name in enumerate(head):
-        as_time = _TIME.match(name)
-        if as_time:
-            time, unit = number, as_time["unit"] and as_time["unit"].lower()
-            continue
-        matched = _AXIS_LAST.match(name) or _AXIS_FIRST.match(name)
-        if matched and matched["name"].strip(" _.:-"):
-            joint = matched["name"].strip(" _.:-")
-            parts.setdefault(joint, {}).setdefault(matched["axis"].lower(), number)
-    complete = {name: axes for name, axes in parts.items() if set(axes) == set("xyz")}
-    if not complete:
-        pairs = [name for name, axes in parts.items() if {"x", "y"} <= set(axes)]
-        if pairs:
-            raise motion_file_error(
-                where, two_dimensional(f"{pairs[0][:30]} has x and y, but no z")
-            )
-        raise motion_file_error(
-            f"{where}:1",
-            "should name its columns, such as time, nose_x, nose_y, nose_z; it has "
-            + ", ".join(name[:20] for name in head[:8]),
-        )
-    if len(complete) > MAX_JOINTS:
-        raise motion_file_error(where, f"has {len(complete)} joints; should have 1 to {MAX_JOINTS}")
-    places = [(axes["x"], axes["y"], axes["z"]) for axes in complete.values()]
-    matches = [(number, _CONFIDENCE.match(name)) for number, name in enumerate(head)]
-    confidences = {m["name"].strip(" _.:-"): number for number, m in matches if m}
-    return _Columns([*complete], places, time, unit, [confidences.get(name) for name in complete])
-
-
-def _numbers(rows: Sequence[Sequence[str]], width: int, where: str, first: int) -> Float:
-    """Numbers [rows, width] of rows of text, NaN where a cell is empty; empty rows are left out.
-
-    Args:
-        rows: Rows of cells.
-        width: Cells that a row has.
-        where: Name of the file in messages.
-        first: Number of the line of the first row.
-    """
-    numbers: list[Float] = []
-    for line, row in enumerate(rows, first):
-        if not any(cell.strip() for cell in row):
-            continue
-        if len(row) != width:
-            raise motion_file_error(
-                f"{where}:{line}", f"has {len(row)} columns; the line of names has {width}"
-            )
-        try:
-            numbers.append(np.array([float(cell) for cell in row]))
-        except ValueError:
-            numbers.append(np.array([_number(cell, f"{where}:{line}") for cell in row]))
-        if len(numbers) > MAX_FRAMES:
-            raise motion_file_error(where, f"has more than {MAX_FRAMES} frames")
-    return np.array(numbers).reshape(len(numbers), width)
-
-
-def _number(cell: str, place: str) -> float:
-    """Number of a cell; NaN where it is lost, or a word that is no coordinate."""
-    text = cell.strip()
-    if text.lower() in _LOST:
-        return float("nan")
-    try:
-        return float(text)
-    except ValueError:
-        raise motion_file_error(place, f"{text[:30]!r} should be a number") from None
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-def _without_names(numbers: Float, where: str) -> Keypoints:
+def _without_names(table: CellTable) -> Keypoints:
     """Recording of a table without a line of names: columns are x, y, z of each joint."""
-    width = numbers.shape[1]
+    where = table.where
+    begin = next(
+        n
+        for n, row in enumerate(table.rows)
+        if any(c.strip() for c in row) and not row[0].startswith(("#", "%"))
+    )
+    width = len(table.rows[begin])
+    numbers = numbers_of(table, begin, range(width), width)
     if width % 3 == 1:  # the first column is time, or the number of the frame
         first, numbers = numbers[:, 0], numbers[:, 1:]
         is_time = len(first) > 1 and not (np.diff(first) == 1).all()
@@ -222,4 +168,5 @@ def _without_names(numbers: Float, where: str) -> Keypoints:
         raise motion_file_error(
             where, f"has {width} columns without names; should have x, y, z of each joint"
         )
-    return make_keypoints(where, None, numbers.reshape(len(numbers), -1, 3), times=times)
+    rate = None if times is not None else rate_above(table, begin)
+    return make_keypoints(where, None, numbers.reshape(len(numbers), -1, 3), rate, times)

@@ -1,0 +1,74 @@
+"""Tables that laboratories and cameras export: joints of a known walker come back from each."""
+
+from pathlib import Path
+
+import joint_set_errors
+import pytest
+from helpers.poses import COCO, RATE, WALKER, csv_text, names
+from helpers.tables import TABLES, two_lines
+
+from radhar_cli.errors import MotionFileError
+from radhar_cli.motion.files.clip import Clip, make_clip
+from radhar_cli.motion.files.joint_sets import JOINT_SETS
+from radhar_cli.motion.files.reading import read_motion
+
+SETS = ("coco17", "openpose25", "h36m17", "kinect2_25", "smpl24", "blazepose33", "azure32")
+
+
+def clip_of(path: Path, data: bytes) -> Clip:
+    path.write_bytes(data)
+    return make_clip(read_motion(path).recording(path.name))
+
+
+@pytest.mark.parametrize("form", TABLES)
+@pytest.mark.parametrize("key", SETS)
+def test_the_walker_comes_back_from_every_table(form: str, key: str, tmp_path: Path) -> None:
+    suffix, write = TABLES[form]
+    p = joint_set_errors.poses_of(JOINT_SETS[key], WALKER)
+    clip = clip_of(tmp_path / f"x{suffix}", write(p, names(key)))
+    errors = joint_set_errors.joint_errors(WALKER[:, :13], clip.positions[:, :13])
+    assert errors.mean() < 0.03
+    assert errors.max() < 0.07
+    assert clip.rate == pytest.approx(RATE, rel=2e-3)
+    assert clip.remarks == ()
+    assert not clip.bridged
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        ("frame,landmark,x,y\n0,nose,1,2\n", "joints have x and y, but no z: pixels"),
+        (",a,,b,\nF,X,Y,X,Y\n0,1,2,3,4\n", "X and Y, without Z: pixels"),
+        ("scorer\n,,,\nF,X,Y,Z,X,Y,Z\n0,1,2,3,4,5,6\n", r"x\.csv:3: has X, Y, Z; a line above"),
+        ("some words\n1,2,3,4,5,6\n", r"x\.csv:2: has numbers; a line above them should name"),
+        ("frame,joint,x,y,z\n0,nose,1,2,q\n", r"x\.csv:2: 'q' should be a number"),
+        ("id,joint,x,y,z\n1,a,0,0,0\n2,a,0,0,0\n", "has 2 people; should be one: keep the rows"),
+    ],
+)
+def test_what_is_odd_is_said_with_its_line(data: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(MotionFileError, match=message):
+        clip_of(tmp_path / "x.csv", data.encode())
+
+
+def test_joints_that_a_row_calls_lost_are_gaps(tmp_path: Path) -> None:
+    text = TABLES["long of a recorder"][1](COCO, names("coco17")).decode().splitlines()
+    for frame in range(40, 46):
+        row = 1 + 17 * frame + names("coco17").index("left_elbow")
+        text[row] = text[row].replace("Tracked", "NotTracked")
+    del text[1 + 17 * 60 + names("coco17").index("left_knee")]
+    clip = clip_of(tmp_path / "x.csv", "\n".join(text).encode())
+    assert clip.bridged.startswith("2 gaps of up to 0.5 s, 7 frames")
+    assert "left_elbow, left_knee" in clip.bridged
+
+
+def test_encodings(tmp_path: Path) -> None:
+    text = csv_text(COCO, names("coco17"))
+    expected = clip_of(tmp_path / "x.csv", text.encode()).positions
+    for encoding in ("utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "latin-1"):
+        assert (clip_of(tmp_path / "x.csv", text.encode(encoding)).positions == expected).all()
+
+
+def test_only_pixels_of_a_two_line_table(tmp_path: Path) -> None:
+    data = two_lines(COCO, names("coco17")).replace(b",Z", b",C")
+    with pytest.raises(MotionFileError, match="pixels of an image"):
+        clip_of(tmp_path / "x.csv", data)

@@ -49,7 +49,10 @@ def simulate(
     nominal: Nominal = False,
     motion: Annotated[
         Path | None,
-        typer.Option("--motion", help="Motion file that the person follows: .bvh, .npz, ..."),
+        typer.Option(
+            "--motion",
+            help="Motion file that the person follows: .bvh, .npz, ...; or a folder of JSON.",
+        ),
     ] = None,
     up: Annotated[
         str | None, typer.Option(help="With --motion: axis that points up in the file, such as y.")
@@ -214,12 +217,13 @@ def _motion_file_overrides(motion: Path, slug: str) -> list["Override"]:
 
     from radhar_cli.config.reading import Override
     from radhar_cli.errors import ConfigError
-    from radhar_cli.motion.files.reading import SUFFIXES, describe_unknown
+    from radhar_cli.motion.files.reading import describe_unknown, may_be_motion
 
-    if motion.suffix.lower() not in SUFFIXES:
+    is_folder = motion.is_dir()
+    if not (may_be_motion(str(motion)) or is_folder):
         raise ConfigError(f"--motion {motion}: {describe_unknown(motion)}")
     values = {
-        f"classes.{slug}.files": json.dumps([str(motion.absolute())]),
+        f"classes.{slug}.files": json.dumps([str(motion.absolute()) + "/" * is_folder]),
         "activities": json.dumps([slug]),
         f"classes.{slug}.start": "0",
         f"classes.{slug}.playback_speed": "1",

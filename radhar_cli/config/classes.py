@@ -21,7 +21,7 @@ from radhar_cli.config.sequence import BY_ITSELF, SequenceConfig
 from radhar_cli.errors import did_you_mean
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.reading import SUFFIXES, describe_unknown
+from radhar_cli.motion.files.reading import describe_unknown, may_be_motion
 from radhar_cli.motion.files.recording import LONGEST_NAME
 
 FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
@@ -100,7 +100,7 @@ class FilesConfig(Section, Generic[N]):
     @classmethod
     def _require_motion_files(cls, value: dict[str, str]) -> dict[str, str]:
         for path in value:
-            if not path.lower().endswith(SUFFIXES):
+            if not may_be_motion(path):
                 raise value_error(f"{path[:MAX_PATH_LENGTH]}: {describe_unknown(Path(path))}")
             if len(path) > MAX_PATH_LENGTH or "\0" in path:
                 raise value_error(f"should be short paths of motion files, not {path!r}")

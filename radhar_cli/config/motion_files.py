@@ -125,7 +125,7 @@ def keep_used_files(config: Config, slug: str) -> Config:
         if isinstance(files_config, FilesConfig):
             number = (files_config.file or 0) if name == slug else 0
             path, checksum = [*files_config.files.items()][number]
-            full_path = str(Path(config.motion.folder or "", path))
+            full_path = str(Path(config.motion.folder or "", path)) + "/" * path.endswith("/")
             skeleton = files_config.skeleton and str(
                 Path(config.motion.folder or "", files_config.skeleton)
             )

@@ -172,3 +172,18 @@ def test_persons_do_not_share_files(place: Path) -> None:
         scene = draw_scene(config, config.chosen_activities[0], index)
         used[scene.subject].add(scene.config.model_dump()["classes"]["walking"]["file"])
     assert used == {0: {0, 2}, 1: {1}}
+
+
+def test_a_folder_of_frames_is_a_file_of_a_class(tmp_path: Path) -> None:
+    folder = tmp_path / "openpose.out"
+    folder.mkdir()
+    for n in range(3):
+        (folder / f"{n}_keypoints.json").write_text("[]")
+    config = tmp_path / "config.yaml"
+    config.write_text("classes: {wave: {files: [openpose.out/]}}\nactivities: [wave, walking]\n")
+    stored = load_config(config).model_dump()["classes"]["wave"]["files"]
+    assert [*stored] == ["openpose.out/"]
+    assert len(stored["openpose.out/"]) == 64
+    config.write_text("classes: {wave: {files: [openpose.out]}}\nactivities: [wave, walking]\n")
+    with pytest.raises(ConfigError, match="or FOLDER/ of JSON"):
+        load_config(config)

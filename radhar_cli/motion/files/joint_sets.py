@@ -83,8 +83,8 @@ _BLAZEPOSE = (
 )
 _H36M = (
     "Hip|Pelvis|Root RHip RKnee RFoot|RAnkle LHip LKnee LFoot|LAnkle Spine|Torso|Belly "
-    "Thorax|Neck Neck/Nose|Nose|Jaw|Head Head|HeadTop|Site LShoulder LElbow LWrist RShoulder "
-    "RElbow RWrist"
+    "Thorax|Neck Neck/Nose|Nose|Jaw|neck_base|Head Head|HeadTop|Site LShoulder LElbow LWrist "
+    "RShoulder RElbow RWrist"
 )
 _MPI_INF_3DHP = (
     "spine3 spine4 spine2 spine pelvis neck head head_top left_clavicle left_shoulder left_elbow "

@@ -1,40 +1,47 @@
-"""`.json` of poses: frames of joints as MediaPipe's world landmarks, or names and positions.
+"""`.json` and `.jsonl` of poses: frames of joints as trackers and networks write them.
 
-A file is a list of frames, or an object with `frames`, or with `names`, `positions` and `rate`. A
-frame is a list of joints, or an object that holds one (`pose_world_landmarks`, `keypoints_3d`, ...)
-beside its `time`. A joint is [x, y, z], or an object with x, y and z. null is a lost frame.
+A file is a list of frames, or an object with `frames`, or with `names`, `positions` and `rate`, or
+{instant or number: frame}, or {joint: its positions}; `.jsonl` has a frame a line. Of a folder,
+each file is a frame. What a frame is, `json_bodies` says.
 """
 
 import json
+import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from radhar_cli.motion.files.instants import seconds_of_texts
+from radhar_cli.motion.files.json_bodies import (
+    BODIES,
+    IMAGE,
+    JOINTS,
+    NORMALISED,
+    JsonBody,
+    JsonFrame,
+    is_real,
+    lower_keys,
+    read_frame,
+)
 from radhar_cli.motion.files.keypoints import TIME_UNITS, Keypoints, make_keypoints
-from radhar_cli.motion.files.position_arrays import shape_positions, two_dimensional
+from radhar_cli.motion.files.position_arrays import shape_positions
 from radhar_cli.motion.files.recording import MAX_FRAMES, MAX_JOINTS, RATES, motion_file_error
+from radhar_cli.motion.files.text_cells import decode_text
 from radhar_cli.numerics.arrays import Float
 
 MAX_JSON = 2**25  # bytes
-_WORLD = ("pose_world_landmarks", "poseworldlandmarks", "world_landmarks", "worldlandmarks")
-_JOINTS = (
-    *_WORLD,
-    *("keypoints_3d", "keypoints3d", "pose_keypoints_3d", "joints_3d", "joints3d", "pose_3d"),
-    *("positions", "joint_positions", "joints", "keypoint", "keypoints", "skeleton", "xyz"),
-)
-_IMAGE = ("landmarks", "pose_landmarks", "poselandmarks", "keypoints_2d", "pose_keypoints_2d")
-_FRAMES = ("frames", "poses", "data", "results")
+OFTEN = 0.5  # share of the frames of the main body from which another one is a second person
+_FRAMES = ("frames", "poses", "data", "results", "instance_info", "annotations", "sequence")
 _RATES = ("rate", "rate_hz", "fps", "frame_rate", "framerate")
-_TIMES = ("time", "timestamp", "t", "times", "timestamps")
-_NAMES = ("names", "joint_names", "keypoint_names")
-NORMALISED = (
-    "has landmarks of an image, which lie from 0 to 1 and have no scale in depth; write "
-    "pose_world_landmarks, which are in m"
-)
+_NAMES = ("names", "joint_names", "keypoint_names", "jointnames", "keypoints_name")
+_OF_ALL = ("meta_info", "metadata", "meta", "info", "header")  # objects that say the rate or names
+_FRAME_KEY = re.compile(r"^\D{0,30}\d+\D{0,12}$")
 ONE_FRAME = (
-    "is one frame of CMU Panoptic; make one file of all: frames = [json.load(open(f)) for f in "
-    "sorted(glob.glob('FOLDER/*.json'))]; json.dump(frames, open('clip.json', 'w'))"
+    "is one frame of several; name the folder of all instead (--motion FOLDER, files: [FOLDER/]), "
+    "or make one file: frames = [json.load(open(f)) for f in sorted(glob.glob('FOLDER/*.json'))]; "
+    "json.dump(frames, open('clip.json', 'w'))"
 )
 
 
@@ -49,87 +56,194 @@ def read_json_poses(data: bytes, where: str) -> Keypoints:
         MotionFileError: Names the file and what is missing or odd; pixels are refused.
     """
     document = _parse(data, where)
-    names, rate = None, None
+    names, rate, times = None, None, None
     if isinstance(document, dict):
-        keys = _lower(document)
-        if "people" in keys:
-            raise motion_file_error(where, _of_openpose(keys["people"]))
-        if "bodies" in keys:
-            raise motion_file_error(where, ONE_FRAME)
+        keys = lower_keys(document)
+        for key in (*_OF_ALL, "categories"):
+            value = keys.get(key)
+            value = value[0] if isinstance(value, list) and value else value
+            keys = {**lower_keys(value), **keys} if isinstance(value, dict) else keys
         names, rate = _names(keys, where), _rate(keys, where)
-        series = next((keys[key] for key in (*_FRAMES, *_JOINTS) if key in keys), None)
-        if series is None and any(key in keys for key in _IMAGE):
-            raise motion_file_error(where, NORMALISED)
-        times = next((keys[key] for key in ("times", "timestamps") if key in keys), None)
-    else:
-        series, times = document, None
-    if not isinstance(series, list) or not series:
+        document, times = _frames_of(document, keys, where)
+    if not isinstance(document, list) or not document:
         raise motion_file_error(
             where, "should be a list of frames, or an object with names, positions and rate"
         )
-    if len(series) > MAX_FRAMES:
-        raise motion_file_error(where, f"has {len(series)} frames; should have 1 to {MAX_FRAMES}")
-    return _recording(series, times, names, rate, where)
+    if len(document) > MAX_FRAMES:
+        raise motion_file_error(where, f"has {len(document)} frames; should have 1 to {MAX_FRAMES}")
+    return _recording(document, times, names, rate, where)
+
+
+def _frames_of(document: Mapping[str, Any], keys: Mapping[str, Any], where: str) -> tuple[Any, Any]:
+    """Frames of an object, and their instants where it has them apart."""
+    times = next((keys[key] for key in ("times", "timestamps") if key in keys), None)
+    for key in (*_FRAMES, *JOINTS):
+        value = keys.get(key)
+        if isinstance(value, list) and not (key == "joints" and _is_texts(value)):
+            if key in JOINTS and _is_flat(value):
+                break
+            return value, times
+        if isinstance(value, dict) and key in _FRAMES:
+            return _frames_of(value, lower_keys(value), where)
+    by_joint = _frames_by_joint(document)
+    if by_joint is not None:
+        return by_joint, times
+    if all(_FRAME_KEY.match(key) for key in document) and len(document) > 1:
+        instants = [*document] if all(key.isdigit() for key in document) else None
+        are_instants = instants is not None and len(instants[0]) > 9
+        return [*document.values()], [int(key) for key in document] if are_instants else times
+    if any(key in keys for key in (*BODIES, *JOINTS)):
+        read_frame(document, where)  # which refuses pixels
+        raise motion_file_error(where, ONE_FRAME)
+    if any(key in keys for key in IMAGE):
+        raise motion_file_error(where, NORMALISED)
+    return None, None
+
+
+def _is_texts(values: list[Any]) -> bool:
+    return bool(values) and all(isinstance(value, str) for value in values)
+
+
+def _is_flat(values: list[Any]) -> bool:
+    """Whether joints are those of one frame: numbers, or joints as [x, y, z] or objects."""
+    first = values[0] if values else None
+    if isinstance(first, dict):
+        return not any(key in lower_keys(first) for key in JOINTS)
+    return is_real(first) or (isinstance(first, list) and bool(first) and is_real(first[0]))
+
+
+def _frames_by_joint(document: Mapping[str, Any]) -> list[dict[str, Any]] | None:
+    """Frames of {joint: [x, y, z] of each frame}, or {joint: {x: [...], y: ..., z: ...}}, if so."""
+    series = dict[str, list[Any]]()
+    for name, value in document.items():
+        if isinstance(value, dict) and {"x", "y", "z"} <= set(keys := lower_keys(value)):
+            axes = [keys[axis] for axis in "xyz"]
+            if all(isinstance(axis, list) and len(axis) == len(axes[0]) for axis in axes):
+                series[name] = [[*xyz] for xyz in zip(*axes, strict=True)]
+        elif isinstance(value, list) and value and _is_triple(value[0]):
+            series[name] = value
+    lengths = {len(value) for value in series.values()}
+    if len(series) < 5 or len(lengths) != 1 or lengths.pop() < 2:
+        return None
+    return [dict(zip(series, joints, strict=True)) for joints in zip(*series.values(), strict=True)]
+
+
+def _is_triple(value: Any) -> bool:
+    return isinstance(value, list) and len(value) == 3 and all(map(is_real, value))
 
 
 def _recording(
     series: Sequence[Any], times: Any, names: list[str] | None, rate: float | None, where: str
 ) -> Keypoints:
     """Recording of frames as JSON has them."""
-    frames, instants, unit = list[Float | None](), list[Any](), None
-    for number, frame in enumerate(series, 1):
-        place = f"{where}: frame {number}"
-        joints, instant, unit_here, own_names = _read_frame(frame, place)
-        names, unit = names or own_names, unit or unit_here
-        instants.append(instant)
-        frames.append(joints)
-    known = [joints for joints in frames if joints is not None]
+    frames = [read_frame(frame, f"{where}: frame {n}") for n, frame in enumerate(series, 1)]
+    bodies, remarks = _choose_body(frames, where)
+    known = [body for body in bodies if body is not None]
     if not known:
         raise motion_file_error(where, "has no joints in any frame")
-    shape = known[0].shape
-    for number, joints in enumerate(frames, 1):
-        if joints is not None and joints.shape != shape:
+    shape = known[0].joints.shape
+    for number, body in enumerate(bodies, 1):
+        if body is not None and body.joints.shape != shape:
             raise motion_file_error(
-                f"{where}: frame {number}", f"has {len(joints)} joints; others have {shape[0]}"
+                f"{where}: frame {number}",
+                f"has {len(body.joints)} joints; others have {shape[0]}",
             )
     lost = np.full(shape, np.nan)
-    values = np.stack([lost if joints is None else joints for joints in frames])
-    clock = times if times is not None else instants if None not in instants else None
-    seconds = None if clock is None or rate is not None else _instants(clock, where)
-    if seconds is not None and unit is not None:
-        seconds = seconds * TIME_UNITS[unit]
-    return make_keypoints(where, names, shape_positions(values, names, where), rate, seconds)
+    values = np.stack([lost if body is None else body.joints for body in bodies])
+    names = next((body.names for body in known if body.names), names)
+    if names is not None and len(names) != shape[0]:
+        names = None
+    unit = next((frame.time_unit for frame in frames if frame.time_unit), None)
+    seconds = None if rate is not None else _seconds(times, frames, unit, where)
+    values = shape_positions(values, names, where)
+    return make_keypoints(where, names, values, rate, seconds, remarks=remarks)
+
+
+def _choose_body(
+    frames: Sequence[JsonFrame], where: str
+) -> tuple[list[JsonBody | None], tuple[str, ...]]:
+    """Bodies [frames] of the person who is there in most frames, and a remark where others are.
+
+    Raises:
+        MotionFileError: Another person is there in more than half as many.
+    """
+    counts = Counter(
+        body.identity or str(n) for frame in frames for n, body in enumerate(frame.bodies)
+    )
+    if not counts:
+        return [None] * len(frames), ()
+    (first, frequency), *others = counts.most_common()
+    if max((len(frame.bodies) for frame in frames), default=0) < 2:
+        return [frame.bodies[0] if frame.bodies else None for frame in frames], ()
+    often = [name for name, count in others if count > OFTEN * frequency]
+    if often:
+        number = next(n for n, frame in enumerate(frames, 1) if len(frame.bodies) > 1)
+        raise motion_file_error(
+            f"{where}: frame {number}",
+            f"has {len(frames[number - 1].bodies)} people; should be one: keep the body of one "
+            "identity in each frame",
+        )
+    chosen = [
+        next((b for n, b in enumerate(f.bodies) if (b.identity or str(n)) == first), None)
+        for f in frames
+    ]
+    return chosen, (f"of {len(counts)} bodies the one is taken that is there in most frames",)
+
+
+def _seconds(times: Any, frames: Sequence[JsonFrame], unit: str | None, where: str) -> Float | None:
+    """Instants [frames] in s, or in a unit that a camera's rate tells; None without any."""
+    if times is not None:
+        if not isinstance(times, list) or not all(map(is_real, times)):
+            raise motion_file_error(where, "times should be numbers, one a frame")
+        return np.array(times, dtype=float)
+    instants = [frame.instant for frame in frames]
+    if all(isinstance(instant, str) for instant in instants):
+        texts = [str(instant) for instant in instants]
+        if not all(re.fullmatch(r"\s*\d+(\.\d+)?\s*", text) for text in texts):
+            return seconds_of_texts(texts)
+        instants = [float(text) for text in texts]
+    if not all(map(is_real, instants)):
+        return None
+    seconds = np.array(instants, dtype=float)
+    return seconds if unit is None else (seconds - seconds[0]) * TIME_UNITS[unit]
 
 
 def _parse(data: bytes, where: str) -> Any:
-    """Value of a JSON text of bounded length."""
+    """Value of a JSON text of bounded length; a list where each line is one."""
     if len(data) > MAX_JSON:
         raise motion_file_error(where, f"is {len(data)} bytes; should be at most {MAX_JSON}")
+    text = decode_text(data, where)
     try:
-        return json.loads(data)
+        return json.loads(text)
     except (ValueError, RecursionError) as error:
+        lines = [line for line in text.splitlines() if line.strip()]
+        if len(lines) > 1 and lines[0].rstrip().endswith(("}", "]")):
+            return _parse_lines(lines, where)
         reason = str(error).splitlines()[0][:120] if str(error) else "damaged"
         raise motion_file_error(where, f"is not JSON ({reason})") from None
 
 
-def _lower(document: Mapping[str, Any]) -> dict[str, Any]:
-    return {key.lower(): value for key, value in document.items()}
-
-
-def _of_openpose(people: Any) -> str:
-    """What to say of a frame of OpenPose, which has pixels unless it has 3-D joints."""
-    frames = people if isinstance(people, list) else []
-    has_3d = any(isinstance(p, dict) and p.get("pose_keypoints_3d") for p in frames)
-    if has_3d:
-        return (
-            "is one frame of OpenPose with 3-D joints; write those of all frames into one npz: "
-            "names, positions [frames, 25, 3], rate"
-        )
-    return two_dimensional("is a frame of OpenPose with pose_keypoints_2d")
+def _parse_lines(lines: Sequence[str], where: str) -> list[Any]:
+    """Values of lines that are JSON each."""
+    values = []
+    for number, line in enumerate(lines, 1):
+        try:
+            values.append(json.loads(line))
+        except (ValueError, RecursionError):
+            raise motion_file_error(f"{where}:{number}", "is not JSON") from None
+    return values
 
 
 def _names(keys: Mapping[str, Any], where: str) -> list[str] | None:
     """Names of the joints that a document has."""
+    by_number = keys.get("keypoint_id2name")
+    if isinstance(by_number, dict) and _is_texts([*by_number.values()]):
+        numbered = sorted(
+            by_number.items(), key=lambda pair: int(pair[0]) if pair[0].isdigit() else 0
+        )
+        return [name for _, name in numbered][:MAX_JOINTS]
+    if isinstance(keys.get("keypoints"), list) and _is_texts(keys["keypoints"]):
+        return list(keys["keypoints"][:MAX_JOINTS])
     names = next((keys[key] for key in _NAMES if key in keys), None)
     if names is None:
         return None
@@ -150,110 +264,3 @@ def _rate(keys: Mapping[str, Any], where: str) -> float | None:
             where, f"{key} should be one number of {RATES[0]:g} to {RATES[1]:g} Hz"
         )
     return float(rate)
-
-
-def _instants(times: Any, where: str) -> Float:
-    """Instants [frames] of a list of numbers."""
-    if not isinstance(times, list) or not all(_is_number(time) for time in times):
-        raise motion_file_error(where, "times should be numbers, one a frame")
-    return np.array(times, dtype=float)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and abs(value) < 1e300
-
-
-def _read_frame(frame: Any, place: str) -> tuple[Float | None, Any, str | None, list[str] | None]:
-    """Joints [J, 3 or 4] of a frame, its time and that time's unit, and names of the joints."""
-    if frame is None or frame == []:
-        return None, None, None, None
-    instant, unit = None, None
-    if isinstance(frame, dict):
-        keys = _lower(frame)
-        if "people" in keys:
-            raise motion_file_error(place, _of_openpose(keys["people"]))
-        keys = _of_panoptic(keys, place)
-        for key in _TIMES:
-            for ending in ("", *(f"_{unit}" for unit in TIME_UNITS)):
-                if instant is None and _is_number(keys.get(key + ending)):
-                    instant, unit = keys[key + ending], ending[1:] or None
-        joints = next((keys[key] for key in _JOINTS if key in keys), _NOTHING)
-        if joints is _NOTHING:
-            if any(key in keys for key in _IMAGE):
-                raise motion_file_error(place, NORMALISED)
-            joints = frame if _is_joint(next(iter(frame.values()), None)) else _NOTHING
-        if joints is _NOTHING:
-            raise motion_file_error(place, "should have its joints as pose_world_landmarks")
-        frame = joints
-    positions, names = _read_joints(frame, place)
-    return positions, instant, unit, names
-
-
-_NOTHING = object()
-
-
-def _of_panoptic(keys: dict[str, Any], place: str) -> dict[str, Any]:
-    """Keys of a frame of CMU Panoptic with its only body's joints [19][4] as `joints`.
-
-    Raises:
-        MotionFileError: It has several bodies.
-    """
-    bodies = keys.get("bodies")
-    if not isinstance(bodies, list):
-        return keys
-    if len(bodies) > 1:
-        raise motion_file_error(place, f"has {len(bodies)} people; should be one")
-    body = _lower(bodies[0]) if bodies and isinstance(bodies[0], dict) else {}
-    flat = next((body[key] for key in ("joints19", "joints15", "joints26") if key in body), None)
-    rows = [flat[n : n + 4] for n in range(0, len(flat), 4)] if isinstance(flat, list) else []
-    instant = {"timestamp_ms": keys["univtime"]} if "univtime" in keys else {}
-    return {**keys, **instant, "joints": [None if row[-1:] == [-1] else row for row in rows]}
-
-
-def _is_joint(value: Any) -> bool:
-    """Whether a value has three coordinates."""
-    if isinstance(value, dict):
-        return {"x", "y", "z"} <= {str(key).lower() for key in value}
-    return isinstance(value, list) and len(value) in (3, 4) and all(map(_is_number, value))
-
-
-def _read_joints(joints: Any, place: str) -> tuple[Float | None, list[str] | None]:
-    """Positions [J, 3 or 4] of joints, and their names where they have them."""
-    names = None
-    if isinstance(joints, dict):
-        names, joints = [str(name) for name in joints], [*joints.values()]
-    if not joints:
-        return None, None
-    if isinstance(joints, list) and isinstance(joints[0], list) and len(joints) == 1:
-        joints = joints[0]  # of one person, in a list of people
-        if not joints:
-            return None, None
-    if not isinstance(joints, list) or len(joints) > MAX_JOINTS:
-        raise motion_file_error(place, f"joints should be a list of 1 to {MAX_JOINTS}")
-    if all(_is_number(value) for value in joints) and len(joints) % 3 == 0:
-        return np.array(joints, dtype=float).reshape(-1, 3), names
-    if names is None and all(isinstance(joint, dict) and "name" in joint for joint in joints):
-        names = [str(joint["name"]) for joint in joints]
-    return np.array([_read_joint(joint, place) for joint in joints], dtype=float), names
-
-
-def _read_joint(joint: Any, place: str) -> list[float]:
-    """Coordinates of a joint; NaN where it is null."""
-    if joint is None:
-        return [float("nan")] * 3
-    if isinstance(joint, dict):
-        keys = _lower(joint)
-        if any(keys.get(key, 1) == 0 for key in ("visibility", "confidence", "score")):
-            return [float("nan")] * 3
-        joint = [keys.get(axis) for axis in "xyz"]
-        if joint[2] is None and None not in joint[:2]:
-            raise motion_file_error(place, two_dimensional("a joint has x and y, but no z"))
-    if isinstance(joint, list) and len(joint) == 2:
-        raise motion_file_error(place, two_dimensional("a joint has two coordinates"))
-    if not isinstance(joint, list) or len(joint) not in (3, 4):
-        raise motion_file_error(place, "a joint should be [x, y, z], or have x, y and z")
-    if not all(value is None or _is_number(value) for value in joint):
-        raise motion_file_error(place, "coordinates should be numbers")
-    if len(joint) == 4 and joint[3] == 0:  # a confidence
-        return [float("nan")] * 3
-    return [float("nan") if value is None else float(value) for value in joint[:3]]

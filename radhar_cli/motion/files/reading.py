@@ -10,6 +10,7 @@ from radhar_cli.files.untrusted import refuse_outside, regular_size
 from radhar_cli.motion.files.amc import MAX_SKELETON, read_amc
 from radhar_cli.motion.files.bvh import read_bvh
 from radhar_cli.motion.files.c3d import read_c3d
+from radhar_cli.motion.files.frame_folders import read_frame_folder
 from radhar_cli.motion.files.json_poses import read_json_poses
 from radhar_cli.motion.files.npz import read_npy, read_npz
 from radhar_cli.motion.files.ntu_skeleton import read_ntu_skeleton
@@ -25,6 +26,8 @@ _READERS: dict[str, Callable[[bytes, str], MotionRecording]] = {
     ".tsv": read_table,
     ".txt": read_table,
     ".json": read_json_poses,
+    ".jsonl": read_json_poses,
+    ".ndjson": read_json_poses,
     ".trc": read_trc,
     ".c3d": read_c3d,
     ".skeleton": read_ntu_skeleton,
@@ -48,7 +51,12 @@ WRITE_NPZ = "np.savez('clip.npz', names=[...], positions=p, rate=30), p [frames,
 def describe_unknown(path: Path) -> str:
     """What to say of a file of a kind that is not read: what is, and how to get there."""
     advice = ADVICE.get(path.suffix.lower(), f"others by three lines of NumPy: {WRITE_NPZ}")
-    return f"should be paths of {', '.join(SUFFIXES)} files; {advice}"
+    return f"should be paths of {', '.join(SUFFIXES)} files, or FOLDER/ of JSON; {advice}"
+
+
+def may_be_motion(path: str) -> bool:
+    """Whether a path is that of a motion file, or with a slash at its end of a folder of frames."""
+    return path.lower().endswith((*SUFFIXES, "/"))
 
 
 class MotionBytes(NamedTuple):
@@ -78,14 +86,15 @@ class MotionBytes(NamedTuple):
         where = where or str(self.path)
         if self.skeleton:
             return read_amc(self.data, where, self.skeleton[1], str(self.skeleton[0]))
-        return _READERS[self.path.suffix.lower()](self.data, where)
+        reader = _READERS.get(self.path.suffix.lower(), read_json_poses)  # of a folder
+        return reader(self.data, where)
 
 
 def read_motion(path: Path, skeleton: Path | None = None) -> MotionBytes:
     """Read the bytes of a motion file.
 
     Args:
-        path: The file, of one of SUFFIXES.
+        path: The file, of one of SUFFIXES, or a folder of JSON files, each of a frame.
         skeleton: ASF of an AMC; None looks for it beside the file.
 
     Raises:
@@ -93,6 +102,8 @@ def read_motion(path: Path, skeleton: Path | None = None) -> MotionBytes:
         FolderError: The skeleton is a link that leads elsewhere.
     """
     suffix = path.suffix.lower()
+    if path.is_dir():
+        return MotionBytes(path, read_frame_folder(path), None)
     if suffix not in SUFFIXES:
         raise motion_file_error(str(path), describe_unknown(path))
     data = _read_bytes(path, MAX_BYTES)

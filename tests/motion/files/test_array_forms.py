@@ -218,5 +218,5 @@ def test_frames_of_panoptic_are_read_as_a_list(tmp_path: Path) -> None:
     ]
     clip = clip_of(tmp_path / "x.json", json.dumps(frames).encode())
     assert largest_error(clip) < 0.01
-    with pytest.raises(MotionFileError, match=r"one frame of CMU Panoptic; .*json\.dump\(frames"):
+    with pytest.raises(MotionFileError, match=r"one frame of several; .*json\.dump\(frames"):
         clip_of(tmp_path / "y.json", json.dumps(frames[0]).encode())

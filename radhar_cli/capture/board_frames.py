@@ -8,7 +8,7 @@ import numpy as np
 
 from radhar_cli.assembly.radar import board_of
 from radhar_cli.capture.chain import even_columns, part_of
-from radhar_cli.capture.content import Beat, describe_difference
+from radhar_cli.capture.content import describe_other_chirps
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS
@@ -111,7 +111,7 @@ def _board(recording: Recording, config: Config) -> Board:
             f"{recording.path}: frames need a radar that has them: radar.cfg or radar.frame"
         )
     board, info = board_of(radar), recording.info
-    difference = describe_difference(info.content, Beat(timing_of(board)))
+    difference = describe_other_chirps(info.content, timing_of(board))
     if info.receivers != board.channels:
         difference = f"receivers = {info.receivers}: should be {board.channels}"
     if difference is not None:

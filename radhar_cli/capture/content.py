@@ -157,6 +157,20 @@ def describe_difference(
     return None
 
 
+def describe_other_chirps(
+    content: Content, timing: FmcwTiming, tolerance: float = TOLERANCE
+) -> str | None:
+    """Say in what a content differs from chirps, in whichever half of the band its echoes lie.
+
+    Args:
+        content: content of a recording.
+        timing: chirps that it should have.
+        tolerance: relative difference of numbers that are taken for the same.
+    """
+    is_whole = isinstance(content, Beat) and content.is_whole
+    return describe_difference(content, Beat(timing, is_whole), tolerance)
+
+
 def radar_section(radar: dict[str, Any], content: Content) -> dict[str, Any]:
     """Replace keys of a config's section `radar` by those of the radar that was recorded.
 

@@ -10,7 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.capture.content import Beat, Content, RangeProfiles, SlowTime, describe_difference
+from radhar_cli.capture.content import (
+    Beat,
+    Content,
+    RangeProfiles,
+    SlowTime,
+    describe_other_chirps,
+)
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import nominal
@@ -25,6 +31,7 @@ from radhar_cli.config.radar import (
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.errors import CaptureError, did_you_mean
 from radhar_cli.radar.fmcw_timing import FmcwTiming
+from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.pulse_times import PulseTimes
 
 TOLERANCE = 1e-3  # relative difference of the numbers of one radar, as clocks differ
@@ -277,7 +284,7 @@ def _board(recording: Recording, note: Mapping[str, Any]) -> dict[str, Any]:
             "'radar.array={tx: [[0,0]], rx: [[0,0],[1,0]]}' with the places of all, [left, up] in "
             "half wavelengths"
         )
-    radar = validated(Config, {"radar": section, "maps": ["stft"]}, where, {}).radar
+    radar = read_radar(section, where)
     assert isinstance(radar, ArrayRadar)
     header = radar.header
     timing = FmcwTiming(
@@ -287,7 +294,7 @@ def _board(recording: Recording, note: Mapping[str, Any]) -> dict[str, Any]:
         header.samples,
         header.prf_hz,
     )
-    difference = describe_difference(recording.info.content, Beat(timing), TOLERANCE)
+    difference = describe_other_chirps(recording.info.content, timing, TOLERANCE)
     channels = len(header.order) * len(header.receivers)
     if recording.info.receivers != channels:
         difference = f"receivers = {recording.info.receivers}: should be {channels}"
@@ -297,6 +304,27 @@ def _board(recording: Recording, note: Mapping[str, Any]) -> dict[str, Any]:
     if difference is not None:
         raise CaptureError(f"{where}: {difference}, as the .cfg of the import has it")
     return section
+
+
+def read_radar(section: Mapping[str, Any], where: str = "radar") -> AnyRadar[Any]:
+    """Read a section `radar` of a config.
+
+    Raises:
+        ConfigError: it cannot be used; `where` names its file.
+    """
+    maps = ["rtm"] if section.get("output") == "rf" else ["stft"]
+    return validated(Config, {"radar": dict(section), "maps": maps}, where, {}).radar
+
+
+def has_beam(radar: AnyRadar[Any]) -> bool:
+    """Whether the antennas of a radar take a part of what comes from beside their boresight."""
+    return isinstance(radar, ArrayRadar) or getattr(radar, "beam", None) is not None
+
+
+def keeps_whole_band(section: Mapping[str, Any]) -> bool:
+    """Whether the radar of a section has ranges in both halves of the band of its samples."""
+    radar = read_radar(section)
+    return isinstance(radar, ArrayRadar) and radar.header.sampling is Sampling.COMPLEX
 
 
 def place_of(radar: AnyRadar[Any]) -> float:

@@ -3,12 +3,13 @@
 A receiver's noise is the floor of its range-Doppler maps; the person is what moves above it. With
 range bins S_k = sum_n s[n] exp(...) of N samples, white noise of variance sigma^2 has
 |S_k|^2 = N sigma^2 and a path of amplitude A has sum_k |S_k|^2 = N^2 A^2: SNR = P_s/sigma^2 as in
-model.md. Samples of a profile are bins as they are, and a pulse is spread over sum_k g(t_k)^2 of
-them, g being its envelope; slow time has a bin.
+model.md, A being the amplitude as received, behind the antennas' beam. Samples of a profile are
+bins as they are, and a pulse is spread over sum_k g(t_k)^2 of them, g being its envelope; slow time
+has a bin.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi, sqrt
 from pathlib import Path
@@ -16,6 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.fft
+from scipy.special import gammaincinv
 
 from radhar_cli.capture.chain import (
     RecordingPart,
@@ -28,8 +30,11 @@ from radhar_cli.capture.content import Beat, Content, SlowTime
 from radhar_cli.capture.fitted_radar import (
     differing_key,
     frames_in,
+    has_beam,
+    keeps_whole_band,
     place_of,
     radar_of_recording,
+    read_radar,
 )
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import WINDOW_S, hann_in_range, track_torso, without_static
@@ -124,12 +129,14 @@ class Fit:
             "radar": dict(self.radar),
             "snr_db": {"normal": [middle, spread]} if spread > 0 else middle,
         }
+        radar = read_radar(self.radar)
+        if has_beam(radar):  # which has taken its part of the measured echo
+            document["snr_reference"] = "received"
         if self.radar.get("output") == "rf":  # whose real samples have no other map as they are
             document["maps"] = ["rtm"]
         ranges = np.concatenate([part.ranges for part in self.parts])
         if ranges.size:
-            antennas = place_of(validated(Config, document, "radar", {}).radar)
-            low, high = (np.percentile(ranges, [5, 95]) + antennas).round(2).tolist()
+            low, high = (np.percentile(ranges, [5, 95]) + place_of(radar)).round(2).tolist()
             distance: Any = {"uniform": [low, high]} if high > low else low
             document["motion"] = {"place": {"range_m": distance}}
         return with_overrides(document, self.overrides)
@@ -149,11 +156,12 @@ def fit(paths: Sequence[Path], overrides: Sequence[str] = ()) -> Fit:
         ConfigError: an override cannot be used.
     """
     radar, seconds = _common_radar(paths, overrides)
-    parts = [part for path in paths for part in parts_of(path)]
+    is_whole = keeps_whole_band(radar)
+    parts = [part for path in paths for part in parts_of(path, is_whole)]
     if not any(np.isfinite(part.snr_db) for part in parts):
         raise CaptureError(f"{paths[0]}: nobody moves faster than {SLOW_MPS} m/s in any recording")
     others = [text for text in overrides if not text.strip().startswith("radar.")]
-    fitted = Fit(parts, radar, _ranges_of(paths[0]), seconds, others)
+    fitted = Fit(parts, radar, _ranges_of(paths[0], is_whole), seconds, others)
     validated(Config, fitted.document, str(paths[0]), {})
     return fitted
 
@@ -186,30 +194,47 @@ def _seconds_of(segments: PulseTimes) -> float:
     return float(segments.start[-1] - segments.start[0]) + frames.period_s
 
 
-def _ranges_of(path: Path) -> Float | None:
+def _ranges_of(path: Path, is_whole: bool) -> Float | None:
     """Ranges of the bins of a recording [K], m; None of slow time."""
     with Recording(path) as recording:
         if isinstance(recording.info.content, SlowTime):
             return None
-        return recording.info.waveform().range_axis()
+        content = recording.info.ranging
+        if is_whole and isinstance(content, Beat):
+            content = replace(content, is_whole=True)
+        return content.waveform(1.0).range_axis()
 
 
-def parts_of(path: Path) -> Iterator[Estimates]:
+def parts_of(path: Path, is_whole: bool = False) -> Iterator[Estimates]:
     """Yield estimates from parts of about PART_S, at most MAX_PARTS, spread over a recording.
 
     Parts without noise, or without a complete pulse, are left out.
+
+    Args:
+        path: the recording.
+        is_whole: whether the radar has ranges in both halves of the band, whatever the import
+            found.
     """
     with Recording(path) as recording:
         content, length = recording.info.content, recording.segments.duration
+        if is_whole and isinstance(content, Beat):
+            content = replace(content, is_whole=True)
         cells = DopplerCells.of_content(content, recording.samples.parts == 2)
         count = min(max(int(length / PART_S), 1), MAX_PARTS)
         for start in np.linspace(0, max(length - PART_S, 0), count).tolist():
-            part = part_of(recording, start, min(start + PART_S, length), receiver=0)
+            part = part_of(recording, start, min(start + PART_S, length))
+            part = replace(part, receivers=_first_receivers(recording))
             if part.lost.all():
                 continue
             estimates = _part(without_static(_bins(part, cells)), part.segments, cells)
             if estimates.noise > 0:
                 yield estimates
+
+
+def _first_receivers(recording: Recording) -> list[int]:
+    """Numbers of the first receiver of each transmitter, whose powers may differ."""
+    delays = recording.info.receiver_delay_s
+    return [number for number, delay in enumerate(delays) if delay not in delays[:number]]
 
 
 @dataclass(frozen=True)
@@ -248,27 +273,29 @@ class DopplerCells:
 
 
 def _bins(part: RecordingPart, cells: DopplerCells) -> Complex:
-    """Range bins [K, M] of a part of one receiver, real profiles as analytic ones."""
+    """Range bins [receiver, K, M] of a part, real profiles as analytic ones."""
     if cells.waveform is None:
         samples = slow_time_of_part(part)
     else:
         samples = bins_of_part(part, part.recording.info.ranging, cells.waveform)
-    bins: Complex = (analytic(samples) if cells.is_real else samples)[0]
-    return bins
+    return analytic(samples) if cells.is_real else samples
 
 
 def _part(moving: Complex, segments: PulseTimes, cells: DopplerCells) -> Estimates:
-    """Estimate SNR, ranges and floor from range bins [K, M] with static echoes removed."""
+    """Estimate SNR, ranges and floor from range bins [receiver, K, M] without static echoes."""
     maps, middle, window_power = _range_doppler(moving, segments, cells)
     length, white = maps.shape[2], cells.noise * window_power
-    # |.|^2 of noise is exponential; the lower quartile of a frame contains little of the person,
-    # and the median over frames little of those in which a person fills the bin.
+    # The mean of |.|^2 of noise over R receivers has a gamma distribution. The lower quartile of a
+    # frame contains little of the person, and the median over frames little of those in which a
+    # person fills the bin.
     floor = np.median(np.quantile(maps, QUARTILE, axis=2), axis=0)
-    nobody = Estimates(np.nan, np.empty(0), floor / (-np.log(1 - QUARTILE) * white))
+    receivers = len(moving)
+    quartile = float(gammaincinv(receivers, QUARTILE)) / receivers
+    nobody = Estimates(np.nan, np.empty(0), floor / (quartile * white))
     near = np.ones(maps.shape[:2], bool)
     ranges: Float = np.empty(0)
     if cells.waveform is not None:
-        track = track_torso(moving[None], segments, cells.waveform)
+        track = track_torso(moving, segments, cells.waveform)
         if track is None:
             return nobody
         of_frame = track.range_at(segments.times(middle))[:, None]
@@ -277,7 +304,8 @@ def _part(moving: Complex, segments: PulseTimes, cells: DopplerCells) -> Estimat
         ranges = track.range[track.confidence >= SURE]
     if not nobody.noise > 0:
         return nobody
-    # Curtains and fans move slowly, and would be mistaken for a person.
+    # Curtains and fans move slowly, and would be mistaken for a person; where pulses are too few
+    # per second to show it, all that moves counts.
     slowest_hz = (
         SLOW_MPS * 2 * cells.f0 / SPEED_OF_LIGHT + 2 * cells.prf / length
     )  # beside Hann's main lobe
@@ -285,7 +313,8 @@ def _part(moving: Complex, segments: PulseTimes, cells: DopplerCells) -> Estimat
     cell = nobody.noise * white
     signal = _power_near(maps.sum(axis=2), near, cell * length)
     fast_signal = _power_near(maps[:, :, fast].sum(axis=2), near, cell * np.count_nonzero(fast))
-    if not (signal > 0 and fast_signal > FAST_SHARE * signal):
+    is_fast = not fast.any() or fast_signal > FAST_SHARE * signal
+    if not (signal > 0 and is_fast):
         return nobody
     snr = signal / (length * window_power * cells.signal) / nobody.noise
     return nobody._replace(snr_db=10 * float(np.log10(snr)), ranges=ranges)
@@ -296,14 +325,16 @@ def _range_doppler(
 ) -> tuple[Float, Index, float]:
     """Power [frame, bin, Doppler], the pulse in the middle of each frame, and the window's power.
 
-    Frames cross no gap. The window's power is sum_m w[m]^2.
+    The power is the mean over the receivers. Frames cross no gap. The window's power is
+    sum_m w[m]^2.
     """
     length = min(max(round(WINDOW_S * cells.prf), 8), int(segments.lengths.max()))
     window = np.hanning(length + 2)[1:-1]
     starts = Frames(length, length).starts(segments.slices)
-    frames = [moving[:, at : at + length] for at in starts.tolist()]
+    frames = [moving[..., at : at + length] for at in starts.tolist()]
     tapered = [hann_in_range(frame) for frame in frames] if cells.is_tapered else frames
-    maps = np.stack([np.abs(scipy.fft.fft(frame * window, axis=1)) ** 2 for frame in tapered])
+    spectra = (scipy.fft.fft(frame * window, axis=2) for frame in tapered)
+    maps = np.stack([np.mean(np.abs(x) ** 2, axis=0) for x in spectra])
     return maps, starts + length // 2, float(np.sum(window**2))
 
 

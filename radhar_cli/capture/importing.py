@@ -26,6 +26,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.radar.board import BoardWaveform
 from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
@@ -452,7 +453,8 @@ def write_simulated(
             waveform.is_iq,
         )
     elif samples > 1:
-        content = Beat(FmcwTiming.of_waveform(waveform))
+        is_whole = isinstance(waveform, BoardWaveform) and waveform.n_bins == waveform.n_fft
+        content = Beat(FmcwTiming.of_waveform(waveform), is_whole)
     info = RecordingInfo(
         content=content,
         receivers=receivers,

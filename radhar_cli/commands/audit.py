@@ -131,7 +131,7 @@ def _output_folder(data: Path, out: Path | None) -> Path:
     from radhar_cli.commands.learning_options import refuse_output_inside_data
     from radhar_cli.dataset.audited import audit_folder
     from radhar_cli.dataset.files import refuse_links
-    from radhar_cli.dataset.radar_folders import refuse_several_radars
+    from radhar_cli.dataset.radar_folders import describe_missing, refuse_several_radars
     from radhar_cli.errors import FolderError
 
     beside = audit_folder(data)
@@ -139,7 +139,7 @@ def _output_folder(data: Path, out: Path | None) -> Path:
         refuse_links(beside.parent, beside)
         return beside
     if not data.exists():
-        raise FolderError(f"{data}: no such file or folder")
+        raise FolderError(f"{data}: {describe_missing(data)}")
     refuse_several_radars(data)
     if out is None:
         raise FolderError(f"{data}: is no data set of `radhar generate`; -o should name a folder")

@@ -1,6 +1,6 @@
 """`radhar generate`: a YAML file becomes a labelled data set."""
 
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -83,7 +83,7 @@ def generate(
 
     The same command resumes an interrupted build; it does nothing if the folder is complete.
     """
-    with resumable(f"what is finished in {out}"):
+    with nullcontext() if dry_run else resumable(f"what is finished in {out}"):
         from radhar_cli.commands.terminal import print_plan
         from radhar_cli.config.data_set import Config, ConfigOfRecordings
         from radhar_cli.config.reading import load_config, load_radars
@@ -166,7 +166,7 @@ class Work:
         from radhar_cli.commands.terminal import BarProgress, print_outcome
         from radhar_cli.dataset.build import build
 
-        with BarProgress() as bars, self.processes(config) as jobs:
+        with BarProgress(radar=_radar_name(config)) as bars, self.processes(config) as jobs:
             outcome = build(config, out, jobs, bars, self.overwrite, self.batch, self.factory)
         if is_last:
             interrupts.complete(str(out))
@@ -187,11 +187,18 @@ class Work:
         from radhar_cli.commands.terminal import BarProgress, print_part
         from radhar_cli.dataset.build import build_part
 
-        with BarProgress() as bars, self.processes(config) as jobs:
+        with BarProgress(radar=_radar_name(config)) as bars, self.processes(config) as jobs:
             outcome = build_part(config, out, part, jobs, bars, self.overwrite, self.batch)
         if is_last:
             interrupts.complete(f"part {part} of {out}")
         print_part(outcome, merged, str(part))
+
+
+def _radar_name(config: "AnyConfig") -> str | None:
+    """Name of the radar of a config, of one of several; None of any other."""
+    from radhar_cli.config.data_set import Config
+
+    return config.radar_name if isinstance(config, Config) else None
 
 
 def _config_of_recordings(config: "Config", manifest: Path) -> "tuple[AnyConfig, RowFactory]":

@@ -72,11 +72,12 @@ def split_runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
     Raises:
         FolderError: a path is missing or given twice, or there are no runs or no data.
     """
+    from radhar_cli.dataset.radar_folders import describe_missing
     from radhar_cli.learning.run_files import is_run
 
     for path in paths:
         if not path.exists():
-            raise FolderError(f"{path}: no such file or folder")
+            raise FolderError(f"{path}: {describe_missing(path)}")
         if sum(other.resolve() == path.resolve() for other in paths) > 1:
             raise FolderError(f"{path}: is given twice")
     runs = [path for path in paths if is_run(path)]

@@ -43,7 +43,7 @@ def merge(
 
     def merge_radar(name: str, folder: Path) -> None:
         inner = [one / name if name and (one / name).is_dir() else one for one in parts or []]
-        with BarProgress() as progress:
+        with BarProgress(radar=name or None) as progress:
             config, outcome = merge_parts(folder, inner, jobs or cores(), progress)
         if name == [*folders][-1]:
             interrupts.complete(str(out))

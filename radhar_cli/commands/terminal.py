@@ -25,10 +25,13 @@ SMALL = 0.5  # share of a stage, %, that has no line of its own in a plan
 
 
 class BarProgress(Closing):
-    """Messages, and one bar at a time; no bar without a terminal, or with --quiet."""
+    """Messages, and one bar at a time; no bar without a terminal, or with --quiet.
 
-    def __init__(self, unit: str = "sample") -> None:
-        self._unit = unit
+    Warnings name the radar, where it has a name.
+    """
+
+    def __init__(self, unit: str = "sample", radar: str | None = None) -> None:
+        self._unit, self._radar = unit, radar
         self._bar: tqdm[Any] | None = None
 
     def stage(self, name: str, total: int, done: int = 0, unit: str | None = None) -> None:
@@ -62,6 +65,8 @@ class BarProgress(Closing):
 
     def say(self, message: str) -> None:
         """Print a line above the bar."""
+        if self._radar is not None:
+            message = message.replace("warning: ", f"warning: radar {self._radar}: ", 1)
         if is_shown(message):
             tqdm.write(escaped(message), file=sys.stderr)
 

@@ -39,11 +39,28 @@ def verify(
         if not _is_sound(folder, samples, motion):
             wrong.append(name)
 
+    if len(folders) > 1:
+        _refuse_unfinished([*folders.values()])
     for_each_radar(folders, verify_radar)
     if len(folders) > 1 and not wrong:
         wrong += _tell_of_other_scenes([*folders.values()])
     if wrong:
         raise typer.Exit(1)
+
+
+def _refuse_unfinished(folders: list[Path]) -> None:
+    """Refuse several radars of which some data set is not made yet; say of each what makes it.
+
+    Raises:
+        FolderError: there are such radars, a line for each.
+    """
+    from radhar_cli.dataset.layout import DATASET
+    from radhar_cli.dataset.reading import why_missing
+    from radhar_cli.errors import FolderError
+
+    missing = [folder for folder in folders if not (folder / DATASET).exists()]
+    if missing:
+        raise FolderError("\n".join(f"{folder}: {why_missing(folder)}" for folder in missing))
 
 
 def _tell_of_other_scenes(folders: list[Path]) -> list[str]:

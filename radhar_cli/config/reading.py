@@ -84,7 +84,12 @@ ABSENT = {
 }
 
 _OF_LAYERS = "is a key of layers: wall.layers: [{material: concrete}], or wall.eps_r"
-MISPLACED = {"wall.material": _OF_LAYERS, "wall.thickness_m": _OF_LAYERS}
+_OF_SEVERAL = "goes with radars: {front: {aspect: {...}}} (docs/guide/several_radars.md)"
+MISPLACED = {
+    "wall.material": _OF_LAYERS,
+    "wall.thickness_m": _OF_LAYERS,
+    "radar.aspect": _OF_SEVERAL,
+}
 
 _MISSING = object()  # the value of a key that is not there
 MOVED_KEYS = {earlier: key for key, earlier in EARLIER_KEYS.items()}
@@ -201,7 +206,7 @@ def _load_radars(
         try:
             of_radar = of_name.places(places)
             values = {key: value for key, value in of_name.values.items() if key != OTHERS_KEY}
-            config = validated(kind, values, str(path), of_radar, options, of_name.key_in_file)
+            config = validated(kind, values, str(path), of_radar, options, of_name)
             configs[name] = finish(config, (of_radar, options))
         except ConfigError as error:
             mistakes |= dict.fromkeys(str(error).splitlines())
@@ -223,12 +228,12 @@ def _documents_of_radars(
     Raises:
         ConfigError: an entry of `radars` is none.
     """
-    mistakes = [
+    mistakes = dict.fromkeys(  # of what all radars have, each once
         _locate(where, problem.key, places, options) + _value_and_advice(problem)
         for problem in problems_of_radars(document)
-    ]
+    )
     if mistakes:
-        raise ConfigError("\n".join(mistakes[:MAX_MISTAKES]))
+        raise ConfigError("\n".join([*mistakes][:MAX_MISTAKES]))
     return documents_of_radars(document)
 
 
@@ -364,7 +369,7 @@ def validated(
     where: str,
     places: Places,
     options: Mapping[str, str] = {},
-    key_in_file: Callable[[str], str] = str,
+    written: RadarDocument | None = None,
 ) -> S:
     """Turn a parsed document into a config.
 
@@ -374,7 +379,7 @@ def validated(
         where: file that messages name for keys without a place.
         places: {dotted key: file:line} of what stands in it, or in a file under it.
         options: {dotted key: option} of what an option of the command line says instead.
-        key_in_file: returns the dotted key of the file for one of the document.
+        written: where the keys of the document stand in a file of several radars; None in others.
 
     Raises:
         ConfigError: the document is no such config; a line for each of MAX_MISTAKES mistakes.
@@ -384,14 +389,20 @@ def validated(
     except ValidationError as error:
         items = _mistakes_alone(error, document)
         mistakes = dict.fromkeys(
-            _locate(where, key_in_file(problem.key), places, options) + _value_and_advice(problem)
+            _locate(where, _key_in_file(problem.key, written), places, options)
+            + _value_and_advice(problem)
             if not _is_of_cfg(problem)
             else places.get(FILE_OF_CFG, "radar.cfg") + problem.right.removeprefix("radar.cfg")
-            for problem in islice(_problems_of(kind, items, document), MAX_MISTAKES)
+            for problem in islice(_problems_of(kind, items, document, written), MAX_MISTAKES)
         )
         more = len(items) - MAX_MISTAKES
         messages = [*mistakes, f"{where}: and {more} more"] if more > 0 else [*mistakes]
         raise ConfigError("\n".join(messages)) from None
+
+
+def _key_in_file(key: str, written: RadarDocument | None) -> str:
+    """Dotted key that the file has for one of a document."""
+    return key if written is None else written.key_in_file(key)
 
 
 def _is_of_cfg(problem: Problem) -> bool:
@@ -485,7 +496,12 @@ def _kinds_of_class(names: list[int | str], document: Any) -> list[type[BaseMode
     return [kind for key, kind in _CLASS_KINDS.items() if key in (its_keys or ())]
 
 
-def _problems_of(kind: type[BaseModel], items: Iterable[Any], document: Any) -> Iterator[Problem]:
+def _problems_of(
+    kind: type[BaseModel],
+    items: Iterable[Any],
+    document: Any,
+    written: RadarDocument | None = None,
+) -> Iterator[Problem]:
     for item in items:
         if item["type"] == "across":
             yield from item["ctx"]["problems"]
@@ -493,7 +509,11 @@ def _problems_of(kind: type[BaseModel], items: Iterable[Any], document: Any) -> 
         names = _document_path(item["loc"], document)
         key = ".".join(str(name) for name in names)
         if item["type"] in ("extra_forbidden", "unexpected_keyword_argument"):
-            yield Problem(key, item["input"], _unknown(kind, names, item["input"], document))
+            beside = () if written is None else written.known_beside(key)
+            advice = _unknown(kind, names, item["input"], document, beside)
+            if written is not None and advice.startswith("is unknown with "):
+                advice += f" ({RADARS_KEY}.{written.name})"  # others may be of that kind
+            yield Problem(key, item["input"], advice)
         elif item["type"] == "missing" and _kinds_of_class(names, document) == []:
             right = "should have a `sequence` of movements, or `files` of motion"
             yield Problem(key.removesuffix(".sequence"), item["input"], right)
@@ -564,7 +584,14 @@ def _document_path(location: tuple[int | str, ...], document: Any) -> list[int |
     return names
 
 
-def _unknown(kind: type[BaseModel], names: list[int | str], value: object, document: Any) -> str:
+def _unknown(
+    kind: type[BaseModel],
+    names: list[int | str],
+    value: object,
+    document: Any,
+    beside: tuple[str, ...],
+) -> str:
+    """Advice on an unknown key; `beside` are names that may stand there and are no fields."""
     if issubclass(kind, Config) and (absent := ABSENT.get(str(names[-1]))):
         return absent
     if misplaced := MISPLACED.get(".".join(map(str, names))):
@@ -586,7 +613,15 @@ def _unknown(kind: type[BaseModel], names: list[int | str], value: object, docum
         return "is an unknown key"
     if elsewhere := _why_of_another(places[0], str(names[-1])):
         return elsewhere
-    known = [name for one in places for name in one.model_fields]
+    if (
+        issubclass(kind, Config)
+        and len(names) > 1
+        and names[-1] in {*Config.model_fields} - {*beside}
+    ):
+        return (
+            f"is not a key of {'.'.join(map(str, names[:-1]))}: {names[-1]} stands at the top level"
+        )
+    known = [*(name for one in places for name in one.model_fields), *beside]
     if deeper := _keys_of_groups(str(names[-1]), places[0]):
         return f"is an unknown key; did you mean {' or '.join(map(repr, deeper))}?"
     with_unit = [key for key in known if unit_of(key) and key.rpartition("_")[0] == names[-1]]

@@ -12,8 +12,10 @@ from math import cos, isfinite, radians, sin
 from typing import Any
 
 from radhar_cli.config.documents import FILE_OF_CFG, ONE_VALUE, Document, Places, lay_over
-from radhar_cli.config.radar import ArrayRadar, FmcwRadar, class_of_radar
+from radhar_cli.config.radar import RADARS, ArrayRadar, FmcwRadar, class_of_radar
+from radhar_cli.config.request import Request
 from radhar_cli.config.section import Problem
+from radhar_cli.errors import did_you_mean
 
 RADARS_KEY, NAME_KEY, OTHERS_KEY = "radars", "radar_name", "other_radars"
 ASPECT = "aspect"
@@ -23,6 +25,9 @@ OWN_SECTIONS = (
     *("maps", "processing", "image", "cloud", "receiver"),
     *("snr_db", "snr_reference", "engine"),
 )
+# What is one for all radars, of whose keys none has its name.
+_OF_ALL = Request.model_fields.keys() - {RADARS_KEY, NAME_KEY, OTHERS_KEY, "radar", *OWN_SECTIONS}
+_OF_ALL -= {key for radar in RADARS for key in radar.model_fields}
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
 _PLACES = ("position_m", "yaw_deg", "tx_m", "rx_m")  # keys that `aspect` says
 _ASPECT_KEYS = ("angle_deg", "distance_m", "about_m", "height_m")
@@ -52,12 +57,19 @@ class RadarDocument:
             return key
         entry, inner = self._entry(name), rest if first == "radar" else key
         common = self.written.get("radar") if first == "radar" else self.written
-        aspect = {**_mapping(_mapping(common).get(ASPECT)), **_mapping(entry.get(ASPECT))}
+        aspect = _aspect_of(entry, _mapping(common))
         if first == "radar" and aspect and _split(inner)[0] in _PLACES:
             inner = ASPECT
         if _holds(entry, inner) or (first == "radar" and not _holds(common, inner)):
             return ".".join(filter(None, (RADARS_KEY, name, inner)))
         return f"radar.{inner}" if first == "radar" else inner
+
+    def known_beside(self, key: str) -> tuple[str, ...]:
+        """Names, none of them a radar's key, that may stand where the file has a dotted key."""
+        parent, _, _ = self.key_in_file(key).rpartition(".")
+        if parent == f"{RADARS_KEY}.{self.name}":
+            return (ASPECT, *OWN_SECTIONS)
+        return (ASPECT,) if parent == "radar" else ()
 
     def places(self, places: Places) -> Places:
         """Places {dotted key: file:line} in which a .cfg is that of this radar."""
@@ -71,6 +83,19 @@ class RadarDocument:
 def file_of_cfg(name: str) -> str:
     """Key, which none is, of the name that messages have for the .cfg of one of `radars`."""
     return f"{RADARS_KEY}.{name}.cfg:"
+
+
+def key_among_radars(key: str, name: str | None) -> str:
+    """Dotted key that a file of several radars has for one of the config of one of them.
+
+    Args:
+        key: dotted key of the config, such as `other_radars.side.prf_hz`.
+        name: name of its radar; None of a config of one radar, which keeps its keys.
+    """
+    first, rest = _split(key)
+    if name is None or not rest or first not in ("radar", OTHERS_KEY):
+        return key
+    return f"{RADARS_KEY}.{name}.{rest}" if first == "radar" else f"{RADARS_KEY}.{rest}"
 
 
 def radar_names(document: Mapping[str, Any]) -> tuple[str, ...]:
@@ -104,14 +129,26 @@ def problems_of_radars(document: Mapping[str, Any]) -> Iterator[Problem]:
             yield Problem(RADARS_KEY, name, right)
         if entry is not None and not isinstance(entry, dict):
             yield Problem(key, entry, "should be a mapping of keys of radar, or {}")
-        elif isinstance(entry, dict):
-            yield from _aspect_problems(key, entry, _mapping(shared))
+        else:
+            yield from _misplaced(key, _mapping(entry))
+            yield from _aspect_problems(key, _mapping(entry), _mapping(shared))
     if OTHERS_KEY in document:
         right = "should be left out with radars, of which the others are"
         yield Problem(OTHERS_KEY, document[OTHERS_KEY], right)
     chosen = document.get(NAME_KEY)
     if chosen is not None and chosen not in radars:
         yield Problem(NAME_KEY, chosen, f"should be one of radars: {', '.join(map(str, radars))}")
+
+
+def _misplaced(key: str, entry: Mapping[str, Any]) -> Iterator[Problem]:
+    """Find what an entry of `radars` has that is one for all radars, or that holds a radar."""
+    for name, value in entry.items():
+        if name in _OF_ALL:
+            right = f"is one for all radars; should stand beside {RADARS_KEY}, not in it"
+            yield Problem(f"{key}.{name}", value, right)
+        elif name in ("radar", RADARS_KEY):
+            right = f"should be left out: keys of a radar stand in {key} itself"
+            yield Problem(f"{key}.{name}", value, right)
 
 
 def _aspect_problems(
@@ -124,21 +161,23 @@ def _aspect_problems(
             right = "should be {angle_deg: 90, distance_m: 3, about_m: [3, 0]}"
             yield Problem(where, value, right)
             return
-    aspect = {**_mapping(common), **_mapping(written)}
-    if not aspect:
+    aspect = _aspect_of(entry, shared)
+    if aspect is None:
         return
     for name, value in aspect.items():
         where = f"{key}.{ASPECT}.{name}" if name in _mapping(written) else f"radar.{ASPECT}.{name}"
         if name not in _ASPECT_KEYS:
-            known = ", ".join(_ASPECT_KEYS)
-            yield Problem(where, value, f"is an unknown key; known here: {known}")
+            near = did_you_mean(str(name), _ASPECT_KEYS, f"known here: {', '.join(_ASPECT_KEYS)}")
+            yield Problem(where, value, f"is an unknown key; {near}")
         elif name == "about_m":
             pair = isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))
             if not pair:
                 yield Problem(where, value, "should be [range, cross-range] of a place, m")
         elif not _is_number(value) or (name == "distance_m" and value <= 0):
-            yield Problem(where, value, f"should be a number{' above 0' * (name == 'distance_m')}")
-    if missing := [name for name in _ASPECT_KEYS[:3] if name not in aspect]:
+            above = " above 0" * (name == "distance_m")
+            yield Problem(where, value, f"should be a number{above}, one for all scenes")
+    missing = [name for name in _ASPECT_KEYS[:3] if name not in aspect]
+    if missing and aspect.keys() <= {*_ASPECT_KEYS}:  # or one of them is written otherwise
         yield Problem(f"{key}.{ASPECT}", aspect, f"should have {', '.join(missing)}, too")
     for name in _PLACES:
         if name in entry:
@@ -147,6 +186,13 @@ def _aspect_problems(
     beam = lay_over(_mapping(shared.get("beam")), _mapping(entry.get("beam")))
     if not _is_number(pan := beam.get("pan_deg", 0.0)):
         yield Problem(f"{key}.beam.pan_deg", pan, f"should be a number with {ASPECT}")
+
+
+def _aspect_of(entry: Mapping[str, Any], shared: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """What an entry says of its aspect over what all radars have; None without, or where null."""
+    if entry.get(ASPECT, shared.get(ASPECT)) is None:
+        return None
+    return {**_mapping(shared.get(ASPECT)), **_mapping(entry.get(ASPECT))}
 
 
 def _is_number(value: object) -> bool:

@@ -10,6 +10,7 @@ from radhar_cli.code_identity.build_version import build_version
 from radhar_cli.code_identity.code_digest import code_digest
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.config.identity import config_hash, flat_document, resolved
+from radhar_cli.config.several_radars import NAME_KEY, key_among_radars
 from radhar_cli.extensions import extensions, own_products
 from radhar_cli.numerics.accelerators import installed
 
@@ -71,11 +72,12 @@ def identity_hash(named: dict[str, Any]) -> str:
 
 def differences(old: dict[str, Any], new: dict[str, Any]) -> list[str]:
     """List the keys and versions in which two identities differ, a line each."""
-    lines = []
+    lines, radar = [], new.get("keys", {}).get(NAME_KEY)
     for part, prefix in (("keys", ""), ("versions", "versions.")):
         before, after = old.get(part, {}), new.get(part, {})
         lines += [
-            f"{prefix}{key}: {json.dumps(before.get(key))} there, {json.dumps(after.get(key))} here"
+            f"{prefix}{key_among_radars(key, radar)}: "
+            f"{json.dumps(before.get(key))} there, {json.dumps(after.get(key))} here"
             for key in sorted(before.keys() | after.keys())
             if before.get(key) != after.get(key)
         ]

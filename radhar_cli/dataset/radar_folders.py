@@ -77,6 +77,27 @@ def folders_of_radars(folder: Path) -> dict[str, Path]:
     return {name: folder / name for name in radars_of(folder)} or {"": folder}
 
 
+def folder_of_all_radars(folder: Path) -> Path:
+    """Folder that `generate` and `merge` build for the data set of one: that of all its radars."""
+    parent = folder.parent if folder.name else folder.absolute().parent
+    try:
+        return parent if folder.absolute().name in radars_of(parent) else folder
+    except FolderError:
+        return folder
+
+
+def describe_missing(path: Path, otherwise: str = "no such file or folder") -> str:
+    """Say that the data set of one of several radars is not made yet, and what makes it.
+
+    Args:
+        path: path of nothing.
+        otherwise: what is said of any other path.
+    """
+    if (target := folder_of_all_radars(path)) == path:
+        return otherwise
+    return f"not made yet; `radhar generate CONFIG -o {target}` goes on with all radars"
+
+
 def refuse_several_radars(folder: Path) -> None:
     """Refuse a folder of several radars where the data set of one of them is needed.
 

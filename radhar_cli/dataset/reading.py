@@ -13,7 +13,11 @@ from radhar_cli.config.stream import frame_classes
 from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.folder import holds_samples, stored_identity
 from radhar_cli.dataset.identity import versions
-from radhar_cli.dataset.radar_folders import refuse_several_radars
+from radhar_cli.dataset.radar_folders import (
+    describe_missing,
+    folder_of_all_radars,
+    refuse_several_radars,
+)
 from radhar_cli.dataset.untrusted_hdf5 import Column, NumberColumn, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.extensions import any_name
@@ -289,19 +293,23 @@ def open_dataset(path: str | Path) -> Dataset:
     file = path / layout.DATASET if path.is_dir() else path
     if not file.exists():
         refuse_several_radars(path)
-        raise FolderError(f"{file}: {_why_missing(path)}")
+        raise FolderError(f"{file}: {why_missing(path)}")
     return Dataset(file)
 
 
-def _why_missing(path: Path) -> str:
+def why_missing(path: Path) -> str:
     """Say why a path leads to no dataset.h5, and what makes one."""
+    path = path.parent if path.name == layout.DATASET else path
+    target = folder_of_all_radars(path)
     if (parts := path / layout.PARTS).is_dir():
-        return f"not made yet; `radhar merge {path}` puts the parts in {parts} together"
+        return f"not made yet; `radhar merge {target}` puts the parts in {parts} together"
     if not layout.is_incomplete(path):
-        return "no such file"
+        return describe_missing(path, "no such file")
     part = (stored_identity(path) or {}).get("part")
     if part is not None and (path / layout.WORK / layout.BUILT).exists():
         return f"{path} is part {part} alone; `radhar merge OUT` makes OUT of all parts"
+    if part is not None:
+        return f"its build is unfinished; run `radhar generate` again, with --shard {part}"
     if not holds_samples(path):
-        return f"no sample is made yet; `radhar generate CONFIG -o {path}` can build there"
-    return "its build is unfinished; run `radhar generate` again"
+        return f"no sample is made yet; `radhar generate CONFIG -o {target}` can build there"
+    return f"its build is unfinished; `radhar generate CONFIG -o {target}` goes on"

@@ -11,6 +11,7 @@ import numpy as np
 import torch
 from torch import nn
 
+from radhar_cli.dataset.radar_folders import describe_missing
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.split import TRAIN
 from radhar_cli.errors import FolderError
@@ -290,7 +291,7 @@ def open_unlabelled(
         RunError: the network reads sequences, which come from data sets only.
     """
     if not path.exists():
-        raise FolderError(f"{path}: no such file or folder")
+        raise FolderError(f"{path}: {describe_missing(path)}")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; images or data are asked for here")
     if not metadata.reads_pictures and not is_h5(path):

@@ -131,6 +131,41 @@ def test_folder_of_other_radars_is_refused(config, built):
     assert "holds the radars front, side, not front, side, third" in done.stderr
 
 
+def test_a_difference_has_the_key_of_the_file(config, built):
+    for name in ("front", "side"):
+        done = radhar("generate", config, "-o", built, "--set", f"radars.{name}.prf_hz=1000")
+        assert done.returncode == 2
+        assert f"\n  radars.{name}.prf_hz: 2000.0 there, 1000.0 here" in done.stderr
+        assert "other_radars" not in done.stderr
+
+
+def test_what_is_not_made_yet_is_named_with_the_command_that_makes_it(config, built, tmp_path):
+    out = tmp_path / "out"
+    shutil.copytree(built, out)
+    shutil.rmtree(out / "side")
+    (out / "side").mkdir()
+    goes_on = f"`radhar generate CONFIG -o {out}` goes on with all radars"
+    for command in (["verify", out], ["verify", out / "side"]):
+        done = radhar(*command)
+        assert (done.returncode, goes_on in done.stderr) == (2, True)
+        assert "front" not in done.stderr + done.stdout
+    (out / "side").rmdir()
+    for command in ("inspect", "preview", "audit"):
+        done = radhar(command, out / "side")
+        assert (done.returncode, goes_on in done.stderr) == (2, True)
+    ok("generate", config, "-o", tmp_path / "parts", "--shard", "1/2", "--jobs", 1)
+    lines = radhar("verify", tmp_path / "parts").stderr.splitlines()
+    assert len(lines) == 2
+    assert all(f"`radhar merge {tmp_path / 'parts'}` puts" in line for line in lines)
+
+
+def test_a_warning_names_its_radar(config, tmp_path):
+    done = ok("generate", config, "-o", tmp_path / "out", "--jobs", 1, "-q")
+    warnings = [line for line in done.stderr.splitlines() if "warning" in line]
+    assert warnings
+    assert all("warning: radar " in line for line in warnings)
+
+
 def test_dry_run_writes_nothing(config, tmp_path):
     done = ok("generate", config, "-o", tmp_path / "none", "--dry-run")
     assert done.stdout.count("radar ") >= 2

@@ -44,6 +44,14 @@ def terminate(*_):
     signal.raise_signal(signal.SIGTERM)
 
 
+def test_sigterm_of_a_dry_run_keeps_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("radhar_cli.commands.terminal.print_plan", terminate)
+    command = ["generate", small_config(tmp_path), "-o", tmp_path / "out", "--dry-run"]
+    assert status(monkeypatch, *command) == TERMINATED
+    assert capsys.readouterr().err == "terminated: what was not finished is not kept\n"
+    assert not (tmp_path / "out").exists()
+
+
 def test_sigterm_of_train_keeps_the_last_epoch_and_it_resumes(tmp_path, monkeypatch, capsys):
     data = split_tree(tmp_path / "tree")
     (tmp_path / "train.json").write_text(json.dumps({**BASE, "epochs": 2}))

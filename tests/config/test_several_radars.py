@@ -95,7 +95,30 @@ def test_radar_alone_has_no_new_keys():
         ),
         (
             "radars:\n  a: {}\n  b:\n    people: []",
-            ":4: radars.b.people = []: is an unknown key",
+            ":4: radars.b.people = []: is one for all radars; should stand beside radars",
+        ),
+        ("radars: {a: {seed: 3}}", "radars.a.seed = 3: is one for all radars"),
+        ("radars: {a: {radar: {}}}", "radars.a.radar = {}: should be left out: keys of a radar"),
+        ("radars: {a: {map: [stft]}}", 'radars.a.map = ["stft"]: is an unknown key; did you mean'),
+        (
+            "radars: {a: {foo: 1}}",
+            "chirp_s, aspect, maps, processing, image, cloud, receiver, snr_db, snr_reference, ",
+        ),
+        ("radar: {foo: 1}\nradars: {a: {}}", ":1: radar.foo = 1: is an unknown key; known here: "),
+        ("radar: {maps: [stft]}\nradars: {a: {}}", "is not a key of radar: maps stands at the top"),
+        (
+            "radar: {aspect: {angle_deg: x, distance_m: 3, about_m: [3, 0]}}\nradars: {a: , b: }",
+            ':1: radar.aspect.angle_deg = "x": should be a number, one for all scenes',
+        ),
+        (
+            "radars: {a: {aspect: {angel_deg: 90, distance_m: 3, about_m: [3, 0]}}}",
+            "radars.a.aspect.angel_deg = 90: is an unknown key; did you mean 'angle_deg'?",
+        ),
+        ("radars: {a: {aspect: {}}}", "radars.a.aspect = {}: should have angle_deg, distance_m"),
+        ("radar: {aspect: {}}", ":1: radar.aspect = {}: goes with radars: {front: {aspect:"),
+        (
+            f"radar: {{prf_hz: 500}}\nradars: {{a: {{}}, b: {BOARD}}}",
+            "radar.prf_hz = 500: is unknown with radar.cfg, which gives it; it is a key of",
         ),
         (
             "radars:\n  a: {}\n  b: {maps: [range_azimuth]}",
@@ -108,7 +131,7 @@ def test_radar_alone_has_no_new_keys():
         ),
         (
             "radars: {a: {aspect: {angle_deg: x, distance_m: 0, about_m: 3}}}",
-            "radars.a.aspect.distance_m = 0: should be a number above 0",
+            "radars.a.aspect.distance_m = 0: should be a number above 0, one for all scenes",
         ),
         (
             f"radars: {{a: {BOARD[:-1]}, yaw_deg: 3, "
@@ -125,7 +148,23 @@ def test_mistake_is_told_once_with_the_key_of_the_file(tmp_path, text, message):
         load_radars(file_of(tmp_path, text))
     lines = str(error.value).splitlines()
     assert [line for line in lines if message in line], lines
+    if "angel_deg" in text or "angle_deg: x, distance_m: 3" in text:
+        assert len(lines) == 1
     assert len(lines) == len({*lines})
+
+
+def test_a_shared_key_names_the_radar_that_has_it_not(tmp_path):
+    text = f"radar: {{prf_hz: 500}}\nradars: {{a: {{}}, b: {BOARD}}}"
+    with pytest.raises(ConfigError, match=r"radar\.prf_hz = 500: is .* \(radars\.b\)$"):
+        load_radars(file_of(tmp_path, text))
+
+
+def test_null_takes_an_aspect_off_an_entry(tmp_path):
+    aspect = "{angle_deg: 90, distance_m: 3, about_m: [3, 0]}"
+    entries = "radars: {a: {}, b: {aspect: null, yaw_deg: 30}}"
+    text = f"radar: {{{BOARD[1:-1]}, aspect: {aspect}}}\n{entries}\nmaps: [stft]"
+    configs = load_radars(file_of(tmp_path, text))
+    assert [config.radar.yaw_deg for config in configs.values()] == [90, 30]
 
 
 def test_mistake_of_an_override_names_it(tmp_path):

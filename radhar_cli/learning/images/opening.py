@@ -8,7 +8,7 @@ import numpy as np
 
 from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import DATASET, SPLITS, is_incomplete
-from radhar_cli.dataset.radar_folders import refuse_several_radars
+from radhar_cli.dataset.radar_folders import describe_missing, refuse_several_radars
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.choices import Kind, sequences_of
 from radhar_cli.learning.images.folder import FilePixels, open_tree
@@ -63,7 +63,7 @@ def open_images(
         FolderError: it is no data set, is damaged, or has no such map.
     """
     if not path.exists():
-        raise FolderError(f"{path}: no such file or folder")
+        raise FolderError(f"{path}: {describe_missing(path)}")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; data is asked for here")
     if not path.is_dir() and not is_h5(path):

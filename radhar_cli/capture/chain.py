@@ -352,11 +352,10 @@ def _windows(
 
     What is shortened or left out is added to `notes`.
     """
-    duration = signal.pulses / signal.prf
-    configured = frames_of(config, duration, signal.prf, signal.f0)
+    windows = _windows_of_config(signal, config)
     lengths = signal.times.lengths - canceller.lost
     usual = int(np.median(lengths))
-    length = min(configured.length, usual)
+    length = min(windows[0].length, usual)
     denoises = any(treatment_of(name).denoised for name in names)
     filter_pulses = config.processing.savgol.frame if denoises else 0
     if length < MIN_FRAME_PULSES:
@@ -369,9 +368,9 @@ def _windows(
             f"{recording.path}: processing.savgol.frame = {filter_pulses}: should be at most "
             f"{usual}, the pulses of a stretch without a gap after the clutter filter"
         )
-    if length < configured.length:
+    if length < windows[0].length:
         notes.append(
-            f"windows have the {length} pulses of a frame, not {configured.length} "
+            f"windows have the {length} pulses of a frame, not {windows[0].length} "
             "(processing.window_s)"
         )
     least_pulses = max(length, filter_pulses)
@@ -380,8 +379,23 @@ def _windows(
         shortest = "a window" if length == least_pulses else "the filter of the denoised maps"
         notes.append(f"{short_stretches} stretches are shorter than {shortest} and are left out")
         signal = signal.stretches(least_pulses + canceller.lost)
-    fine = fsst_frames_of(config, duration, signal.prf, signal.f0)
-    return signal, tuple(Frames(length, min(one.hop, length)) for one in (configured, fine))
+    if length < windows[0].length:
+        windows = [one.within(length, are_apart=False) for one in windows]
+    return signal, tuple(windows)
+
+
+def _windows_of_config(signal: Signal, config: AnyConfig) -> list[Frames]:
+    """Windows of STFT and FSST that a config asks for, those of a radar with frames within them."""
+    radar, times = config.radar, signal.times
+    duration = signal.pulses / signal.prf
+    if isinstance(radar, ArrayRadar) and radar.frames_apart:
+        duration = float(times.start[-1] - times.start[0]) + radar.header.period_s
+    arguments = config, duration, signal.prf, signal.f0
+    windows = [frames_of(*arguments), fsst_frames_of(*arguments)]
+    if not isinstance(radar, ArrayRadar):
+        return windows
+    are_apart = radar.frames_apart and len(times) > 1
+    return [one.within(radar.header.loops, are_apart) for one in windows]
 
 
 def even_columns(power_map: PowerMap) -> PowerMap:

@@ -22,6 +22,16 @@ class Frames:
         """Frames of L samples with a hop of round((1 - overlap_fraction) L), at least 1."""
         return _frames(length, overlap_fraction)
 
+    def within(self, pulses: int, are_apart: bool) -> "Frames":
+        """Keep windows within the frames of a radar that sends such.
+
+        Args:
+            pulses: pulses of a frame, which a window has at most.
+            are_apart: whether the radar pauses between frames, of which each then has one window.
+        """
+        length = min(self.length, pulses)
+        return Frames(length, pulses if are_apart else min(self.hop, length))
+
     def starts(self, stretches: Sequence[slice]) -> Index:
         """Numbers of the first samples of the whole frames in stretches without a gap [frames]."""
         return np.concatenate(

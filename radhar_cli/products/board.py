@@ -604,7 +604,5 @@ def make_fsst_windows(scene: Scene, board: Board) -> Frames:
 
 
 def keep_within_frames(windows: Frames, board: Board) -> Frames:
-    """Keep windows within frames: one of each frame where there are gaps between frames."""
-    length = min(windows.length, board.loops)
-    has_gaps = len(board.pulses) > 1
-    return Frames(length, board.loops if has_gaps else min(windows.hop, length))
+    """Keep windows within the frames of a board."""
+    return windows.within(board.loops, are_apart=len(board.pulses) > 1)

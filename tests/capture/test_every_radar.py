@@ -37,6 +37,10 @@ RADARS = {
         f"{{{CHIRPS}, {BAND}, tx_m: [0, 0, 1], rx_m: [0, 0, 1]}}",
         "range_doppler",
     ),
+    "frames without a pause": (
+        f"{{{CHIRPS.replace('period_s: 0.05', 'period_s: 0.016')}, {BAND}, {L_SHAPE}}}",
+        f"rtm, {OF_SIGNALS}, fsst, {OF_FRAMES}",
+    ),
     "frames, array": (
         f"{{{CHIRPS}, {BAND}, {L_SHAPE}}}",
         f"rtm, {OF_SIGNALS}, {OF_FRAMES}, points",

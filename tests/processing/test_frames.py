@@ -74,3 +74,11 @@ def test_window_slope_is_the_derivative_per_sample(length):
     n, h = np.arange(length), 1e-5
     difference = (g(n + h) - g(n - h)) / (2 * h)
     assert Frames(length, 1).window_slope == pytest.approx(difference, abs=1e-9)
+
+
+def test_windows_of_a_radar_with_frames_lie_within_them() -> None:
+    windows = Frames(223, 22)
+    assert windows.within(64, are_apart=True) == Frames(64, 64), "one of each frame"
+    assert windows.within(64, are_apart=False) == Frames(64, 22)
+    assert Frames(16, 4).within(64, are_apart=True) == Frames(16, 64)
+    assert Frames(128, 100).within(64, are_apart=False) == Frames(64, 64), "no pulse is left out"

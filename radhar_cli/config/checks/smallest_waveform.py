@@ -39,7 +39,10 @@ def fewest_windows(c: AnyRequest) -> int:
         header = c.radar.header
         fitting = int(w.duration / header.period_s + 1e-9)
         return min(header.frames, fitting) if header.frames else fitting
-    windows = Frames.of(window_pulses(c, w), c.processing.overlap_fraction)
+    length = c.processing.window_pulses(w.duration, w.prf, w.f0)
+    windows = Frames.of(length, c.processing.overlap_fraction)
+    if isinstance(c.radar, ArrayRadar):
+        windows = windows.within(c.radar.header.loops, are_apart=False)
     pulses = w.n_pulses - (c.processing.clutter == "difference")
     return max(0, (pulses - windows.length) // windows.hop + 1)
 

@@ -14,6 +14,7 @@ from radhar_cli.config.number import FORMS
 from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.files.untrusted import read_text, text_of
+from radhar_cli.radar.board import plain_name
 
 Document: TypeAlias = dict[str, Any]
 Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
@@ -144,7 +145,7 @@ def name_of_radar(value: str) -> str | None:
     Capitals, hyphens, BOOST, EVM and AWR for IWR do not matter. A device's name alone, and its name
     with _clouds, stand for the same profile unless it has one of each name.
     """
-    return _names_of_radars().get(_plain_name(value))
+    return _names_of_radars().get(plain_name(value))
 
 
 def name_of_written(value: str) -> str | None:
@@ -159,19 +160,13 @@ def name_of_written(value: str) -> str | None:
 @lru_cache(maxsize=1)
 def _names_of_radars() -> dict[str, str]:
     """Names of the built-in radars by their spellings without what does not matter in them."""
-    names = {_plain_name(name): name for name in RADARS}
+    names = {plain_name(name): name for name in RADARS}
     for name in RADARS:
         device, _, kind = name.partition("_")
         if kind in ("", "clouds"):
-            names.setdefault(_plain_name(device), name)
-            names.setdefault(_plain_name(f"{device}_clouds"), name)
+            names.setdefault(plain_name(device), name)
+            names.setdefault(plain_name(f"{device}_clouds"), name)
     return names
-
-
-def _plain_name(name: str) -> str:
-    """Name of a radar without what does not matter in it."""
-    plain = re.sub("boost|evm|[-_ ]", "", name.lower()).replace("iskods", "ods")
-    return f"i{plain[1:]}" if plain.startswith("awr") else plain
 
 
 def read_on_bases(path: Path | None, overrides: Mapping[str, Any]) -> tuple[Document, Places]:

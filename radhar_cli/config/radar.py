@@ -44,6 +44,7 @@ from radhar_cli.radar.board import (
     Array,
     Places,
     axis_after_roll,
+    device_name,
     longest_rows,
     sidelobe,
 )
@@ -501,6 +502,21 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
     """Antenna array used instead of the device's."""
     subframe: Annotated[int, Field(ge=0, le=3, strict=True)] = 0
     """Number of the subframe (advFrameCfg of the .cfg) that images and Doppler-time maps are of."""
+
+    @field_validator("device", mode="before")
+    @classmethod
+    def _name_device(cls, device: Any) -> Any:
+        """Name a board by any spelling of it: IWR6843AOPEVM, awr1843, IWR6843ISK_ODS."""
+        if not isinstance(device, str):
+            return device
+        name = device_name(device)
+        if name is None:
+            raise value_error(
+                f"should be one of {', '.join(DEVICES)}; or leave it out, and radar.array says "
+                "where antennas are: {tx: [[0, 0], ...], rx: [[0, 0], [1, 0], ...]}, (left, up) in "
+                "half wavelengths"
+            )
+        return name
 
     @property
     def header(self) -> "BoardHeader":

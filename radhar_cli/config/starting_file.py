@@ -39,6 +39,14 @@ from radhar_cli.radar.ti_l_sdk import IWRL6844
 WIDTH = 100
 PEOPLE_CHAINS = "people_tracking", "people_counting"
 MAPS_OF_BOARDS = ("stft", "range_doppler", "range_azimuth", "points")
+# Boards by the platform that TI's visualizer names in a comment of its .cfg.
+PLATFORMS = {
+    "xwr14xx": "IWR1443BOOST",
+    "xwr16xx": "IWR1642BOOST",
+    "xwr18xx": "IWR1843BOOST",
+    "xwr68xx": "IWR6843ISK",
+    "xwr68xx_aop": "IWR6843AOP",
+}
 HEAD = """\
 # Every key with its default, which holds too where a key is left out; `base: other.yaml` takes
 # what is left out from another file.
@@ -179,7 +187,7 @@ def of_board(cfg: str, folder: Path) -> str:
         return of_preset(preset)  # a radar whose numbers stand in its config
     text = cfg_text(cfg, Path(), "--radar")
     board = parse_ti_cfg(text, cfg)
-    device, chain = _likely_device(board), board.firmware or "best"
+    device, chain = _likely_device(board, text), board.firmware or "best"
     path = os.path.relpath(Path(cfg).resolve(), folder.resolve())
     if name := name_of_radar(cfg):
         device, path = device_of(name), name
@@ -248,9 +256,13 @@ def of_preset(name: str) -> str:
     return f"{head}\n{yaml_text(read_on_bases(path, {})[0])}"
 
 
-def _likely_device(board: BoardHeader) -> str:
-    """Name a device that software, frequency and elements of a .cfg are for."""
-    likely = _usual_device(board)
+def _likely_device(board: BoardHeader, text: str) -> str:
+    """Name a device that a .cfg says it is for, or that its software, band and elements are for.
+
+    TI's visualizer writes the device as a comment: `% Platform:xWR16xx`.
+    """
+    platform = re.search(r"^%\s*Platform:\s*(\w+)", text, re.MULTILINE | re.IGNORECASE)
+    likely = PLATFORMS.get(platform[1].lower() if platform else "") or _usual_device(board)
     fitting = fitting_devices(board)
     return likely if likely in fitting or not fitting else fitting[0]
 

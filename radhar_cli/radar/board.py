@@ -6,6 +6,7 @@ of the chirp in the loop. Positions of the devices: TI's board user guides and t
 geometries of its people tracking demos.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -75,7 +76,10 @@ _FIRST = Family.SDK_1, Family.SDK_2
 _TRACKING = Family.SDK_3, Family.PEOPLE_3D
 _1443 = Device(_BOOST, _FIRST, heeds_limits=False, noise_figure_db=15.0)
 _1843 = Device(_BOOST, _TRACKING)
-_1642 = Device(Array(((0, 0), (4, 0)), _ROW, _SAME, (28.0, 14.0)), (*_FIRST, Family.PEOPLE))
+_1642 = Device(
+    Array(((0, 0), (4, 0)), _ROW, _SAME, (28.0, 14.0)),
+    (*_FIRST, Family.SDK_3, Family.PEOPLE),  # e2e.ti.com 1439888: the demo of SDK 3.6 on it
+)
 _ISK = Array(((0, -1), (2, 0), (4, -1)), _ROW, _SAME, (60.0, 15.0))
 _ODS = Array(
     ((0, 0), (2, 0), (2, -2)),
@@ -121,6 +125,27 @@ DEVICES: Mapping[str, Device] = MappingProxyType(
         "IWRL6844EVM": Device(_6844, (Family.L_SDK,)),
     }
 )
+_PREFIXES = "iwr", "awr", "xwr"  # industrial, automotive and either: of the same antennas
+
+
+def plain_name(name: str) -> str:
+    """Name of a board or its profile without what does not matter in it.
+
+    Capitals, spaces, hyphens, underscores, BOOST, EVM, MOD and AWR or xWR for IWR do not.
+    """
+    plain = re.sub("boost|evm|mod$|[-_ ]", "", name.lower()).replace("iskods", "ods")
+    return f"i{plain[1:]}" if plain.startswith(_PREFIXES) else plain
+
+
+# The last of equal keys counts: IWR before AWR.
+_PLAIN_DEVICES = {plain_name(name): name for name in reversed(tuple(DEVICES))}
+
+
+def device_name(name: str) -> str | None:
+    """Name in DEVICES of a board by a spelling of it; None of a board that is not there."""
+    return name if name in DEVICES else _PLAIN_DEVICES.get(plain_name(name))
+
+
 MAX_SIDELOBE = 0.3  # highest sidelobe, over the main lobe, of a row that tells targets apart
 EVEN = (1000.0, 1000.0)  # half-power half-widths (degree) of an array by hand: no pattern
 

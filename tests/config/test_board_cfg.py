@@ -11,6 +11,7 @@ from radhar_cli.config import Config
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.config.starting_file import of_board
 from radhar_cli.products.board import CloudChain
+from radhar_cli.radar.board import device_name
 from radhar_cli.radar.frame_header import RoomBox
 from radhar_cli.scene_checks.warnings import config_warnings
 
@@ -85,11 +86,58 @@ def test_the_chain_of_a_board_needs_its_cfar(tmp_path: Path) -> None:
             "frameCfg 0 2 32 0 100 1 0\nprofileCfg 0 60 17 7 40 0 0 80 1 80 2499 0 0 30",
             "IWR6843ISK",
         ),
+        (
+            "% Platform:xWR16xx\nchannelCfg 15 3 0\nframeCfg 0 1 32 0 100 1 0\n"
+            "chirpCfg 1 1 0 0 0 0 0 2\ncfarCfg -1 0 2 8 4 3 0 15 1",
+            "IWR1642BOOST",
+        ),
+        (
+            "% Platform:xWR68xx_AOP\nprofileCfg 0 60 17 7 40 0 0 80 1 80 2499 0 0 30\n"
+            "cfarCfg -1 0 2 8 4 3 0 15 1\n"
+            f"compRangeBiasAndRxChanPhase 0.0{6 * ' 1 0 -1 0'}",
+            "IWR6843AOP",
+        ),
     ],
 )
 def test_a_started_config_has_the_likely_device(lines: str, device: str, tmp_path: Path) -> None:
     (tmp_path / "board.cfg").write_text(f"{WITHOUT_CFAR}{lines}\n")
     assert f"device: {device}," in of_board(str(tmp_path / "board.cfg"), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("spelling", "device"),
+    [
+        ("AWR1443BOOST", "AWR1443BOOST"),
+        ("iwr1642boost", "IWR1642BOOST"),
+        ("AWR1642", "IWR1642BOOST"),
+        ("AWR2944", "AWR2944EVM"),
+        ("IWR6843AOPEVM", "IWR6843AOP"),
+        ("AWR6843AOP", "IWR6843AOP"),
+        ("IWR6843ISK_ODS", "IWR6843ISK-ODS"),
+        ("IWR6843", None),
+        ("AWR1843AOP", None),
+    ],
+)
+def test_a_device_has_the_names_that_one_guesses(spelling: str, device: str | None) -> None:
+    assert device_name(spelling) == device
+    assert radar_of(board(WITHOUT_CFAR, device="xWR1443")).device == "IWR1443BOOST"
+
+
+@pytest.mark.parametrize("device", ["IWR6843", "AWR2243BOOST", "BGT60TR13C"])
+def test_a_board_that_is_not_known_leads_to_places_of_antennas(device: str) -> None:
+    with pytest.raises(
+        ValueError, match=r"should be one of IWR1443BOOST, .*; or leave it out, and"
+    ):
+        board(WITHOUT_CFAR, device=device)
+
+
+def test_a_demo_of_SDK_3_runs_on_an_IWR1642() -> None:
+    cfg = CFG.replace("channelCfg 15 7 0", "channelCfg 15 3 0").replace(
+        "cfarCfg 0 2 8 4 3 0 1130", "cfarCfg -1 0 2 8 4 3 0 15 1"
+    )
+    two = cfg.replace("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 2")
+    two = two.replace("chirpCfg 2 2 0 0 0 0 0 2\n", "").replace("frameCfg 0 2", "frameCfg 0 1")
+    assert board(two, device="IWR1642BOOST", maps=["points"]).cloud.chain == "sdk3"
 
 
 def test_commands_without_effect_are_named_in_a_line() -> None:

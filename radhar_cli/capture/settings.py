@@ -3,7 +3,7 @@
 from math import prod
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from radhar_cli.config.number import require
 from radhar_cli.config.section import Section
@@ -11,7 +11,34 @@ from radhar_cli.config.section import Section
 Count: TypeAlias = Annotated[int, Field(ge=1, le=2**24, strict=True)]
 Above: TypeAlias = Annotated[float, Field(gt=0, le=1e15, strict=True)]
 Text: TypeAlias = Annotated[str, Field(max_length=1000)]
+# What else the axes of captures are called, in lower case, with _ for spaces and hyphens.
+AXIS_WORDS = {
+    **dict.fromkeys(("range", "range_bin", "bin", "adc", "adc_sample", "fast_time"), "sample"),
+    **dict.fromkeys(("chirp", "sweep", "slow_time", "loop"), "pulse"),
+    **dict.fromkeys(("rx", "channel", "antenna"), "receiver"),
+    "tx": "transmitter",
+}
+
+
+def axis_named(word: object) -> object:
+    """Name of the axis that a word of other software means; any other value as it is."""
+    if not isinstance(word, str):
+        return word
+    plain = word.strip().lower().replace(" ", "_").replace("-", "_")
+    singular = plain.removesuffix("s")
+    return (
+        AXIS_WORDS.get(plain)
+        or AXIS_WORDS.get(singular)
+        or (
+            singular
+            if singular in ("receiver", "transmitter", "sample", "frame", "pulse")
+            else word
+        )
+    )
+
+
 AxisName: TypeAlias = Literal["receiver", "transmitter", "sample", "frame", "pulse", "iq"]
+AxisWord: TypeAlias = Annotated[AxisName, BeforeValidator(axis_named)]
 USUAL_AXES: dict[int, tuple[AxisName, ...]] = {
     1: ("pulse",),
     2: ("sample", "pulse"),
@@ -65,7 +92,7 @@ class CaptureSettings(Section):
     times: Text | None = None
     # of an array, outermost first, in the order of the program that wrote it
     axes: Annotated[
-        tuple[AxisName, ...] | None,
+        tuple[AxisWord, ...] | None,
         require(
             lambda value: len(set(value)) == len(value) and "pulse" in value,
             "should name each axis once, including pulse",

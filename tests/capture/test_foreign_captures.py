@@ -16,7 +16,7 @@ from radhar_cli.capture.named_parts import find_pair
 from radhar_cli.capture.packed_files import unpack_file
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.ti_lua import read_lua
-from radhar_cli.errors import CaptureError
+from radhar_cli.errors import CaptureError, ConfigError
 
 CARRIER = ["carrier_hz=24e9"]
 
@@ -254,6 +254,22 @@ def test_one_file_a_frame_and_echoes_in_both_halves_of_the_band(tmp_path, range_
     np.save(tmp_path / names[3], frame(3, range_m)[:32, :, None, None])
     with pytest.raises(CaptureError, match=r"000003\.npy: has the shape .* a file a frame"):
         taken(tmp_path, names, *FRAME_KEYS, "axes=[sample, pulse, receiver, transmitter]")
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["[adc, chirp, rx, tx]", "[Range Bins, slow-time, antenna, TX]", "[samples, pulses, Rx, tx]"],
+)
+def test_axes_have_the_words_of_other_software(tmp_path, words):
+    np.save(tmp_path / "frame.npy", frame(0, 3.4)[..., None, None])
+    keys = FRAME_KEYS
+    axes = "axes=[sample, pulse, receiver, transmitter]"
+    expected, x = taken(tmp_path, ["frame.npy"], *keys, axes)
+    info, y = taken(tmp_path, ["frame.npy"], *keys, f"axes={words}")
+    assert (info.pulses, info.receivers) == (expected.pulses, expected.receivers)
+    np.testing.assert_array_equal(x, y)
+    with pytest.raises(ConfigError, match=r"axes.*azimuth.*should be 'receiver'"):
+        taken(tmp_path, ["frame.npy"], *keys, "axes=[azimuth, pulse]")
 
 
 def test_scripts_of_mmwave_studio_are_read_as_its_json_is(tmp_path):

@@ -20,6 +20,7 @@ from pydantic import BaseModel, ValidationError
 
 from radhar_cli.activities.activity import MOVEMENTS, NOBODY
 from radhar_cli.assembly.motion import motion_of
+from radhar_cli.config.acting import FRAMES
 from radhar_cli.config.annotations import (
     ABOVE_ZERO,
     GIVEN,
@@ -82,6 +83,11 @@ RADARS: dict[str, dict[str, Any]] = {
         **{"bandwidth_hz": 250e6, "adc_rate_hz": 1e6, "chirp_s": 64e-6},
         "array": {"tx": [[0, 0]], "rx": [[0, 0], [1, 0], [1, 1]]},
     },
+    "sfcw_frames": {
+        **{"waveform": "sfcw", "frame": {"chirps": 12, "period_s": 0.05}, "carrier_hz": 24e9},
+        **{"bandwidth_hz": 250e6, "steps": 64, "dwell_s": 1e-6, "prf_hz": 1000},
+        "array": {"tx": [[0, 0]], "rx": [[0, 0], [1, 0], [1, 1]]},
+    },
 }
 BASE: dict[str, Any] = {
     "activities": ["punching"],
@@ -91,7 +97,11 @@ BASE: dict[str, Any] = {
     "image": {"size_px": 16},
     "on_invalid": "keep",
 }
-NAMES_OF_TAGS = {"<board>": "radar.cfg", "<frames>": "radar.frame"}
+NAMES_OF_TAGS = {
+    "<board>": "radar.cfg",
+    "<frames>": "radar.frame",
+    "<sfcw_frames>": "radar.frame of waveform: sfcw",
+}
 FILES_OF_A_DATA_SET = ("output.", "split.", "samples_per_class", "image.colour_map")
 MODELS = ("human", "paper")
 SOME_LABELS = ("S1", "S3", "S5", "S8", "S12")
@@ -279,7 +289,7 @@ def base_of(radar: str) -> dict[str, Any]:
     document = {
         **BASE,
         "radar": RADARS[radar],
-        "duration_s": 0.1 if radar in ("board", "frames") else 0.5,
+        "duration_s": 0.1 if radar in FRAMES else 0.5,
     }
     document["maps"] = ["rtm"] if radar == "impulse" else ["stft"]
     if radar == "impulse":

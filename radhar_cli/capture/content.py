@@ -214,8 +214,9 @@ def _radar_keys(content: Content, waveform: str) -> dict[str, Any]:
                 "profile_samples": content.samples,
             }
         case Beat(timing):
+            steps = {"steps": timing.samples, "dwell_s": 1 / timing.adc_rate_hz}
             return numbers | {
-                "waveform": "sfcw" if waveform == "sfcw" else "fmcw",
+                **({"waveform": "sfcw", **steps} if waveform == "sfcw" else {"waveform": "fmcw"}),
                 "bandwidth_hz": timing.bandwidth_hz,
                 "adc_rate_hz": timing.adc_rate_hz,
                 "chirp_s": timing.chirp_s,

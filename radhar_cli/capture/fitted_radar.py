@@ -25,7 +25,6 @@ from radhar_cli.config.radar import (
     AnyRadar,
     ArrayRadar,
     BoardRadar,
-    SfcwRadar,
     class_of_radar,
 )
 from radhar_cli.config.reading import validated, with_overrides
@@ -149,12 +148,16 @@ def _chirps(
 ) -> dict[str, Any]:
     """Radar that sends chirps: with frames and an array, or plain ones of one antenna pair."""
     info, timing = recording.info, content.timing
-    waves = {
+    has_steps = note.get("waveform") == "sfcw"
+    waves: dict[str, Any] = {
         "carrier_hz": _number(timing.carrier_hz),
         "bandwidth_hz": _number(timing.bandwidth_hz),
         "adc_rate_hz": _number(timing.adc_rate_hz),
         "chirp_s": _number(timing.chirp_s),
+        "waveform": "sfcw" if has_steps else "fmcw",
     }
+    if has_steps:
+        waves |= {"steps": timing.samples, "dwell_s": _number(1 / timing.adc_rate_hz)}
     known = note.get("frame") or {}
     turns = len({round(delay * timing.prf_hz, 6) for delay in info.receiver_delay_s})
     if frames is None and "chirps" not in known:
@@ -164,11 +167,7 @@ def _chirps(
                 "recording does not tell: --set radar.frame.chirps=64 says how many chirps of a "
                 f"transmitter a frame has ({HOW})"
             )
-        if note.get("waveform") == "sfcw":
-            steps = {"steps": timing.samples, "dwell_s": _number(1 / timing.adc_rate_hz)}
-            section = dict(note) | waves | steps | {"prf_hz": _number(timing.prf_hz)}
-            return {key: section[key] for key in section if key in SfcwRadar.model_fields}
-        return dict(note) | waves | {"prf_hz": _number(timing.prf_hz), "waveform": "fmcw"}
+        return dict(note) | waves | {"prf_hz": _number(timing.prf_hz)}
     interval = _number(1 / (timing.prf_hz * turns))
     frame: dict[str, Any] = {"chirps": known.get("chirps"), "interval_s": interval}
     period = known.get("period_s")
@@ -181,7 +180,7 @@ def _chirps(
     section = dict(note) | waves | {"frame": frame}
     section["output"] = "iq" if recording.samples.parts == 2 else "real"
     section["array"] = _elements(recording, note, turns)
-    return {key: value for key, value in section.items() if key not in ("prf_hz", "waveform")}
+    return {key: value for key, value in section.items() if key != "prf_hz"}
 
 
 def _why_frames(recording: Recording, content: Beat, turns: int) -> str | None:

@@ -173,7 +173,8 @@ class ActsIfNull:
         return f"{self.key}: null"
 
 
-_KEYS_OF_FRAMES = {"board": "radar.cfg", "frames": "radar.frame"}
+# {kind of a radar with frames: the key that tells it}
+_KEYS_OF_FRAMES = {"board": "radar.cfg", "frames": "radar.frame", "sfcw_frames": "radar.frame"}
 
 
 @dataclass(frozen=True)
@@ -196,10 +197,10 @@ class OfRadar:
     @property
     def right(self) -> str:
         """What would tell one of the kinds, in words."""
-        waveforms = [kind for kind in self.kinds if kind not in ("board", "frames")]
+        waveforms = [kind for kind in self.kinds if kind not in _KEYS_OF_FRAMES]
         words = [f"radar.waveform: {' or '.join(waveforms)}"] if waveforms else []
-        words += [key for kind, key in _KEYS_OF_FRAMES.items() if kind in self.kinds]
-        return " or ".join(words)
+        words += [_KEYS_OF_FRAMES[kind] for kind in self.kinds if kind in _KEYS_OF_FRAMES]
+        return " or ".join(dict.fromkeys(words))
 
 
 Condition: TypeAlias = ActsIf | ActsIfAny | ActsIfNull | Unless | OfRadar

@@ -1,6 +1,6 @@
-"""The radar: six kinds, each with the keys that it alone has.
+"""The radar: seven kinds, each with the keys that it alone has.
 
-`radar:` is the one that `cfg`, `frame` or `waveform` tells. A kind answers for itself: what its
+`radar:` is the one that `cfg`, `frame` and `waveform` tell. A kind answers for itself: what its
 pulses are, which maps it makes, and why not the others.
 """
 
@@ -56,8 +56,22 @@ if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader
 
 BOOST = "IWR1443BOOST"
+MAX_ELEMENTS = 32  # transmitters, or receivers, of a radar with frames
 MIN_WINDOW = 8  # pulses of the window of a Doppler-time map
 Place: TypeAlias = tuple[Real, Real]
+
+
+def _refuse_law(value: object) -> object:
+    """Refuse a law of draws where frames, bins and axes of all samples follow from a number."""
+    if isinstance(value, dict):
+        raise value_error(
+            "should be a number: frames, bins and axes of all samples follow from it, and do not "
+            "differ within a data set; a config for each value makes one of each"
+        )
+    return value
+
+
+FIXED = BeforeValidator(_refuse_law)
 HalfPower = Annotated[float, Field(ge=1, le=1000, strict=True)]
 
 
@@ -220,18 +234,14 @@ def _require_waveform(schema: dict[str, Any]) -> None:
     schema["required"] = [*schema.get("required", ()), "waveform"]
 
 
-class SfcwRadar(_Emission[N], _AntennaPair[N], _Sweep[N], Generic[N]):
-    """A radar that steps through frequencies and takes a sample at each."""
-
-    kind: ClassVar[str] = "sfcw"
-    named: ClassVar[str] = "radar.waveform: sfcw"
-    model_config = ConfigDict(json_schema_extra=_require_waveform)
+class _Steps(AnyRadar[N], Generic[N]):
+    """Keys of sweeps that are steps of frequency."""
 
     waveform: Literal["sfcw"] = "sfcw"
     """Kind of the radar."""
-    steps: Annotated[int, Field(ge=2, le=2**20, strict=True)]
+    steps: Annotated[int, Field(ge=2, le=2**20, strict=True), FIXED]
     """Number of frequencies of a sweep, carrier_hz + n bandwidth_hz/steps."""
-    dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)]
+    dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True), FIXED]
     """Time that the radar stays on each frequency."""
 
     @property
@@ -243,6 +253,14 @@ class SfcwRadar(_Emission[N], _AntennaPair[N], _Sweep[N], Generic[N]):
     def chirp_s(self) -> float:  # type: ignore[override]
         """Duration of a sweep, s."""
         return self.steps * self.dwell_s
+
+
+class SfcwRadar(_Steps[N], _Emission[N], _AntennaPair[N], _Sweep[N], Generic[N]):
+    """A radar that steps through frequencies and takes a sample at each."""
+
+    kind: ClassVar[str] = "sfcw"
+    named: ClassVar[str] = "radar.waveform: sfcw"
+    model_config = ConfigDict(json_schema_extra=_require_waveform)
 
 
 class CwRadar(_Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
@@ -318,7 +336,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
     """A radar that sends frames of chirps and receives them by an array: what all of them are."""
 
     waveform: Literal["fmcw"] = "fmcw"
-    """Waveform of a radar with frames, which sends chirps."""
+    """Waveform of a radar with frames: fmcw sends chirps, sfcw sweeps of steps."""
     position_m: VectorOf[N] = default_draw((0.0, 0.0, 1.0))
     """Position of the array: range, cross-range, height."""
     yaw_deg: Annotated[N, ANGLE] = default_draw(0.0)
@@ -333,7 +351,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
     half_power_deg: tuple[HalfPower, HalfPower] | None = None
     """Half-power half-widths of an element in azimuth and elevation; null is the device's, and none
     of an array by hand."""
-    half_wavelength_m: Annotated[float, Field(gt=0, le=1, strict=True)] | None = None
+    half_wavelength_m: Annotated[float, Field(gt=0, le=1, strict=True), FIXED] | None = None
     """Unit of an array's places; null is c/(2 f_c), where f_c is the middle of the sampled band."""
 
     chirps_key: ClassVar[str]  # as messages name what says how many loops a frame has
@@ -629,48 +647,63 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
 
 
 class FrameConfig(Section):
-    """Frames of a radar: so many chirps, and a pause until the next frame."""
+    """Frames of a radar: so many chirps, or sweeps of steps, and a pause until the next frame."""
 
-    chirps: Annotated[int, Field(ge=1, le=2**14, strict=True)]
-    """Number of chirps of each transmitter in a frame: the pulses of a range-Doppler map."""
-    interval_s: Annotated[float, Field(gt=0, le=1e3, strict=True)] | None = None
+    chirps: Annotated[int, Field(ge=1, le=2**14, strict=True), FIXED]
+    """Number of chirps, or sweeps, of each transmitter in a frame: the pulses of a range-Doppler
+    map."""
+    interval_s: Annotated[float, Field(gt=0, le=1e3, strict=True), FIXED] | None = None
     """Time from chirp to chirp, of whichever transmitter; null is 1/(prf_hz times the number of
-    transmitters), or chirp_s without prf_hz."""
-    period_s: Annotated[float, Field(gt=0, le=1e4, strict=True)] | None = None
+    transmitters), or the length of a chirp without prf_hz."""
+    period_s: Annotated[float, Field(gt=0, le=1e4, strict=True), FIXED] | None = None
     """Time from frame to frame; null is that of the chirps, without a pause."""
 
 
 class ElementsConfig(Section):
     """Antenna elements of a radar with frames, (left, up) in half wavelengths, looking out."""
 
-    tx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=16)] = ((0.0, 0.0),)
+    tx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=MAX_ELEMENTS)] = ((0.0, 0.0),)
     """Places of the transmitters, which take turns, chirp by chirp, in this order."""
-    rx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=16)] = ((0.0, 0.0),)
+    rx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=MAX_ELEMENTS)] = ((0.0, 0.0),)
     """Places of the receivers."""
 
 
 ONE_PAIR = ElementsConfig.model_construct()
 
 
-class FramesRadar(ArrayRadar[N], Generic[N]):
-    """A radar with frames whose numbers stand in the config, as its data sheet has them."""
-
-    kind: ClassVar[str] = "frames"
-    named: ClassVar[str] = "radar.frame"
-    chirps_key: ClassVar[str] = "radar.frame.chirps"
+class _FrameStart(ArrayRadar[N], Generic[N]):
+    """First keys of radars with frames whose numbers stand in the config."""
 
     frame: FrameConfig
     """Frames of the radar, which range-Doppler and angle maps, cubes, points and skeletons are
     of."""
-    carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True)] = 77e9  # type: ignore[assignment]
-    """Frequency at the first sample of a chirp."""
-    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True)] = 1e9  # type: ignore[assignment]
-    """Bandwidth that a chirp sweeps while it is sampled."""
-    adc_rate_hz: Annotated[float, Field(ge=1e-3, le=1e13, strict=True)] = 10e6  # type: ignore[assignment]
+    carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True), FIXED] = 77e9  # type: ignore[assignment]
+    """Frequency at the first sample of a chirp, or of the first step."""
+
+
+class _SweptBand(_FrameStart[N], Generic[N]):
+    """Band of radars with frames that sweep it."""
+
+    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True), FIXED] = 1e9  # type: ignore[assignment]
+    """Bandwidth that a chirp sweeps while it is sampled, or the steps cover."""
+
+
+class _SampledChirps(_SweptBand[N], Generic[N]):
+    """Samples of radars with frames of chirps."""
+
+    adc_rate_hz: Annotated[float, Field(ge=1e-3, le=1e13, strict=True), FIXED] = 10e6  # type: ignore[assignment]
     """Sampling rate of the ADC within a chirp."""
-    chirp_s: Annotated[float, Field(ge=1e-12, le=1e4, strict=True)] = 40e-6  # type: ignore[assignment]
+    chirp_s: Annotated[float, Field(ge=1e-12, le=1e4, strict=True), FIXED] = 40e-6  # type: ignore[assignment]
     """Duration of the sampled sweep."""
-    prf_hz: Annotated[float, Field(ge=1e-3, le=1e7, strict=True)] | None = None  # type: ignore[assignment]
+
+
+class FramesRadar(_FrameStart[N], Generic[N]):
+    """A radar with frames whose numbers stand in the config, as its data sheet has them."""
+
+    named: ClassVar[str] = "radar.frame"
+    chirps_key: ClassVar[str] = "radar.frame.chirps"
+
+    prf_hz: Annotated[float, Field(ge=1e-3, le=1e7, strict=True), FIXED] | None = None  # type: ignore[assignment]
     """Chirps of each transmitter per second, within a frame; null is by frame.interval_s."""
     output: Literal["iq", "real"] = "iq"
     """Samples of the receivers: iq, or real for one channel of the mixer, whose range bins are
@@ -681,6 +714,15 @@ class FramesRadar(ArrayRadar[N], Generic[N]):
     """Place of one transmitter in the scene, with rx_m instead of array and position_m."""
     rx_m: VectorOf[N] | None = None
     """Place of one receiver in the scene."""
+
+    if TYPE_CHECKING:  # of each kind, in its own way
+
+        @property
+        def bandwidth_hz(self) -> float: ...  # type: ignore[override]
+        @property
+        def adc_rate_hz(self) -> float: ...  # type: ignore[override]
+        @property
+        def chirp_s(self) -> float: ...  # type: ignore[override]
 
     @model_validator(mode="after")
     def _fill_prf(self) -> Self:
@@ -726,14 +768,34 @@ class FramesRadar(ArrayRadar[N], Generic[N]):
         return _array_of(self.array)
 
 
+class ChirpFramesRadar(FramesRadar[N], _SampledChirps[N], Generic[N]):  # type: ignore[override]
+    """A radar that sends frames of chirps."""
+
+    kind: ClassVar[str] = "frames"
+
+
+class StepFramesRadar(FramesRadar[N], _Steps[N], _SweptBand[N], Generic[N]):  # type: ignore[override]
+    """A radar that sends frames of sweeps, each of steps of frequency with a sample."""
+
+    kind: ClassVar[str] = "sfcw_frames"
+    named: ClassVar[str] = "radar.frame of waveform: sfcw"
+    model_config = ConfigDict(json_schema_extra=_require_waveform)
+
+    waveform: Literal["sfcw"] = "sfcw"  # type: ignore[assignment]
+    """Kind of the radar."""
+
+
 RADARS: tuple[type[AnyRadar[Any]], ...] = (
     FmcwRadar,
     SfcwRadar,
     CwRadar,
     ImpulseRadar,
     BoardRadar,
-    FramesRadar,
+    ChirpFramesRadar,
+    StepFramesRadar,
 )
+# {waveform: kind} of the radars that have frames in the config.
+KINDS_WITH_FRAMES = {"fmcw": ChirpFramesRadar.kind, "sfcw": StepFramesRadar.kind}
 for _kind in RADARS:
     _kind.ALTERNATIVES = tuple(other for other in RADARS if other is not _kind)
 
@@ -747,8 +809,8 @@ def class_of_radar(value: Any) -> type[AnyRadar[Any]] | None:
     name = value.get("waveform", "fmcw")
     if value.get("cfg") is not None:
         name = "board"
-    elif value.get("frame") is not None and name == "fmcw":
-        name = "frames"
+    elif value.get("frame") is not None:
+        name = KINDS_WITH_FRAMES.get(name, name)
     return next((radar for radar in RADARS if radar.kind == name), None)
 
 
@@ -773,7 +835,8 @@ Radar: TypeAlias = Annotated[
     | Annotated[CwRadar[N], Tag("<cw>")]
     | Annotated[ImpulseRadar[N], Tag("<impulse>")]
     | Annotated[BoardRadar[N], Tag("<board>")]
-    | Annotated[FramesRadar[N], Tag("<frames>")],
+    | Annotated[ChirpFramesRadar[N], Tag("<frames>")]
+    | Annotated[StepFramesRadar[N], Tag("<sfcw_frames>")],
     Discriminator(
         _tag_of_radar,
         custom_error_type="wrong",
@@ -787,5 +850,6 @@ SceneRadar: TypeAlias = (
     | CwRadar[float]
     | ImpulseRadar[float]
     | BoardRadar[float]
-    | FramesRadar[float]
+    | ChirpFramesRadar[float]
+    | StepFramesRadar[float]
 )

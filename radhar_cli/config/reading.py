@@ -26,7 +26,14 @@ from radhar_cli.config.documents import (
 from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.motion_files import resolve_files
 from radhar_cli.config.number import FORMS
-from radhar_cli.config.radar import RADARS, AnyRadar, FmcwRadar, class_of_radar
+from radhar_cli.config.radar import (
+    KINDS_WITH_FRAMES,
+    RADARS,
+    AnyRadar,
+    ArrayRadar,
+    FmcwRadar,
+    class_of_radar,
+)
 from radhar_cli.config.section import PerActivity, Problem, Section
 from radhar_cli.config.sequence import PART_TAGS, SequenceConfig
 from radhar_cli.config.several_radars import (
@@ -671,6 +678,9 @@ def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
     """Say which other radars have a key that this kind does not know; None if none has it."""
     if not issubclass(kind, AnyRadar):
         return None
+    if key == "frame" and not issubclass(kind, ArrayRadar):
+        waveforms = " and ".join(KINDS_WITH_FRAMES)
+        return f"should be left out with {kind.named}: {waveforms} have frames"
     owners = [other.named for other in RADARS if key in other.model_fields]
     if not owners:
         return None
@@ -678,7 +688,8 @@ def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
     if hasattr(kind, key):
         gives = "gives it" if isinstance(getattr(kind, key), property) else "has none"
         reason = f", which {gives}"
-    return f"is unknown with {kind.named}{reason}; it is a key of {' and '.join(owners)}"
+    listed = " and ".join(filter(None, [", ".join(owners[:-1]), owners[-1]]))
+    return f"is unknown with {kind.named}{reason}; it is a key of {listed}"
 
 
 def _holds_sections(kind: type[BaseModel], names: list[int | str], document: Any) -> bool:

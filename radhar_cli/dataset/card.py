@@ -26,6 +26,12 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.stream_files import draw_streams
 
+_WAVEFORMS = {
+    "fmcw": "an FMCW",
+    "sfcw": "a stepped-frequency",
+    "cw": "a CW",
+    "impulse": "an impulse",
+}
 SIDE, GAP, LINE = 160, 6, 16  # px
 SIZES = ("n<1K", "1K<n<10K", "10K<n<100K", "100K<n<1M", "1M<n<10M", "10M<n<100M", "n>100M")
 
@@ -238,11 +244,11 @@ def _radar_in_words(config: Config) -> str:
         return f"a TI {radar.device or 'board'} ({radar.carrier_hz / 1e9:.4g} GHz)"
     if isinstance(radar, FramesRadar):
         antennas = f"{len(radar.array.tx)} x {len(radar.array.rx)}"
-        return f"an FMCW radar with frames ({antennas} antennas, {radar.carrier_hz / 1e9:.4g} GHz)"
+        name = _WAVEFORMS[radar.waveform]
+        return f"{name} radar with frames ({antennas} antennas, {radar.carrier_hz / 1e9:.4g} GHz)"
     carrier = f"{nominal(radar.carrier_hz) / 1e9:.4g} GHz"
     band = "" if kind == "cw" else f" + {nominal(radar.bandwidth_hz) / 1e9:.3g} GHz"
-    name = {"fmcw": "an FMCW", "sfcw": "a stepped-frequency", "cw": "a CW"}.get(kind, "an impulse")
-    return f"{name} radar ({carrier}{band})"
+    return f"{_WAVEFORMS[kind]} radar ({carrier}{band})"
 
 
 def _maps(data: Dataset) -> str:

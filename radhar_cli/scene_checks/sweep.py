@@ -2,7 +2,7 @@
 
 from radhar_cli.assembly.radar import waveform_of
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import ArrayRadar, BoardRadar, SfcwRadar
+from radhar_cli.config.radar import ArrayRadar, BoardRadar, SfcwRadar, StepFramesRadar
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene import nominal_scene
 
@@ -21,7 +21,8 @@ def describe_slow_sweep(config: Config) -> str:
     """Say how far frozen positions leave echoes from where they belong, and the remedies."""
     radar = config.radar
     w = waveform_of(nominal_scene(config, config.chosen_activities[0]))
-    shorter = "radar.dwell_s or radar.steps" if isinstance(radar, SfcwRadar) else "radar.chirp_s"
+    has_steps = isinstance(radar, SfcwRadar | StepFramesRadar)
+    shorter = "radar.dwell_s or radar.steps" if has_steps else "radar.chirp_s"
     within = "engine.motion_in_chirp: true with engine.kind: cube has it, "
     if isinstance(radar, ArrayRadar):
         within = ""

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar, FramesRadar
+from radhar_cli.config.radar import BoardRadar, FramesRadar, SfcwRadar, StepFramesRadar
 from radhar_cli.tradeoff.setting import Setting, Worth, keyed
 
 CHIRP_END, LOOPS, PERIOD = 2, 3, 5  # places in a line of frameCfg
@@ -53,9 +53,22 @@ def frame_settings(radar: FramesRadar, config: Config) -> Iterator[Setting]:
     yield keyed("radar", f"radar.frame.period_s={2 * header.period_s:g}", Worth.SAVES)
     if header.loops > 1:
         yield keyed("radar", f"radar.frame.chirps={header.loops // 2}", Worth.SAVES)
-    yield keyed("radar", f"radar.adc_rate_hz={radar.adc_rate_hz / 2:g}", Worth.SAVES)
+    if isinstance(radar, StepFramesRadar):
+        yield half_as_many_steps(radar)
+    else:
+        yield keyed("radar", f"radar.adc_rate_hz={radar.adc_rate_hz / 2:g}", Worth.SAVES)
     if "points" in config.maps:
         yield from _point_settings(config)
+
+
+def half_as_many_steps(radar: SfcwRadar | StepFramesRadar) -> Setting:
+    """Setting of half as many steps, each twice as long, of a sweep.
+
+    Args:
+        radar: radar of the config.
+    """
+    overrides = (f"radar.steps={radar.steps // 2}", f"radar.dwell_s={2 * radar.dwell_s:g}")
+    return Setting("radar", f"radar.steps: {radar.steps // 2}", overrides, worth=Worth.SAVES)
 
 
 def _point_settings(config: Config) -> Iterator[Setting]:

@@ -14,7 +14,11 @@ from radhar_cli.config.radar import (
 )
 from radhar_cli.config.room import WallConfig
 from radhar_cli.processing.map_kind import kind_of
-from radhar_cli.tradeoff.board_settings import board_settings, frame_settings
+from radhar_cli.tradeoff.board_settings import (
+    board_settings,
+    frame_settings,
+    half_as_many_steps,
+)
 from radhar_cli.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth, keyed
 
 TOLERANCES_DB = (-60, -80, -100, -120)
@@ -135,9 +139,7 @@ def radar_settings(config: Config) -> Iterator[Setting]:
             rate = nominal(radar.adc_rate_hz) / 2
             yield keyed("radar", f"radar.adc_rate_hz={rate:g}", Worth.SAVES)
         case SfcwRadar():
-            overrides = (f"radar.steps={radar.steps // 2}", f"radar.dwell_s={2 * radar.dwell_s:g}")
-            name = f"radar.steps: {radar.steps // 2}"
-            yield Setting("radar", name, overrides, worth=Worth.SAVES)
+            yield half_as_many_steps(radar)
         case ImpulseRadar():
             samples = radar.profile_samples // 2
             yield keyed("radar", f"radar.profile_samples={samples}", Worth.SAVES)

@@ -49,6 +49,12 @@ RADARS = {
         f"{{{CHIRPS}, {BAND}, {L_SHAPE}, output: real}}",
         f"{OF_FRAMES}, range_elevation, doppler_elevation, elevation_time, points",
     ),
+    "steps, array": (
+        "{waveform: sfcw, frame: {chirps: 32, period_s: 0.2}, carrier_hz: 2e9, bandwidth_hz: 1e9, "
+        "steps: 128, dwell_s: 20e-6, array: {tx: [[0, 0], [4, 0]], rx: [[0, 0], [1, 0], [2, 0], "
+        "[3, 0]]}}",
+        f"rtm, {OF_SIGNALS}, {OF_FRAMES}, points",
+    ),
     "board": (
         "{device: IWR1443BOOST, cfg: iwr1443boost, position_m: [0, 0, 1]}",
         f"rtm, {OF_SIGNALS}, {OF_FRAMES}, elevation_time, points",

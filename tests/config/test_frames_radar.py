@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from radhar_cli.assembly.radar import antennas_of, board_of
 from radhar_cli.config import Config
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.config.radar import BoardRadar, FmcwRadar, FramesRadar
+from radhar_cli.config.radar import BoardRadar, ChirpFramesRadar, FmcwRadar, StepFramesRadar
 from radhar_cli.config.reading import load_config
 from radhar_cli.echo.board_cube import exact_cube, fast_cube
 from radhar_cli.errors import ConfigError
@@ -44,8 +44,8 @@ PAIR = "tx_m: [0, 0, 1], rx_m: [0, 0, 1]"
 ALL = ["range_doppler", "range_azimuth", "range_elevation", "points"]
 
 
-def frames_radar(**changes: Any) -> FramesRadar:
-    return FramesRadar.model_validate(BGT60 | changes)
+def frames_radar(**changes: Any) -> ChirpFramesRadar:
+    return ChirpFramesRadar.model_validate(BGT60 | changes)
 
 
 def config_of(radar: dict[str, Any], **keys: Any) -> Config:
@@ -137,7 +137,7 @@ def test_a_pulse_radar_with_a_frame_has_its_antennas_in_the_scene() -> None:
     assert isinstance(config_of(plain, maps=["stft"]).radar, FmcwRadar)
     config = config_of(plain | {"frame": {"chirps": 64}})
     radar = config.radar
-    assert isinstance(radar, FramesRadar)
+    assert isinstance(radar, ChirpFramesRadar)
     assert (radar.header.loops, radar.prf_hz, radar.frames_apart) == (64, 2000, False)
     scene = nominal_scene(config, config.chosen_activities[0])
     antennas = antennas_of(scene)
@@ -151,6 +151,18 @@ def test_interval_and_rate_say_the_same_and_survive_a_written_config(tmp_path: P
     assert config.radar.prf_hz == pytest.approx(1000)
     (tmp_path / "again.yaml").write_text(as_yaml(config))
     assert load_config(tmp_path / "again.yaml") == config
+
+
+def test_a_sweep_of_steps_is_a_chirp_of_as_many_samples() -> None:
+    steps = {key: value for key, value in BGT60.items() if key not in ("adc_rate_hz", "chirp_s")}
+    steps |= {"waveform": "sfcw", "steps": 128, "dwell_s": 0.5e-6}
+    of_steps = config_of(steps).radar
+    assert isinstance(of_steps, StepFramesRadar)
+    boards = board_of(of_steps, 1.0), board_of(frames_radar(), 1.0)
+    assert vars(boards[0].array) == vars(boards[1].array)
+    for name in vars(boards[0]).keys() - {"array"}:
+        one, other = (getattr(board, name) for board in boards)
+        assert other == (pytest.approx(one) if isinstance(one, float) else one), name
 
 
 def test_every_product_of_frames_is_made() -> None:
@@ -198,6 +210,21 @@ def test_a_walker_who_comes_closer_is_on_the_positive_side() -> None:
             "should be left out with radar.tx_m and radar.rx_m",
         ),
         ("{frame: {chirps: 64}, device: IWR1443BOOST}", "radar.device"),
+        (
+            "{waveform: sfcw, frame: {chirps: 64, interval_s: 1e-3}, steps: 64, dwell_s: 2e-5}",
+            "radar.steps = 64: should be at most the time from chirp to chirp, 0.001 s (steps * "
+            "dwell_s is 0.00128 s)",
+        ),
+        (
+            "{waveform: sfcw, frame: {chirps: 2}, steps: 70000, dwell_s: 1e-7}",
+            "radar.steps = 70000: should be at most 65536 with radar.frame",
+        ),
+        ("{waveform: sfcw, frame: {chirps: 64}, steps: 64}", "radar.dwell_s is missing"),
+        (
+            "{waveform: sfcw, frame: {chirps: 64}, steps: 64, dwell_s: 1e-5, chirp_s: 1e-3}",
+            "radar.chirp_s",
+        ),
+        ("{waveform: impulse, frame: {chirps: 64}, profile_m: [0, 5]}", "radar.frame"),
         ("{carrier_hz: 24e9}", "FMCW radar with radar.frame, such as 'frame: {chirps: 64}'"),
     ],
 )

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from math import ceil
-from typing import assert_never
+from typing import Any, assert_never
 
 from radhar_cli.config.annotations import at
 from radhar_cli.config.checks.smallest_waveform import ENDS, waveform_at
@@ -10,6 +10,7 @@ from radhar_cli.config.maps import FRAME_MAPS, OF_FRAMES, OF_POINTS
 from radhar_cli.config.number import support
 from radhar_cli.config.offered_maps import why_no_map
 from radhar_cli.config.radar import (
+    AnyRadar,
     ArrayRadar,
     BoardRadar,
     CwRadar,
@@ -17,6 +18,7 @@ from radhar_cli.config.radar import (
     FramesRadar,
     ImpulseRadar,
     SfcwRadar,
+    StepFramesRadar,
 )
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.config.section import Problem
@@ -160,11 +162,7 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
     yield from _place_problems(radar)
     transmitters, samples = len(radar.array.tx), half_up(radar.adc_rate_hz, radar.chirp_s)
     if not 2 <= samples <= MAX_SAMPLES:
-        right = (
-            f"should give 2 to {MAX_SAMPLES} ADC samples per chirp (adc_rate_hz * chirp_s is "
-            f"{samples})"
-        )
-        yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
+        yield _problem_of_samples(radar, samples)
         return
     interval = radar.interval_s
     given_rate = None if radar.prf_hz is None else radar.prf_hz * transmitters
@@ -177,7 +175,7 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
     if radar.chirp_s > interval * ROUNDING:
         longest = show_beside(interval, radar.chirp_s)
         right = f"should be at most the time from chirp to chirp, {longest} s"
-        yield Problem("radar.chirp_s", radar.chirp_s, right)
+        yield _problem_of_length(radar, radar.chirp_s, interval, right)
         return
     chirps = radar.frame.chirps * transmitters
     if radar.frame.period_s is not None and chirps * interval > radar.frame.period_s * ROUNDING:
@@ -189,6 +187,34 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
     yield from _firmware_problems(c, radar)
     yield from _output_problems_of_board(c)
     yield from _missing_on_board(c)
+
+
+def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
+    """Say that a chirp of a radar with frames has too few samples, or too many."""
+    if isinstance(radar, StepFramesRadar):
+        right = f"should be at most {MAX_SAMPLES} with radar.frame"
+        return Problem("radar.steps", radar.steps, right)
+    right = (
+        f"should give 2 to {MAX_SAMPLES} ADC samples per chirp (adc_rate_hz * chirp_s is {samples})"
+    )
+    return Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
+
+
+def _problem_of_length(
+    radar: AnyRadar[Any], longest: float, interval: float, right: str
+) -> Problem:
+    """Say that a chirp, or a sweep of steps, is too long.
+
+    Args:
+        radar: the radar that sends it.
+        longest: its longest duration, s.
+        interval: the shortest time to the next one, s.
+        right: how long it may be.
+    """
+    if isinstance(radar, SfcwRadar | StepFramesRadar):
+        right = f"{right} (steps * dwell_s is {show_beside(longest, interval)} s)"
+        return Problem("radar.steps", radar.steps, right)
+    return Problem("radar.chirp_s", radar.chirp_s, right)
 
 
 def _place_problems(radar: FramesRadar) -> Iterator[Problem]:
@@ -309,11 +335,7 @@ def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
         longest = support(radar.chirp_s)[1]
         interval = show_beside(shortest_interval, longest)
         right = f"should be at most the pulse interval 1/prf_hz = {interval} s"
-        if isinstance(radar, SfcwRadar):
-            right = f"{right} (steps * dwell_s is {show_beside(longest, shortest_interval)} s)"
-            yield Problem("radar.steps", radar.steps, right)
-        else:
-            yield Problem("radar.chirp_s", radar.chirp_s, right)
+        yield _problem_of_length(radar, longest, shortest_interval, right)
     if smallest_count < 2:
         right = f"should give at least 2 {samples} {smallest_count})"
         yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)

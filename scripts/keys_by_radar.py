@@ -70,7 +70,7 @@ RADARS: dict[str, dict[str, Any]] = {
     },
     "sfcw": {
         **{"waveform": "sfcw", "carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 200},
-        **{"steps": 64, "dwell_s": 2e-5},
+        **{"steps": 64, "dwell_s": 1e-6},
     },
     "cw": {"waveform": "cw", "carrier_hz": 10e9, "prf_hz": 200},
     "impulse": {
@@ -88,6 +88,10 @@ RADARS: dict[str, dict[str, Any]] = {
         **{"bandwidth_hz": 250e6, "steps": 64, "dwell_s": 1e-6, "prf_hz": 1000},
         "array": {"tx": [[0, 0]], "rx": [[0, 0], [1, 0], [1, 1]]},
     },
+    "cw_frames": {
+        **{"waveform": "cw", "frame": {"chirps": 12, "period_s": 0.05}, "carrier_hz": 24e9},
+        **{"prf_hz": 1000, "array": {"tx": [[0, 0]], "rx": [[0, 0], [1, 0], [1, 1]]}},
+    },
 }
 BASE: dict[str, Any] = {
     "activities": ["punching"],
@@ -101,6 +105,7 @@ NAMES_OF_TAGS = {
     "<board>": "radar.cfg",
     "<frames>": "radar.frame",
     "<sfcw_frames>": "radar.frame of waveform: sfcw",
+    "<cw_frames>": "radar.frame of waveform: cw",
 }
 FILES_OF_A_DATA_SET = ("output.", "split.", "samples_per_class", "image.colour_map")
 MODELS = ("human", "paper")

@@ -6,7 +6,7 @@ import numpy as np
 
 from radhar_cli.assembly.processing import frames_of
 from radhar_cli.assembly.radar import board_of, waveform_of
-from radhar_cli.config.radar import ArrayRadar, CwRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.board import Board
 from radhar_cli.scene import Scene
@@ -49,11 +49,11 @@ class RadarFigures:
 
 def figures_of(scene: Scene) -> RadarFigures:
     """Work out the figures of the radar of a scene, with the processing of its config."""
+    has_range = scene.radar.has_range
     if isinstance(scene.radar, ArrayRadar):
-        return _figures_of_board(board_of(scene.radar))
+        return _figures_of_board(board_of(scene.radar), has_range)
     waveform = waveform_of(scene)
     window = frames_of(scene.config, scene.seconds, waveform.prf, waveform.f0).length
-    has_range = not isinstance(scene.radar, CwRadar)
     return RadarFigures(
         range_step_m=waveform.range_step if has_range else None,
         last_range_m=waveform.half_band_range if has_range else None,
@@ -64,13 +64,13 @@ def figures_of(scene: Scene) -> RadarFigures:
     )
 
 
-def _figures_of_board(board: Board) -> RadarFigures:
+def _figures_of_board(board: Board, has_range: bool) -> RadarFigures:
     """Work out the figures of a radar with frames, whose Doppler is that of a frame."""
     has_doppler = board.n_doppler > 1
     step = board.doppler_step()
     return RadarFigures(
-        range_step_m=board.range_step,
-        last_range_m=board.n_bins * board.range_step,
+        range_step_m=board.range_step if has_range else None,
+        last_range_m=board.n_bins * board.range_step if has_range else None,
         speed_limit_mps=step * board.n_doppler / 2 if has_doppler else None,
         speed_step_mps=step if has_doppler else None,
         rate_hz=1 / board.period,

@@ -8,7 +8,7 @@ import numpy as np
 
 from radhar_cli.assembly.radar import board_of
 from radhar_cli.capture.chain import even_columns, part_of
-from radhar_cli.capture.content import describe_other_chirps
+from radhar_cli.capture.content import SlowTime, describe_difference, describe_other_chirps
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS
@@ -111,12 +111,20 @@ def _board(recording: Recording, config: Config) -> Board:
             f"{recording.path}: frames need a radar that has them: radar.cfg or radar.frame"
         )
     board, info = board_of(radar), recording.info
-    difference = describe_other_chirps(info.content, timing_of(board))
+    difference = _describe_difference(recording, board)
     if info.receivers != board.channels:
         difference = f"receivers = {info.receivers}: should be {board.channels}"
     if difference is not None:
         raise CaptureError(f"{recording.path}: {difference}, as {radar.named} has it")
     return board
+
+
+def _describe_difference(recording: Recording, board: Board) -> str | None:
+    """Say in what the content of a recording differs from that of a board; None if it does not."""
+    content = recording.info.content
+    if board.samples == 1:
+        return describe_difference(content, SlowTime(board.waveform.f0, 1 / board.loop))
+    return describe_other_chirps(content, timing_of(board))
 
 
 def _require_kind_of_samples(recording: Recording, board: Board) -> None:

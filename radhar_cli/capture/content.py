@@ -184,8 +184,9 @@ def radar_section(radar: dict[str, Any], content: Content) -> dict[str, Any]:
         The section, plain values.
     """
     section = radar | _radar_keys(content, radar.get("waveform", "fmcw"))
-    if isinstance(content, SlowTime):  # no board has a single sample a pulse
-        section = {key: value for key, value in section.items() if key != "cfg"}
+    if isinstance(content, SlowTime):  # no board has a single sample a pulse, nor has a chirp
+        gone = {"cfg"} if radar.get("waveform") == "cw" else {"cfg", "frame"}
+        section = {key: value for key, value in section.items() if key not in gone}
     kind = class_of_radar(section)
     assert kind is not None  # a config was read, or content tells the kind
     return {key: value for key, value in section.items() if key in kind.model_fields}

@@ -105,12 +105,15 @@ def radar_of_recording(recording: Recording, overrides: Sequence[str] = ()) -> d
     match content:
         case Beat():
             section = _chirps(recording, content, note, frames)
-        case SlowTime() | RangeProfiles():
+        case SlowTime():
+            section = _tone(recording, content, note, frames)
+        case RangeProfiles():
             _require_plain_pulses(recording, frames)
             section = _pulses(content, note, recording.samples.parts == 2)
     kind = class_of_radar(section)
     assert kind is not None
-    return {key: value for key, value in section.items() if key in kind.model_fields}
+    known_keys = kind.model_fields.keys() - {k for k, value in section.items() if value is None}
+    return {key: value for key, value in section.items() if key in known_keys}
 
 
 def differing_key(section: Any, other: Any, key: str = "radar") -> str | None:
@@ -147,7 +150,7 @@ def _chirps(
     recording: Recording, content: Beat, note: Mapping[str, Any], frames: RecordedFrames | None
 ) -> dict[str, Any]:
     """Radar that sends chirps: with frames and an array, or plain ones of one antenna pair."""
-    info, timing = recording.info, content.timing
+    timing = content.timing
     has_steps = note.get("waveform") == "sfcw"
     waves: dict[str, Any] = {
         "carrier_hz": _number(timing.carrier_hz),
@@ -158,17 +161,56 @@ def _chirps(
     }
     if has_steps:
         waves |= {"steps": timing.samples, "dwell_s": _number(1 / timing.adc_rate_hz)}
-    known = note.get("frame") or {}
-    turns = len({round(delay * timing.prf_hz, 6) for delay in info.receiver_delay_s})
-    if frames is None and "chirps" not in known:
+    turns = _turns_of(recording, content)
+    if frames is None and not _has_frames(note):
         if why := _why_frames(recording, content, turns):
-            raise CaptureError(
-                f"{recording.path}: {why}; a radar of a config has that with frames, which the "
-                "recording does not tell: --set radar.frame.chirps=64 says how many chirps of a "
-                f"transmitter a frame has ({HOW})"
-            )
+            raise _missing_frames(recording, why)
         return dict(note) | waves | {"prf_hz": _number(timing.prf_hz)}
-    interval = _number(1 / (timing.prf_hz * turns))
+    return dict(note) | waves | _frame_keys(recording, content, note, frames)
+
+
+def _tone(
+    recording: Recording, content: SlowTime, note: Mapping[str, Any], frames: RecordedFrames | None
+) -> dict[str, Any]:
+    """Radar that takes a sample a pulse: with frames and an array, or of one antenna pair."""
+    if frames is None and not _has_frames(note):
+        if recording.info.receivers > 1:
+            raise _missing_frames(recording, f"has {recording.info.receivers} receivers")
+        return _pulses(content, note, recording.samples.parts == 2)
+    waves = {"waveform": "cw", "carrier_hz": _number(content.carrier_hz)}
+    return dict(note) | waves | _frame_keys(recording, content, note, frames)
+
+
+def _has_frames(note: Mapping[str, Any]) -> bool:
+    """Whether what is known of a radar says how many chirps a frame has."""
+    return "chirps" in (note.get("frame") or {})
+
+
+def _missing_frames(recording: Recording, why: str) -> CaptureError:
+    """Error of a recording whose radar has frames that nothing tells.
+
+    Args:
+        recording: the recording.
+        why: what only a radar with frames has.
+    """
+    return CaptureError(
+        f"{recording.path}: {why}; a radar of a config has that with frames, which the "
+        "recording does not tell: --set radar.frame.chirps=64 says how many chirps of a "
+        f"transmitter a frame has ({HOW})"
+    )
+
+
+def _turns_of(recording: Recording, content: Content) -> int:
+    """Number of transmitters that take turns."""
+    return len({round(delay * content.prf_hz, 6) for delay in recording.info.receiver_delay_s})
+
+
+def _frame_keys(
+    recording: Recording, content: Content, note: Mapping[str, Any], frames: RecordedFrames | None
+) -> dict[str, Any]:
+    """Keys of a radar's frames and of its array; no rate, which follows from the frames."""
+    known, turns = note.get("frame") or {}, _turns_of(recording, content)
+    interval = _number(1 / (content.prf_hz * turns))
     frame: dict[str, Any] = {"chirps": known.get("chirps"), "interval_s": interval}
     period = known.get("period_s")
     if frames is not None:
@@ -177,10 +219,9 @@ def _chirps(
     is_apart = period is not None and period > frame["chirps"] * turns * interval * (1 + 1e-6)
     if period is not None and is_apart:
         frame["period_s"] = _number(period)
-    section = dict(note) | waves | {"frame": frame}
-    section["output"] = "iq" if recording.samples.parts == 2 else "real"
-    section["array"] = _elements(recording, note, turns)
-    return {key: value for key, value in section.items() if key != "prf_hz"}
+    output = "iq" if recording.samples.parts == 2 else "real"
+    array = _elements(recording, note, turns)
+    return {"frame": frame, "prf_hz": None, "output": output, "array": array}
 
 
 def _why_frames(recording: Recording, content: Beat, turns: int) -> str | None:

@@ -309,7 +309,11 @@ def _info(
 def _radar_note(s: CaptureSettings, content: Content) -> dict[str, Any]:
     """What the header says of the radar, by keys of a config; frames even where they are joined."""
     note = dict(s.radar or {})
-    if isinstance(content, Beat) and s.frame_pulses is not None and s.frame_s is not None:
+    if (
+        not isinstance(content, RangeProfiles)
+        and s.frame_pulses is not None
+        and s.frame_s is not None
+    ):
         note.setdefault("frame", {"chirps": s.frame_pulses, "period_s": s.frame_s})
     return note
 

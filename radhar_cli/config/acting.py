@@ -5,10 +5,11 @@ from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, RANGE
 from radhar_cli.processing.map_kind import CADENCE_KINDS, MAP_KINDS, RTM, Transform
 
-FRAMES = "board", "frames", "sfcw_frames"  # kinds of radars with frames
+FRAMES = "board", "frames", "sfcw_frames", "cw_frames"  # kinds of radars with frames
 BOARD = OfRadar(*FRAMES)
 NO_BOARD = OfRadar("fmcw", "sfcw", "cw", "impulse")
-CHIRPS = OfRadar("fmcw", "sfcw", *FRAMES)
+CHIRPS = OfRadar("fmcw", "sfcw", "board", "frames", "sfcw_frames")
+RANGES = OfRadar("fmcw", "sfcw", "impulse", "board", "frames", "sfcw_frames")
 NO_IMPULSE = OfRadar("fmcw", "sfcw", "cw", *FRAMES)
 EVEN = Unless("radar.frames_apart", "the pauses between frames (radar.cfg or radar.frame)")
 RANGE_TIME = OnlyMaps((str(RTM),))

@@ -174,7 +174,10 @@ class ActsIfNull:
 
 
 # {kind of a radar with frames: the key that tells it}
-_KEYS_OF_FRAMES = {"board": "radar.cfg", "frames": "radar.frame", "sfcw_frames": "radar.frame"}
+_KEYS_OF_FRAMES = {
+    "board": "radar.cfg",
+    **dict.fromkeys(("frames", "sfcw_frames", "cw_frames"), "radar.frame"),
+}
 
 
 @dataclass(frozen=True)

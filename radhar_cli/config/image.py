@@ -4,7 +4,7 @@ from typing import Annotated, Generic, Literal
 
 from pydantic import BeforeValidator, Field, field_validator
 
-from radhar_cli.config.acting import CADENCES, OVER_RANGE, SPECTRA
+from radhar_cli.config.acting import CADENCES, OVER_RANGE, RANGES, SPECTRA
 from radhar_cli.config.annotations import ActsIf
 from radhar_cli.config.number import DECIBEL, POSITIVE, Real, require, uniform, value_error, within
 from radhar_cli.config.section import N, Section, default_draw, defaults_of
@@ -77,6 +77,7 @@ class ImageConfig(Section):
         tuple[Real, Real] | None,
         require(lambda value: 0 <= value[0] < value[1], "should be [near, far], 0 <= near < far"),
         OVER_RANGE,
+        RANGES,
     ] = None
     """Ranges [near, far] at the edges of images of rtm and of a board's frame maps, and over which
     angle-time maps sum; null is where people can be (model: human), or all."""

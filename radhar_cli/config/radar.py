@@ -1,4 +1,4 @@
-"""The radar: seven kinds, each with the keys that it alone has.
+"""The radar: eight kinds, each with the keys that it alone has.
 
 `radar:` is the one that `cfg`, `frame` and `waveform` tell. A kind answers for itself: what its
 pulses are, which maps it makes, and why not the others.
@@ -6,7 +6,17 @@ pulses are, which maps it makes, and why not the others.
 
 from itertools import pairwise
 from math import radians
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, Self, TypeAlias
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    ClassVar,
+    Generic,
+    Literal,
+    NamedTuple,
+    Self,
+    TypeAlias,
+)
 
 from pydantic import (
     BeforeValidator,
@@ -34,7 +44,7 @@ from radhar_cli.config.number import (
 from radhar_cli.config.section import Filled, Flag, N, Section, VectorOf, default_draw
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
-from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, RANGE
 from radhar_cli.processing.map_kind import MapKind, Transform
 from radhar_cli.radar.board import (
     DEVICES,
@@ -56,6 +66,7 @@ if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader
 
 BOOST = "IWR1443BOOST"
+NO_RANGE = "radar.waveform: cw has no range"
 MAX_ELEMENTS = 32  # transmitters, or receivers, of a radar with frames
 MIN_WINDOW = 8  # pulses of the window of a Doppler-time map
 Place: TypeAlias = tuple[Real, Real]
@@ -104,6 +115,7 @@ class AnyRadar(Section, Generic[N]):
 
     kind: ClassVar[str]
     named: ClassVar[str]  # as messages name it: the key, and value, that tell the kind
+    has_range: ClassVar[bool] = True  # whether pulses have a band, whose echoes tell ranges
 
     if TYPE_CHECKING:  # keys of some kinds, which follow from others' keys
 
@@ -263,11 +275,29 @@ class SfcwRadar(_Steps[N], _Emission[N], _AntennaPair[N], _Sweep[N], Generic[N])
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
 
+class OneSample(NamedTuple):
+    """A pulse of one sample, whose length and band change nothing.
+
+    Attributes:
+        adc_rate_hz: Sampling rate, Hz.
+        chirp_s: Length, s.
+        bandwidth_hz: Band, Hz.
+    """
+
+    adc_rate_hz: float = 1e9
+    chirp_s: float = 1e-9
+    bandwidth_hz: float = 1e3
+
+
+ONE_SAMPLE = OneSample()
+
+
 class CwRadar(_Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
     """A radar that sends one frequency and takes one sample a pulse; it has no range."""
 
     kind: ClassVar[str] = "cw"
     named: ClassVar[str] = "radar.waveform: cw"
+    has_range: ClassVar[bool] = False
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
     waveform: Literal["cw"] = "cw"
@@ -276,15 +306,14 @@ class CwRadar(_Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
     """Output of the mixer: iq, or real for the in-phase channel alone, whose Doppler is
     symmetric."""
 
-    # A pulse of one sample, whose length and band change nothing.
-    adc_rate_hz: ClassVar[float] = 1e9  # type: ignore[assignment]
-    chirp_s: ClassVar[float] = 1e-9  # type: ignore[assignment]
-    bandwidth_hz: ClassVar[float] = 1e3  # type: ignore[assignment]
+    adc_rate_hz: ClassVar[float] = ONE_SAMPLE.adc_rate_hz  # type: ignore[assignment]
+    chirp_s: ClassVar[float] = ONE_SAMPLE.chirp_s  # type: ignore[assignment]
+    bandwidth_hz: ClassVar[float] = ONE_SAMPLE.bandwidth_hz  # type: ignore[assignment]
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
         """Say why the radar does not make a map: it has no range, real samples no direction."""
         if kind.transform is Transform.RTM:
-            return f"{self.named} has no range"
+            return NO_RANGE
         if self.output == "real" and kind.treatment.compensated:
             return "radar.output: real has no sign of the Doppler"
         return super().why_no_map(kind, gating)
@@ -336,7 +365,8 @@ class ArrayRadar(_Emission[N], Generic[N]):
     """A radar that sends frames of chirps and receives them by an array: what all of them are."""
 
     waveform: Literal["fmcw"] = "fmcw"
-    """Waveform of a radar with frames: fmcw sends chirps, sfcw sweeps of steps."""
+    """Waveform of a radar with frames: fmcw sends chirps, sfcw sweeps of steps, cw one
+    frequency."""
     position_m: VectorOf[N] = default_draw((0.0, 0.0, 1.0))
     """Position of the array: range, cross-range, height."""
     yaw_deg: Annotated[N, ANGLE] = default_draw(0.0)
@@ -647,11 +677,11 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
 
 
 class FrameConfig(Section):
-    """Frames of a radar: so many chirps, or sweeps of steps, and a pause until the next frame."""
+    """Frames of a radar: so many chirps, sweeps or samples, and a pause until the next frame."""
 
     chirps: Annotated[int, Field(ge=1, le=2**14, strict=True), FIXED]
-    """Number of chirps, or sweeps, of each transmitter in a frame: the pulses of a range-Doppler
-    map."""
+    """Number of chirps, sweeps of sfcw, or samples of cw, of each transmitter in a frame: the
+    pulses of a range-Doppler map."""
     interval_s: Annotated[float, Field(gt=0, le=1e3, strict=True), FIXED] | None = None
     """Time from chirp to chirp, of whichever transmitter; null is 1/(prf_hz times the number of
     transmitters), or the length of a chirp without prf_hz."""
@@ -678,7 +708,7 @@ class _FrameStart(ArrayRadar[N], Generic[N]):
     """Frames of the radar, which range-Doppler and angle maps, cubes, points and skeletons are
     of."""
     carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True), FIXED] = 77e9  # type: ignore[assignment]
-    """Frequency at the first sample of a chirp, or of the first step."""
+    """Frequency at the first sample of a chirp, of the first step, or of cw."""
 
 
 class _SweptBand(_FrameStart[N], Generic[N]):
@@ -785,6 +815,52 @@ class StepFramesRadar(FramesRadar[N], _Steps[N], _SweptBand[N], Generic[N]):  # 
     """Kind of the radar."""
 
 
+class CwFramesRadar(FramesRadar[N], Generic[N]):
+    """A radar that sends one frequency, whose samples are taken in frames: it has no range."""
+
+    kind: ClassVar[str] = "cw_frames"
+    named: ClassVar[str] = "radar.frame of waveform: cw"
+    has_range: ClassVar[bool] = False
+    model_config = ConfigDict(json_schema_extra=_require_waveform)
+
+    waveform: Literal["cw"] = "cw"  # type: ignore[assignment]
+    """Kind of the radar."""
+
+    adc_rate_hz: ClassVar[float] = ONE_SAMPLE.adc_rate_hz
+    chirp_s: ClassVar[float] = ONE_SAMPLE.chirp_s
+    bandwidth_hz: ClassVar[float] = ONE_SAMPLE.bandwidth_hz
+
+    @model_validator(mode="before")
+    @classmethod
+    def _require_rate(cls, value: object) -> object:
+        """Require what says how often samples are taken."""
+        if isinstance(value, dict) and isinstance(value.get("frame"), dict):
+            rates = value.get("prf_hz"), value["frame"].get("interval_s")
+            if rates == (None, None):
+                raise value_error(
+                    "should have prf_hz, the samples of each receiver per second, with "
+                    "waveform: cw and frame"
+                )
+        return value
+
+    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
+        """Say why the radar does not make a map: it has no range."""
+        if kind.transform is Transform.RTM:
+            return NO_RANGE
+        return super().why_no_map(kind, gating)
+
+    def why_no_frames(self, name: str) -> str | None:
+        """Say why the radar does not make a map of its frames: it has no range."""
+        kind = FRAME_MAP_KINDS.get(name)
+        if name == "points" or (kind is not None and kind.rows is RANGE):
+            return NO_RANGE
+        return super().why_no_frames(name)
+
+    def why_no_points(self, chain: Chain) -> str | None:
+        """Say that there are no points."""
+        return NO_RANGE
+
+
 RADARS: tuple[type[AnyRadar[Any]], ...] = (
     FmcwRadar,
     SfcwRadar,
@@ -793,9 +869,14 @@ RADARS: tuple[type[AnyRadar[Any]], ...] = (
     BoardRadar,
     ChirpFramesRadar,
     StepFramesRadar,
+    CwFramesRadar,
 )
 # {waveform: kind} of the radars that have frames in the config.
-KINDS_WITH_FRAMES = {"fmcw": ChirpFramesRadar.kind, "sfcw": StepFramesRadar.kind}
+KINDS_WITH_FRAMES = {
+    "fmcw": ChirpFramesRadar.kind,
+    "sfcw": StepFramesRadar.kind,
+    "cw": CwFramesRadar.kind,
+}
 for _kind in RADARS:
     _kind.ALTERNATIVES = tuple(other for other in RADARS if other is not _kind)
 
@@ -836,7 +917,8 @@ Radar: TypeAlias = Annotated[
     | Annotated[ImpulseRadar[N], Tag("<impulse>")]
     | Annotated[BoardRadar[N], Tag("<board>")]
     | Annotated[ChirpFramesRadar[N], Tag("<frames>")]
-    | Annotated[StepFramesRadar[N], Tag("<sfcw_frames>")],
+    | Annotated[StepFramesRadar[N], Tag("<sfcw_frames>")]
+    | Annotated[CwFramesRadar[N], Tag("<cw_frames>")],
     Discriminator(
         _tag_of_radar,
         custom_error_type="wrong",
@@ -852,4 +934,5 @@ SceneRadar: TypeAlias = (
     | BoardRadar[float]
     | ChirpFramesRadar[float]
     | StepFramesRadar[float]
+    | CwFramesRadar[float]
 )

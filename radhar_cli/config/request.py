@@ -638,7 +638,8 @@ def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, 
         clutter = "mean" if radar.removes_mean else "none"
         changed.setdefault("processing", {})["clutter"] = clutter
     if "range_sum" not in c.processing.model_fields_set:
-        changed.setdefault("processing", {})["range_sum"] = "gated"
+        range_sum = "gated" if radar.has_range else "coherent"
+        changed.setdefault("processing", {})["range_sum"] = range_sum
     if "chain" not in c.cloud.model_fields_set:
         changed.setdefault("cloud", {})["chain"] = radar.likely_chain
     for key, number in _pose_of_cfg(radar).items():

@@ -336,7 +336,7 @@ def _frame_sum(tau: Float, a: Float, board: Board, tolerance_db: float) -> Compl
     Paths have delays (s) and amplitudes [I, virtual loop].
     """
     dtype, half = np.result_type(a.dtype, np.complex64), max(board.samples - 1, 1) / 2
-    rate, u = board.slope / board.adc_rate, np.arange(board.samples) - half
+    rate, u = board.slope / board.adc_rate, np.arange(board.samples) - (board.samples - 1) / 2
     middle = (tau.max() + tau.min()) / 2
     turn = (2 * pi * rate * half) * (tau - middle)
     mean = turn.mean(axis=1, keepdims=True)

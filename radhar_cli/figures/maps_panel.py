@@ -172,7 +172,8 @@ def describe_scene(scene: Scene, waveform: Waveform) -> list[str]:
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
     noise = "no noise" if figure is None else f"noise figure {_rounded(nominal(figure), 1)} dB"
     kind = scene.radar.kind
-    band = " CW" if kind == "cw" else f" + {_rounded(waveform.bandwidth / 1e9, 4)} GHz"
+    bandwidth = f" + {_rounded(waveform.bandwidth / 1e9, 4)} GHz"
+    band = bandwidth if scene.radar.has_range else " CW"
     band += " impulses" if kind == "impulse" else ""
     rooms = scene.config.room.faces is not None
     return [

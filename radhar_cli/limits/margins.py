@@ -7,7 +7,6 @@ import numpy as np
 
 from radhar_cli.assembly.motion import moving
 from radhar_cli.assembly.radar import antennas_of, waveform_of
-from radhar_cli.config.radar import CwRadar
 from radhar_cli.radar.propagation import bistatic_delay, leg
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene import Scene
@@ -98,7 +97,7 @@ def margins_of(scenes: Sequence[Scene], reaches: Sequence[Reach]) -> list[Margin
             *("", "arithmetic", "float64 is off by 1e-6 of a cycle: nothing says so"),
         ),
     ]
-    if isinstance(scenes[0].radar, CwRadar):
+    if not scenes[0].radar.has_range:
         return margins
     reach_margin = Margin(
         *("farthest joint", farthest, range_end, "m", "model"),

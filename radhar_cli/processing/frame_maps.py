@@ -7,6 +7,7 @@ of a bin reads a^2 in all of them.
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
+from operator import attrgetter
 from typing import Protocol
 
 import numpy as np
@@ -178,7 +179,7 @@ def angles_of_beams(board: Board) -> Float:
     return np.arange(-90.0, 91.0)
 
 
-RANGE = FrameAxis("range", "m", ranges_of_bins)
+RANGE = FrameAxis("range", "m", ranges_of_bins, attrgetter("range_step"))
 SPEED = FrameAxis("radial speed", "m/s", speeds_of_bins, Board.doppler_step)
 # Positive left, positive up.
 ANGLES = tuple(FrameAxis(name, "degree", angles_of_beams) for name in ("azimuth", "elevation"))

@@ -242,7 +242,7 @@ def _angle_time_rows(config: Config) -> Iterator[Product]:
             angle_time,
             axis=kind.array_axis,
             remove_mean=config.processing.clutter == "mean",
-            limits_m=config.image.range_limits_m,
+            limits_m=config.image.range_limits_m if config.radar.has_range else None,
         )
         does = f"{kind.title} map, powers summed over ranges and speeds"
         yield Product(kind.name, ("cube", "board"), make, does, is_array=True)

@@ -500,8 +500,13 @@ class BoardWaveform(Waveform):
 
     @property
     def sample_rate(self) -> float:
-        """Samples per second that noise is white up to; a mean of chirps takes less of it, Hz."""
+        """Samples per second that noise is white up to, Hz: of one sample a chirp all chirps.
+
+        A mean of chirps takes less of it.
+        """
         assert self.board is not None
+        if self.n_adc == 1:
+            return 1 / self.board.slot
         return self.adc_rate / self.board.averaged
 
     @property

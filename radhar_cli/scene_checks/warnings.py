@@ -9,7 +9,7 @@ from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import ways_of
 from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings, word_warnings
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import ArrayRadar, BoardRadar, CwRadar, ImpulseRadar
+from radhar_cli.config.radar import ArrayRadar, BoardRadar, ImpulseRadar
 from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.errors import SceneError
 from radhar_cli.processing.map_kind import kind_of
@@ -159,7 +159,11 @@ def _gives_window(config: Config) -> bool:
 
 def _folding_warnings(config: Config) -> list[str]:
     """Say that some echoes by way of faces come from beyond the ranges that the radar has."""
-    if config.room.faces is None or isinstance(config.radar, CwRadar | ImpulseRadar):
+    if (
+        config.room.faces is None
+        or isinstance(config.radar, ImpulseRadar)
+        or not config.radar.has_range
+    ):
         return []
     farthest, reach = 0.0, 0.0
     for activity in config.chosen_activities:

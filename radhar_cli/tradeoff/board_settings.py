@@ -5,7 +5,13 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import BoardRadar, FramesRadar, SfcwRadar, StepFramesRadar
+from radhar_cli.config.radar import (
+    BoardRadar,
+    ChirpFramesRadar,
+    FramesRadar,
+    SfcwRadar,
+    StepFramesRadar,
+)
 from radhar_cli.tradeoff.setting import Setting, Worth, keyed
 
 CHIRP_END, LOOPS, PERIOD = 2, 3, 5  # places in a line of frameCfg
@@ -55,7 +61,7 @@ def frame_settings(radar: FramesRadar, config: Config) -> Iterator[Setting]:
         yield keyed("radar", f"radar.frame.chirps={header.loops // 2}", Worth.SAVES)
     if isinstance(radar, StepFramesRadar):
         yield half_as_many_steps(radar)
-    else:
+    elif isinstance(radar, ChirpFramesRadar):
         yield keyed("radar", f"radar.adc_rate_hz={radar.adc_rate_hz / 2:g}", Worth.SAVES)
     if "points" in config.maps:
         yield from _point_settings(config)

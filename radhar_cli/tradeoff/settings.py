@@ -166,7 +166,7 @@ def processing_settings(config: Config) -> Iterator[Setting]:
     for kind in ("mean", "none") if is_board else CLUTTER:
         if kind != processing.clutter:
             yield keyed("processing", f"processing.clutter={kind}", Worth.PROCESSING)
-    if "stft" not in config.maps or isinstance(config.radar, CwRadar):
+    if "stft" not in config.maps or not config.radar.has_range:
         return
     kind = "gated" if processing.range_sum == "coherent" else "coherent"
     base: Overrides = ("maps=[stft]",) if _has_fsst(config) else ()  # a gate has no fsst

@@ -55,6 +55,16 @@ RADARS = {
         "[3, 0]]}}",
         f"rtm, {OF_SIGNALS}, {OF_FRAMES}, points",
     ),
+    "cw, array": (
+        "{waveform: cw, frame: {chirps: 64}, carrier_hz: 24.125e9, prf_hz: 2560, "
+        "array: {rx: [[-0.5, 0], [0.5, 0]]}, position_m: [0, 0, 1]}",
+        f"{OF_SIGNALS}, stft_compensated, doppler_azimuth, azimuth_time",
+    ),
+    "cw, in turns": (
+        "{waveform: cw, frame: {chirps: 64, period_s: 0.1}, carrier_hz: 10e9, prf_hz: 1000, "
+        "array: {tx: [[0, 0], [0, 1]], rx: [[-0.5, 0], [0.5, 0]]}}",
+        "doppler_azimuth, doppler_elevation, elevation_time",
+    ),
     "board": (
         "{device: IWR1443BOOST, cfg: iwr1443boost, position_m: [0, 0, 1]}",
         f"rtm, {OF_SIGNALS}, {OF_FRAMES}, elevation_time, points",

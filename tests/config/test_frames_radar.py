@@ -216,15 +216,38 @@ def test_a_walker_who_comes_closer_is_on_the_positive_side() -> None:
             "dwell_s is 0.00128 s)",
         ),
         (
-            "{waveform: sfcw, frame: {chirps: 2}, steps: 70000, dwell_s: 1e-7}",
+            "{waveform: sfcw, frame: {chirps: 4}, steps: 70000, dwell_s: 1e-7}",
             "radar.steps = 70000: should be at most 65536 with radar.frame",
         ),
-        ("{waveform: sfcw, frame: {chirps: 64}, steps: 64}", "radar.dwell_s is missing"),
+        ("{waveform: sfcw, frame: {chirps: 64}, steps: 64}", "radar.dwell_s: is required with"),
         (
             "{waveform: sfcw, frame: {chirps: 64}, steps: 64, dwell_s: 1e-5, chirp_s: 1e-3}",
             "radar.chirp_s",
         ),
-        ("{waveform: impulse, frame: {chirps: 64}, profile_m: [0, 5]}", "radar.frame"),
+        (
+            "{waveform: impulse, frame: {chirps: 64}, profile_m: [0, 5]}",
+            "should be left out with radar.waveform: impulse: fmcw and sfcw and cw have frames",
+        ),
+        (
+            "{waveform: cw, frame: {chirps: 64}}",
+            "radar: should have prf_hz, the samples of each receiver per second",
+        ),
+        (
+            "{waveform: cw, frame: {chirps: 64}, prf_hz: 1000}",
+            'maps = ["range_doppler"]: should be some of',
+        ),
+        (
+            "{waveform: cw, frame: {chirps: 64}, prf_hz: 1000}",
+            "radar.waveform: cw has no range",
+        ),
+        (
+            "{frame: {chirps: 64, period_s: {uniform: [0.05, 0.1]}}}",
+            "should be a number: frames, bins and axes of all samples follow from it",
+        ),
+        (
+            "{frame: {chirps: 64}, carrier_hz: {uniform: [24e9, 25e9]}}",
+            "should be a number: frames, bins and axes of all samples follow from it",
+        ),
         ("{carrier_hz: 24e9}", "FMCW radar with radar.frame, such as 'frame: {chirps: 64}'"),
     ],
 )

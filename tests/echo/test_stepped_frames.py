@@ -1,4 +1,4 @@
-"""Frames of a stepped-frequency array against a sum of phases that is written out here."""
+"""Frames of stepped-frequency and CW arrays against a sum of phases that is written out here."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -25,6 +25,10 @@ STEPS: dict[str, Any] = {
     "dwell_s": 12e-6,
     "array": {"tx": TX, "rx": RX},
     "position_m": POSITION,
+}
+TONE = {key: STEPS[key] for key in ("array", "position_m", "frame")} | {
+    "waveform": "cw",
+    "carrier_hz": 24.125e9,
 }
 
 
@@ -60,8 +64,8 @@ def sum_of_phases(radar: dict[str, Any], frames: int, balls: tuple[int, ...]) ->
 
     The elements stand in the plane x = 0 of the array, the first number of a place to the left.
     """
-    frame, steps = radar["frame"], radar["steps"]
-    f = radar["carrier_hz"] + radar["bandwidth_hz"] / steps * np.arange(steps)
+    frame, steps = radar["frame"], radar.get("steps", 1)
+    f = radar["carrier_hz"] + radar.get("bandwidth_hz", 0) / steps * np.arange(steps)
     middle = (f[0] + f[-1]) / 2
     half_wave = C / middle / 2
     cube = np.zeros((frames, frame["chirps"], len(TX) * len(RX), steps), complex)
@@ -87,24 +91,24 @@ def sum_of_phases(radar: dict[str, Any], frames: int, balls: tuple[int, ...]) ->
 
 
 @pytest.mark.parametrize("engine", ["cube", "direct"])
-@pytest.mark.parametrize("output", ["iq", "real"])
-def test_samples_are_the_sum_of_phases(engine: str, output: str) -> None:
+@pytest.mark.parametrize("radar", [STEPS, STEPS | {"output": "real"}, TONE])
+def test_samples_are_the_sum_of_phases(engine: str, radar: dict[str, Any]) -> None:
     """An element without a pattern has one of 1000 degrees, which takes 0.002 dB."""
-    radar = STEPS | {"output": output}
     scene = scene_of(radar, engine={"kind": engine})
     cube = record(scene, ["cube"], motions=(Balls(),)).products["cube"]
-    expected = sum_of_phases(STEPS, 3, (0, 1))
-    if output == "real":
+    expected = sum_of_phases(radar, 3, (0, 1))
+    if radar.get("output") == "real":
         expected = expected.real
     assert cube.shape == expected.shape
     assert cube.dtype.kind == expected.dtype.kind
     assert np.linalg.norm(cube - expected) < 3e-4 * np.linalg.norm(expected)
 
 
-def test_phases_of_one_ball_are_exact() -> None:
-    scene = scene_of(STEPS, engine={"kind": "cube"})
+@pytest.mark.parametrize("radar", [STEPS, TONE])
+def test_phases_of_one_ball_are_exact(radar: dict[str, Any]) -> None:
+    scene = scene_of(radar, engine={"kind": "cube"})
     cube = record(scene, ["cube"], motions=(ScattererSubset(Balls(), (1,)),)).products["cube"]
-    ratio = cube / sum_of_phases(STEPS, 3, (1,))
+    ratio = cube / sum_of_phases(radar, 3, (1,))
     assert np.abs(np.angle(ratio)).max() < 1e-8
     assert np.abs(np.abs(ratio) - 1).max() < 3e-4
 
@@ -126,3 +130,30 @@ def test_maps_have_the_balls_where_they_are() -> None:
     row, column = np.unravel_index(angles.power[0].argmax(), angles.power[0].shape)
     expected = np.degrees(np.arcsin(p[1] / distance))
     assert angles.columns.values[column] == pytest.approx(expected, abs=3)
+
+
+def test_two_receivers_of_a_tone_tell_the_direction_of_what_moves() -> None:
+    """The phase between them is pi sin(azimuth), at the Doppler of the ball."""
+    array = {"rx": [[-0.5, 0.0], [0.5, 0.0]]}
+    radar = TONE | {"array": array, "frame": {"chirps": 64}, "prf_hz": 1000}
+    ball = ScattererSubset(Balls(), (0,))
+    maps = record(scene_of(radar), ["doppler_azimuth"], motions=(ball,)).products["doppler_azimuth"]
+    p, v = np.array([3.0, 1.2, 1.5]) - POSITION, np.array([-1.1, 0.3, 0.0])
+    distance = np.linalg.norm(p)
+    row, column = np.unravel_index(maps.power[0].argmax(), maps.power[0].shape)
+    assert maps.rows.values[row] == pytest.approx(-p @ v / distance, abs=0.1)
+    direction = np.degrees(np.arcsin(p[1] / distance))
+    assert maps.columns.values[column] == pytest.approx(direction, abs=2)
+
+
+def test_noise_of_a_tone_is_of_the_rate_of_its_samples() -> None:
+    """Thermal noise of kT F times the samples of a receiver per second, in turns or not."""
+    powers = [
+        record(
+            scene_of(TONE | {"frame": frame}, receiver={"noise_figure_db": 20}), ["noise_sigma"]
+        ).products["noise_sigma"]
+        ** 2
+        for frame in ({"chirps": 16, "interval_s": 1e-3}, {"chirps": 16, "interval_s": 5e-4})
+    ]
+    assert powers[1] / powers[0] == pytest.approx(2)
+    assert powers[0] * 10**1.2 * 1e-3 == pytest.approx(1.380649e-23 * 290 * 100 * 1e3, rel=1e-3)

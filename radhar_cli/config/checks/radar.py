@@ -13,6 +13,7 @@ from radhar_cli.config.radar import (
     AnyRadar,
     ArrayRadar,
     BoardRadar,
+    CwFramesRadar,
     CwRadar,
     FmcwRadar,
     FramesRadar,
@@ -71,6 +72,16 @@ def _cw_problems(c: Request) -> Iterator[Problem]:
     if c.engine.motion_in_chirp:
         right = "should be false with radar.waveform: cw, which has no chirp"
         yield Problem("engine.motion_in_chirp", True, right)
+
+
+def _cw_frames_problems(radar: CwFramesRadar) -> Iterator[Problem]:
+    """Find what needs both channels of the mixers."""
+    if radar.output == "real":
+        right = (
+            "should be iq with radar.waveform: cw and radar.frame: one channel of a mixer has no "
+            "phase, by which receivers tell directions"
+        )
+        yield Problem("radar.output", radar.output, right)
 
 
 def _impulse_problems(c: Request, radar: ImpulseRadar) -> Iterator[Problem]:
@@ -160,8 +171,11 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
 def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
     """Find what a radar with frames cannot have, or numbers that do not fit together."""
     yield from _place_problems(radar)
+    if isinstance(radar, CwFramesRadar):
+        yield from _cw_problems(c)
+        yield from _cw_frames_problems(radar)
     transmitters, samples = len(radar.array.tx), half_up(radar.adc_rate_hz, radar.chirp_s)
-    if not 2 <= samples <= MAX_SAMPLES:
+    if radar.has_range and not 2 <= samples <= MAX_SAMPLES:
         yield _problem_of_samples(radar, samples)
         return
     interval = radar.interval_s
@@ -322,7 +336,7 @@ def _missing_on_board(c: Request) -> Iterator[Problem]:
 def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
     """Find what does not fit the pulses: chirps that are too long, FFTs that are too short."""
     radar, fft_length = c.radar, c.processing.range_fft_length
-    if isinstance(radar, CwRadar | ImpulseRadar):
+    if isinstance(radar, ImpulseRadar) or not radar.has_range:
         right = f"should be left out with {radar.named}, which has no chirp"
         for key in ("processing.range_fft_length", "processing.range_reference"):
             if at(c, key) not in (None, "centre"):

@@ -131,6 +131,7 @@ SITUATIONS: dict[str, dict[str, Any]] = {
     "radar.device": {"radar.cfg": FOR_ANY_DEVICE},
     "radar.subframe": {"radar.cfg": SUBFRAMES},
     "cloud.boundary_box": {"radar.cfg": f"{CFG}boundaryBox -1 1 0.5 2 0 0.2\n"},
+    "radar.dwell_s": {"receiver.noise_figure_db": 60.0, "snr_db": None},
     "radar.tx_m": {"radar.array": {}, "maps": ["stft"]},
     "radar.rx_m": {"radar.array": {}, "maps": ["stft"]},
     "radar.frame.interval_s": {"radar.prf_hz": None, "maps": ["stft"]},
@@ -155,6 +156,16 @@ SITUATIONS: dict[str, dict[str, Any]] = {
     "wall.layers": {"wall.echoes": "exact", "engine.kind": "cube"},
     "engine.motion_in_chirp": {"engine.kind": "cube"},
     "motion.walking.lane_start": {"motion.walking.lane_m": 3.0},
+}
+# Those of a kind of radar alone, in place of the others.
+SITUATIONS_OF: dict[str, dict[str, dict[str, Any]]] = {
+    "cw_frames": {
+        "radar.frame.interval_s": {
+            "radar.frame.interval_s": 1e-3,
+            "radar.prf_hz": None,
+            "maps": ["stft"],
+        },
+    },
 }
 # Keys that only change together: {key: other keys and their values}.
 TOGETHER: dict[str, dict[str, Any]] = {
@@ -306,7 +317,7 @@ def base_of(radar: str) -> dict[str, Any]:
 def contexts(radar: str, key: str) -> Iterator[dict[str, Any]]:
     """Configs in which a key should act with a radar, as far as its conditions can be met."""
     base = situated = base_of(radar)
-    for whose, situation in SITUATIONS.items():
+    for whose, situation in (SITUATIONS | SITUATIONS_OF.get(radar, {})).items():
         if key == whose or (whose.endswith(".") and key.startswith(whose)):
             for other, value in situation.items():
                 situated = with_key(situated, other, value)

@@ -81,7 +81,8 @@ def process(
         document = resolved(fixed) | {"duration_s": part.pulses / info.prf_hz}
         radar = radar_section(document["radar"], info.content)
         document |= {"maps": signals or ("rtm",), "radar": radar}
-        validated(ProcessedConfig, document, str(config), *loaded._places)
+        if signals or fixed.radar.has_range:  # else no map but those of frames
+            validated(ProcessedConfig, document, str(config), *loaded._places)
         results = maps_of(opened, fixed, signals, start, stop, receiver)
         if frames:
             products, results.board = frames_of_recording(opened, fixed, frames, start, stop)

@@ -120,7 +120,7 @@ class ProcessingConfig(Section):
     stft_fft_length: Annotated[int | None, Field(ge=8, strict=True), STFTS] = None
     """Length of the STFT's FFT, at least the window; null finds one."""
     savgol: Annotated[SavgolConfig, DENOISED] = defaults_of(SavgolConfig)
-    fsst_hop_pulses: Annotated[int | None, Field(ge=1, le=2**24, strict=True), FSSTS] = None
+    fsst_hop_pulses: Annotated[int | None, Field(ge=1, le=2**24, strict=True), FSSTS, EVEN] = None
     """Hop of the fsst maps in pulses; 1 is every sample, null the STFT's."""
     fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True), FSSTS] = 1e-3
     """Share of the fsst map's largest coefficient below which coefficients are left out."""

@@ -58,7 +58,7 @@ RADARS = {
     "cw, array": (
         "{waveform: cw, frame: {chirps: 64}, carrier_hz: 24.125e9, prf_hz: 2560, "
         "array: {rx: [[-0.5, 0], [0.5, 0]]}, position_m: [0, 0, 1]}",
-        f"{OF_SIGNALS}, stft_compensated, doppler_azimuth, azimuth_time",
+        f"{OF_SIGNALS}, doppler_azimuth, azimuth_time",
     ),
     "cw, in turns": (
         "{waveform: cw, frame: {chirps: 64, period_s: 0.1}, carrier_hz: 10e9, prf_hz: 1000, "

@@ -30,6 +30,11 @@ RADARS = {
                        "array": {"tx": [[0, 0], [2, 0]], "rx": [[0, 0], [1, 0]]}},
     "sfcw": {"waveform": "sfcw", "steps": 64, "dwell_s": 1e-5, "carrier_hz": 2e9,
              "bandwidth_hz": 1e9, "prf_hz": 500},
+    "sfcw_array": {"waveform": "sfcw", "steps": 64, "dwell_s": 1e-5, "carrier_hz": 2e9,
+                   "bandwidth_hz": 1e9, "frame": {"chirps": 32, "period_s": 0.1},
+                   "array": {"rx": [[0, 0], [1, 0]]}},
+    "cw_array": {"waveform": "cw", "carrier_hz": 24e9, "prf_hz": 4000, "frame": {"chirps": 64},
+                 "array": {"rx": [[0, 0], [1, 0]]}},
     "cw_iq": {"waveform": "cw", "carrier_hz": 24e9, "prf_hz": 4000},
     "cw_real": {"waveform": "cw", "carrier_hz": 24e9, "prf_hz": 4000, "output": "real"},
     "impulse_rf": {"waveform": "impulse", "carrier_hz": 0.7e9, "bandwidth_hz": 1.6e9,
@@ -129,7 +134,9 @@ def test_a_fitted_config_makes_recordings_of_its_snr(tmp_path):
     assert again == pytest.approx(found, abs=2)
 
 
-@pytest.mark.parametrize("name", ["fmcw", "array_real", "sfcw", "cw_iq", "impulse_iq"])
+@pytest.mark.parametrize(
+    "name", ["fmcw", "array_real", "sfcw", "sfcw_array", "cw_iq", "cw_array", "impulse_iq"]
+)
 def test_a_config_is_the_header_of_an_import(tmp_path, name):
     path, recording = recorded(tmp_path, name)
     dataset = {"c": "slow_time", "i": "profiles"}.get(name[0], "beat")

@@ -230,7 +230,7 @@ def test_a_walker_who_comes_closer_is_on_the_positive_side() -> None:
         ),
         (
             "{waveform: cw, frame: {chirps: 64}}",
-            "radar: should have prf_hz, the samples of each receiver per second",
+            "should have prf_hz, the samples of each receiver per second, with waveform: cw",
         ),
         (
             "{waveform: cw, frame: {chirps: 64}, prf_hz: 1000}",

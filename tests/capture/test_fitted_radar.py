@@ -31,7 +31,7 @@ RADARS = {
     "sfcw": {"waveform": "sfcw", "steps": 64, "dwell_s": 1e-5, "carrier_hz": 2e9,
              "bandwidth_hz": 1e9, "prf_hz": 500},
     "sfcw_array": {"waveform": "sfcw", "steps": 64, "dwell_s": 1e-5, "carrier_hz": 2e9,
-                   "bandwidth_hz": 1e9, "frame": {"chirps": 32, "period_s": 0.1},
+                   "bandwidth_hz": 1e9, "frame": {"chirps": 32, "interval_s": 4e-3, "period_s": 0.2},
                    "array": {"rx": [[0, 0], [1, 0]]}},
     "cw_array": {"waveform": "cw", "carrier_hz": 24e9, "prf_hz": 4000, "frame": {"chirps": 64},
                  "array": {"rx": [[0, 0], [1, 0]]}},

@@ -36,10 +36,10 @@ def merge(
     """
     from radhar_cli.commands.terminal import BarProgress, print_outcome
     from radhar_cli.dataset.merge import merge as merge_parts
-    from radhar_cli.dataset.radar_folders import folders_of_radars
+    from radhar_cli.dataset.radar_folders import folders_of_merged_radars
     from radhar_cli.dataset.workers import cores
 
-    folders = folders_of_radars(out)
+    folders = folders_of_merged_radars(out, parts or [])
 
     def merge_radar(name: str, folder: Path) -> None:
         inner = [one / name if name and (one / name).is_dir() else one for one in parts or []]

@@ -20,6 +20,7 @@ from radhar_cli.errors import did_you_mean
 RADARS_KEY, NAME_KEY, OTHERS_KEY = "radars", "radar_name", "other_radars"
 ASPECT = "aspect"
 MAX_RADARS = 8
+MAX_ASPECT = 1e6  # of its numbers, m or degrees
 # What an entry of `radars` may have besides the keys of a radar.
 OWN_SECTIONS = (
     *("maps", "processing", "image", "cloud", "receiver"),
@@ -171,8 +172,10 @@ def _aspect_problems(
             yield Problem(where, value, f"is an unknown key; {near}")
         elif name == "about_m":
             pair = isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))
-            if not pair:
+            if not pair or max(map(abs, value)) > MAX_ASPECT:
                 yield Problem(where, value, "should be [range, cross-range] of a place, m")
+        elif _is_number(value) and abs(value) > MAX_ASPECT:
+            yield Problem(where, value, f"should be at most {MAX_ASPECT:.0e} in size")
         elif not _is_number(value) or (name == "distance_m" and value <= 0):
             above = " above 0" * (name == "distance_m")
             yield Problem(where, value, f"should be a number{above}, one for all scenes")

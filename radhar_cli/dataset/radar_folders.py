@@ -98,6 +98,27 @@ def describe_missing(path: Path, otherwise: str = "no such file or folder") -> s
     return f"not made yet; `radhar generate CONFIG -o {target}` goes on with all radars"
 
 
+def folders_of_merged_radars(folder: Path, parts: Iterable[Path]) -> dict[str, Path]:
+    """Folders {name: path} of the radars of a folder, or of parts that are merged into a new one.
+
+    Args:
+        folder: folder to merge into, which need not exist; it is taken for the radars of the parts.
+        parts: folders of parts; those of one radar name none.
+
+    Raises:
+        FolderError: parts are of other radars than others, or as `reserve_radars`.
+    """
+    names = radars_of(folder)
+    for part in parts:
+        listed = radars_of(part)
+        if names and listed and names != listed:
+            raise FolderError(
+                f"{part}: holds parts of the radars {', '.join(listed)}, not {', '.join(names)}"
+            )
+        names = names or listed
+    return reserve_radars(folder, names) if names else {"": folder}
+
+
 def refuse_several_radars(folder: Path) -> None:
     """Refuse a folder of several radars where the data set of one of them is needed.
 

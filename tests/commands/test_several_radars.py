@@ -100,6 +100,20 @@ def test_parts_merge_to_the_same(config, built, tmp_path):
     assert "the same people" in ok("verify", out, "--samples", 1).stdout
 
 
+def test_parts_of_other_machines_merge_into_a_new_folder(config, built, tmp_path):
+    places = [tmp_path / "a", tmp_path / "b"]
+    for number, place in enumerate(places, 1):
+        ok("generate", config, "-o", place, "--shard", f"{number}/2", "--jobs", 1)
+    ok("merge", tmp_path / "out", *places)
+    assert fingerprint(tmp_path / "out") == fingerprint(built)
+    assert "the same people" in ok("verify", tmp_path / "out", "--samples", 0).stdout
+    ok("generate", config, "-o", tmp_path / "c", "--set", "radars.third={}", "--shard", "1/2")
+    done = radhar("merge", tmp_path / "other", places[0], tmp_path / "c")
+    assert done.returncode == 2
+    assert "holds parts of the radars front, side, third, not front, side" in done.stderr
+    assert not (tmp_path / "other").exists()
+
+
 def test_verify_finds_other_people(config, built, tmp_path):
     done = ok("verify", built, "--samples", 2)
     assert "2 radars: the same people, labels and splits in every sample" in done.stdout

@@ -114,6 +114,14 @@ def test_radar_alone_has_no_new_keys():
             "radars: {a: {aspect: {angel_deg: 90, distance_m: 3, about_m: [3, 0]}}}",
             "radars.a.aspect.angel_deg = 90: is an unknown key; did you mean 'angle_deg'?",
         ),
+        (
+            "radars: {a: {aspect: {angle_deg: 1e7, distance_m: 1e300, about_m: [3, 0]}}}",
+            "radars.a.aspect.distance_m = 1e+300: should be at most 1e+06 in size",
+        ),
+        (
+            "radars: {a: {aspect: {angle_deg: 1, distance_m: 1, about_m: [3, 1e300]}}}",
+            "radars.a.aspect.about_m = [3, 1e+300]: should be [range, cross-range] of a place, m",
+        ),
         ("radars: {a: {aspect: {}}}", "radars.a.aspect = {}: should have angle_deg, distance_m"),
         ("radar: {aspect: {}}", ":1: radar.aspect = {}: goes with radars: {front: {aspect:"),
         (

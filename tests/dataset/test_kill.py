@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from helpers.command_line import processes
 from helpers.slow import slow
-from helpers.small import fingerprint, small_config
+from helpers.small import SMALL, fingerprint, small_config
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 FOLDERS = 7
@@ -76,6 +76,28 @@ def test_builds_killed_at_random_moments_resume_to_the_same_bytes(trial, uninter
     last = subprocess.run(command(folder), capture_output=True, text=True)
     assert last.returncode == 0, last.stderr
     assert fingerprint(folder) == uninterrupted
+    assert not list(folder.rglob("*unfinished*"))
+
+
+SEVERAL = SMALL.replace("[rtm, stft, fsst_compensated]", "[stft]").replace(
+    "radar: {", "radars:\n  low: {carrier_hz: 9e9, prf_hz: 400}\n  front: {"
+)
+
+
+@pytest.mark.parametrize(
+    ("trial", "jobs"), [(0, 2), *slow((trial, 1 + trial % 2) for trial in range(1, FOLDERS))]
+)
+def test_several_radars_killed_at_random_moments_resume_to_the_same_bytes(trial, jobs, tmp_path):
+    small_config(tmp_path, SEVERAL)
+    folder, moments = tmp_path / "set", random.Random(trial)
+    subprocess.run(command(tmp_path / "other"), check=True, capture_output=True)
+    for _ in range(KILLS_PER_FOLDER):
+        with start(folder, "--jobs", str(jobs)) as run:
+            wait_for(run, folder, moments.randint(1, 2 * FILES))
+            run.kill()
+    last = subprocess.run(command(folder), capture_output=True, text=True)
+    assert last.returncode == 0, last.stderr
+    assert fingerprint(folder) == fingerprint(tmp_path / "other")
     assert not list(folder.rglob("*unfinished*"))
 
 

@@ -8,14 +8,20 @@ import numpy as np
 
 from radhar_cli.assembly.radar import board_of
 from radhar_cli.capture.chain import even_columns, part_of
-from radhar_cli.capture.content import SlowTime, describe_difference, describe_other_chirps
+from radhar_cli.capture.content import (
+    Beat,
+    SlowTime,
+    describe_difference,
+    describe_other_chirps,
+)
 from radhar_cli.capture.recording import Recording
-from radhar_cli.config.data_set import Config
+from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.products.board import products_of_frames
 from radhar_cli.products.images import scale_of
 from radhar_cli.products.plan import plan
 from radhar_cli.products.run import run
@@ -33,7 +39,7 @@ OF_FRAMES = {name: (name,) for name in (*ANGLE_TIME_MAPS, *FRAME_MAPS, "cube")} 
 
 def frames_of_recording(
     recording: Recording,
-    config: Config,
+    config: AnyConfig,
     names: Sequence[str],
     start: float | None = None,
     stop: float | None = None,
@@ -42,7 +48,7 @@ def frames_of_recording(
 
     Args:
         recording: recording of the board.
-        config: config with the radar of the frames.
+        config: config with the radar of the frames; that of a data set of recordings has no cloud.
         names: products of a cube, such as range_doppler or cloud.
         start: begin of the part of the recording that is used, s; None is the start.
         stop: end of that part, s; None is the end. Frames that are whole within it are used.
@@ -67,11 +73,12 @@ def frames_of_recording(
         beat = recording.beat(pulse, pulse + board.loops).transpose(2, 0, 1)
         cube[frame] = beat.real if board.is_real else beat
     inputs = {"cube": cube, "board": board, "image_scale": scale_of(config)}
-    products_of_frames = run(plan(products(config), names, inputs), inputs).products
+    table = products(config) if isinstance(config, Config) else products_of_frames(config)
+    outputs = run(plan(table, names, inputs), inputs).products
     middles = part.segments.times(np.array(starts)) + board.loops * board.loop / 2
     results = {
         name: _at_times(product, middles) if isinstance(product, PowerMap) else product
-        for name, product in products_of_frames.items()
+        for name, product in outputs.items()
     }
     return results, board
 
@@ -99,7 +106,7 @@ def _starts_of_frames(segments: PulseTimes, loops: int, frames_apart: bool) -> l
     ]
 
 
-def _board(recording: Recording, config: Config) -> Board:
+def _board(recording: Recording, config: AnyConfig) -> Board:
     """Board of a config, which must be that of the recording.
 
     Raises:
@@ -124,7 +131,7 @@ def _describe_difference(recording: Recording, board: Board) -> str | None:
     content = recording.info.content
     if board.samples == 1:
         return describe_difference(content, SlowTime(board.waveform.f0, 1 / board.loop))
-    return describe_other_chirps(content, timing_of(board))
+    return describe_other_chirps(content, Beat(timing_of(board)))
 
 
 def _require_kind_of_samples(recording: Recording, board: Board) -> None:

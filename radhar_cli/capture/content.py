@@ -158,17 +158,18 @@ def describe_difference(
 
 
 def describe_other_chirps(
-    content: Content, timing: FmcwTiming, tolerance: float = TOLERANCE
+    content: Content, expected: Content, tolerance: float = TOLERANCE
 ) -> str | None:
-    """Say in what a content differs from chirps, in whichever half of the band its echoes lie.
+    """Say in what a content differs from another, in whichever half of the band echoes lie.
 
     Args:
         content: content of a recording.
-        timing: chirps that it should have.
+        expected: content that it should have.
         tolerance: relative difference of numbers that are taken for the same.
     """
-    is_whole = isinstance(content, Beat) and content.is_whole
-    return describe_difference(content, Beat(timing, is_whole), tolerance)
+    if isinstance(content, Beat) and isinstance(expected, Beat):
+        expected = replace(expected, is_whole=content.is_whole)
+    return describe_difference(content, expected, tolerance)
 
 
 def radar_section(radar: dict[str, Any], content: Content) -> dict[str, Any]:

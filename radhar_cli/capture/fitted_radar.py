@@ -334,7 +334,7 @@ def _board(recording: Recording, note: Mapping[str, Any]) -> dict[str, Any]:
         header.samples,
         header.prf_hz,
     )
-    difference = describe_other_chirps(recording.info.content, timing, TOLERANCE)
+    difference = describe_other_chirps(recording.info.content, Beat(timing), TOLERANCE)
     channels = len(header.order) * len(header.receivers)
     if recording.info.receivers != channels:
         difference = f"receivers = {recording.info.receivers}: should be {channels}"

@@ -11,10 +11,19 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from radhar_cli.activities.activity import TWELVE
+from radhar_cli.capture.board_frames import OF_FRAMES, frames_of_recording
 from radhar_cli.capture.chain import maps_of
-from radhar_cli.capture.content import TOLERANCE, describe_difference, radar_section
+from radhar_cli.capture.content import (
+    TOLERANCE,
+    Content,
+    describe_difference,
+    describe_other_chirps,
+    radar_section,
+)
+from radhar_cli.capture.fitted_radar import radar_of_recording
 from radhar_cli.capture.images import are_images, is_image, list_images, read_image
 from radhar_cli.capture.point_recording import (
     NOBODY,
@@ -25,19 +34,21 @@ from radhar_cli.capture.point_recording import (
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.identity import resolved
-from radhar_cli.config.radar import BoardRadar
+from radhar_cli.config.maps import ANGLE_TIME_MAPS, FRAME_MAPS
+from radhar_cli.config.radar import ArrayRadar, BoardRadar
 from radhar_cli.config.reading import validated
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.files import digest_of
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.dataset.sample import SampleRow, StoredSample
+from radhar_cli.dataset.sample import SampleRow, StoredSample, storable_array
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import refuse_outside, text_of
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frame_sheets import cloud_sheet
-from radhar_cli.processing.power_map import MapImage
+from radhar_cli.processing.power_map import MapImage, PowerMap
 from radhar_cli.products.images import draw_measured_map
+from radhar_cli.products.maps import image_name
 from radhar_cli.scene import nominal_scene
 
 MAX_MANIFEST = 2**20  # bytes
@@ -124,7 +135,12 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
     for name in names:
         refuse_outside(manifest.parent / name, manifest.parent)
     of_points = is_point_recording(manifest.parent / names[0])
-    listed = _list_points(manifest, names) if of_points else _list_samples(manifest, names)
+    if of_points:
+        listed = _list_points(manifest, names)
+    else:
+        has_frames = isinstance(config.radar, ArrayRadar)
+        needs_frames = not has_frames and not OF_FRAMES.keys().isdisjoint(config.maps)
+        listed = _list_samples(manifest, names, has_frames, needs_frames)
     _set_times(parts, listed.lengths, manifest)
     checksums = {name: digest_of(manifest.parent / name) for name in names}
     document["recordings"] = {
@@ -151,22 +167,50 @@ class Listed(NamedTuple):
     frame_s: float | None = None
 
 
-def _list_samples(manifest: Path, names: Sequence[str]) -> Listed:
+def _list_samples(
+    manifest: Path, names: Sequence[str], has_frames: bool, needs_frames: bool
+) -> Listed:
     """List recordings of samples, all of one radar.
+
+    Args:
+        manifest: list of the recordings.
+        names: their files, from the manifest's folder on.
+        has_frames: whether the config's radar has frames, whose maps have all ranges of the band.
+        needs_frames: whether maps need frames that the radar of the recordings is to tell.
 
     Raises:
         ConfigError: they are of different radars.
     """
     lengths, radar = dict[str, float](), None
+    noted: dict[str, Any] | None = None
     for name in names:
         with Recording(manifest.parent / name) as recording:
             lengths[name] = round(recording.segments.duration, 9)
             content = recording.info.content
+            if needs_frames and noted is None:
+                noted = radar_of_recording(recording)
         radar = radar or content
-        if (difference := describe_difference(content, radar)) is not None:
+        if has_frames or noted is not None:
+            difference = describe_other_chirps(content, radar)
+        else:
+            difference = describe_difference(content, radar)
+        if difference is not None:
             raise ConfigError(f"{manifest}: {name}: {difference}, as in {names[0]}: one radar")
     assert radar is not None  # as a manifest lists something
-    return Listed(lengths, partial(radar_section, content=radar))
+    return Listed(lengths, partial(_section_of_samples, content=radar, noted=noted))
+
+
+def _section_of_samples(
+    radar: dict[str, Any], content: Content, noted: dict[str, Any] | None
+) -> dict[str, Any]:
+    """Section `radar` of a data set of samples: the config's with what the recordings determine.
+
+    Args:
+        radar: section of the config, plain values.
+        content: content of the recordings.
+        noted: section by what the recordings say, which takes its place; None for the config's.
+    """
+    return radar_section(radar, content) if noted is None else noted
 
 
 def _list_points(manifest: Path, names: Sequence[str]) -> Listed:
@@ -289,6 +333,14 @@ def warnings_of(config: MeasuredConfig) -> list[str]:
     return warnings
 
 
+def _from_start(power_map: PowerMap, start: float) -> PowerMap:
+    """Count the times of a map from the start of its window, s."""
+    columns = power_map.columns
+    if columns.name != "time":
+        return power_map
+    return replace(power_map, columns=replace(columns, values=columns.values - start))
+
+
 @dataclass(frozen=True)
 class WindowFactory:
     """Callable that makes the rows of a data set of recordings."""
@@ -303,19 +355,38 @@ class WindowFactory:
             return SampleRow(self._image(config, part.file), np.array([number, start, nan]))
         if recorded.frame_s is not None:
             return SampleRow(self._points(config, part.file, start), np.array([number, start, nan]))
-        with Recording(self.folder / part.file) as recording:
-            results = maps_of(
-                recording, config, config.maps, start, start + recorded.window_s, recorded.receiver
-            )
+        sample, confidence = self._maps(config, part.file, start)
+        return SampleRow(sample, np.array([number, start, confidence]))
+
+    def _maps(self, config: MeasuredConfig, file: str, start: float) -> tuple[StoredSample, float]:
+        """Make the sample of a window of samples, and the mean confidence of the torso's track."""
+        recorded, confidence = config.recordings, nan
+        stop = start + recorded.window_s
+        of_frames = [name for name in config.maps if name in OF_FRAMES]
+        maps: dict[str, PowerMap] = {}
         images: dict[str, MapImage] = {}
-        for name in config.maps:
-            power_map = results.maps[name]
-            columns = power_map.columns
-            if columns.name == "time":
-                columns = replace(columns, values=columns.values - start)
-            images[name] = draw_measured_map(config, replace(power_map, columns=columns))
-        confidence = nan if results.track is None else float(results.track.confidence.mean())
-        return SampleRow(StoredSample(images), np.array([number, start, confidence]))
+        products: dict[str, NDArray[Any]] = {}
+        with Recording(self.folder / file) as recording:
+            signals = [name for name in config.maps if name not in of_frames]
+            if signals:
+                results = maps_of(recording, config, signals, start, stop, recorded.receiver)
+                maps |= results.maps
+                if results.track is not None:
+                    confidence = float(results.track.confidence.mean())
+            if of_frames:
+                sheets = [image_name(name) for name in of_frames if name in FRAME_MAPS]
+                names = [*of_frames, *sheets]
+                outputs, _ = frames_of_recording(recording, config, names, start, stop)
+                maps |= {name: outputs[name] for name in of_frames if name in ANGLE_TIME_MAPS}
+                images = {
+                    name: outputs[image_name(name)] for name in of_frames if name in FRAME_MAPS
+                }
+                deepest = config.image.dynamic_range_db
+                products = {name: storable_array(outputs[name], name, deepest) for name in images}
+        for name, power_map in maps.items():
+            images[name] = draw_measured_map(config, _from_start(power_map, start))
+        ordered = {name: images[name] for name in config.maps}
+        return StoredSample(ordered, products=products), confidence
 
     def _points(self, config: MeasuredConfig, file: str, start: float) -> StoredSample:
         """Read the sample of a window of a recording of points: its points and their sheet."""

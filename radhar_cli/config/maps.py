@@ -31,6 +31,10 @@ FRAME_MAPS = (*FRAME_MAP_KINDS, "points")
 KNOWN_MAPS = (*MAP_NAMES, *CADENCE_MAPS, *ANGLE_TIME_MAPS, *FRAME_MAPS)
 
 
+# Those that data sets of recordings of samples may have.
+MAPS_OF_SAMPLES = tuple(name for name in KNOWN_MAPS if name != "points")
+
+
 # What comes with the points, and with any of these maps.
 OF_POINTS = ("points", "points_start", "points_person")
 

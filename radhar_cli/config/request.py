@@ -485,8 +485,9 @@ class MeasuredRequest(Section):
 
     @property
     def stored(self) -> tuple[str, ...]:
-        """Products that a data set holds as arrays: those of recordings of points."""
-        return OF_POINTS if "points" in self.maps else ()
+        """Products that a data set holds as arrays: maps of frames, and recorded points."""
+        of_frames = tuple(name for name in self.maps if name in FRAME_MAPS and name != "points")
+        return (*of_frames, *OF_POINTS) if "points" in self.maps else of_frames
 
     def samples_of(self, activity: Activity) -> int:
         """How many windows of an activity there are."""

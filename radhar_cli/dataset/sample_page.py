@@ -25,7 +25,7 @@ from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
-from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.scene import Scene, fixed_radar, nominal_scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 
 MOST = 50  # samples of a page
@@ -80,6 +80,8 @@ def _sample_entry(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> 
     if likely_scene is not None and isinstance(likely_scene.radar, ArrayRadar):
         radar = likely_scene.radar.first_subframe  # that has the plain names
         board = board_of(radar, likely_scene.seconds)
+    if isinstance(config, MeasuredConfig) and "points" not in data.products:
+        board = _recorded_board(config)
     if scene is not None:
         view = view_scene(scene, tuple(map(motion_of, scene.people)))
     else:
@@ -119,6 +121,12 @@ def _stored_points(data: Dataset, row: int, times_of: Callable[[int], NDArray[An
     """Read the stored points of a row, whose frames have times by their number."""
     points, start = _product(data, row, "points", (8,)), _product(data, row, "points_start")
     return PointFrames(times_of(len(start) - 1), start.astype(int), np.nan_to_num(points))
+
+
+def _recorded_board(config: MeasuredConfig) -> Board | None:
+    """Board of a data set of recordings of samples; None of a radar without frames."""
+    radar = fixed_radar(config)
+    return board_of(radar, config.duration_s) if isinstance(radar, ArrayRadar) else None
 
 
 def _recorded_times(config: MeasuredConfig, frames: int) -> NDArray[Any]:

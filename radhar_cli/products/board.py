@@ -14,7 +14,7 @@ from radhar_cli.assembly.radar import board_of, detection_of, waveform_of
 from radhar_cli.assembly.receiver import noise_stream
 from radhar_cli.assembly.room import echo_ways_of
 from radhar_cli.bodies.motion_paths import point_delay
-from radhar_cli.config.data_set import Config
+from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.config.radar import ArrayRadar, BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
@@ -144,7 +144,8 @@ class CloudChain:
 def board_products(config: Config) -> Iterator[Product]:
     """Rows of the table of products that a config with `radar.cfg` has."""
     yield from _echo_rows(config)
-    yield from _frame_rows(config)
+    yield from _frame_map_rows(config)
+    yield from _cloud_rows(config)
     yield from _angle_time_rows(config)
     yield from _people_rows()
     yield from _signal_rows(config)
@@ -159,7 +160,7 @@ def _subframe_rows(config: Config, end: str, number: int) -> Iterator[Product]:
     They are those of a config that has chosen it, but for images and Doppler-time maps.
     """
     chosen = choose_subframe(config, number)
-    rows = [*_echo_rows(chosen), *_frame_rows(chosen), *_people_rows()]
+    rows = [*_echo_rows(chosen), *_frame_map_rows(chosen), *_cloud_rows(chosen), *_people_rows()]
     images = {image_name(name) for name in FRAME_MAPS}
     names = {row.name for row in rows} | {"scene", "waveform"}
     choose = partial(scene_of_subframe, number=number)
@@ -213,9 +214,15 @@ def _echo_rows(config: Config) -> Iterator[Product]:
     yield Product("cube", needs, receive_cube, does, is_array=True)
 
 
-def _frame_rows(config: Config) -> Iterator[Product]:
-    """Rows of the maps and points of frames, and of their sheets."""
-    of_cube, image = ("cube", "board"), config.image
+def products_of_frames(config: AnyConfig) -> dict[str, Product]:
+    """Collect the maps of frames that a cube and its board suffice for, {name: product}."""
+    rows = (*_frame_map_rows(config), *_angle_time_rows(config))
+    return {row.name: row for row in rows}
+
+
+def _frame_map_rows(config: AnyConfig) -> Iterator[Product]:
+    """Rows of the maps of frames, and of their sheets."""
+    image = config.image
     for kind in FRAME_MAP_KINDS.values():
         make = partial(
             make_frame_maps,
@@ -223,18 +230,24 @@ def _frame_rows(config: Config) -> Iterator[Product]:
             remove_mean=config.processing.clutter == "mean",
             limits_m=image.range_limits_m,
         )
-        yield Product(kind.name, of_cube, make, f"{kind.title} maps of the frames", is_array=True)
+        does = f"{kind.title} maps of the frames"
+        yield Product(kind.name, ("cube", "board"), make, does, is_array=True)
         sheet = partial(maps_sheet, size=image.size_px, dynamic_range_db=image.dynamic_range_db)
         yield Product(image_name(kind.name), (kind.name,), sheet, "sheet of frames")
+
+
+def _cloud_rows(config: Config) -> Iterator[Product]:
+    """Rows of the points of frames, and of their sheet."""
     find = partial(find_points, chain=CloudChain.of(config))
-    yield Product("cloud", of_cube, find, f"points of the frames, chain: {config.cloud.chain}")
+    does = f"points of the frames, chain: {config.cloud.chain}"
+    yield Product("cloud", ("cube", "board"), find, does)
     yield Product("points", ("cloud",), points_of, "of all frames", is_array=True)
     yield Product("points_start", ("cloud",), starts_of, "first of each frame", is_array=True)
-    sheet = partial(cloud_sheet, size=image.size_px)
+    sheet = partial(cloud_sheet, size=config.image.size_px)
     yield Product(image_name("points"), ("cloud",), sheet, "front views of frames")
 
 
-def _angle_time_rows(config: Config) -> Iterator[Product]:
+def _angle_time_rows(config: AnyConfig) -> Iterator[Product]:
     """Rows of the maps of angles over time, and of their images."""
     draw = partial(draw_map, form=ImageForm.of(config))
     for kind in ANGLE_TIME_KINDS.values():

@@ -319,13 +319,18 @@ def test_recordings_of_several_radars_are_refused(recordings: Path, tmp_path: Pa
     assert done.stderr.count("\n") == 1
 
 
-def test_maps_of_a_board_are_those_of_process(recordings: Path, tmp_path: Path) -> None:
+def test_recordings_of_another_radar_than_the_config_has_are_refused(
+    recordings: Path, tmp_path: Path
+) -> None:
     (tmp_path / "board.yaml").write_text("radar: {device: IWR1443BOOST, cfg: iwr1443boost}\n")
     manifest, out = recordings / "manifest.csv", tmp_path / "set"
     command = ("generate", tmp_path / "board.yaml", "--recordings", manifest, "-o", out)
-    done = radhar(*command, "--set", "maps=[range_doppler]")
+    done = radhar(*command, "--set", "maps=[range_doppler]", "--set", "recordings.window_s=1")
     assert done.returncode == 2
-    assert "`radhar process` makes those of boards" in done.stderr
+    assert "should be" in done.stderr
+    assert "receivers = 1: should be 12, as radar.cfg has it" in done.stderr
+    points = radhar(*command, "--set", "maps=[points]", "--set", "recordings.window_s=1")
+    assert "`radhar process` makes the points of a recording" in points.stderr
 
 
 @pytest.mark.parametrize("command", ["generate", "process"])

@@ -21,7 +21,7 @@ from radhar_cli.config.checks.room import (
 )
 from radhar_cli.config.checks.signal import processing_problems
 from radhar_cli.config.checks.streams import stream_problems
-from radhar_cli.config.maps import CADENCE_MAPS, MAP_NAMES, without_cadences
+from radhar_cli.config.maps import MAPS_OF_SAMPLES, without_cadences
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.request import MeasuredRequest, Request
 from radhar_cli.config.section import Problem
@@ -111,10 +111,9 @@ def measured_problems(c: MeasuredRequest) -> Iterator[Problem]:
     if c.recordings.frame_s is not None:
         yield from _problems_of_points(c)
         return
-    of_signals = (*MAP_NAMES, *CADENCE_MAPS)
-    if others := [name for name in c.maps if name not in of_signals]:
-        listed = ", ".join(without_cadences(of_signals))
-        right = f"should be some of {listed}; `radhar process` makes those of boards"
+    if others := [name for name in c.maps if name not in MAPS_OF_SAMPLES]:
+        listed = ", ".join(without_cadences(MAPS_OF_SAMPLES))
+        right = f"should be some of {listed}; `radhar process` makes the points of a recording"
         yield Problem("maps", others, right)
     yield from _problems_of_any_recording(c)
     yield from profile_problems(c)

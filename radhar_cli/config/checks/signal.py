@@ -15,7 +15,7 @@ from radhar_cli.config.maps import (
     CADENCE_MAPS,
     FRAME_MAPS,
     KNOWN_MAPS,
-    MAP_NAMES,
+    MAPS_OF_SAMPLES,
     without_cadences,
 )
 from radhar_cli.config.number import support
@@ -51,11 +51,7 @@ def problems_of_maps(c: Request, names: tuple[str, ...]) -> list[Problem]:
 
 def processing_problems(c: AnyRequest) -> Iterator[Problem]:
     """Find what of the processing does not fit the radar or the maps."""
-    names = (
-        c.maps
-        if isinstance(c, Request)
-        else [n for n in c.maps if n in (*MAP_NAMES, *CADENCE_MAPS)]
-    )
+    names = c.maps if isinstance(c, Request) else [n for n in c.maps if n in MAPS_OF_SAMPLES]
     if (of_maps := map_problem(c, names)) is not None:
         yield of_maps
     if not isinstance(c.radar, ArrayRadar):

@@ -92,7 +92,7 @@ def test_tables_loops_and_functions_are_followed(tmp_path):
 
 
 def test_what_the_chip_alone_knows_is_asked_for(tmp_path):
-    with pytest.raises(CaptureError, match=r"lua:19: Ch.*depends on partId.*`partId = \.\.\.`"):
+    with pytest.raises(CaptureError, match=r"lua:18: Ch.*depends on partId.*`partId = \.\.\.`"):
         header_of(tmp_path, LOOPS)
     alike = LOOPS.replace("ar1.ChanNAdcConfig(1, 1, 0,", "ar1.ChanNAdcConfig(1, 1, 1,")
     assert header_of(tmp_path, alike).samples == 256  # whichever chip it is

@@ -212,6 +212,7 @@ ONE_PLACE = [
             "learning/run_folder.py",
             "capture/array_files.py",
             "capture/images.py",
+            "capture/packed_files.py",
         },
         {"ZIP_STORED", "BadZipFile"},
     ),
@@ -246,7 +247,7 @@ ARRAYS = {"np.load", "np.memmap", "np.fromfile", "loadmat"}
 
 def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
     users = {str(p.relative_to(PACKAGE)) for p in files() if ARRAYS & calls(p)}
-    assert users == {f"capture/{name}.py" for name in ("array_files", "dca1000", "images")}
+    assert users == {f"capture/{name}.py" for name in ("matlab_files", "dca1000", "images")}
 
 
 def test_noise_is_made_by_the_receiver_alone() -> None:

@@ -24,7 +24,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.capture.settings import CaptureSettings
-from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Parts, Source
+from radhar_cli.capture.source import (
+    CaptureFiles,
+    CaptureFormat,
+    MissingKeysError,
+    Parts,
+    Source,
+)
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import refuse_outside, regular_size
 
@@ -132,13 +138,16 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     """
     settings, header = capture.settings, capture.header
     files = whole_capture(capture.paths)
-    for key in ("samples", "receivers"):
-        if getattr(settings, key) is None:
-            raise CaptureError(
-                f"{header}: {key} is missing; give it by --radar FILE or --set {key}=N "
-                f"({capture.paths[0].name} is taken for samples of a DCA1000, as it has no packet "
-                "of a TI demo's data port)"
-            )
+    missing = [key for key in ("samples", "receivers") if getattr(settings, key) is None]
+    if missing:
+        verb = "are" if len(missing) > 1 else "is"
+        raise MissingKeysError(
+            f"{header}: {' and '.join(missing)} {verb} missing; give them by --radar FILE or "
+            f"--set {missing[0]}=N ({capture.paths[0].name} is taken for samples of a DCA1000, as "
+            "it has no packet of a TI demo's data port; plain numbers need --set dtype=int16 and "
+            "axes)",
+            dict.fromkeys(missing, "N"),
+        )
     interleaved, lanes = bool(settings.interleaved), settings.lanes
     stream = {"lanes": lanes or (4 if interleaved else 2), "interleaved": interleaved}
     settings = settings.model_copy(update=stream)

@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from radhar_cli.capture import array_files, dca1000, text_files, wav_files
-from radhar_cli.capture.packed_files import unpack_file
+from radhar_cli.capture.packed_files import unpack_file, unpack_zip
 from radhar_cli.capture.source import HEAD_BYTES, CaptureFiles, CaptureFormat, Source
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import regular_size
@@ -27,11 +27,11 @@ def open_capture(files: CaptureFiles) -> Source:
     Raises:
         CaptureError: the format is unknown, or the capture does not fit its header.
     """
-    files = replace(files, paths=[_unpack(files, path) for path in files.paths])
+    files = replace(files, paths=[part for path in files.paths for part in _unpack(files, path)])
     path = files.paths[0]
     head = _head_of(path)
-    for form in FORMATS:
-        if form.recognises(path, head):
+    for form in [array_files.RAW] if files.settings.dtype is not None else FORMATS:
+        if form is array_files.RAW or form.recognises(path, head):
             if len(files.paths) > 1 and not form.is_split:
                 split = " and ".join(other.name for other in FORMATS if other.is_split)
                 raise CaptureError(
@@ -43,16 +43,22 @@ def open_capture(files: CaptureFiles) -> Source:
                     f"{files.subframes}: --set subframe=N says which"
                 )
             return form.open(files)
-    names = [*(form.name for form in FORMATS), "one of these in .xz, .gz or .bz2"]
+    names = [
+        *(form.name for form in (*FORMATS, array_files.RAW)),
+        "one of these in .xz, .gz, .bz2 or .zip",
+    ]
     right = (
         f"{', '.join(names[:-1])} or {names[-1]}, or what a TI demo's data port or visualizer gave"
     )
     raise CaptureError(f"{path}: unknown format; should be {right}")
 
 
-def _unpack(files: CaptureFiles, path: Path) -> Path:
-    """Unpack a file of a capture if it is compressed as a whole; return the path to read."""
-    return unpack_file(path, _head_of(path), files.scratch)
+def _unpack(files: CaptureFiles, path: Path) -> list[Path]:
+    """Unpack a file of a capture if it is compressed as a whole; return the paths to read."""
+    place = files.scratch / f"unpacked{files.paths.index(path)}"
+    if path.suffix.lower() == ".zip":
+        return unpack_zip(path, place)
+    return [unpack_file(path, _head_of(path), place)]
 
 
 def _head_of(path: Path) -> bytes:

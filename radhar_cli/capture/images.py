@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.capture.array_files import check_npz, parser_errors_as_capture_errors
+from radhar_cli.capture.array_files import check_npz
+from radhar_cli.capture.parser_errors import parser_errors_as_capture_errors
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, read_gray
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import refuse_outside, regular_size

@@ -20,7 +20,7 @@ from radhar_cli.capture.recording import (
     write_recording,
 )
 from radhar_cli.capture.settings import CaptureSettings
-from radhar_cli.capture.source import CaptureFiles, Parts, Source
+from radhar_cli.capture.source import CaptureFiles, MissingKeysError, Parts, Source
 from radhar_cli.capture.subframes import read_subframes
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import CaptureError
@@ -112,7 +112,11 @@ def import_subframes(
 
 def _open_capture(files: CaptureFiles) -> tuple[Source, CaptureSettings]:
     """Open a capture of any format; return it, and the settings with what it says itself."""
-    source, settings = open_capture(files), files.settings
+    settings = files.settings
+    try:
+        source = open_capture(files)
+    except MissingKeysError as error:
+        raise CaptureError(_with_missing_keys(error, files)) from None
     if 16 * source.receivers * (source.samples or 1) > MAX_PULSE:
         raise CaptureError(
             f"{source.name}: a pulse of {source.receivers} receivers and {source.samples} samples "
@@ -221,7 +225,10 @@ def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str])
     if s.frame_pulses is None and s.frame_s is None:
         return PulseTimes.even(source.pulses, s.prf_hz, s.frame_delay_s)
     if s.frame_pulses is None or s.frame_s is None:
-        raise CaptureError(f"{header}: frame_pulses and frame_s must be given together")
+        raise CaptureError(
+            f"{header}: frame_pulses and frame_s must be given together, or axes=[...] "
+            "name the axis frame"
+        )
     if s.frame_pulses / s.prf_hz > s.frame_s * (1 + 1e-6):
         raise CaptureError(
             f"{header}: frame_s = {s.frame_s:g}: should be at least {s.frame_pulses / s.prf_hz:g}, "
@@ -360,6 +367,37 @@ EXAMPLES = {
 }
 
 
+def _command_with(
+    files: Sequence[Path], keys: Mapping[str, str], s: CaptureSettings, header: str
+) -> str:
+    """Command that imports files with keys besides those that are given already."""
+    known = s.model_dump(exclude_defaults=True, exclude={"radar", "label", "person"})
+    words = {} if header != "--set" else {key: _as_word(value) for key, value in known.items()}
+    sets = " ".join(f"--set {key}={value}" for key, value in (words | {**keys}).items())
+    names = " ".join(map(str, files[:3])) + (" ..." if len(files) > 3 else "")
+    radar = "" if header == "--set" else f"--radar {header} "
+    return f"radhar import {names} {radar}{sets} -o walk.h5"
+
+
+def _as_word(value: object) -> str:
+    """Value of a key as a word of a command line."""
+    if isinstance(value, list | tuple):
+        return f"[{','.join(map(str, value))}]"
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
+
+
+def _with_missing_keys(error: MissingKeysError, files: CaptureFiles) -> str:
+    """Message of keys that opening needs, with what is missing besides, and a command."""
+    s = files.settings
+    usual = ["carrier_hz", "prf_hz"] + ["bandwidth_hz", "adc_rate_hz"] * (
+        "samples" in error.examples
+    )
+    missing = {k: EXAMPLES[k] for k in usual if getattr(s, k) is None}
+    also = f"; so may be {', '.join(missing)}" if missing else ""
+    keys = {**missing, **error.examples}
+    return f"{error}{also}; with your values: {_command_with(files.paths, keys, s, files.header)}"
+
+
 def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
     """Require the keys that a capture needs, and name all that are missing at once.
 
@@ -376,9 +414,7 @@ def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
     if not missing:
         return
     are = "are" if len(missing) > 1 else "is"
-    sets = " ".join(f"--set {key}={EXAMPLES[key]}" for key in missing)
-    files = " ".join(map(str, source.files[:3])) + (" ..." if len(source.files) > 3 else "")
-    radar = "" if header == "--set" else f"--radar {header} "
+    command = _command_with(source.files, {key: EXAMPLES[key] for key in missing}, s, header)
     several = "s" * (source.receivers > 1)
     shape = f"{source.receivers} receiver{several}, {source.samples or 'no'} samples a pulse, "
     also = ""
@@ -386,8 +422,7 @@ def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
         also = "; range bins have first_range_m and range_step_m instead of adc_rate_hz"
     raise CaptureError(
         f"{header}: {', '.join(missing)} {are} missing; of {shape}{source.pulses} pulses, with "
-        f"your numbers: radhar import {files} {radar}{sets} -o walk.h5, or --radar FILE with these "
-        f"keys{also}"
+        f"your numbers: {command}, or --radar FILE with these keys{also}"
     )
 
 

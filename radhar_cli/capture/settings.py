@@ -39,6 +39,8 @@ def axis_named(word: object) -> object:
 
 AxisName: TypeAlias = Literal["receiver", "transmitter", "sample", "frame", "pulse", "iq"]
 AxisWord: TypeAlias = Annotated[AxisName, BeforeValidator(axis_named)]
+NUMBER_TYPE = r"^[<>]?(u?int(8|16|32|64)|float(16|32|64)|complex(64|128))$"
+NO_TIMES = "none"  # for `times`: those of the file are not used
 USUAL_AXES: dict[int, tuple[AxisName, ...]] = {
     1: ("pulse",),
     2: ("sample", "pulse"),
@@ -85,8 +87,11 @@ class CaptureSettings(Section):
     # of range profiles: range of the first sample and step to the next, m
     first_range_m: Annotated[float, Field(ge=0, le=1e7)] | None = None
     range_step_m: Annotated[float, Field(gt=0, le=1e7)] | None = None
+    # of a file of numbers without a mark: their type, as NumPy names it, and bytes before them
+    dtype: Annotated[str | None, Field(pattern=NUMBER_TYPE)] = None
+    skipped_bytes: Annotated[int, Field(ge=0, le=2**40, strict=True)] = 0
     # names of the samples (or of I, where Q is another array: imaginary), and of the pulses' times
-    # (s), within the file
+    # (s), within the file; times=none leaves those of the file out
     dataset: Text | None = None
     imaginary: Text | None = None
     times: Text | None = None

@@ -1,6 +1,6 @@
 """An open capture of any format, read in blocks of pulses, and what a format is."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.capture.settings import CaptureSettings
+from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 
 Parts = NDArray[Any]
@@ -55,6 +56,18 @@ class Source:
             length = max(length // self.step, 1) * self.step
         for first in range(0, self.pulses, length):
             yield first, min(first + length, self.pulses)
+
+
+class MissingKeysError(CaptureError):
+    """A capture that cannot be opened without further keys.
+
+    Attributes:
+        examples: The keys, with values that they may have.
+    """
+
+    def __init__(self, message: str, examples: Mapping[str, str]) -> None:
+        super().__init__(message)
+        self.examples = examples
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ after sweep.
 
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,66 +16,166 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.capture.array_files import StoredArray, as_source
-from radhar_cli.capture.named_parts import find_pair, find_times, seconds_of_unit
+from radhar_cli.capture.array_axes import as_source, settings_with_frames
+from radhar_cli.capture.named_parts import (
+    POLAR,
+    find_pair,
+    find_receivers,
+    find_times,
+    unit_of_angle,
+)
+from radhar_cli.capture.pulse_clock import replace_clocks, seconds_of
+from radhar_cli.capture.settings import NO_TIMES, AxisName, CaptureSettings
 from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Source
+from radhar_cli.capture.stored_arrays import FrameFiles, StoredArray
 from radhar_cli.errors import CaptureError, did_you_mean
-from radhar_cli.files.untrusted import text_of
+from radhar_cli.files.untrusted import regular_size
 from radhar_cli.numerics.arrays import Complex, Float
 
-MAX_TEXT = 2**28  # bytes
+MAX_TEXT = 2**28  # bytes, of all files
 MAX_COLUMNS = 2**16
 MAX_PREAMBLE = 200  # lines before the numbers
 FEWEST_COLUMNS = 8  # of a matrix, a pulse a line, whose columns have no names
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc")
 HEADER_OF_GLASGOW = 4  # numbers
+BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 _SPLIT = re.compile(r"[,;\t ]+")
-_IMAGINARY = re.compile(r"[ij]\s*$", re.IGNORECASE)
+_IMAGINARY = re.compile(r"[ij]\s*\)?\s*$", re.IGNORECASE)
+_REAL = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+# 1 + 2i, 1 + j2, 1+2*I, all of which become 1+2j; and C++'s (1,2).
+_SUM = re.compile(
+    rf"(?P<re>{_REAL})\s*(?P<sign>[-+])\s*(?:[ij]\s*\*?\s*(?P<first>{_REAL[5:]})|"
+    rf"(?P<last>{_REAL[5:]})\s*\*?\s*[ij])(?![\w.])",
+    re.IGNORECASE,
+)
+_PAIR = re.compile(rf"\(\s*({_REAL})\s*[,;]\s*({_REAL})\s*\)")
+
+
+class TextSignal(NamedTuple):
+    """Samples of a text.
+
+    Attributes:
+        samples: Numbers [pulse], [pulse, sample] or [pulse, receiver].
+        axes: Names of the axes, if the text tells them.
+        times: Times of the pulses [pulse], s; None without.
+        notes: What was assumed, in words.
+    """
+
+    samples: NDArray[Any]
+    axes: tuple[AxisName, ...] | None = None
+    times: Float | None = None
+    notes: tuple[str, ...] = ()
 
 
 def _is_text(path: Path, head: bytes) -> bool:
     """Whether a file is text by its name and its first bytes."""
-    return path.suffix.lower() in SUFFIXES and b"\0" not in head
+    is_wide = head[:2] in (b"\xff\xfe", b"\xfe\xff")
+    return path.suffix.lower() in SUFFIXES and (is_wide or b"\0" not in head)
+
+
+def _decode(path: Path) -> str:
+    """Text of a file in UTF-8 or UTF-16, or in Latin-1, in which numbers are the same.
+
+    Raises:
+        CaptureError: it is too large.
+    """
+    size = regular_size(path)
+    if size > MAX_TEXT:
+        raise CaptureError(f"{path}: has {size} bytes; should have at most {MAX_TEXT}")
+    data = path.read_bytes()
+    encoding = next((name for mark, name in BYTE_ORDERS.items() if data.startswith(mark)), "utf-8")
+    try:
+        return data.decode(encoding)
+    except UnicodeDecodeError:
+        if encoding == "utf-16":
+            raise CaptureError(f"{path}: cannot be read as text in UTF-16") from None
+        return data.decode("latin-1")
 
 
 def _open_text(capture: CaptureFiles) -> Source:
     """Open a text of columns: slow time, a pulse a line, or a matrix, a pulse a line.
 
+    Of several files each is a frame.
+
     Raises:
         CaptureError: lines differ in their columns, or columns have no names that tell.
     """
-    path, settings = capture.paths[0], capture.settings
-    text = text_of(path, MAX_TEXT, CaptureError).removeprefix("\ufeff")
-    lines = [line for line in text.splitlines() if line.strip() and not _is_comment(line)]
-    if not lines:
-        raise CaptureError(f"{path}: holds no numbers")
-    if _is_of_glasgow(lines):
-        return _open_glasgow(path, lines, capture)
+    paths, settings = capture.paths, capture.settings
+    if len(paths) > 1 and sum(map(regular_size, paths)) > MAX_TEXT:
+        raise CaptureError(f"{paths[0]}: with the others takes more than {MAX_TEXT} bytes")
+    signals = list[TextSignal]()
+    for path in paths:
+        lines = _lines_of(_decode(path))
+        if not lines:
+            raise CaptureError(f"{path}: holds no numbers")
+        if len(paths) == 1 and _is_of_glasgow(lines):
+            return _open_glasgow(path, lines, capture)
+        signals.append(_signal_of(path, lines, settings))
+    first = signals[0]
+    if settings.axes is None and first.axes is not None:
+        settings = settings.model_copy(update={"axes": first.axes})
+    arrays = [
+        StoredArray(str(path), partial(np.asarray, signal.samples))
+        for path, signal in zip(paths, signals, strict=True)
+    ]
+    if len(arrays) > 1:
+        samples = FrameFiles(arrays)
+        settings = settings_with_frames(samples, settings, of_matlab=False)
+        return replace(as_source(paths[0], samples, settings), files=tuple(paths))
+    source = as_source(paths[0], arrays[0], settings, first.times)
+    return replace(source, notes=(*source.notes, *first.notes))
+
+
+def _lines_of(text: str) -> list[str]:
+    """Lines of numbers and names of a text, its numbers in one way of writing.
+
+    Of comments the last before the numbers stays, as it may name the columns.
+    """
+    text = replace_clocks(text)
+    text = _SUM.sub(lambda m: f"{m['re']}{m['sign']}{m['first'] or m['last']}j", text)
+    text = _PAIR.sub(lambda m: f"{m[1]}{m[2] if m[2][0] in '+-' else '+' + m[2]}j", text)
+    lines, comment = list[str](), ""
+    for line in text.splitlines():
+        if _is_comment(line):
+            comment = line if not lines else comment
+        elif line.strip():
+            if not lines and comment:
+                comment = comment.lstrip("#%/ ")
+            lines.append(line)
+    if comment and len(lines) > 1:
+        names, layout = _SPLIT.split(comment.strip()), _layout_of(lines)
+        words = layout.words(comment) if layout.delimiter else names
+        fits = layout.first == 0 and len(words) == len(layout.words(lines[0]))
+        if fits and len(words) > 1 and not all(map(_is_number, words)):
+            return [comment, *lines]
+    return lines
+
+
+def _signal_of(path: Path, lines: Sequence[str], settings: CaptureSettings) -> TextSignal:
+    """Samples of the lines of a text.
+
+    Raises:
+        CaptureError: lines differ in their columns, or columns have no names that tell.
+    """
     layout = _layout_of(lines)
     table = _table(path, lines[layout.first :], 1 + layout.first, layout)
-    names = layout.names
-    times: Float | None = None
-    samples: NDArray[Any] = table
-    if names:
-        if len(names) != table.shape[1]:
+    if layout.names:
+        if len(layout.names) != table.shape[1]:
             raise CaptureError(
-                f"{path}: names {len(names)} columns; lines have {table.shape[1]} numbers"
+                f"{path}: names {len(layout.names)} columns; lines have {table.shape[1]} numbers"
             )
-        samples, times = _choose_columns(path, dict(zip(names, table.T, strict=True)), capture)
-    elif table.shape[1] == 1:
-        samples = table[:, 0]
-    elif table.shape[1] == 2 and np.isrealobj(table) and settings.axes is None:
-        samples = table[:, 0] + 1j * table[:, 1]
-    elif table.shape[1] < FEWEST_COLUMNS and settings.axes is None:
+        return _choose_columns(path, dict(zip(layout.names, table.T, strict=True)), settings)
+    if table.shape[1] == 1:
+        return TextSignal(table[:, 0])
+    if table.shape[1] == 2 and np.isrealobj(table) and settings.axes is None:
+        return TextSignal(table[:, 0] + 1j * table[:, 1])
+    if table.shape[1] < FEWEST_COLUMNS and settings.axes is None:
         raise CaptureError(
             f"{path}: has {table.shape[1]} columns without names; a first line such as time,I,Q "
             "should say what they are, or --set axes=[pulse,sample] that they are samples of a "
             "pulse"
         )
-    if samples.ndim == 2 and settings.axes is None:
-        settings = settings.model_copy(update={"axes": ("pulse", "sample")})
-    array = StoredArray(str(path), partial(np.asarray, samples))
-    return as_source(path, array, settings, times)
+    return TextSignal(table, ("pulse", "sample"))
 
 
 class Layout(NamedTuple):
@@ -106,7 +206,7 @@ def _layout_of(lines: Sequence[str]) -> Layout:
     """Find the layout of lines, the first of which may say something else than numbers."""
     typical = lines[len(lines) // 2].strip(" ")
     delimiter = next((mark for mark in ";\t," if mark in typical), None)
-    has_decimal_comma = delimiter != "," and "," in typical and "." not in typical
+    has_decimal_comma = delimiter != "," and "," in typical
     plain = Layout(delimiter, has_decimal_comma, 0, [])
     count = len(plain.words(typical))
     first = next(
@@ -132,6 +232,8 @@ def _is_comment(line: str) -> bool:
 
 def _is_number(word: str) -> bool:
     """Whether a word is a real or complex number."""
+    if not (any(map(str.isdigit, word)) or word.lower() in ("nan", "inf")):
+        return False
     try:
         complex(word.replace("i", "j").replace("I", "j"))
     except ValueError:
@@ -180,36 +282,70 @@ def _table(
 
 
 def _choose_columns(
-    path: Path, columns: dict[str, NDArray[Any]], capture: CaptureFiles
-) -> tuple[NDArray[Any], Float | None]:
+    path: Path, columns: Mapping[str, NDArray[Any]], settings: CaptureSettings
+) -> TextSignal:
     """Samples, and times where there are such, of columns by their names.
 
     Raises:
         CaptureError: nothing tells which columns the samples are.
     """
-    settings = capture.settings
-    for name in filter(None, (settings.dataset, settings.imaginary, settings.times)):
+    named_times = None if settings.times == NO_TIMES else settings.times
+    for name in filter(None, (settings.dataset, settings.imaginary, named_times)):
         if name not in columns:
             hint = did_you_mean(name, columns, f"there are {', '.join(columns)}")
             raise CaptureError(f"{path}: {name}: no such column; {hint}")
-    clock = settings.times or find_times(columns)
-    times = None
-    if clock is not None:
-        times = columns[clock].real.astype(float) * seconds_of_unit(clock)
-    pair = find_pair(columns)
+    clock = named_times or find_times(columns)
+    times, note = None, None
+    if clock is not None and settings.times != NO_TIMES:
+        times, note = seconds_of(columns[clock].real.astype(float), clock, str(path))
+    notes = (note,) if note else ()
     if settings.dataset is not None:
         real, imaginary = columns[settings.dataset], settings.imaginary
         samples = real if imaginary is None else real + 1j * columns[imaginary]
-        return samples, times
+        return TextSignal(samples, ("pulse",), times, notes)
+    receivers = find_receivers(columns)
+    if receivers:
+        pairs = ", ".join(f"{real} and {imaginary}" for real, imaginary in receivers)
+        samples = np.stack([columns[real] + 1j * columns[q] for real, q in receivers], axis=1)
+        return TextSignal(samples, ("pulse", "receiver"), times, (*notes, f"receivers: {pairs}"))
+    pair = find_pair(columns)
     if pair is not None:
-        return columns[pair[0]] + 1j * columns[pair[1]], times
+        return TextSignal(columns[pair[0]] + 1j * columns[pair[1]], ("pulse",), times, notes)
+    polar = find_pair(columns, POLAR)
+    if polar is not None:
+        samples, unit = _of_polar(path, columns, *polar)
+        words = f"{polar[0]} and {polar[1]} in {unit} make I and Q"
+        return TextSignal(samples, ("pulse",), times, (*notes, words))
     signals = [name for name in columns if name != clock]
     if len(signals) != 1:
         raise CaptureError(
             f"{path}: has columns {', '.join([*columns][:20])}; --set dataset=NAME should name the "
             "samples, or dataset=NAME and imaginary=NAME I and Q"
         )
-    return columns[signals[0]], times
+    samples = columns[signals[0]]
+    axes: tuple[AxisName, ...] | None = ("pulse",) if len(columns) > 1 else None
+    if np.isrealobj(samples) and axes is not None:
+        notes = (*notes, f"{signals[0]}: real samples")
+    return TextSignal(samples, axes, times, notes)
+
+
+def _of_polar(
+    path: Path, columns: Mapping[str, NDArray[Any]], amplitude: str, phase: str
+) -> tuple[Complex, str]:
+    """Complex samples of amplitude and phase, and the unit of the phase.
+
+    Raises:
+        CaptureError: a phase without a unit goes beyond one turn: degrees, or radians of many.
+    """
+    angles, unit = columns[phase].real, unit_of_angle(phase)
+    if unit is None and np.nanmax(np.abs(angles)) > 2 * np.pi:
+        raise CaptureError(
+            f"{path}: {phase}: goes beyond 2 pi; its name should say the unit, such as "
+            f"{phase}_deg or {phase}_rad"
+        )
+    unit = unit or "rad"
+    radians = np.radians(angles) if unit == "deg" else angles
+    return columns[amplitude] * np.exp(1j * radians), unit
 
 
 def _is_of_glasgow(lines: Sequence[str]) -> bool:
@@ -243,4 +379,4 @@ def _open_glasgow(path: Path, lines: Sequence[str], capture: CaptureFiles) -> So
     return replace(as_source(path, array, settings), settings=header)
 
 
-TEXT = CaptureFormat("text (.csv, .txt, .dat)", _is_text, _open_text)
+TEXT = CaptureFormat("text (.csv, .tsv, .txt, .dat)", _is_text, _open_text, is_split=True)

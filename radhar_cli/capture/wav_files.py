@@ -1,4 +1,4 @@
-"""Captures that are sound files: I and Q as left and right, or one channel of real samples."""
+"""Captures that are sound files: pairs of channels are I and Q, one channel is of real samples."""
 
 from dataclasses import replace
 from functools import partial
@@ -6,18 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.capture.array_files import (
-    StoredArray,
-    as_source,
-    parser_errors_as_capture_errors,
-)
+from radhar_cli.capture.array_axes import as_source
+from radhar_cli.capture.parser_errors import parser_errors_as_capture_errors
 from radhar_cli.capture.settings import AxisName
 from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Source
+from radhar_cli.capture.stored_arrays import StoredArray
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import regular_size
 
 MAX_WAV = 2**30  # bytes: SciPy holds samples of 24 bits whole
-CHANNELS = {1: "one of real samples", 2: "I and Q"}
 
 
 def _is_wav(path: Path, head: bytes) -> bool:
@@ -41,17 +38,23 @@ def _open_wav(capture: CaptureFiles) -> Source:
             raise CaptureError(f"{path}: has {size} bytes; should have at most {MAX_WAV}")
         rate, samples = wavfile.read(path)
     channels = 1 if samples.ndim == 1 else samples.shape[1]
-    if channels not in CHANNELS or not rate > 0:
-        known = ", or ".join(f"{count}: {name}" for count, name in CHANNELS.items())
-        raise CaptureError(f"{path}: has {channels} channels at {rate} Hz; should have {known}")
     settings = capture.settings
+    if (channels > 1 and channels % 2 and settings.axes is None) or not rate > 0:
+        raise CaptureError(
+            f"{path}: has {channels} channels at {rate} Hz; should have one of real samples, or I "
+            "and Q of each receiver in turn; --set axes=[pulse,receiver] takes each channel for a "
+            "receiver of real samples"
+        )
     if settings.axes is None:
-        axes: tuple[AxisName, ...] = ("pulse", "iq") if channels == 2 else ("pulse",)
-        samples = samples if channels == 2 else samples.reshape(-1)
+        axes: tuple[AxisName, ...] = ("pulse", "receiver", "iq") if channels > 1 else ("pulse",)
         settings = settings.model_copy(update={"axes": axes})
+    if settings.axes == ("pulse", "receiver", "iq"):
+        samples = samples.reshape(len(samples), -1, 2)
     array = StoredArray(str(path), partial(np.asarray, samples))
     source = as_source(path, array, settings)
-    note = f"sound file: {CHANNELS[channels]}, {rate} samples/s by its header"
+    content = "I and Q" if source.parts == 2 else "real samples"
+    several = f" of {source.receivers} receivers" if source.receivers > 1 else ""
+    note = f"sound file: {content}{several}, {rate} samples/s by its header"
     return replace(source, settings={"prf_hz": float(rate)}, notes=(*source.notes, note))
 
 

@@ -92,7 +92,7 @@ def _files_of(capture: Path) -> list[Path]:
     Raises:
         FolderError: a folder has no files, or those of several kinds.
     """
-    import re
+    from radhar_cli.capture.packed_files import order_by_number
 
     if not capture.is_dir():
         return [capture]
@@ -104,10 +104,7 @@ def _files_of(capture: Path) -> list[Path]:
             "should hold those of a capture alone, a file a frame, or name the files"
         )
 
-    def order(path: Path) -> list[tuple[int, str]]:
-        return [(int(p), "") if p.isdigit() else (-1, p) for p in re.split(r"(\d+)", path.name)]
-
-    return sorted(files, key=order)
+    return sorted(files, key=lambda path: order_by_number(path.name))
 
 
 def _built_in_header(name: str) -> Path:

@@ -42,6 +42,7 @@ _DAMAGED = (
 )
 DEEPEST_GROUP = 8
 MAX_TEXT = 2**20
+MAX_CELLS = 2**16
 MAX_CHUNK = 2**27  # bytes of a chunk
 _DEFLATE, _SHUFFLE = h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE
 _TRIED = "RADHAR_TRIED_HDF5"  # files that this process, or one that started it, has tried
@@ -301,6 +302,20 @@ class UntrustedFile(Closing):
                             _numbers(item.dtype, path)
                             paths.append(path)
         return [path for path in paths if not path.startswith("#")]  # MATLAB's own
+
+    def cells(self) -> dict[str, list[str]]:
+        """Paths of the datasets of numbers that each cell array of MATLAB 7.3 refers to."""
+        cells = dict[str, list[str]]()
+        with _damage_as_folder_error(str(self.path)):
+            for name in islice(self._file, 1000):
+                if self._file.id.links.get_info(name.encode()).type != h5py.h5l.TYPE_HARD:
+                    continue
+                item = self._file[name]
+                is_reference = isinstance(item, h5py.Dataset) and item.dtype == h5py.ref_dtype
+                if is_reference and 1 < item.size <= MAX_CELLS:
+                    references = item[()].reshape(-1)
+                    cells[name] = [str(self._file[r].name).strip("/") for r in references if r]
+        return cells
 
     def shape(self, name: str) -> list[int]:
         """Shape of a dataset of any type; no values are read."""

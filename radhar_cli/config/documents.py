@@ -126,10 +126,15 @@ def cfg_text(value: Any, folder: Path, where: str) -> Any:
         return read_text(RADARS.get(name_of_radar(value) or "", folder / value), MAX_TEXT)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        names = (*RADARS, *WRITTEN_RADARS) if where == "--radar" else RADARS
+        if where == "--radar":
+            raise ConfigError(
+                f"--radar {json.dumps(value)}: should be the path of a TI .cfg ({reason}), or one "
+                f"of {', '.join((*RADARS, *WRITTEN_RADARS))}; any other radar is a short config by "
+                "its data sheet (docs/guide/frames.md, docs/guide/impulse.md)"
+            ) from None
         raise ConfigError(
             f"{where}: radar.cfg = {json.dumps(value)}: should be the path of a TI .cfg "
-            f"({reason}), or one of {', '.join(names)}"
+            f"({reason}), or one of {', '.join(RADARS)}"
         ) from None
 
 
@@ -151,10 +156,15 @@ def name_of_radar(value: str) -> str | None:
 def name_of_written(value: str) -> str | None:
     """Name of the radar of WRITTEN_RADARS that a text stands for; None for none.
 
-    Capitals, spaces, hyphens and underscores do not matter: K-LC6, EV-TINYRAD24G.
+    Capitals, spaces, hyphens, underscores and makers do not matter, nor the end of a name that one
+    radar alone begins with: K-LC6, EV-TINYRAD24G, Infineon BGT60, X4.
     """
-    plain = re.sub(r"[-_ ]", "", value.lower()).removeprefix("ev").removeprefix("xethru")
-    return next((name for name in WRITTEN_RADARS if name.replace("_", "") == plain), None)
+    plain = re.sub(r"[-_ ]", "", value.lower()).removeprefix("ev")
+    for maker in ("xethru", "novelda", "infineon", "acconeer", "rfbeam"):
+        plain = plain.removeprefix(maker)
+    names = {name.replace("_", ""): name for name in WRITTEN_RADARS}
+    alike = [name for other, name in names.items() if plain[1:] and other.startswith(plain)]
+    return names.get(plain) or (alike[0] if len(alike) == 1 else None)
 
 
 @lru_cache(maxsize=1)

@@ -92,10 +92,20 @@ ABSENT = {
 
 _OF_LAYERS = "is a key of layers: wall.layers: [{material: concrete}], or wall.eps_r"
 _OF_SEVERAL = "goes with radars: {front: {aspect: {...}}} (docs/guide/several_radars.md)"
+_OF_FRAME = "is a key of frame: radar.frame: {chirps: 64, interval_s: 250e-6, period_s: 0.05}"
+_OF_ARRAY = "is a key of array: radar.array: {tx: [[0, 0]], rx: [[0, 0], [1, 0]]}"
+_BESIDE_FRAME = "is a key of radar, beside frame"
 MISPLACED = {
     "wall.material": _OF_LAYERS,
     "wall.thickness_m": _OF_LAYERS,
     "radar.aspect": _OF_SEVERAL,
+    **dict.fromkeys(("radar.chirps", "radar.interval_s", "radar.period_s"), _OF_FRAME),
+    **dict.fromkeys(("radar.tx", "radar.rx"), _OF_ARRAY),
+    **dict.fromkeys(
+        ("radar.frame.prf_hz", "radar.frame.chirp_s", "radar.frame.adc_rate_hz"), _BESIDE_FRAME
+    ),
+    "radar.profile_step_m": "is (to - from)/profile_samples of profile_m: [from, to]",
+    "radar.array.half_wavelength_m": "is a key of radar, beside array: radar.half_wavelength_m",
 }
 
 _MISSING = object()  # the value of a key that is not there

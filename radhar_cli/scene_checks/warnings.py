@@ -2,17 +2,27 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import pairwise
+from math import asin, degrees
 from typing import TYPE_CHECKING, Any
 
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.radar import antennas_of, waveform_of
 from radhar_cli.assembly.room import ways_of
-from radhar_cli.config.checks.doubts import timing_warnings, tone_warnings, word_warnings
+from radhar_cli.config.checks.doubts import (
+    band_warnings,
+    timing_warnings,
+    tone_warnings,
+    word_warnings,
+)
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar, BoardRadar, ImpulseRadar
 from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.errors import SceneError
+from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import kind_of
+from radhar_cli.radar.board import longest_rows
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.propagation import leg
@@ -27,6 +37,7 @@ from radhar_cli.scene_checks.visibility import chest_point, noise_alone
 if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader
 
+SPARSE = 1.5  # half wavelengths, from which a row of elements by hand is said to be sparse
 MAX_COMMANDS = 20  # of a .cfg, in a warning
 
 
@@ -40,11 +51,13 @@ def warnings_of_signal(config: Config) -> list[str]:
     radar = config.radar
     return [
         *tone_warnings(config),
+        *band_warnings(config),
         *(_unknown_commands(radar) if isinstance(radar, BoardRadar) else ()),
         *(_window_warnings(config, radar) if isinstance(radar, ArrayRadar) else ()),
         *(_header_warnings(config, radar) if isinstance(radar, BoardRadar) else ()),
         *noise_alone(config),
         *_folding_warnings(config),
+        *(_angle_warnings(config, radar) if isinstance(radar, ArrayRadar) else ()),
         *_loose_tolerance(config),
     ]
 
@@ -155,6 +168,28 @@ def _gives_window(config: Config) -> bool:
     kinds = [kind for name in config.maps if (kind := kind_of(name)) is not None]
     has_windows = any(kind.is_doppler_time for kind in kinds)
     return has_windows and "window_s" in config.processing.model_fields_set
+
+
+def _angle_warnings(config: Config, radar: ArrayRadar) -> Iterator[str]:
+    """Say that elements by hand are so far apart that angles fold."""
+    if getattr(radar, "array", None) is None:
+        return
+    axes = {name: kind.array_axis for name, kind in FRAME_MAP_KINDS.items()}
+    axes |= {name: kind.array_axis for name, kind in ANGLE_TIME_KINDS.items()}
+    places = radar.virtual_places
+    for axis in {axes[name] for name in config.maps if axes.get(name) is not None}:
+        assert axis is not None
+        spacings = [
+            abs(places[right][axis] - places[left][axis])
+            for row in longest_rows(places, axis)
+            for left, right in pairwise(row)
+        ]
+        if spacings and min(spacings) > SPARSE:
+            yield (
+                f"radar.array: elements are {min(spacings):.3g} half wavelengths apart or more, so "
+                f"that angles beyond {degrees(asin(1 / min(spacings))):.0f} degrees fold (places "
+                "in millimetres have radar.half_wavelength_m: 0.001)"
+            )
 
 
 def _folding_warnings(config: Config) -> list[str]:

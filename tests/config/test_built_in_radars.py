@@ -91,6 +91,12 @@ def test_it_has_the_names_that_one_guesses(word: str, name: str | None) -> None:
         ("XeThru X4M03", "x4m03"),
         ("uRAD CW", "urad_cw"),
         ("Ancortek 580AD", "ancortek580ad"),
+        ("X4", "x4m03"),
+        ("Infineon BGT60", "bgt60tr13c"),
+        ("acconeer A121", "a121"),
+        ("uRAD", "urad"),
+        ("ancortek", None),
+        ("bgt60utr11", None),
         ("iwr6843isk", None),
         ("", None),
     ],
@@ -111,6 +117,7 @@ def test_they_are_listed_and_no_file_is_written(
     wrong = radhar("config", "init", "--radar", "iwr6843")
     assert wrong.returncode == 2
     assert all(name in wrong.stderr for name in RADARS)
+    assert "any other radar is a short config by its data sheet" in wrong.stderr
 
 
 @each

@@ -22,6 +22,7 @@ from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, range_doppler
 from radhar_cli.products.run import record
 from radhar_cli.radar.board import Board
 from radhar_cli.scene import nominal_scene
+from radhar_cli.scene_checks.warnings import warnings_of_signal
 
 BGT60: dict[str, Any] = {
     "frame": {"chirps": 64, "interval_s": 500e-6, "period_s": 0.1},
@@ -248,6 +249,13 @@ def test_a_walker_who_comes_closer_is_on_the_positive_side() -> None:
             "{frame: {chirps: 64}, carrier_hz: {uniform: [24e9, 25e9]}}",
             "should be a number: frames, bins and axes of all samples follow from it",
         ),
+        ("{chirps: 64}", "radar.chirps = 64: is a key of frame: radar.frame: {chirps: 64, "),
+        ("{frame: {chirps: 64}, rx: 2}", "radar.rx = 2: is a key of array: radar.array: {tx: "),
+        ("{frame: {chirps: 64, prf_hz: 9}}", "radar.frame.prf_hz = 9: is a key of radar, beside"),
+        (
+            "{frame: {chirps: 64}, array: {tx: [[0, 0]], rx: [[0, 0], [0.0062, 0]]}}",
+            "should be half wavelengths: all elements lie within 0.0062 of one, and see no",
+        ),
         ("{carrier_hz: 24e9}", "FMCW radar with radar.frame, such as 'frame: {chirps: 64}'"),
     ],
 )
@@ -260,3 +268,14 @@ def test_what_does_not_fit_is_said_in_a_line(radar: str, line: str, tmp_path: Pa
 def test_one_chirp_a_frame_and_one_receiver_have_no_angles(tmp_path: Path) -> None:
     text = refusal(tmp_path, "{frame: {chirps: 64}}", "maps: [range_azimuth]")
     assert "all elements of the array lie in one column" in text
+
+
+def test_places_in_another_unit_are_told_by_angles_that_fold() -> None:
+    """2.5 mm are half a wavelength at 60 GHz."""
+    millimetres = {"array": {"tx": [[0, 0]], "rx": [[0, 0], [2.5, 0], [2.5, 2.5]]}}
+    maps = ["range_azimuth"]
+    (line,) = warnings_of_signal(config_of(BGT60 | millimetres, maps=maps))
+    assert "2.5 half wavelengths apart or more, so that angles beyond 24 degrees fold" in line
+    as_meant = BGT60 | millimetres | {"half_wavelength_m": 1e-3}
+    assert not warnings_of_signal(config_of(as_meant, maps=maps))
+    assert not warnings_of_signal(config_of(BGT60, maps=maps))

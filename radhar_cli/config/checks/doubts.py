@@ -4,8 +4,11 @@ from collections.abc import Iterable
 
 from radhar_cli.activities.activity import Activity
 from radhar_cli.config.number import nominal, support
+from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.config.request import Request
 from radhar_cli.config.section import for_activity
+
+MIDDLES = 7.29e9, 8.748e9  # Hz, as data sheets of Novelda's X4 name its two bands
 
 
 def word_warnings(c: Request) -> list[str]:
@@ -19,6 +22,19 @@ def word_warnings(c: Request) -> list[str]:
         word, slug = classes[0]
         advice = f"; a class called {word} would be classes: {{{word}: {{sequence: [{slug}]}}}}"
     return [pairs + advice]
+
+
+def band_warnings(c: Request) -> list[str]:
+    """Say that `radar.carrier_hz` of an impulse radar is the middle of a known chip's band."""
+    if not isinstance(c.radar, ImpulseRadar) or c.radar.output != "iq":
+        return []
+    carrier, width = nominal(c.radar.carrier_hz), nominal(c.radar.bandwidth_hz)
+    if carrier not in MIDDLES:
+        return []
+    return [
+        f"radar.carrier_hz: {carrier:g} is the middle of an X4's band, but is taken as its lower "
+        f"end: the radar's middle is {carrier + width / 2:g} (should be {carrier - width / 2:g})"
+    ]
 
 
 def tone_warnings(c: Request) -> list[str]:

@@ -30,6 +30,7 @@ from radhar_cli.radar.ti_family import Family
 
 MAX_CUBE = 2**27  # samples of all channels
 MAX_PADDING = 64
+CLOSEST = 0.1  # half wavelengths; elements that all lie within are places in another unit
 MAX_SAMPLES = 2**16  # of a chirp of a radar with frames
 EQUAL = 1e-6  # relative difference of a rate and an interval that are the same
 ROUNDING = 1 + 1e-9  # of a sweep without a pause, whose length is 1/prf_hz
@@ -162,6 +163,7 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
         )
         yield Problem("radar.cfg", "chirpCfg, channelCfg", right)
         return
+    yield from _unit_problems(radar)
     yield from _frame_problems(c, radar)
     yield from _detection_problems(c, radar)
     yield from _output_problems_of_board(c)
@@ -197,6 +199,7 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
         right = f"should be at least {least} s, {chirps} chirps of {interval:g} s"
         yield Problem("radar.frame.period_s", radar.frame.period_s, right)
         return
+    yield from _unit_problems(radar)
     yield from _frame_problems(c, radar)
     yield from _firmware_problems(c, radar)
     yield from _output_problems_of_board(c)
@@ -245,6 +248,20 @@ def _place_problems(radar: FramesRadar) -> Iterator[Problem]:
             value = getattr(radar, name)
             value = value if name == "position_m" else value.model_dump(mode="json")
             yield Problem(f"radar.{name}", value, right)
+
+
+def _unit_problems(radar: ArrayRadar) -> Iterator[Problem]:
+    """Find places of an array that are written in another unit than they are read in."""
+    sides = [*zip(*radar.virtual_places, strict=True)]  # of all elements, to the left and upwards
+    extent = max((max(side) - min(side) for side in sides), default=0.0)
+    array = radar.elements
+    if array is not None and 0 < extent < CLOSEST:
+        unit = "radar.half_wavelength_m: 1 makes the unit of places a metre, 0.001 a millimetre"
+        right = (
+            f"should be half wavelengths: all elements lie within {extent:.2g} of one, and see no "
+            f"direction; {unit}"
+        )
+        yield Problem("radar.array", {"tx": array.tx, "rx": array.rx}, right)
 
 
 def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:

@@ -18,4 +18,4 @@ def test_the_middle_of_an_X4s_band_is_no_lower_end(middle_hz: float) -> None:
     assert f"is taken as its lower end: the radar's middle is {middle_hz + 0.75e9:g}" in line
     assert f"should be {middle_hz - 0.75e9:g}" in line
     assert not warnings_of(middle_hz - 0.75e9, "iq")
-    assert not warnings_of(middle_hz, "real")
+    assert not warnings_of(middle_hz, "rf")

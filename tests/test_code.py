@@ -247,7 +247,9 @@ ARRAYS = {"np.load", "np.memmap", "np.fromfile", "loadmat"}
 
 def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
     users = {str(p.relative_to(PACKAGE)) for p in files() if ARRAYS & calls(p)}
-    assert users == {f"capture/{name}.py" for name in ("matlab_files", "dca1000", "images")}
+    assert users == {
+        f"capture/{name}.py" for name in ("matlab_files", "xethru_files", "dca1000", "images")
+    }
 
 
 def test_noise_is_made_by_the_receiver_alone() -> None:

@@ -10,10 +10,11 @@ from dataclasses import replace
 from functools import partial
 from math import prod
 from pathlib import Path
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
+from radhar_cli.capture.acconeer_files import FRAME, SparseIq, read_sparse_iq
 from radhar_cli.capture.array_axes import as_source, cut_axes, settings_with_frames
 from radhar_cli.capture.matlab_files import open_mat5
 from radhar_cli.capture.named_arrays import ArrayNames, choose_arrays
@@ -22,6 +23,7 @@ from radhar_cli.capture.packed_files import MAX_PACKING
 from radhar_cli.capture.parser_errors import parser_errors_as_capture_errors
 from radhar_cli.capture.pulse_clock import seconds_of
 from radhar_cli.capture.raw_files import map_raw
+from radhar_cli.capture.settings import NO_TIMES
 from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Source
 from radhar_cli.capture.stored_arrays import (
     FrameFiles,
@@ -34,14 +36,27 @@ from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError
 
 MAX_TIMES = 2**24
-Arrays: TypeAlias = tuple[ArrayNames, Mapping[str, Samples]]
 UNNAMED = ArrayNames("", None, None, False)
+
+
+class Arrays(NamedTuple):
+    """Arrays of a file that are read.
+
+    Attributes:
+        names: Which of them are the samples, Q and the times.
+        arrays: The arrays by their names.
+        header: What the file itself says of them; None of most.
+    """
+
+    names: ArrayNames
+    arrays: Mapping[str, Samples]
+    header: SparseIq | None = None
 
 
 def _open_npy(path: Path, files: CaptureFiles) -> Arrays:
     """Map the array of a .npy file."""
     del files
-    return UNNAMED, {"": _map_npy(path, str(path))}
+    return Arrays(UNNAMED, {"": _map_npy(path, str(path))})
 
 
 def _map_npy(path: Path, where: str) -> StoredArray:
@@ -51,7 +66,7 @@ def _map_npy(path: Path, where: str) -> StoredArray:
 
 def _open_raw(path: Path, files: CaptureFiles) -> Arrays:
     """Map a file of numbers."""
-    return UNNAMED, {"": map_raw(path, files.settings)}
+    return Arrays(UNNAMED, {"": map_raw(path, files.settings)})
 
 
 def _open_npz(path: Path, files: CaptureFiles) -> Arrays:
@@ -62,11 +77,12 @@ def _open_npz(path: Path, files: CaptureFiles) -> Arrays:
         shapes = {name: shape for name, (shape, _) in kinds.items()}
         names = choose_arrays(path, shapes, files.settings, lambda name: kinds[name][1] in "cV")
         members = {name.removesuffix(".npy"): name for name in archive.namelist()}
-        return names, {
+        arrays = {
             name: _map_npy(Path(archive.extract(members[name], place)), f"{path}: {name}")
             for name in names[:3]
             if name is not None
         }
+        return Arrays(names, arrays)
 
 
 def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]]:
@@ -101,10 +117,13 @@ def _open_hdf5(path: Path, files: CaptureFiles) -> Arrays:
     shapes = {name: tuple(file.shape(name.strip("/"))) for name in names}
     cells = {name: parts for name, parts in file.cells().items() if parts}
     shapes |= {name: (*file.shape(parts[0]), len(parts)) for name, parts in cells.items()}
+    frames = [name for name in shapes if f"/{name}".endswith(FRAME)]
+    if settings.dataset is None and len(frames) == 1:
+        settings = settings.model_copy(update={"dataset": frames[0], "times": NO_TIMES})
     chosen = choose_arrays(
         path, shapes, settings, lambda name: name not in cells and _is_pair(file, name)
     )
-    return chosen, {
+    arrays = {
         name: (
             FrameFiles([_column(file, part) for part in cells[name]])
             if name in cells
@@ -113,6 +132,8 @@ def _open_hdf5(path: Path, files: CaptureFiles) -> Arrays:
         for name in chosen[:3]
         if name is not None
     }
+    is_frame = chosen.samples in frames
+    return Arrays(chosen, arrays, read_sparse_iq(file, chosen.samples) if is_frame else None)
 
 
 def _is_pair(file: UntrustedFile, name: str) -> bool:
@@ -131,7 +152,9 @@ def _open_mat(path: Path, files: CaptureFiles) -> Arrays:
     """Open the arrays of a .mat file: HDF5 from version 7.3 on."""
     with path.open("rb") as file:
         is_hdf5 = file.read(10) == b"MATLAB 7.3"
-    return _open_hdf5(path, files) if is_hdf5 else open_mat5(path, files.settings, len(files.paths))
+    if is_hdf5:
+        return _open_hdf5(path, files)
+    return Arrays(*open_mat5(path, files.settings, len(files.paths)))
 
 
 def _seconds(array: Samples, name: str, path: Path) -> tuple[np.ndarray, str | None]:
@@ -153,8 +176,11 @@ def _open_with(
 
     def open_arrays(capture: CaptureFiles) -> Source:
         opened = [open_file(path, capture) for path in capture.paths]
-        frames = [samples_of(names, arrays) for names, arrays in opened]
+        frames = [samples_of(names, arrays) for names, arrays, _ in opened]
         settings, path = capture.settings, capture.paths[0]
+        header = opened[0].header
+        if header is not None and settings.axes is None and len(frames) == 1:
+            settings = settings.model_copy(update={"axes": header.axes})
         if len(frames) > 1:
             axes = tuple(name for name in settings.axes or () if name != "frame") or None
             cut = settings.model_copy(update={"axes": axes})
@@ -164,7 +190,10 @@ def _open_with(
             settings = settings_with_frames(samples, settings, of_matlab)
         source = as_source(path, samples, settings, None, of_matlab)
         source = replace(source, files=tuple(capture.paths))
-        names, arrays = opened[0]
+        names, arrays, _ = opened[0]
+        if header is not None:
+            known = {**header.settings, **source.settings}
+            source = replace(source, settings=known, notes=(*source.notes, *header.notes))
         if names.times is None or len(opened) > 1:
             return source
         is_clock = names.are_times_named or (

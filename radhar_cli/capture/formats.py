@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from radhar_cli.capture import array_files, dca1000, text_files, wav_files
+from radhar_cli.capture import array_files, dca1000, text_files, wav_files, xethru_files
 from radhar_cli.capture.packed_files import unpack_file, unpack_zip
 from radhar_cli.capture.source import HEAD_BYTES, CaptureFiles, CaptureFormat, Source
 from radhar_cli.errors import CaptureError
@@ -17,6 +17,7 @@ FORMATS: list[CaptureFormat] = [
     array_files.MAT,
     array_files.HDF5,
     wav_files.WAV,
+    xethru_files.XETHRU,
     text_files.TEXT,
 ]
 

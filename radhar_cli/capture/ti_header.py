@@ -5,13 +5,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from radhar_cli.capture.infineon_header import is_infineon, read_infineon
 from radhar_cli.capture.lvds_format import LvdsFormat, read_lvds_format, sends_samples
 from radhar_cli.capture.ti_lua import read_lua
 from radhar_cli.capture.ti_studio import read_studio
 from radhar_cli.config.built_in_radars import device_of
 from radhar_cli.config.documents import RADARS
 from radhar_cli.errors import CaptureError
-from radhar_cli.files.untrusted import text_of
+from radhar_cli.files.untrusted import read_json, text_of
 from radhar_cli.radar.frame_header import FrameHeader, Sampling
 from radhar_cli.radar.ti_cfg import MAX_CFG, parse_frames
 
@@ -20,7 +21,7 @@ def read_ti_settings(path: Path) -> dict[int, dict[str, Any]]:
     """Read the settings of a capture (fields of `CaptureSettings`) from a TI header.
 
     Args:
-        path: mmWave Studio's JSON, or a .cfg of the SDK's demos.
+        path: mmWave Studio's JSON or script, the JSON of Infineon's SDK, or a .cfg of TI's demos.
 
     Returns:
         {number: settings} of each subframe in the order of the stream; 0 of a frame without.
@@ -29,6 +30,10 @@ def read_ti_settings(path: Path) -> dict[int, dict[str, Any]]:
         CaptureError: The file cannot be read, or describes what is not supported; names file,
             field, value and what would be right.
     """
+    if path.suffix.lower() == ".json":
+        document = read_json(path)
+        if is_infineon(document):
+            return {0: read_infineon(document, path)}
     readers = {".json": read_studio, ".lua": read_lua}
     if reader := readers.get(path.suffix.lower()):
         header, stream = reader(path)

@@ -20,8 +20,8 @@ def import_(
         typer.Argument(
             metavar="CAPTURE...",
             help="Capture: .bin of a DCA1000 (name only the first), .npy, .npz, .mat, HDF5, .wav, "
-            "text, or a folder of a file a frame; points: a dump of a TI demo's data port, or its "
-            "visualizer's JSON.",
+            "text, .dat of XeThru, .zip, or a folder of a file a frame; points: a dump "
+            "of a TI demo's data port, or its visualizer's JSON.",
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")],
@@ -29,8 +29,8 @@ def import_(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Header: mmWave Studio's JSON or .lua, TI's .cfg, a built-in radar's name, "
-            "YAML of radhar's keys, or a config.",
+            help="Header: mmWave Studio's JSON or .lua, TI's .cfg, Infineon's JSON, a built-in "
+            "radar's name, YAML of radhar's keys, or a config.",
         ),
     ] = None,
     set_: Annotated[

@@ -317,6 +317,22 @@ class UntrustedFile(Closing):
                     cells[name] = [str(self._file[r].name).strip("/") for r in references if r]
         return cells
 
+    def scalar_text(self, name: str) -> str:
+        """Read a dataset that is a single text.
+
+        Raises:
+            FolderError: it is missing, or not text of at most MAX_TEXT characters.
+        """
+        where = f"{self.path}: /{name}"
+        with _damage_as_folder_error(where):
+            item = self._dataset(name, where, None, ())
+            if h5py.check_string_dtype(item.dtype) is None:
+                raise FolderError(f"{where}: should be text")
+            value = item.asstr()[()]
+        if not isinstance(value, str) or len(value) > MAX_TEXT:
+            raise FolderError(f"{where}: should be text of at most {MAX_TEXT} characters")
+        return value
+
     def shape(self, name: str) -> list[int]:
         """Shape of a dataset of any type; no values are read."""
         with _damage_as_folder_error(f"{self.path}: /{name}"):

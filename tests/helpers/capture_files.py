@@ -6,6 +6,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 from helpers.foreign_targets import LUA, RATE, frame, profiles, tone
+from helpers.recorders import write_acconeer, write_infineon, write_x4_baseband
 from scipy.io import savemat, wavfile
 
 
@@ -29,7 +30,12 @@ def write_all(folder: Path) -> None:
         file["x"] = integers
     np.save(folder / "walk.npy", x)
     (folder / "walk.npy.xz").write_bytes(lzma.compress((folder / "walk.npy").read_bytes()))
+    turns = np.round(20000 * np.stack([x.real, x.imag], axis=-1)).astype("i2")
+    turns.tofile(folder / "turns.bin")
     np.save(folder / "x4.npy", profiles())
+    write_x4_baseband(folder / "xethru_baseband_iq_20250501.dat")
+    write_acconeer(folder / "a121.h5")
+    write_infineon(folder)
     for index in range(6):
         np.save(folder / f"frame{index}.npy", frame(index, 4.0))
     (folder / "capture.lua").write_text(LUA)

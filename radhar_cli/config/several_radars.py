@@ -20,7 +20,7 @@ from radhar_cli.errors import did_you_mean
 RADARS_KEY, NAME_KEY, OTHERS_KEY = "radars", "radar_name", "other_radars"
 ASPECT = "aspect"
 MAX_RADARS = 8
-MAX_ASPECT = 1e6  # of its numbers, m or degrees
+MAX_ASPECT = 1e6  # of its places, m
 # What an entry of `radars` may have besides the keys of a radar.
 OWN_SECTIONS = (
     *("maps", "processing", "image", "cloud", "receiver"),
@@ -174,6 +174,8 @@ def _aspect_problems(
             pair = isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))
             if not pair or max(map(abs, value)) > MAX_ASPECT:
                 yield Problem(where, value, "should be [range, cross-range] of a place, m")
+        elif name == "angle_deg" and _is_number(value) and abs(value) > 360:
+            yield Problem(where, value, "should be from -360 to 360 degrees")
         elif _is_number(value) and abs(value) > MAX_ASPECT:
             yield Problem(where, value, f"should be at most {MAX_ASPECT:.0e} in size")
         elif not _is_number(value) or (name == "distance_m" and value <= 0):

@@ -122,6 +122,10 @@ def test_radar_alone_has_no_new_keys():
             "radars: {a: {aspect: {angle_deg: 1, distance_m: 1, about_m: [3, 1e300]}}}",
             "radars.a.aspect.about_m = [3, 1e+300]: should be [range, cross-range] of a place, m",
         ),
+        (
+            "radars: {a: {aspect: {angle_deg: 361, distance_m: 1, about_m: [3, 0]}}}",
+            "radars.a.aspect.angle_deg = 361: should be from -360 to 360 degrees",
+        ),
         ("radars: {a: {aspect: {}}}", "radars.a.aspect = {}: should have angle_deg, distance_m"),
         ("radar: {aspect: {}}", ":1: radar.aspect = {}: goes with radars: {front: {aspect:"),
         (

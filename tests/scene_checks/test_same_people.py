@@ -14,6 +14,7 @@ from radhar_cli.errors import SceneError
 from radhar_cli.scene import draw_scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.scene_checks.flags import Flags
+from radhar_cli.single_scene.simulate import simulate
 
 COUNT = 12
 KINDS = {
@@ -137,3 +138,30 @@ def test_people_stay_before_each_radar_that_has_no_pattern(tmp_path):
 
 def test_sections_of_their_own_are_keys_of_a_config():
     assert set(OWN_SECTIONS) <= Config.model_fields.keys()
+
+
+@pytest.mark.parametrize("kind", [name for name in KINDS if name not in ("fine", "board")])
+def test_two_radars_at_one_place_see_the_same_but_for_their_noise(tmp_path, kind):
+    silent = "snr_db: null\nreceiver: {noise_figure_db: null}\n"
+    loud = KINDS[kind][:-1] + ", snr_db: 10}"
+    radars = {"a": KINDS[kind], "b": KINDS[kind], "c": loud}
+    configs = configs_of(tmp_path, MOTIONS["places"], silent, **radars)
+    scenes = {key: simulate(config, "grabbing") for key, config in configs.items()}
+    one, other, noisy = (scene.maps["stft"].power for scene in scenes.values())
+    assert np.array_equal(one, other)
+    assert not np.array_equal(one, noisy)
+    positions = [scene.truth.positions for scene in scenes.values()]
+    assert np.array_equal(positions[0], positions[2])
+
+
+@pytest.mark.parametrize("radar", ["", "roll_deg: 90, cfg: iwr1843boost, device: IWR1843BOOST"])
+def test_a_turn_of_360_degrees_changes_nothing(tmp_path, radar):
+    turned = {
+        f"at_{n}": f"{{{radar}{', ' * bool(radar)}aspect: "
+        f"{{angle_deg: {angle}, distance_m: 4, about_m: [3, 0]}}}}"
+        for n, angle in enumerate((180, -180))
+    }
+    configs = configs_of(tmp_path, MOTIONS["places"], "snr_db: null\n", **turned)
+    places = [antennas_of(draw_scene(one, one.chosen_activities[0], 0)) for one in configs.values()]
+    for place in places[1:]:
+        assert np.allclose(place.places, places[0].places, atol=1e-9)

@@ -1,7 +1,8 @@
 """A capture of any format becomes a recording."""
 
+import shlex
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -108,6 +109,26 @@ def import_subframes(
             _write_capture(source, out, settings, header, exclusive=not overwrite)
             for out, source, settings in captures
         ]
+
+
+def require_header(
+    paths: Sequence[Path], subframes: Iterable[CaptureSettings], header: str = "--set"
+) -> None:
+    """Require that a capture has all keys that its import needs, and write nothing.
+
+    Args:
+        paths: files of the capture, or the first of those that are numbered.
+        subframes: headers of its subframes.
+        header: file of the headers, for messages.
+
+    Raises:
+        CaptureError: as `import_subframes`.
+    """
+    settings = [*subframes]
+    with tempfile.TemporaryDirectory() as scratch:
+        for subframe in settings:
+            files = CaptureFiles(paths, subframe, header, Path(scratch), len(settings))
+            _require_keys(*_open_capture(files), header)
 
 
 def _open_capture(files: CaptureFiles) -> tuple[Source, CaptureSettings]:
@@ -374,7 +395,7 @@ def _command_with(
     known = s.model_dump(exclude_defaults=True, exclude={"radar", "label", "person"})
     words = {} if header != "--set" else {key: _as_word(value) for key, value in known.items()}
     sets = " ".join(f"--set {key}={value}" for key, value in (words | {**keys}).items())
-    names = " ".join(map(str, files[:3])) + (" ..." if len(files) > 3 else "")
+    names = shlex.join(map(str, files[:3])) + (" ..." if len(files) > 3 else "")
     radar = "" if header == "--set" else f"--radar {header} "
     return f"radhar import {names} {radar}{sets} -o walk.h5"
 

@@ -1,5 +1,6 @@
 """`radhar import`: a capture of a real radar becomes a recording."""
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -24,7 +25,9 @@ def import_(
             "of a TI demo's data port, or its visualizer's JSON.",
         ),
     ],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")
+    ] = None,
     radar: Annotated[
         Path | None,
         typer.Option(
@@ -63,16 +66,61 @@ def import_(
     if missing := [str(path) for path in captures if not path.exists()]:
         raise FolderError(f"{missing[0]}: no such file")
     captures = [path for capture in captures for path in _files_of(capture)]
-    _require_new(out, captures, overwrite)
+    if out is not None:
+        _require_new(out, captures, overwrite)
     if empty := [str(path) for path in captures if path.is_file() and not path.stat().st_size]:
         raise FolderError(f"{empty[0]}: is empty")
+    options = [] if radar is None else ["--radar", str(radar)]
+    options += [word for text in set_ or [] for word in ("--set", text)]
+    options += [
+        word for key, text in named.items() if text is not None for word in (f"--{key}", text)
+    ]
     if radar is not None and not radar.exists():
         radar = _built_in_header(str(radar))
     values = [*(set_ or []), *overrides]
-    if is_point_capture(captures[0]):
+    is_of_points = is_point_capture(captures[0])
+    if out is None:
+        _refuse_without_out(captures, radar, values, options, is_of_points)
+    elif is_of_points:
         _import_points(captures, out, radar, values, overwrite)
     else:
         _import_samples(captures, out, radar, values, overwrite)
+
+
+def _refuse_without_out(
+    captures: Sequence[Path],
+    radar: Path | None,
+    values: Sequence[str],
+    options: Sequence[str],
+    is_of_points: bool,
+) -> None:
+    """Refuse an import without -o, and name what else is missing, with a command line.
+
+    Args:
+        captures: files of the capture.
+        radar: file of the header.
+        values: overrides of the header.
+        options: words of the options of the command.
+        is_of_points: whether the capture is of points.
+
+    Raises:
+        CaptureError: keys are missing, too.
+        FolderError: all else is there.
+    """
+    from radhar_cli.capture.importing import require_header
+    from radhar_cli.capture.subframes import read_subframes
+    from radhar_cli.errors import CaptureError
+
+    if not is_of_points:
+        subframes = read_subframes(radar, values).values()
+        try:
+            require_header(captures, subframes, str(radar) if radar else "--set")
+        except CaptureError as error:
+            raise CaptureError(f"-o, the recording to write, is missing; {error}") from None
+    files = shlex.join(map(str, captures[:3])) + " ..." * (len(captures) > 3)
+    name = captures[0].name.partition(".")[0]
+    more = shlex.join([*options, "-o", f"{name}.h5"])
+    raise FolderError(f"-o, the recording to write, is missing: radhar import {files} {more}")
 
 
 def _require_new(out: Path, captures: Sequence[Path], overwrite: bool) -> None:

@@ -1,5 +1,6 @@
 """`radhar process`: the maps of a recording, processed as a config describes."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +14,7 @@ from radhar_cli.commands.options import (
     refuse_to_replace_results,
 )
 from radhar_cli.commands.tell import counted, report, tell
+from radhar_cli.errors import FolderError
 
 if TYPE_CHECKING:
     from radhar_cli.capture.recording import RecordingInfo
@@ -24,9 +26,9 @@ def process(
         Path, typer.Argument(help="Recording written by import or simulate --raw.")
     ],
     config: Annotated[
-        Path, typer.Option(help="YAML config, whose processing, image and maps are used.")
-    ],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
+        Path | None, typer.Option(help="YAML config, whose processing, image and maps are used.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="Folder for the results.")] = None,
     set_: Overrides = None,
     maps: Maps = None,
     start: Annotated[
@@ -60,19 +62,16 @@ def process(
     from radhar_cli.config import resolved
     from radhar_cli.config.data_set import ConfigOfRecordings, ProcessedConfig
     from radhar_cli.config.reading import load_config, validated
-    from radhar_cli.dataset.files import refuse_links
-    from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.scene import nominal_scene
     from radhar_cli.scene_checks.unused_keys import unused_keys
     from radhar_cli.single_scene.request import map_names
 
+    if config is None or out is None:
+        raise _describe_missing(recording, config, out)
     loaded = load_config(config, set_ or [], ConfigOfRecordings)
     fixed = nominal_scene(loaded, loaded.every_class[0]).config
     names = loaded.maps if maps is None else map_names(maps.split(","), loaded)
-    refuse_file(out)
-    for name in maps_file.FILES:
-        refuse_links(out, out / name)
-    refuse_to_replace_results(out, maps_file.FILES, overwrite)
+    _require_folder(out, overwrite)
     frames = [product for name in names for product in OF_FRAMES.get(name, ())]
     signals = tuple(name for name in names if name not in OF_FRAMES)
     with Recording(recording) as opened:
@@ -97,6 +96,36 @@ def process(
     if results.track is not None:
         tell(_describe_track(results.track))
     report(files=written, gaps=gaps, warnings=results.notes, maps=names)
+
+
+def _describe_missing(recording: Path, config: Path | None, out: Path | None) -> FolderError:
+    """Describe which of --config and -o are missing, with a command line that has both."""
+    if not recording.exists():
+        return FolderError(f"{recording}: no such file")
+    values = {"--config": config, "-o": out}
+    missing = [option for option, value in values.items() if value is None]
+    fitting = shlex.join(["radhar", "fit", str(recording), "-o", "measured.yaml"])
+    words = ["radhar", "process", str(recording), "--config", str(config or "measured.yaml")]
+    command = shlex.join([*words, "-o", str(out or Path("out", recording.stem))])
+    remark = "" if config else f"; `{fitting}` writes such a config, and any with `maps` will do"
+    are = "are" if len(missing) > 1 else "is"
+    return FolderError(f"{' and '.join(missing)} {are} missing: {command}{remark}")
+
+
+def _require_folder(out: Path, overwrite: bool) -> None:
+    """Refuse a file, links, or earlier results that are not to be replaced, for a folder.
+
+    Raises:
+        FolderError: it is refused.
+    """
+    from radhar_cli.capture.maps_file import FILES
+    from radhar_cli.dataset.files import refuse_links
+    from radhar_cli.dataset.folder import refuse_file
+
+    refuse_file(out)
+    for name in FILES:
+        refuse_links(out, out / name)
+    refuse_to_replace_results(out, FILES, overwrite)
 
 
 def _title(recording: Path, info: "RecordingInfo") -> str:

@@ -3,6 +3,7 @@
 import bz2
 import gzip
 import lzma
+import shlex
 
 import h5py
 import numpy as np
@@ -301,6 +302,36 @@ def test_missing_keys_are_all_named_at_once_with_a_command(tmp_path):
     assert ", ".join(keys) + " are missing" in done.stderr
     assert all(f"--set {key}=" in done.stderr for key in keys)
     assert f"radhar import {tmp_path / 'x.npy'} --set carrier_hz" in done.stderr
+
+
+def test_a_missing_out_is_named_with_the_missing_keys_in_a_command_to_copy(tmp_path):
+    np.save(tmp_path / "my x.npy", np.ones((64, 40)))
+    done = radhar("import", tmp_path / "my x.npy", "--set", "carrier_hz=24e9")
+    assert done.returncode == 2
+    assert "-o, the recording to write, is missing; " in done.stderr
+    assert "prf_hz, bandwidth_hz, adc_rate_hz are missing" in done.stderr
+    words = shlex.split(done.stderr.partition("radhar import ")[2].partition(", or --radar")[0])
+    assert words[-2:] == ["-o", "walk.h5"]
+    ok("import", *words[:-1], tmp_path / "y.h5")
+    with Recording(tmp_path / "y.h5") as recording:
+        assert recording.info.carrier_hz == 24e9
+    missing = radhar("import", *words[:-2], "--label", "sitting down")
+    assert missing.returncode == 2
+    assert "-o, the recording to write, is missing: radhar import" in missing.stderr
+    assert "--label 'sitting down' -o 'my x.h5'" in missing.stderr
+    assert missing.stderr.count("\n") == 1
+
+
+def test_process_names_all_that_is_missing(tmp_path):
+    (tmp_path / "walk.h5").touch()
+    done = radhar("process", tmp_path / "walk.h5")
+    assert done.returncode == 2
+    assert "--config and -o are missing: radhar process" in done.stderr
+    assert "-o out/walk; `radhar fit" in done.stderr
+    assert "no such file" in radhar("process", tmp_path / "none.h5").stderr
+    done = radhar("process", tmp_path / "walk.h5", "--config", "c.yaml")
+    assert "-o is missing: radhar process" in done.stderr
+    assert "--config c.yaml" in done.stderr
 
 
 def test_fit_asks_where_receivers_stand(tmp_path):

@@ -26,7 +26,7 @@ from radhar_cli.capture.named_parts import (
 )
 from radhar_cli.capture.pulse_clock import replace_clocks, seconds_of
 from radhar_cli.capture.settings import NO_TIMES, AxisName, CaptureSettings
-from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Source
+from radhar_cli.capture.source import CaptureFiles, CaptureFormat, MissingKeysError, Source
 from radhar_cli.capture.stored_arrays import FrameFiles, StoredArray
 from radhar_cli.errors import CaptureError, did_you_mean
 from radhar_cli.files.untrusted import regular_size
@@ -38,6 +38,7 @@ MAX_PREAMBLE = 200  # lines before the numbers
 FEWEST_COLUMNS = 8  # of a matrix, a pulse a line, whose columns have no names
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc")
 HEADER_OF_GLASGOW = 4  # numbers
+EPOCH_S = 1e9  # seconds from 1970 to 2001, before which nobody has recorded
 BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 _SPLIT = re.compile(r"[,;\t ]+")
 _IMAGINARY = re.compile(r"[ij]\s*\)?\s*$", re.IGNORECASE)
@@ -175,7 +176,37 @@ def _signal_of(path: Path, lines: Sequence[str], settings: CaptureSettings) -> T
             "should say what they are, or --set axes=[pulse,sample] that they are samples of a "
             "pulse"
         )
-    return TextSignal(table, ("pulse", "sample"))
+    return _signal_of_matrix(path, table, settings)
+
+
+def _signal_of_matrix(path: Path, table: NDArray[Any], settings: CaptureSettings) -> TextSignal:
+    """Samples of a matrix [pulse, number], whose last column may be times since 1970.
+
+    So do programs around uRAD's radars write a sweep a line: all I, all Q, and the time.
+
+    Raises:
+        MissingKeysError: numbers beside such times may be I and Q, or real samples.
+    """
+    times, clock = None, table[:, -1].real
+    is_clock = len(table) > 2 and bool((clock > EPOCH_S).all() and (np.diff(clock) >= 0).all())
+    notes: tuple[str, ...] = ()
+    if is_clock and np.isrealobj(table):
+        table = table[:, :-1]
+        if settings.times != NO_TIMES:
+            times, _ = seconds_of(clock, "times_s" if clock[0] < 1e11 else "times", str(path))
+            notes = ("times of the pulses: the last column (times=none leaves it out)",)
+    axes, numbers = settings.axes, table.shape[1]
+    if axes is None and is_clock and numbers % 2 == 0:
+        raise MissingKeysError(
+            f"{path}: has {numbers} real numbers a line and a time: are they samples "
+            "(axes=[pulse,sample]), I and then Q (axes=[pulse,iq,sample]), or I and Q by turns "
+            "(axes=[pulse,sample,iq])?",
+            {"axes": "[pulse,iq,sample]"},
+        )
+    if axes in (("pulse", "iq", "sample"), ("pulse", "sample", "iq")) and numbers % 2 == 0:
+        sizes = (2, numbers // 2) if axes[1] == "iq" else (numbers // 2, 2)
+        return TextSignal(table.reshape(len(table), *sizes), axes, times, notes)
+    return TextSignal(table, ("pulse", "sample"), times, notes)
 
 
 class Layout(NamedTuple):

@@ -246,6 +246,24 @@ def test_numbers_of_a_frame_without_a_header_are_cut_by_the_axes(tmp_path):
     check_frames(*taken(tmp_path, names, *keys))
 
 
+def test_a_sweep_a_line_with_i_then_q_and_a_time_is_asked_for_and_read(tmp_path):
+    """As the programs around uRAD's radars write sweeps."""
+    rng, n = np.random.default_rng(1), np.arange(32)
+    x = np.exp(2j * np.pi * (5 * n / 32 + 0.1 * np.arange(60)[:, None]))
+    x = np.round(1000 * x + 10 * rng.standard_normal(x.shape))
+    rows = [
+        " ".join(f"{v:.0f}" for v in (*row.real, *row.imag)) + f" {1.7e9 + 0.02 * k:.3f}"
+        for k, row in enumerate(x)
+    ]
+    (tmp_path / "IQ.txt").write_text("\n".join(rows))
+    keys = ["carrier_hz=24e9", "bandwidth_hz=2.4e8", "adc_rate_hz=2e5"]
+    with pytest.raises(CaptureError, match=r"64 real numbers a line and a time.*\[pulse,iq,sample"):
+        taken(tmp_path, ["IQ.txt"], *keys)
+    info, values = taken(tmp_path, ["IQ.txt"], *keys, "axes=[pulse,iq,sample]", "beat=negative")
+    assert (info.prf_hz, values.shape) == (pytest.approx(50, rel=1e-3), (1, 32, 60))
+    np.testing.assert_allclose(values[0], x.T)
+
+
 REFUSED = {
     "turns.npy": (lambda p: np.save(p, TURNS), r"axes=\[pulse,iq\]\)\?; so may be carrier_hz, prf"),
     "turns.mat": (lambda p: savemat(p, {"x": TURNS}), "radhar import .* --set axes=.*-o walk.h5"),

@@ -7,9 +7,15 @@ from typing import Literal
 import numpy as np
 
 from radhar_cli.motion.files.gaps import BRIDGED_S
+from radhar_cli.motion.files.image_landmarks import (
+    describe_growth,
+    refuse_landmarks,
+    refuse_landmarks_in_depth,
+)
 from radhar_cli.motion.files.joint_frames import LostSection, blend, read_frames
 from radhar_cli.motion.files.joint_order import find_joint_order
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
+from radhar_cli.motion.files.jumps import bridge_jumps, describe_jumps, find_jumps
 from radhar_cli.motion.files.keypoints import Keypoints
 from radhar_cli.motion.files.names import JointMean, JointNames, joint_means
 from radhar_cli.motion.files.plain_names import canonical_name
@@ -24,7 +30,6 @@ LEG = 0.491  # thigh and shank over the stature (Winter, after Drillis and Conti
 ANKLE = 0.039  # height of the ankle over the stature
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inches": 0.0254, "CMU's 0.0564 m": 0.0254 / 0.45}
 STATURES = (0.9, 2.3)  # m, of people
-FASTEST = 30.0  # m/s, of any joint
 STAYS = 0.03  # most that hips move in the plane which stay where they are, over the stature
 SLIPS = 0.1  # least speed of a foot that is not at rest, statures per second
 BENT = 0.01  # least distance of knees before the line from hip to ankle, over the stature
@@ -73,7 +78,7 @@ class Clip:
 
 
 def require_complete(clip: Clip, begin: float, end: float) -> None:
-    """Refuse seconds of a clip in which a joint is lost for longer than gaps are bridged.
+    """Refuse seconds of a clip in which a joint is lost for longer than gaps are bridged, or jumps.
 
     Raises:
         MotionFileError: Names the joint, when it is lost, and the seconds that are usable.
@@ -88,13 +93,13 @@ def require_complete(clip: Clip, begin: float, end: float) -> None:
     )
     usable = " and ".join(f"{a:.2f} to {b:.2f} s" for a, b in sorted(sections[:5]))
     a, b = sections[0]
-    problem = (
-        f"{lost[0].joint} is lost from {lost[0].begin:.2f} to {lost[0].end:.2f} s"
-        if lost
-        else f"a joint is lost before {first:.2f} s"
-    )
+    place, problem = clip.where, f"a joint is lost before {first:.2f} s"
+    if lost:
+        place = lost[0].place or clip.where
+        problem = f"{lost[0].joint} is lost from {lost[0].begin:.2f} to {lost[0].end:.2f} s"
+        problem = lost[0].jump or problem
     raise motion_file_error(
-        clip.where,
+        place,
         f"{problem}; gaps of up to {BRIDGED_S:g} s are bridged; usable are {usable}: section_s: "
         f"[{a:.2f}, {b:.2f}] of its class (--section {a:.2f},{b:.2f})",
     )
@@ -123,32 +128,30 @@ def make_clip(
         travel: Whether the hips go as the file says, or as the foot on the floor tells.
 
     Raises:
-        MotionFileError: Joints or the rate are missing, the person has no human size, a joint
-            jumps, or nothing tells which axis points up.
+        MotionFileError: Joints or the rate are missing, the person has no human size, or nothing
+            tells which axis points up.
     """
     remarks: tuple[str, ...] = ()
     if isinstance(file, Keypoints):
-        remarks = file.remarks
-        if not file.is_named and not joints:
-            joints, remark = find_joint_order(file)
-            remarks += (remark,)
+        joints, remarks = _find_order(file, joints, unit)
     means = joint_means(file, joints or {})
     remarks += _head_remarks(file, joints, means[_HEAD])
     has_hip_joints = None not in means
-    chosen = [mean or means[_HIP] for mean in means]
-    blends = [mean for mean in chosen if mean is not None]
+    blends = [mean for mean in (mean or means[_HIP] for mean in means) if mean is not None]
     frames = read_frames(file, blends, rate)
     p, exchanged = undo_side_swaps(frames.positions) if has_hip_joints else (frames.positions, 0)
     if exchanged:
         remarks += (f"left and right are exchanged in {exchanged} frames, which are put right",)
-    legs = np.linalg.norm(p[:, len(JOINTS) :] - p[:, _KNEES], axis=2)
-    legs += np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
-    units = float(np.median(legs)) / LEG  # stature in units of the file
-    stature = _stature(units, unit, file.unit, file.where)
-    _refuse_jumps(file, p, frames.rate, stature / units)
+    units = _stature_in_units(p)
+    stature, unit_remarks = _stature(units, unit, file.unit, file.where)
+    p, is_away = bridge_jumps(p, frames.rate, stature / units)
+    remarks += (*unit_remarks, *describe_jumps(is_away, frames.rate))
+    jumps = find_jumps(file, p, frames.rate, stature / units)
     if up is None:
         up, doubt = _find_up_axis(file, blends, p, frames.rate, units)
         remarks += (doubt,) if doubt else ()
+    if isinstance(file, Keypoints):
+        remarks += _look_for_pictures(file, p, units, up, unit)
     p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)
     p = _smooth(p, frames.rate, low_pass) / units
     if travel == "feet":
@@ -166,11 +169,43 @@ def make_clip(
         up,
         mirrored,
         frames.usable,
-        frames.lost,
+        tuple(sorted((*frames.lost, *jumps), key=lambda section: section.begin)),
         frames.bridged,
         _marches(p, frames.rate),
         remarks,
     )
+
+
+def _find_order(
+    file: Keypoints, joints: JointNames | None, unit: float | None
+) -> tuple[JointNames | None, tuple[str, ...]]:
+    """Find the joint set of poses without names, unless it is said; refuse landmarks of a picture.
+
+    Returns:
+        Joints as a config says them, or the key of the set, and what there is to say of the file.
+    """
+    if unit is None:
+        refuse_landmarks(file.values, file.where)
+    if file.is_named or joints:
+        return joints, file.remarks
+    key, remark = find_joint_order(file)
+    return key, (*file.remarks, remark)
+
+
+def _look_for_pictures(
+    file: Keypoints, p: Float, units: float, up: str, unit: float | None
+) -> tuple[str, ...]:
+    """Refuse positions [frames, 15, 3] of a picture, y down; say where somebody grows."""
+    if unit is None and up == "-y":
+        refuse_landmarks_in_depth(p, units, file.where)
+    return describe_growth(p)
+
+
+def _stature_in_units(p: Float) -> float:
+    """Stature by the legs of positions [frames, 15, 3], in their unit."""
+    legs = np.linalg.norm(p[:, len(JOINTS) :] - p[:, _KNEES], axis=2)
+    legs += np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
+    return float(np.median(legs)) / LEG
 
 
 def _head_remarks(
@@ -209,8 +244,13 @@ def _ahead(p: Float) -> Float:
     return unit
 
 
-def _stature(units: float, unit: float | None, unit_of_file: float | None, where: str) -> float:
+def _stature(
+    units: float, unit: float | None, unit_of_file: float | None, where: str
+) -> tuple[float, tuple[str, ...]]:
     """Stature of the person, m, in the unit of the config, or else the first that makes a person.
+
+    Returns:
+        The stature, and what to say where it is not in the unit of the file.
 
     Args:
         units: Stature in units of the file.
@@ -230,10 +270,12 @@ def _stature(units: float, unit: float | None, unit_of_file: float | None, where
                 f"has legs of {units * LEG:.4g} units of {unit:.4g} m, those of a {kind} of "
                 f"{stature:.3g} m; should be {low} to {high} m: unit_m",
             )
-        return stature
-    for candidate in (*([unit_of_file] if unit_of_file else []), *UNITS.values()):
+        return stature, ()
+    if unit_of_file and low <= units * unit_of_file <= high:
+        return units * unit_of_file, ()
+    for name, candidate in UNITS.items():
         if low <= units * candidate <= high:
-            return units * candidate
+            return units * candidate, _describe_unit(units, unit_of_file, name)
     raise motion_file_error(
         where,
         f"has legs of {units * LEG:.4g} units, which make a person of {low} to {high} m in none of "
@@ -241,22 +283,14 @@ def _stature(units: float, unit: float | None, unit_of_file: float | None, where
     )
 
 
-def _refuse_jumps(file: MotionRecording, p: Float, rate: float, metres: float) -> None:
-    """Refuse positions [frames, 15, 3] in units of `metres` with a joint faster than people are."""
-    fastest = np.zeros(len(p) - 1)
-    for joint in range(len(JOINTS)):
-        step = np.diff(p[:, joint], axis=0)
-        np.maximum(fastest, np.sqrt(np.einsum("fa,fa->f", step, step)), out=fastest)
-    fast = np.flatnonzero(fastest * metres * rate > FASTEST)
-    if fast.size:
-        frame = int(fast[0]) + 1
-        steps = np.linalg.norm(p[frame, : len(JOINTS)] - p[frame - 1, : len(JOINTS)], axis=1)
-        joint = int(steps.argmax())
-        raise motion_file_error(
-            file.place(frame),
-            f"{JOINTS[joint]} jumps {steps[joint] * metres:.3g} m from one frame to the next "
-            f"({steps[joint] * metres * rate:.3g} m/s); should move {FASTEST:g} m/s at most",
-        )
+def _describe_unit(units: float, unit_of_file: float | None, taken_for: str) -> tuple[str, ...]:
+    """Say that the unit of a file makes no person; nothing where the file says none."""
+    if not unit_of_file:
+        return ()
+    return (
+        f"it says that a unit is {unit_of_file:g} m, of which somebody would be "
+        f"{units * unit_of_file:.4g} m tall: taken for {taken_for} (unit_m, --unit)",
+    )
 
 
 def _find_up_axis(

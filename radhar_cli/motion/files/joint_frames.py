@@ -15,11 +15,13 @@ MIN_FRAMES = 12  # frames
 
 @dataclass(frozen=True)
 class LostSection:
-    """Seconds of a file in which a joint is lost for too long to be bridged."""
+    """Seconds of a file in which a joint is lost for too long to be bridged, or jumps."""
 
     joint: str  # name in the file
     begin: float  # s, last frame before it
     end: float  # s, first frame after it
+    jump: str = ""  # what it does, in words, where it jumps
+    place: str = ""  # file and frame, or file and line, of the jump
 
 
 @dataclass(frozen=True)

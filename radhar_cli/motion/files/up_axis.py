@@ -18,6 +18,9 @@ IN_PLACE = 0.3  # most that hips go across the body of who takes no steps, over 
 NO_SQUAT = 0.08  # most that hips go along the body of who neither squats nor jumps, the same
 LEGS = 0.5  # least cosine of hips over feet to an axis that is up: who bends down lies in none
 BENT_LEG = 0.5  # most cosine of thighs to the line from feet to head of who sits or crawls
+FLAT = 0.45  # most that somebody extends upwards who lies or is on all fours, over the stature
+FLOOR_AT = (-0.02, 0.09)  # height of the lowest joint of who is on a floor at 0, over the stature
+BED = 0.45  # most height of the lowest joint of who lies, the same; nearer than a camera stands
 USUAL = ("z", "y", "-y")  # the vertical of nearly all files
 
 _HEAD, _HIP = JOINTS.index("head"), JOINTS.index("hip")
@@ -65,6 +68,10 @@ def find_up_axis(p: Float, rate: float, stature: float, rest: Float | None = Non
         doubt = "" if name == of_rest else _doubt(p, body, clear[0])
         if doubt and of_rest:
             return UpAxis(None, _name_choice([name, f"{of_rest} in its rest pose"]))
+        others = _axes_of_who_lies(p, clear[0]) if doubt else []
+        if doubt and (others or name not in USUAL):
+            otherwise = f", or lies if {' or '.join(others or USUAL[:2])} points up"
+            return UpAxis(None, f"for somebody is straight along {name}{otherwise}")
         return UpAxis(name, doubt)
     if not standing or (len(standing) == 1 and not (clear or _has_floor(p, standing[0]))):
         return UpAxis(of_rest)
@@ -174,6 +181,29 @@ def _falls(rise: Float, upright: Bool, lying: Bool, rate: float) -> bool:
         if upright[before].any() and rise[after].min(initial=0) < -FALL:
             return True
     return False
+
+
+def _axes_of_who_lies(p: Float, signed: tuple[int, int]) -> list[str]:
+    """Axes that may point up of somebody who lies, sits or crawls, and is straight along another.
+
+    A room has its floor at 0, and a bed not far above it; a camera is farther away from a body
+    that it has in its picture whole.
+    """
+    own_floor = FLOOR_AT[0] < _height(p, signed) < FLOOR_AT[1]
+    possible = []
+    for name, other in zip(USUAL, ((1, 2), (1, 1), (-1, 1)), strict=True):
+        height = _height(p, other)
+        is_flat = float(np.median(np.ptp(p[..., other[1]], axis=1))) < FLAT
+        is_low = FLOOR_AT[0] < height < (FLOOR_AT[1] if own_floor else BED)
+        if other[1] != signed[1] and is_flat and is_low:
+            possible.append(name)
+    return possible
+
+
+def _height(p: Float, signed: tuple[int, int]) -> float:
+    """Height of the lowest joint in nearly all frames along an axis, over the stature."""
+    sign, axis = signed
+    return float(np.median((sign * p[..., axis]).min(axis=1)))
 
 
 def _doubt(p: Float, body: Float, signed: tuple[int, int]) -> str:

@@ -132,7 +132,7 @@ def test_the_low_pass_is_8_hz_and_moves_nothing_in_time(rate: float) -> None:
 
 
 def test_heading_is_the_direction_of_travel_or_else_of_facing() -> None:
-    there = np.array([0.7, -0.2, 3.0])
+    there = np.array([0.7, -0.2, 0.0])
     for activity, turn in (("walking", 0.4), ("walking", 2.5), ("punching", 0.4)):
         p = frames(activity)
         c, s = np.cos(turn), np.sin(turn)

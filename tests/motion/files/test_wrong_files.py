@@ -56,10 +56,6 @@ BROKEN_BVH = {
         in_line(FIRST + 7, changed(r" \S+$", " 1,5")),
         rf"x\.bvh:{FIRST + 7}: '1,5' should be a number",
     ),
-    "a jump": (
-        in_line(FIRST + 9, changed(r"^\S+", "900")),
-        rf"x\.bvh:{FIRST + 9}: \w+ jumps 9 m .* 30 m/s at most",
-    ),
     "zero frames": (
         changed(r"Frames: \d+[\s\S]*", "Frames: 0\nFrame Time: 0.01\n"),
         r"x\.bvh:98: has 0 frames; should have 1 to",

@@ -264,11 +264,25 @@ def _usual_axes(parts: int, shape: tuple[int, ...], s: CaptureSettings) -> tuple
         shape: sizes of the axes.
         s: header of the capture.
     """
+    is_tone = s.radar is not None and s.radar.get("waveform") == "cw" and s.transmitters == 1
+    if is_tone and s.receivers and (axes := _axes_of_slow_time(parts, shape, s.receivers)):
+        return axes
     others = USUAL_AXES.get(len(shape) - 1)
     is_pair = parts == 1 and len(shape) > 1 and shape[-1] == 2 and shape[0] > 2
     if is_pair and others is not None and s.receivers != 2 and s.complex:
         return (*others, "iq")
     return USUAL_AXES.get(len(shape), ())
+
+
+def _axes_of_slow_time(parts: int, shape: tuple[int, ...], receivers: int) -> tuple[AxisName, ...]:
+    """Names of the axes of slow time of several receivers; () where none is as long as these."""
+    iq: tuple[AxisName, ...] = ("iq",) if parts == 1 and shape[-1] == 2 else ()
+    sides = shape[: len(shape) - len(iq)]
+    is_complex = parts == 2 or iq
+    if not is_complex or len(sides) != 2 or receivers not in sides or receivers == 1:
+        return ()
+    first_is_receiver = sides[0] == receivers
+    return ("receiver", "pulse", *iq) if first_is_receiver else ("pulse", "receiver", *iq)
 
 
 def settings_with_frames(

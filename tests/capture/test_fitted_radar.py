@@ -181,6 +181,21 @@ def test_maps_of_the_fitted_config_have_the_axes_of_the_recording(tmp_path, name
             np.testing.assert_allclose(*steps, rtol=1e-4, atol=1e-9)
 
 
+@pytest.mark.parametrize("form", ["receiver first", "pulse first", "real numbers"])
+def test_receivers_of_a_cw_header_are_known_in_an_array(tmp_path, form):
+    """One frequency has no samples of a chirp: what is as long as the array is its receivers."""
+    path, recording = recorded(tmp_path, "cw_array")
+    with h5py.File(recording) as file:
+        samples = file["slow_time"][:]
+    array = samples if form == "receiver first" else samples.T
+    if form == "real numbers":
+        array = np.stack([array.real, array.imag], axis=-1)
+    np.save(tmp_path / "module.npy", array)
+    ok("import", tmp_path / "module.npy", "--radar", path, "-o", tmp_path / "again.h5")
+    with h5py.File(tmp_path / "again.h5") as file:
+        np.testing.assert_array_equal(file["slow_time"][:], samples)
+
+
 def test_frames_may_be_missing_and_the_last_cut_off():
     starts, first = np.array([0, 0.1, 0.3, 0.4]), np.arange(4) * 8
     assert frames_in(PulseTimes(starts, first, 30, 1000.0)) == (8, pytest.approx(0.1))

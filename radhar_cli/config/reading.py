@@ -79,7 +79,8 @@ ABSENT = {
     **dict.fromkeys(("receivers", "transmitters", "channels", "antennas", "mimo"), _CHANNELS),
     **dict.fromkeys(("persons", "targets", "subjects"), _PEOPLE),
     **dict.fromkeys(("point_cloud", "pointcloud", "cloud"), "is called points"),
-    **dict.fromkeys(("range_angle", "range_azimuth_map"), "is called range_azimuth"),
+    **dict.fromkeys(("range_angle", "range_azimuth_map", "ra"), "is called range_azimuth"),
+    **dict.fromkeys(("rd", "rdm", "range_doppler_map"), "is called range_doppler"),
     **dict.fromkeys(("doppler_angle", "angle_doppler"), "is called doppler_azimuth"),
     **dict.fromkeys(("angle_time", "time_angle", "range_angle_time"), "is called azimuth_time"),
     **dict.fromkeys(_DOPPLER_TIME, "is called stft"),
@@ -534,8 +535,8 @@ def _problems_of(
         elif item["type"] == "missing" and _kinds_of_class(names, document) == []:
             right = "should have a `sequence` of movements, or `files` of motion"
             yield Problem(key.removesuffix(".sequence"), item["input"], right)
-        elif names[:1] == ["maps"] and (absent := ABSENT.get(str(item["input"]))):
-            yield Problem(key, item["input"], absent)
+        elif names[:1] == ["maps"] and (called := _name_of_map(item)):
+            yield Problem(key, item["input"], called)
         else:
             message = _WORDING.get(item["type"], item["msg"])
             radar = next((r for r in RADARS if f"<{r.kind}>" in item["loc"]), FmcwRadar)
@@ -558,7 +559,24 @@ def _problems_of(
             if not message.startswith(("should", "'")):
                 message = message[0].lower() + message[1:]
                 message = message.removeprefix("input ")
+            message += _advice_on_frequency(names, item)
             yield Problem(key, item["input"], _advice_on_number(kind, names, item, message))
+
+
+def _name_of_map(item: Any) -> str | None:
+    """Advice on a map by another name: range-doppler, RDM, spectrogram; None without any."""
+    plain = re.sub("[- ]", "_", str(item["input"]).lower())
+    return ABSENT.get(plain) or (f"is called {plain}" if f"'{plain}'" in item["msg"] else None)
+
+
+def _advice_on_frequency(names: list[int | str], item: Any) -> str:
+    """Say that a frequency below its least one is in Hz, where it may have been in GHz or MHz."""
+    key, value = ".".join(str(name) for name in names), item["input"]
+    least = item.get("ctx", {}).get("ge")
+    if item["type"] != "greater_than_equal" or unit_of(key) != "hz" or not 0 < value < least:
+        return ""
+    prefix, power = ("G", 9) if names[-1] == "carrier_hz" else ("M", 6)
+    return f" Hz ({value:g} {prefix}Hz is {value:g}e{power})"
 
 
 def _advice_on_number(

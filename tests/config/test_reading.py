@@ -199,6 +199,18 @@ BROKEN = [
     Broken("seed: 1.5", "1: seed = 1.5", "integer"),
     Broken("seed: true", "1: seed = true", "integer"),
     Broken("seed: -1", "1: seed = -1", "greater than or equal to 0"),
+    Broken(
+        "radar: {frame: {chirps: 64}, carrier_hz: 77}",
+        "1: radar.carrier_hz = 77",
+        "1000000 Hz (77 GHz is 77e9)",
+    ),
+    Broken(
+        "radar: {frame: {chirps: 64}, bandwidth_hz: 250}",
+        "1: radar.bandwidth_hz = 250",
+        "1000 Hz (250 MHz is 250e6)",
+    ),
+    Broken("maps: [range-doppler]", '1: maps.0 = "range-doppler"', "is called range_doppler"),
+    Broken("maps: [RDM]", '1: maps.0 = "RDM"', "is called range_doppler"),
     Broken("seed: 9223372036854775808", "1: seed = 9223372036854775808", "less than"),
     Broken("samples_per_class: 0", "1: samples_per_class = 0", "greater than or equal to 1"),
     Broken("duration_s: four", '1: duration_s = "four"', "should be a number or one of {uniform"),

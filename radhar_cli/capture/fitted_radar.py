@@ -6,6 +6,7 @@ from the header of the import or from the config that simulated it.
 """
 
 from collections.abc import Mapping, Sequence
+from math import log2
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,7 +36,9 @@ from radhar_cli.radar.pulse_times import PulseTimes
 
 TOLERANCE = 1e-3  # relative difference of the numbers of one radar, as clocks differ
 KEYS = frozenset(key for kind in RADARS for key in kind.model_fields)
-HOW = "docs/guide/measured.md"
+HOW = "docs/guide/captures.md"
+FRAME_S = 0.1  # of frames that are chosen, in which a walker's torso stays in a range bin
+FEWEST_CHIRPS, MOST_CHIRPS = 8, 256
 
 
 class RecordedFrames(NamedTuple):
@@ -163,9 +166,10 @@ def _chirps(
         waves |= {"steps": timing.samples, "dwell_s": _number(1 / timing.adc_rate_hz)}
     turns = _turns_of(recording, content)
     if frames is None and not _has_frames(note):
-        if why := _why_frames(recording, content, turns):
-            raise _missing_frames(recording, why)
-        return dict(note) | waves | {"prf_hz": _number(timing.prf_hz)}
+        if _why_frames(recording, content, turns):
+            note = dict(note) | {"frame": {"chirps": chirps_of_frames(recording)}}
+        else:
+            return dict(note) | waves | {"prf_hz": _number(timing.prf_hz)}
     return dict(note) | waves | _frame_keys(recording, content, note, frames)
 
 
@@ -174,9 +178,9 @@ def _tone(
 ) -> dict[str, Any]:
     """Radar that takes a sample a pulse: with frames and an array, or of one antenna pair."""
     if frames is None and not _has_frames(note):
-        if recording.info.receivers > 1:
-            raise _missing_frames(recording, f"has {recording.info.receivers} receivers")
-        return _pulses(content, note, recording.samples.parts == 2)
+        if recording.info.receivers == 1:
+            return _pulses(content, note, recording.samples.parts == 2)
+        note = dict(note) | {"frame": {"chirps": chirps_of_frames(recording)}}
     waves = {"waveform": "cw", "carrier_hz": _number(content.carrier_hz)}
     return dict(note) | waves | _frame_keys(recording, content, note, frames)
 
@@ -186,17 +190,34 @@ def _has_frames(note: Mapping[str, Any]) -> bool:
     return "chirps" in (note.get("frame") or {})
 
 
-def _missing_frames(recording: Recording, why: str) -> CaptureError:
-    """Error of a recording whose radar has frames that nothing tells.
+def chirps_of_frames(recording: Recording) -> int:
+    """Choose the chirps of a frame where only frames fit a radar, and nothing tells them.
+
+    They are a power of two that takes about FRAME_S, without a pause between frames.
+    """
+    pulses = FRAME_S * recording.info.prf_hz
+    power = round(log2(max(pulses, 1)))
+    return int(min(max(2**power, FEWEST_CHIRPS), MOST_CHIRPS))
+
+
+def describe_chosen_frames(recording: Recording, section: Mapping[str, Any]) -> str | None:
+    """Say which frames were chosen for a recording that tells none, and why; None if none were.
 
     Args:
         recording: the recording.
-        why: what only a radar with frames has.
+        section: section `radar` of a config, by `radar_of_recording`.
     """
-    return CaptureError(
-        f"{recording.path}: {why}; a radar of a config has that with frames, which the "
-        "recording does not tell: --set radar.frame.chirps=64 says how many chirps of a "
-        f"transmitter a frame has ({HOW})"
+    content, chirps = recording.info.content, (section.get("frame") or {}).get("chirps")
+    is_told = frames_in(recording.segments) is not None or _has_frames(recording.radar)
+    if chirps is None or is_told or section.get("cfg") is not None:
+        return None
+    turns = _turns_of(recording, content)
+    why = f"has {recording.info.receivers} receivers"
+    if isinstance(content, Beat):
+        why = _why_frames(recording, content, turns) or why
+    return (
+        f"the recording {why}, and no frames: frames of {chirps} chirps without a pause are "
+        f"chosen; --set radar.frame.chirps=N has others ({HOW})"
     )
 
 

@@ -28,6 +28,7 @@ from radhar_cli.capture.chain import (
 )
 from radhar_cli.capture.content import Beat, Content, SlowTime
 from radhar_cli.capture.fitted_radar import (
+    describe_chosen_frames,
     differing_key,
     frames_in,
     has_beam,
@@ -82,6 +83,7 @@ class Fit:
     ranges: Float | None  # of the range bins [K], m; None of slow time
     seconds: float  # median duration of the recordings
     overrides: Sequence[str] = ()  # KEY=VALUE of a config
+    remark: str | None = None  # on frames that were chosen; None where recordings tell them
 
     @property
     def snr_db(self) -> Float:
@@ -155,20 +157,24 @@ def fit(paths: Sequence[Path], overrides: Sequence[str] = ()) -> Fit:
             has their radar.
         ConfigError: an override cannot be used.
     """
-    radar, seconds = _common_radar(paths, overrides)
+    radar, seconds, remark = _common_radar(paths, overrides)
     is_whole = keeps_whole_band(radar)
     parts = [part for path in paths for part in parts_of(path, is_whole)]
     if not any(np.isfinite(part.snr_db) for part in parts):
         raise CaptureError(f"{paths[0]}: nobody moves faster than {SLOW_MPS} m/s in any recording")
     others = [text for text in overrides if not text.strip().startswith("radar.")]
-    fitted = Fit(parts, radar, _ranges_of(paths[0], is_whole), seconds, others)
+    fitted = Fit(parts, radar, _ranges_of(paths[0], is_whole), seconds, others, remark)
     validated(Config, fitted.document, str(paths[0]), {})
     return fitted
 
 
-def _common_radar(paths: Sequence[Path], overrides: Sequence[str]) -> tuple[dict[str, Any], float]:
-    """Section `radar` of all recordings, and their median duration, s."""
+def _common_radar(
+    paths: Sequence[Path], overrides: Sequence[str]
+) -> tuple[dict[str, Any], float, str | None]:
+    """Section `radar` of all recordings, their median duration, s, and a remark on its frames."""
     radar: dict[str, Any] | None = None
+    remark: str | None = None
+    says_chirps = any("radar.frame.chirps" in text for text in overrides)
     seconds = []
     for path in paths:
         with Recording(path) as recording:
@@ -177,13 +183,15 @@ def _common_radar(paths: Sequence[Path], overrides: Sequence[str]) -> tuple[dict
             if difference := differing_key(section, radar):
                 raise CaptureError(f"{path}: differs in radar from {paths[0]}: {difference}")
             seconds.append(_seconds_of(recording.segments))
+            if not says_chirps:
+                remark = remark or describe_chosen_frames(recording, section)
     if max(seconds) < MIN_S:
         raise CaptureError(
             f"{paths[0]}: the longest recording lasts {max(seconds):.3g} s; should last at least "
             f"{MIN_S:g} s"
         )
     assert radar is not None
-    return radar, float(np.median(seconds))
+    return radar, float(np.median(seconds)), remark
 
 
 def _seconds_of(segments: PulseTimes) -> float:

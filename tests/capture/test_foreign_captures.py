@@ -2,6 +2,7 @@
 
 import bz2
 import gzip
+import json
 import lzma
 import shlex
 
@@ -17,6 +18,7 @@ from radhar_cli.capture.named_parts import find_pair
 from radhar_cli.capture.packed_files import unpack_file
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.ti_lua import read_lua
+from radhar_cli.config import load_config
 from radhar_cli.errors import CaptureError, ConfigError
 
 CARRIER = ["carrier_hz=24e9"]
@@ -332,6 +334,36 @@ def test_process_names_all_that_is_missing(tmp_path):
     done = radhar("process", tmp_path / "walk.h5", "--config", "c.yaml")
     assert "-o is missing: radhar process" in done.stderr
     assert "--config c.yaml" in done.stderr
+
+
+def test_fit_chooses_frames_of_plain_real_chirps_and_says_so(tmp_path):
+    """A plain radar of a config has complex samples; that of real ones has frames."""
+    section = {
+        "frame": {"chirps": 64, "interval_s": 1e-3}, "carrier_hz": 24e9, "chirp_s": 512e-6,
+        "bandwidth_hz": 250e6, "adc_rate_hz": 0.5e6, "tx_m": [0, 0, 1], "rx_m": [0, 0, 1],
+        "output": "real",
+    }  # fmt: skip
+    document = {"radar": section, "activities": ["walking"], "duration_s": 4, "maps": ["stft"],
+                "snr_db": 20, "motion": {"range_m": 3}}  # fmt: skip
+    (tmp_path / "radar.yaml").write_text(json.dumps(document))
+    ok("simulate", tmp_path / "radar.yaml", "--raw", "--no-figures", "-o", tmp_path / "raw")
+    with Recording(tmp_path / "raw/recording.h5") as recording:
+        np.save(tmp_path / "x.npy", recording.beat(0, recording.info.pulses)[0].real)
+    header = ("carrier_hz=24e9", "bandwidth_hz=250e6", "adc_rate_hz=0.5e6", "prf_hz=1000")
+    words = [word for text in header for word in ("--set", text)]
+    ok("import", tmp_path / "x.npy", "-o", tmp_path / "r.h5", *words)
+    done = ok("fit", tmp_path / "r.h5", "-o", tmp_path / "fitted.yaml")
+    assert "has real samples, and no frames: frames of 128 chirps without a pause" in done.stderr
+    fitted = load_config(tmp_path / "fitted.yaml").filled()
+    assert fitted.radar.output == "real"
+    assert fitted.radar.header.loops == 128
+    assert fitted.snr_db == pytest.approx(20, abs=1.5)
+    sets = ("--set", "activities=[walking]", "--set", "maps=[stft,range_doppler]")
+    ok("simulate", tmp_path / "fitted.yaml", "--no-figures", "-o", tmp_path / "again", *sets)
+    words = ("--set", "radar.frame.chirps=32", "--overwrite")
+    done = ok("fit", tmp_path / "r.h5", "-o", tmp_path / "fitted.yaml", *words)
+    assert "chosen" not in done.stderr
+    assert load_config(tmp_path / "fitted.yaml").filled().radar.header.loops == 32
 
 
 def test_fit_asks_where_receivers_stand(tmp_path):

@@ -10,7 +10,7 @@ import numpy as np
 
 from radhar_cli.capture.settings import USUAL_AXES, AxisName, CaptureSettings
 from radhar_cli.capture.source import MissingKeysError, Parts, Source
-from radhar_cli.capture.stored_arrays import CutArray, Samples
+from radhar_cli.capture.stored_arrays import CutArray, Samples, SplitArray
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 
@@ -111,7 +111,8 @@ def as_source(
     Raises:
         CaptureError: the axes do not fit the header, or are to be named.
     """
-    array = cut_axes(array, settings)
+    if not of_matlab or prod(array.shape) == max(array.shape):
+        array = cut_axes(array, settings)
     of_matlab = of_matlab and not isinstance(array, CutArray)
     axes = _axes(array, settings, of_matlab)
     sizes = dict(zip(axes, array.shape, strict=True))
@@ -165,7 +166,9 @@ def cut_axes(array: Samples, s: CaptureSettings) -> Samples:
     """Cut an array whose numbers follow one another into the axes that have names.
 
     Args:
-        array: any array; one of several axes, each of more than one entry, stays as it is.
+        array: any array; one of several axes, each of more than one entry, stays as it is, unless
+            `iq` is an axis more: it then splits the axis after it (all I, then all Q), or, named
+            last, the one before it (I and Q by turns).
         s: header of the capture, with sizes of the axes but one.
 
     Raises:
@@ -173,6 +176,12 @@ def cut_axes(array: Samples, s: CaptureSettings) -> Samples:
         CaptureError: sizes of axes are missing, or are larger than the array.
     """
     count, axes_count = max(array.shape), len(array.shape)
+    if s.axes is not None and "iq" in s.axes and len(s.axes) == axes_count + 1 > 2:
+        place = s.axes.index("iq")
+        is_by_turns = place == axes_count
+        axis = place - 1 if is_by_turns else place
+        if array.shape[axis] % 2 == 0 and array.parts == 1 and prod(array.shape) > count:
+            return SplitArray(array, axis, is_by_turns)
     has_named_axes = s.axes is not None and len(s.axes) == axes_count > 1
     if prod(array.shape) > count or (has_named_axes and s.axes != ("pulse", "iq")):
         return array

@@ -144,4 +144,39 @@ class CutArray(StoredArray):
         return block[(slice(None), *key[1:])]
 
 
+class SplitArray(StoredArray):
+    """Array of real numbers of which one axis holds I and Q, as an array with an axis more.
+
+    Args:
+        array: the numbers.
+        axis: axis that is split.
+        is_by_turns: whether I and Q follow each other there by turns; else all I, then all Q. The
+            new axis comes after that of the numbers by turns, else before it.
+    """
+
+    def __init__(self, array: "StoredArray | NumberColumn", axis: int, is_by_turns: bool) -> None:
+        self.array, self.axis, self.is_by_turns = array, axis, is_by_turns
+        half = array.shape[axis] // 2
+        sizes = (half, 2) if is_by_turns else (2, half)
+        self.where, self.number, self.parts = array.where, array.number, array.parts
+        self.shape = (*array.shape[:axis], *sizes, *array.shape[axis + 1 :])
+        self.chunk = (1,) * len(self.shape)
+
+    def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
+        """Read a block [..., part]."""
+        before, after = key[: self.axis], key[self.axis + 2 :]
+        pair = key[self.axis : self.axis + 2]
+        numbers = pair[0] if self.is_by_turns else pair[1]
+        half = self.array.shape[self.axis] // 2
+        first, stop, _ = numbers.indices(half)
+        if self.is_by_turns:
+            block = self.array.read((*before, slice(2 * first, 2 * stop), *after))
+            sizes = block.shape
+            block = block.reshape(*sizes[: self.axis], -1, 2, *sizes[self.axis + 1 :])
+            return block[(slice(None),) * (self.axis + 1) + (pair[1],)]
+        spans = [slice(first, stop), slice(half + first, half + stop)][pair[0]]
+        parts = [self.array.read((*before, span, *after)) for span in spans]
+        return np.stack(parts, axis=self.axis)
+
+
 Samples: TypeAlias = StoredArray | NumberColumn

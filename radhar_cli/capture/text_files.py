@@ -49,6 +49,8 @@ _SUM = re.compile(
     rf"(?P<last>{_REAL[5:]})\s*\*?\s*[ij])(?![\w.])",
     re.IGNORECASE,
 )
+# A second line of names may hold the units.
+_UNIT_WORD = re.compile(r"[(\[].*[)\]]||-|[munµ]?[sVA]|sec(?:onds?)?|volts?|counts?|rad|deg", re.I)
 _PAIR = re.compile(rf"\(\s*({_REAL})\s*[,;]\s*({_REAL})\s*\)")
 
 
@@ -161,6 +163,9 @@ def _signal_of(path: Path, lines: Sequence[str], settings: CaptureSettings) -> T
     layout = _layout_of(lines)
     table = _table(path, lines[layout.first :], 1 + layout.first, layout)
     if layout.names:
+        twins = sorted({name for name in layout.names if layout.names.count(name) > 1})
+        if twins and set(twins) != {""}:
+            raise CaptureError(f"{path}: several columns are named {', '.join(twins)}")
         if len(layout.names) != table.shape[1]:
             raise CaptureError(
                 f"{path}: names {len(layout.names)} columns; lines have {table.shape[1]} numbers"
@@ -251,7 +256,11 @@ def _layout_of(lines: Sequence[str]) -> Layout:
     )
     if first == 0:
         return plain
-    names = plain._replace(has_decimal_comma=False).words(lines[first - 1])
+    header = plain._replace(has_decimal_comma=False)
+    names = header.words(lines[first - 1])
+    above = header.words(lines[first - 2]) if first > 1 else []
+    if len(above) == len(names) and all(map(_UNIT_WORD.fullmatch, names)):
+        names = [f"{a} ({u.strip('()[]')})" for a, u in zip(above, names, strict=True)]
     fits = len(names) == count or first == 1
     return plain._replace(first=first, names=names if fits else [])
 

@@ -103,6 +103,8 @@ TEXTS = {
     "ms.csv": with_times(1700000000000 + n for n in range(400)),
     "us.csv": with_times(1700000000000000 + 1000 * n for n in range(400)),
     "ns.csv": with_times(1700000000000000000 + 1000000 * n for n in range(400)),
+    "units.csv": with_times((n / RATE for n in range(400)), "Time,I,Q\ns,V,V"),
+    "brackets.csv": with_times(range(400), "Time,I,Q\n(ms),(V),(V)"),
     "unit.csv": with_times(range(400), "time_ms,I,Q"),
     "radians.csv": polar("time,amplitude,phase", degrees=False),
     "degrees.csv": polar("time,Amplitude,Phase (deg)", degrees=True),
@@ -264,6 +266,20 @@ def test_a_sweep_a_line_with_i_then_q_and_a_time_is_asked_for_and_read(tmp_path)
     np.testing.assert_allclose(values[0], x.T)
 
 
+@pytest.mark.parametrize(
+    ("axes", "order"), [("pulse,sample,iq", (0, 1, 2)), ("pulse,iq,sample", (0, 2, 1))]
+)
+@pytest.mark.parametrize("suffix", [".npy", ".h5"])
+def test_an_axis_of_i_and_q_is_split_as_the_axes_say(tmp_path, axes, order, suffix):
+    rng = np.random.default_rng(1)
+    x = rng.integers(-1000, 1000, (40, 16, 2)).astype("i2")
+    flat = x.transpose(order).reshape(40, 32)
+    (np.save if suffix == ".npy" else h5)(tmp_path / f"x{suffix}", flat)
+    keys = [*BEAT, f"axes=[{axes}]", "beat=negative"]
+    _, values = taken(tmp_path, [f"x{suffix}"], *keys)
+    np.testing.assert_array_equal(values[0], (x[..., 0] + 1j * x[..., 1]).T)
+
+
 REFUSED = {
     "turns.npy": (lambda p: np.save(p, TURNS), r"axes=\[pulse,iq\]\)\?; so may be carrier_hz, prf"),
     "turns.mat": (lambda p: savemat(p, {"x": TURNS}), "radhar import .* --set axes=.*-o walk.h5"),
@@ -272,6 +288,7 @@ REFUSED = {
     "turns.bin": (lambda p: TURNS.tofile(p), "samples and receivers are missing.*dtype=int16"),
     "three.wav": (lambda p: wavfile.write(p, 9, TURNS[:600].reshape(-1, 3)), "has 3 channels"),
     "count.csv": (lambda p: p.write_bytes(with_times(range(400), "time,I,Q")), "without a unit"),
+    "twins.csv": (lambda p: p.write_bytes(with_times(range(400), "time_ms,I,I")), "named I"),
     "turn.csv": (
         lambda p: p.write_bytes(polar("time,amplitude,phase", degrees=True)),
         "phase: goes beyond 2 pi; its name should say",

@@ -901,12 +901,26 @@ def _tag_of_radar(value: Any) -> str | None:
     return None if radar is None else f"<{radar.kind}>"
 
 
+_KIND_KEYS = ("cfg", "frame")  # which make a radar one of a kind
+
+
 def _without_null(value: Any) -> Any:
-    """Drop `cfg: null` and `frame: null`, by which a config leaves the board of its base."""
-    if isinstance(value, dict):
-        nulls = {key for key in ("cfg", "frame") if key in value and value[key] is None}
-        return {key: inner for key, inner in value.items() if key not in nulls}
-    return value
+    """Drop nulls by which a config leaves out what its base says of a radar of another kind.
+
+    These are `cfg: null`, `frame: null` and null for keys that only other kinds have.
+    """
+    if not isinstance(value, dict):
+        return value
+    outline = {
+        key: inner for key, inner in value.items() if inner is not None or key not in _KIND_KEYS
+    }
+    kind = class_of_radar(outline)
+    if kind is None:
+        return outline
+    of_others = {key for radar in RADARS for key in radar.model_fields} - kind.model_fields.keys()
+    return {
+        key: inner for key, inner in outline.items() if inner is not None or key not in of_others
+    }
 
 
 # What `radar:` may be: of a config, and with its numbers as floats of a scene.

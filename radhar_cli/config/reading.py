@@ -552,6 +552,8 @@ def _problems_of(
                 message = "should be a list of sections: [{}, {}]"
             if names == ["radar", "waveform"]:
                 message = f"{message} with {radar.named}"
+                if radar.kind == "board":
+                    message += "; cfg: null leaves out that of a base, or of what all radars have"
             if key == "radar" and item["type"] == "wrong" and isinstance(item["input"], dict):
                 yield Problem("radar.waveform", item["input"].get("waveform"), message)
                 continue
@@ -717,7 +719,8 @@ def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
         gives = "gives it" if isinstance(getattr(kind, key), property) else "has none"
         reason = f", which {gives}"
     listed = " and ".join(filter(None, [", ".join(owners[:-1]), owners[-1]]))
-    return f"is unknown with {kind.named}{reason}; it is a key of {listed}"
+    leave_out = f"{key}: null leaves out that of a base, or of what all radars have"
+    return f"is unknown with {kind.named}{reason}; it is a key of {listed}; {leave_out}"
 
 
 def _holds_sections(kind: type[BaseModel], names: list[int | str], document: Any) -> bool:

@@ -179,6 +179,34 @@ def test_null_takes_an_aspect_off_an_entry(tmp_path):
     assert [config.radar.yaw_deg for config in configs.values()] == [90, 30]
 
 
+OTHER_KINDS = {
+    "fmcw": {},
+    "sfcw": {"waveform": "sfcw", "steps": 64, "dwell_s": 1e-6},
+    "cw": {"waveform": "cw"},
+    "impulse": {"waveform": "impulse", "profile_m": [0, 6], "output": "iq"},
+    "frames": {"frame": {"chirps": 32}, "chirp_s": 1e-4, "adc_rate_hz": 1e6},
+}
+
+
+@pytest.mark.parametrize("kind", OTHER_KINDS)
+def test_null_takes_keys_of_other_kinds_off_an_entry(tmp_path, kind):
+    """An entry of another kind than `radar` leaves out what only a board has."""
+    board = {"cfg": "iwr1843boost", "device": "IWR1843BOOST", "subframe": 0}
+    document = {"radar": board, "radars": {"board": {"maps": ["range_doppler"]}}}
+    nulls = dict.fromkeys(board)
+    maps = ["rtm"] if kind == "impulse" else ["stft"]
+    document["radars"]["other"] = {**nulls, **OTHER_KINDS[kind], "maps": maps}
+    configs = load_radars(file_of(tmp_path, yaml.safe_dump(document)))
+    assert (
+        configs["other"].radar
+        == Config.model_validate({"radar": OTHER_KINDS[kind], "maps": maps}).radar
+    )
+    del document["radars"]["other"]["device"]
+    path = file_of(tmp_path, yaml.safe_dump(document))
+    with pytest.raises(ConfigError, match=r"radar\.device = .* device: null leaves out that of"):
+        load_radars(path)
+
+
 def test_mistake_of_an_override_names_it(tmp_path):
     path = file_of(tmp_path, "radars: {a: {}, b: {}}")
     with pytest.raises(ConfigError, match=r"^--set radars.b.prf_hz = \"x\": should"):

@@ -709,7 +709,8 @@ def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
     if not issubclass(kind, AnyRadar):
         return None
     if key == "frame" and not issubclass(kind, ArrayRadar):
-        waveforms = " and ".join(KINDS_WITH_FRAMES)
+        *others, last = KINDS_WITH_FRAMES
+        waveforms = f"{', '.join(others)} and {last}"
         return f"should be left out with {kind.named}: {waveforms} have frames"
     owners = [other.named for other in RADARS if key in other.model_fields]
     if not owners:

@@ -227,7 +227,7 @@ def test_a_walker_who_comes_closer_is_on_the_positive_side() -> None:
         ),
         (
             "{waveform: impulse, frame: {chirps: 64}, profile_m: [0, 5]}",
-            "should be left out with radar.waveform: impulse: fmcw and sfcw and cw have frames",
+            "should be left out with radar.waveform: impulse: fmcw, sfcw and cw have frames",
         ),
         (
             "{waveform: cw, frame: {chirps: 64}}",

@@ -86,6 +86,21 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("knien",), ("kneeling",)),
     **dict.fromkeys(("humpeln", "hinken"), ("limping",)),
     **dict.fromkeys(("stolpern",), ("stumbling",)),
+    **dict.fromkeys(("pickup", "pickup_object", "pick_up_things_from_floor"), ("grabbing",)),
+    **dict.fromkeys(("sitdown",), ("sitting_down",)),
+    **dict.fromkeys(("standup",), ("standing_up",)),
+    **dict.fromkeys(("liedown", "stand_to_lie"), ("lying_down",)),
+    **dict.fromkeys(("star_jump", "jumping_jacks_exercise"), ("jumping_jacks",)),
+    **dict.fromkeys(("raise_left_hand", "raising_hand_left"), ("raising_left_arm",)),
+    **dict.fromkeys(("raise_right_hand", "raising_hand_right"), ("raising_right_arm",)),
+    **dict.fromkeys(("both_hands_up", "hands_up"), ("raising_arms",)),
+    **dict.fromkeys(("syncope",), ("falling",)),
+    **dict.fromkeys(("absence", "nobody_there", "no_presence"), ("nobody",)),
+    **dict.fromkeys(("lunge_toward_left_front",), ("left_lunge",)),
+    **dict.fromkeys(("lunge_toward_right_front",), ("right_lunge",)),
+    **dict.fromkeys(("lunge_toward_left_side",), ("left_side_lunge",)),
+    **dict.fromkeys(("lunge_toward_right_side",), ("right_side_lunge",)),
+    **dict.fromkeys(("waving_hand_left", "waving_hand_right", "single_hand_waving"), ("waving",)),
 }
 # {word: our names that come near it}: suggested, but not taken for the same.
 NEARBY: dict[str, tuple[str, ...]] = {
@@ -127,7 +142,26 @@ NEARBY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("right_limb_extension",), ("raising_right_arm_and_leg",)),
     **dict.fromkeys(("left_upper_limb_extension",), ("raising_left_arm",)),
     **dict.fromkeys(("right_upper_limb_extension",), ("raising_right_arm",)),
-    **dict.fromkeys(("both_upper_limb_extension",), ("raising_arms",)),
+    **dict.fromkeys(("both_upper_limb_extension", "hand_up"), ("raising_arms",)),
+    **dict.fromkeys(("walking_in_place", "marching_on_the_spot"), ("jogging_in_place",)),
+    **dict.fromkeys(("limb_extension_left",), ("raising_left_arm_and_leg",)),
+    **dict.fromkeys(("limb_extension_right",), ("raising_right_arm_and_leg",)),
+    **dict.fromkeys(("twist_left", "twist_right", "spin", "rotate"), ("body_rotating",)),
+    **dict.fromkeys(("roll",), ("turning_over",)),
+    **dict.fromkeys(
+        ("falling_forward", "falling_backward", "falling_left", "falling_right", "falling_aside"),
+        ("falling",),
+    ),
+    **dict.fromkeys(("lie_to_stand",), ("getting_up",)),
+    **dict.fromkeys(("lie_to_sit", "sitting_up_in_bed"), ("getting_up_from_bed",)),
+    **dict.fromkeys(("sit_to_lie",), ("lying_down",)),
+    **dict.fromkeys(("stoop", "body_extension"), ("grabbing",)),
+    **dict.fromkeys(("punch_slap",), ("punching",)),
+    **dict.fromkeys(("roundhouse_kick", "kicking_something"), ("kicking",)),
+    **dict.fromkeys(("kicking_toward_left", "kicking_toward_right"), ("kicking",)),
+    **dict.fromkeys(("skipping_rope",), ("jumping",)),
+    **dict.fromkeys(("cane", "crutch"), ("walking_with_stick",)),
+    **dict.fromkeys(("treadmill", "short_step", "ambulation", "back_and_forth"), ("walking",)),
 }
 # {word: our name that it is, and the key that makes the difference}.
 WITH_KEY: dict[str, tuple[str, str]] = {
@@ -183,11 +217,23 @@ UNKNOWN = frozenset(
         *("tearing_paper", "tear_up_paper", "put_on_jacket", "take_off_jacket", "pointing"),
         *("phone_call", "playing_with_phone", "taking_selfie", "check_time", "rub_two_hands"),
         *("nod_head", "shake_head", "wipe_face", "salute", "cross_hands", "sneeze", "headache"),
+        *("put_on_a_shoe", "take_off_a_shoe", "put_on_glasses", "take_off_glasses", "shuffling"),
+        *("put_on_a_hat", "reach_into_pocket", "play_with_phone", "type_on_a_keyboard", "mop"),
+        *("point_to_something", "taking_a_selfie", "put_palms_together", "cross_hands_in_front"),
+        *("sneeze_cough", "point_finger", "giving_object", "touch_pocket", "shaking_hands"),
+        *("stretching_and_relaxing", "chest_expansion_horizontal", "chest_expansion_vertical"),
+        *("throwing_toward_left", "throwing_toward_right", "body_extension_left", "tandem_walk"),
+        *("body_extension_right", "limb_extension_both", "stairs_up", "stairs_down", "step_up"),
+        *("climb_stairs", "toe_walking", "heel_walking", "walking_on_toes", "scissor_gait"),
+        *("walking_with_both_toes", "freezing_of_gait", "tremor", "pushup", "situp", "burpee"),
+        *("bicycle", "golf", "tennis", "vacuum", "iron", "cook", "arm_circles", "arm_swing"),
+        *("walk_back", "walkback", "lateral_walk", "pet", "dog", "fan"),
         *("chest_pain", "back_pain", "neck_pain", "nausea", "fan_self", "pat_on_back", "hugging"),
         *("handshaking", "walking_apart", "push_pull", "sweep", "slide", "draw_circle"),
         *("draw_zigzag", "scissors_gait", "coughing", "sweeping", "mopping", "cooking"),
     }
 )
+_SEPARATORS = str.maketrans(" -/", "___")
 FROM_FILES = "no model moves like this; motion files can (docs/guide/motion_files.md)"
 
 
@@ -232,5 +278,5 @@ def is_other_word(name: str, slug: str) -> bool:
 
 
 def _plain(name: str) -> str:
-    """Name in lower case with underscores for spaces and hyphens."""
-    return name.strip().lower().replace(" ", "_").replace("-", "_")
+    """Name in lower case with underscores for spaces, hyphens and slashes."""
+    return name.strip().lower().translate(_SEPARATORS)

@@ -10,7 +10,7 @@ NONE = "no such word"
 MEANT = {
     "walking": "walkng waking walk strolling pacing gehen",
     "running": "jogging jog sprint runing rennen",
-    "grabbing": "pick_up pick_up_object picking_up",
+    "grabbing": "pick_up pick_up_object picking_up pickup",
     "drinking": "drink_water drinkng trinken",
     "waving": "waving_hand hand_wave wave_hello wavign winken",
     "clapping": "clap_hands clappin klatschen applauding",
@@ -34,14 +34,15 @@ MEANT = {
     "nobody": "empty_room background no_person",
     "turning_around": "turn_around",
     "raising_arms": "arms_up",
-    "left_lunge": "lunge_left",
+    "left_lunge": "lunge_left lunge_toward_left-front",
+    "raising_left_arm": "raise_left_hand raising_hand_left",
 }
 NEAR = {
     "jumping": "hopping leap jump_rope",
     "right_lunge": "lunges",
     "drinking": "eating eat",
     "jogging_in_place": "marching_in_place high_knees",
-    "falling": "fall_backward fall_sideways slipping",
+    "falling": "fall_backward fall_sideways slipping falling_forward falling_left",
     "walking": "brisk_walking slow_walking march laufen",
     "squatting": "crouching",
     "punching": "uppercut jab",

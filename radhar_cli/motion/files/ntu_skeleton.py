@@ -6,6 +6,7 @@ orientation, and the state of tracking, of which 0 is lost (Shahroudy et al., CV
 """
 
 from collections.abc import Iterator
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,8 +17,12 @@ from radhar_cli.motion.files.recording import MAX_FRAMES, motion_file_error
 RATE = 30.0
 MAX_TEXT = 2**26  # bytes
 MAX_BODIES = 20  # in a frame
+NEAR, WALK = 0.3, 2.0  # m and m/s: how far a body goes on that is counted anew
 NAMES = JOINT_SETS["ntu25"].names
 OFTEN = 0.5  # share of the frames of the main body from which another one is a second person
+
+
+_Body: TypeAlias = dict[int, np.ndarray[tuple[int, ...], np.dtype[np.float64]]]
 
 
 class _SkeletonLines:
@@ -68,7 +73,7 @@ def read_ntu_skeleton(data: bytes, where: str) -> Keypoints:
         raise motion_file_error(where, f"is {len(data)} bytes; should be at most {MAX_TEXT}")
     lines = _SkeletonLines(data, where)
     frames = lines.count("the number of frames", MAX_FRAMES)
-    bodies: dict[bytes, dict[int, np.ndarray[tuple[int, ...], np.dtype[np.float64]]]] = {}
+    bodies: dict[bytes, _Body] = {}
     for frame in range(frames):
         for _ in range(lines.count(f"the number of bodies of frame {frame + 1}", MAX_BODIES)):
             identity = lines.words("a line with a body's identity")[0]
@@ -78,6 +83,7 @@ def read_ntu_skeleton(data: bytes, where: str) -> Keypoints:
     if not bodies:
         raise motion_file_error(where, "has no body in any frame")
     first, *others = sorted(bodies.values(), key=len, reverse=True)
+    first, others, joins = _join_bodies(first, others)
     often = [body for body in others if len(body) > OFTEN * len(first)]
     if often:
         raise motion_file_error(
@@ -88,8 +94,37 @@ def read_ntu_skeleton(data: bytes, where: str) -> Keypoints:
     values = np.full((frames, len(NAMES), 3), np.nan)
     for frame, joints in first.items():
         values[frame] = joints
-    remark = f"of {len(bodies)} bodies the one is taken that is there in most frames"
-    return make_keypoints(where, NAMES, values, RATE, remarks=(remark,) if others else ())
+    remarks = list[str]()
+    if others:
+        remarks.append(f"of {len(bodies)} bodies the one is taken that is there in most frames")
+    if joins:
+        remarks.append(
+            f"a body that is lost and seen again as another, {joins} times, is one person"
+        )
+    return make_keypoints(where, NAMES, values, RATE, remarks=remarks)
+
+
+def _join_bodies(first: _Body, others: list[_Body]) -> tuple[_Body, list[_Body], int]:
+    """Join bodies that begin where another one is lost, near it: a sensor counts them anew.
+
+    Returns:
+        The main body, those that are others, and how many were joined.
+    """
+    joined, rest = dict(first), list[_Body]()
+    for body in others:
+        is_apart = joined.keys().isdisjoint(body)
+        near = min(
+            joined, key=lambda frame: min(abs(frame - end) for end in (min(body), max(body)))
+        )
+        end = min((min(body), max(body)), key=lambda frame: abs(frame - near))
+        steps = np.linalg.norm(joined[near] - body[end], axis=1)
+        known = steps[np.isfinite(steps)]
+        far = NEAR + WALK * abs(near - end) / RATE
+        if is_apart and known.size and float(np.median(known)) < far:
+            joined |= body
+        else:
+            rest.append(body)
+    return joined, rest, len(others) - len(rest)
 
 
 def _read_joints(lines: _SkeletonLines) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:

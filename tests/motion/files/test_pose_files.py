@@ -192,6 +192,19 @@ def test_a_second_body_that_is_there_briefly_is_no_person(tmp_path: Path) -> Non
         clip_of(tmp_path / "x.skeleton")
 
 
+def test_a_body_that_is_counted_anew_is_one_person(tmp_path: Path) -> None:
+    body = camera(NTU) * [1, -1, 1]
+    early, late = body.copy(), body.copy()
+    early[60:], late[:63] = np.nan, np.nan
+    (tmp_path / "x.skeleton").write_text(skeleton_text([early, late]))
+    clip = clip_of(tmp_path / "x.skeleton")
+    assert largest_error(clip) < 0.03
+    assert "is one person" in clip.remarks[0]
+    (tmp_path / "x.skeleton").write_text(skeleton_text([early, late + 2]))
+    with pytest.raises(MotionFileError, match="has 2 people"):
+        clip_of(tmp_path / "x.skeleton")
+
+
 def write_coco(path: Path, p: Float) -> Path:
     np.savez(path, names=names("coco17"), positions=p, rate=RATE)
     return path

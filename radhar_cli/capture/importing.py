@@ -396,8 +396,10 @@ def _command_with(
     words = {} if header != "--set" else {key: _as_word(value) for key, value in known.items()}
     sets = " ".join(f"--set {key}={value}" for key, value in (words | {**keys}).items())
     names = shlex.join(map(str, files[:3])) + (" ..." if len(files) > 3 else "")
-    radar = "" if header == "--set" else f"--radar {header} "
-    return f"radhar import {names} {radar}{sets} -o walk.h5"
+    radar = "" if header == "--set" else f"--radar {shlex.quote(header)} "
+    texts = {"--label": s.label, "--person": s.person}
+    labels = "".join(f"{option} {shlex.quote(text)} " for option, text in texts.items() if text)
+    return f"radhar import {names} {radar}{sets} {labels}-o walk.h5"
 
 
 def _as_word(value: object) -> str:

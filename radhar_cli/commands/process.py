@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from radhar_cli.capture.recording import RecordingInfo
     from radhar_cli.capture.tracking import TorsoTrack
 
+# A track that stays within these, m and m/s, moves less than somebody who breathes.
+RESTING_M, RESTING_MPS = 0.01, 0.01
+
 
 def process(
     recording: Annotated[
@@ -136,8 +139,15 @@ def _title(recording: Path, info: "RecordingInfo") -> str:
 
 
 def _describe_track(track: "TorsoTrack") -> str:
-    """Say where the torso was found, how fast it was, and how sure that is."""
+    """Say where the torso was found, how fast it was, and how sure that is.
+
+    What never moves need be no person, and is not called one.
+    """
+    nearest, farthest = track.range.min(), track.range.max()
+    speed, confidence = abs(track.velocity).max(), track.confidence.mean()
+    if speed < RESTING_MPS and farthest - nearest < RESTING_M:
+        return f"something at rest at {nearest:.2f} m, confidence {confidence:.2f}"
     return (
-        f"torso from {track.range.min():.2f} to {track.range.max():.2f} m, up to "
-        f"{abs(track.velocity).max():.2f} m/s, confidence {track.confidence.mean():.2f}"
+        f"torso from {nearest:.2f} to {farthest:.2f} m, up to {speed:.2f} m/s, "
+        f"confidence {confidence:.2f}"
     )

@@ -358,3 +358,20 @@ def test_program_writes_maps_track_and_figure(tmp_path: Path) -> None:
         assert sorted(file["maps"]) == ["rtm", "stft"]
         assert file["track/range"].shape == file["track/confidence"].shape
         assert "m/s" in file["track/velocity"].attrs["unit"]
+
+
+def test_what_rests_in_an_empty_room_is_called_no_torso(tmp_path: Path) -> None:
+    """A reflector at rest, and nobody; a person who stands breathes, and is a torso."""
+    config = tmp_path / "room.yaml"
+    config.write_text(
+        "radar: {device: IWR6843AOP, cfg: iwr6843aop, position_m: [0, 0, 2], tilt_deg: 15}\n"
+        "maps: [range_doppler]\nduration_s: 2\nroom: {reflectors: [{}, {}]}\n"
+        "activities: [nobody, stationary]\nmotion: {place: {range_m: 3}}\n"
+    )
+    for slug, expected in (("nobody", "something at rest at"), ("stationary", "torso from")):
+        simulated, out = tmp_path / slug, tmp_path / f"{slug}_maps"
+        done = radhar("simulate", config, "--activity", slug, "--raw", "-o", simulated)
+        assert done.returncode == 0, done.stderr
+        recording = simulated / "recording.h5"
+        done = radhar("process", recording, "--config", config, "--no-figures", "-o", out)
+        assert expected in done.stdout, done.stderr

@@ -10,7 +10,8 @@ from helpers import boards
 from helpers.command_line import ok, radhar
 from pydantic import ValidationError
 
-from radhar_cli.config import Config
+from radhar_cli.config import Config, load_config
+from radhar_cli.config.checks.doubts import word_warnings
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.sample import labels_of
 from radhar_cli.figures.frames_panel import draw_cloud, draw_frames
@@ -171,3 +172,10 @@ def test_who_is_not_there_has_no_motion_to_write(tmp_path: Path) -> None:
 def test_nobody_is_a_class_alone(wrong: dict[str, Any], message: str) -> None:
     with pytest.raises(ValidationError, match=message.replace("[", re.escape("["))):
         config_of(**wrong)
+
+
+def test_another_word_for_nobody_advises_no_class_that_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "c.yaml"
+    path.write_text("activities: [empty_room, walking]\n")
+    (warning,) = word_warnings(load_config(path))
+    assert warning == "empty_room is taken for nobody"

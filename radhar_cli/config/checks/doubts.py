@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from radhar_cli.activities.activity import Activity
+from radhar_cli.activities.activity import NOBODY, Activity
 from radhar_cli.config.number import nominal, support
 from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.config.request import Request
@@ -16,7 +16,8 @@ def word_warnings(c: Request) -> list[str]:
     if not c.other_words:
         return []
     pairs = ", ".join(f"{word} is taken for {slug}" for word, slug in c.other_words.items())
-    classes = [pair for pair in c.other_words.items() if pair[1] in c.activities]
+    renamed = {*c.activities} - {NOBODY}  # of which there is no class by another name
+    classes = [pair for pair in c.other_words.items() if pair[1] in renamed]
     advice = ""
     if classes:
         word, slug = classes[0]

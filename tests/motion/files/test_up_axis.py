@@ -77,10 +77,10 @@ def test_who_stays_has_the_axis_that_is_assumed_said(activity: str) -> None:
     assert "y is assumed to point up" in one.remarks[0]
 
 
-# Not looked at when the thresholds of up_axis.py were chosen: the movements below, the angles, and
-# the places. Those of the tests above were.
-HELD_BACK = ["lying_down", "getting_up_from_bed", "getting_on_fours", "kneeling", "drinking_seated"]
-HELD_BACK += ["waving", "punching", "raising_left_leg", "writing", "clapping"]
+# Angles and places that were not looked at when the thresholds of up_axis.py were chosen; what
+# came out of these movements at other angles was.
+OFTEN_LOW = ["lying_down", "getting_up_from_bed", "getting_on_fours", "kneeling", "drinking_seated"]
+OFTEN_LOW += ["waving", "punching", "raising_left_leg", "writing", "clapping"]
 PLACES = {"a room": (1.7, -0.6, 0.0), "a bed": (-0.9, 2.2, 0.55), "a camera": (2.6, 0.3, -1.1)}
 
 
@@ -102,8 +102,10 @@ def clip_unless_asked(p: Float) -> Clip | None:
 
 @pytest.mark.parametrize("up", AXES)
 @pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("activity", HELD_BACK)
-def test_of_movements_held_back_no_vertical_is_wrong(activity: str, place: str, up: str) -> None:
+@pytest.mark.parametrize("activity", OFTEN_LOW)
+def test_at_other_angles_and_places_no_vertical_is_wrong(
+    activity: str, place: str, up: str
+) -> None:
     for degrees in (8, 61, 143, 262, 300):
         p = turned(frames(activity, 2.0, RATE), degrees, PLACES[place])
         one = clip_unless_asked(AXES[up](p))

@@ -77,7 +77,6 @@ _OF_POSES: dict[str, tuple[str, ...]] = {
 # Joints whose mean a missing one is, the best first. The ears are beside the middle of the head;
 # neck and top of the head are below and above it.
 _MEANS: dict[str, tuple[tuple[str, ...], ...]] = {
-    "hip": (("right_hip_joint", "left_hip_joint"),),
     "head": (
         ("leftear", "rightear"),
         ("neck", "headtop"),
@@ -148,6 +147,7 @@ def joint_means(file: MotionRecording, configured: JointNames) -> list[JointMean
     _hang_hip_joints(means, file, configured)
     if isinstance(file, Keypoints):
         _add_means(means, names, file.seen_shares())
+    _add_torso(means)
     missing = [joint for joint in JOINTS if means[joint] is None]
     if missing:
         raise motion_file_error(
@@ -220,6 +220,22 @@ def _hang_hip_joints(
             means[joint] = JointMean.of([parent])
 
 
+def _add_torso(means: dict[str, JointMean | None]) -> None:
+    """Make hip and torso of hip joints and shoulders where a file has none of their own."""
+    hips = [means[joint] for joint in HIP_JOINTS]
+    known = [hip for hip in hips if hip is not None]
+    if means["hip"] is None and len(known) == len(hips):
+        means["hip"] = _weigh(known, [1 / len(known)] * len(known))
+    hip, shoulders, torso = means["hip"], _shoulders_of(means), JOINTS[TORSO]
+    if means[torso] is None and hip is not None and None not in shoulders:
+        means[torso] = _along_trunk(hip, shoulders, TORSO_SHARE)
+
+
+def _shoulders_of(means: Mapping[str, JointMean | None]) -> list[JointMean | None]:
+    """Right and left shoulder."""
+    return [means[f"{side}_shoulder"] for side in ("right", "left")]
+
+
 def _add_means(means: dict[str, JointMean | None], names: Sequence[str], shares: Float) -> None:
     """Make hip, head and torso of other joints of a pose where it has none of their own.
 
@@ -250,10 +266,8 @@ def _add_means(means: dict[str, JointMean | None], names: Sequence[str], shares:
                 means[joint] = _weigh(known, [1 / len(known)] * len(known))
     if means["head"] is None or means["head"].numbers == (numbers.get("nose"),):
         means["head"] = _beside_ear(means, numbers) or means["head"]
-    hip, shoulders = means["hip"], [means[f"{side}_shoulder"] for side in ("right", "left")]
-    torso = JOINTS[TORSO]
-    if means[torso] is None and hip is not None and None not in shoulders:
-        means[torso] = _along_trunk(hip, shoulders, TORSO_SHARE)
+    _add_torso(means)
+    hip, shoulders = means["hip"], _shoulders_of(means)
     if means["head"] is None and hip is not None and None not in shoulders:
         means["head"] = _along_trunk(hip, shoulders, HEAD_SHARE)
 

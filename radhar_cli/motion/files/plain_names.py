@@ -3,7 +3,7 @@
 import re
 
 _PREFIX = re.compile(
-    r"^(?:.*:|bip\d+|mixamorig\d*|(?:k4abt_|xr_body_|xr_full_body_)?joint(?:type)?_(?:fb_|meta_)?)"
+    r"^(?:.*:|bip\d+|j_bip_(?:c_)?|mixamorig\d*|(?:k4abt_|xr_body_|xr_full_body_)?joint(?:type)?_(?:fb_|meta_)?)"
 )
 _PARTS = (
     "hip knee ankle foot shoulder elbow wrist hand eye ear bigtoe smalltoe toe heel collar clavicle"

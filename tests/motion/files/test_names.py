@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pytest
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.names import WANTED, JointNames, joint_means
+from radhar_cli.motion.files.names import TORSO_SHARE, WANTED, JointNames, joint_means
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 
@@ -135,6 +135,45 @@ def test_the_usual_rigs(rig: str) -> None:
     assert lefts.isdisjoint({n for joint, n in mine.items() if not joint.startswith("left")})
     hips = [n for joint, n in mine.items() if joint.endswith("hip_joint")]
     assert all(n is not None for n in hips)
+
+
+TRUNKS = {
+    "Xsens": (
+        ["Pelvis", "L5", "L3", "T12", "T8", "Neck", "Head"]
+        + both("{S}Shoulder", "{S}UpperArm", "{S}ForeArm", "{S}Hand")
+        + both("{S}UpperLeg", "{S}LowerLeg", "{S}Foot", "{S}Toe"),
+        ["Pelvis", "RightUpperArm", "LeftUpperArm"],
+    ),
+    "AIST": (
+        ["root", "torso_1", "torso_2", "torso_3", "neck_1", "head"]
+        + both("{l}_shoulder", "{l}_elbow", "{l}_wrist", "{l}_hip", "{l}_knee", "{l}_ankle"),
+        ["root", "r_shoulder", "l_shoulder"],
+    ),
+}
+
+
+@pytest.mark.parametrize("rig", TRUNKS)
+def test_a_rig_without_a_known_torso_has_it_between_hip_and_shoulders(rig: str) -> None:
+    names, trunk = TRUNKS[rig]
+    means = joint_means(Rig(tuple(names), (None,) * len(names)), {})
+    torso = means[WANTED.index("torso")]
+    assert torso is not None
+    assert sorted(names[n] for n in torso.numbers) == sorted(trunk)
+    assert sum(torso.weights) == pytest.approx(1)
+    share = torso.weights[torso.numbers.index(names.index(trunk[0]))]
+    assert share == pytest.approx(1 - TORSO_SHARE)
+
+
+def test_vroid_joints_have_a_prefix_before_their_side() -> None:
+    parts = ["Hips", "Spine", "Chest", "UpperChest", "Neck", "Head"]
+    limbs = ["UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot"]
+    names = [f"J_Bip_C_{part}" for part in parts]
+    names += [f"J_Bip_{side}_{limb}" for side in "LR" for limb in limbs]
+    numbers = joint_numbers(Rig(tuple(names), (None,) * len(names)), {})
+    mine = {joint: names[n or 0] for joint, n in zip(WANTED, numbers, strict=True)}
+    assert mine["torso"] == "J_Bip_C_UpperChest"
+    assert mine["right_elbow"] == "J_Bip_R_LowerArm"
+    assert mine["left_hip_joint"] == "J_Bip_L_UpperLeg"
 
 
 def test_cmu_bones_are_named_by_their_ends() -> None:

@@ -130,7 +130,7 @@ def _describe_difference(recording: Recording, board: Board) -> str | None:
     """Say in what the content of a recording differs from that of a board; None if it does not."""
     content = recording.info.content
     if board.samples == 1:
-        return describe_difference(content, SlowTime(board.waveform.f0, 1 / board.loop))
+        return describe_difference(content, SlowTime(board.fc, 1 / board.loop))
     return describe_other_chirps(content, Beat(timing_of(board)))
 
 

@@ -503,7 +503,7 @@ def write_simulated(
     """
     receivers, samples, count = beat.shape
     pulses = pulses or SimulatedPulses(PulseTimes.even(count, waveform.prf))
-    content: Content = SlowTime(waveform.f0, waveform.prf)
+    content: Content = SlowTime(waveform.fc, waveform.prf)
     if isinstance(waveform, Impulse):
         content = RangeProfiles(
             waveform.f0,

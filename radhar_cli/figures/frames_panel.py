@@ -14,7 +14,7 @@ from radhar_cli.figures.maps_panel import title
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.figures.sides import Advance, Film, SideView, bones, colour_bar
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, FrameMaps
+from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, SPEED, FrameMaps
 from radhar_cli.processing.points import Cloud
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
@@ -103,7 +103,8 @@ def label_of(axis: Axis) -> str:
     """Label of an axis of a frame map; of a single value, the Doppler of one chirp, that it is."""
     if axis.values.size == 1:
         return f"no {axis.name}: one chirp a frame"
-    return f"{axis.name} ({axis.unit})"
+    name = "approaching" if axis.name == SPEED.quantity else axis.name
+    return f"{name} ({axis.unit})"
 
 
 def draw_cloud(content: BoardFrames, path: Path, advance: Advance) -> None:

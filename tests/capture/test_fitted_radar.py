@@ -85,7 +85,10 @@ def test_the_radar_comes_back(tmp_path, name):
     path, recording = recorded(tmp_path, name)
     ok("fit", recording, "-o", tmp_path / "fitted.yaml")
     fitted = load_config(tmp_path / "fitted.yaml").filled()
-    assert same(fitted.radar, load_config(path).filled().radar) is None
+    radar = load_config(path).filled().radar
+    assert same(fitted.radar, radar) is None
+    if radar.waveform == "cw":
+        assert fitted.radar.carrier_hz == radar.carrier_hz
 
 
 def fitted_snr(config, folder, seed):

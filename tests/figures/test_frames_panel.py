@@ -20,3 +20,4 @@ def test_colours_have_ends_without_points_and_of_points_at_rest(speeds: np.ndarr
 def test_the_axis_of_one_chirp_says_that_it_has_no_speed() -> None:
     assert label_of(Axis("radial speed", "m/s", np.zeros(1), 12.0)).startswith("no radial speed")
     assert label_of(Axis("range", "m", np.arange(4.0))) == "range (m)"
+    assert label_of(Axis("radial speed", "m/s", np.arange(4.0))) == "approaching (m/s)"

@@ -132,9 +132,11 @@ def cfg_text(value: Any, folder: Path, where: str) -> Any:
                 f"of {', '.join((*RADARS, *WRITTEN_RADARS))}; any other radar is a short config by "
                 "its data sheet (docs/guide/frames.md, docs/guide/impulse.md)"
             ) from None
+        named = advice_on_radars(value)
+        advice = f"; {named}" if named else f", or one of {', '.join(RADARS)}"
         raise ConfigError(
             f"{where}: radar.cfg = {json.dumps(value)}: should be the path of a TI .cfg "
-            f"({reason}), or one of {', '.join(RADARS)}"
+            f"({reason}){advice}"
         ) from None
 
 
@@ -165,6 +167,26 @@ def name_of_written(value: str) -> str | None:
     names = {name.replace("_", ""): name for name in WRITTEN_RADARS}
     alike = [name for other, name in names.items() if plain[1:] and other.startswith(plain)]
     return names.get(plain) or (alike[0] if len(alike) == 1 else None)
+
+
+def advice_on_radars(value: object) -> str:
+    """Advise on names of built-in radars that stand where their keys should.
+
+    Args:
+        value: that of a key of a radar: a name, a list of names, or mappings that hold names.
+
+    Returns:
+        The command that writes the config of each, whose `radar:` is to be copied; "" where the
+        value names none. A name has a digit, since words of waveforms begin names, too.
+    """
+    if isinstance(value, (list, dict)):
+        values = [*value.values()] if isinstance(value, dict) else value
+        return "; ".join(dict.fromkeys(filter(None, map(advice_on_radars, values))))
+    if not isinstance(value, str) or not re.search(r"[a-z][-_ ]?\d", value, re.IGNORECASE):
+        return ""
+    if (name := name_of_written(value) or name_of_radar(value)) is None:
+        return ""
+    return f"`radhar config init FILE --radar {name}` writes the `radar:` of {name} to copy"
 
 
 @lru_cache(maxsize=1)
@@ -202,8 +224,9 @@ def read_on_bases(path: Path | None, overrides: Mapping[str, Any]) -> tuple[Docu
     while base is not None:
         referred_from = f"{referred_from}: {BASE} = {json.dumps(base)[:120]}"
         if not isinstance(base, str) or not base.endswith(SUFFIXES):
+            advice = f"; {named}" if (named := advice_on_radars(base)) else ""
             raise ConfigError(
-                f"{referred_from}: should be the path of a {', '.join(SUFFIXES)} file"
+                f"{referred_from}: should be the path of a {', '.join(SUFFIXES)} file{advice}"
             )
         base_path = _plain(folder / base)
         try:

@@ -19,6 +19,7 @@ from radhar_cli.config.documents import (
     FILE_OF_CFG,
     OTHER_NAMES,
     Places,
+    advice_on_radars,
     cfg_text,
     name_of_cfg,
     read_on_bases,
@@ -757,7 +758,11 @@ def _value_and_advice(problem: Problem) -> str:
     if value is _MISSING:
         return f": {_short(problem.right, MAX_ADVICE)}"
     shown_value = _short(json.dumps(value, default=_plain))
-    return f" = {shown_value}: {_short(problem.right, MAX_ADVICE)}"
+    right = problem.right
+    if problem.key.partition(".")[0] in ("radar", RADARS_KEY, "preset", "device"):
+        name_advice = advice_on_radars(value)
+        right = f"{right.partition('; known here')[0]}; {name_advice}" if name_advice else right
+    return f" = {shown_value}: {_short(right, MAX_ADVICE)}"
 
 
 def _short(text: str, length: int = MAX_VALUE) -> str:

@@ -10,7 +10,9 @@ from helpers.command_line import ok, radhar
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.built_in_radars import BuiltInRadar, read_radars
 from radhar_cli.config.documents import RADARS, WRITTEN_RADARS, name_of_radar, name_of_written
+from radhar_cli.config.reading import load_radars
 from radhar_cli.config.starting_file import of_board
+from radhar_cli.errors import ConfigError
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.ti_family import Family
 from radhar_cli.single_scene.simulate import simulate
@@ -159,3 +161,28 @@ def test_a_config_of_people_tracking_has_people_who_move(tmp_path: Path) -> None
     config = load_config(tmp_path / "mine.yaml")
     assert config.cloud.chain == "people_tracking"
     assert "walking" in config.activities
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("radar: bgt60tr13c", ["bgt60tr13c"]),
+        ("radar: {preset: bgt60tr13c}", ["bgt60tr13c"]),
+        ("radar: {base: bgt60tr13c}", ["bgt60tr13c"]),
+        ("radar: {device: x4m03}", ["x4m03"]),
+        ("radar: {cfg: x4m03}", ["x4m03"]),
+        ("radars: [bgt60tr13c, x4m03]", ["bgt60tr13c", "x4m03"]),
+        ("radars: {a: x4m03, b: {}}", ["x4m03"]),
+        ("base: x4m03", ["x4m03"]),
+        ("radar: {mode: fmcw}", []),  # no name, though fmcw24_1x4 begins so
+    ],
+)
+def test_a_radar_named_in_a_config_is_told_how_to_copy(tmp_path, text, names):
+    path = tmp_path / "c.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ConfigError) as error:
+        load_radars(path)
+    message = str(error.value)
+    assert message.startswith(f"{path}:1: ")
+    assert [f"config init FILE --radar {name}`" in message for name in names] == [True] * len(names)
+    assert message.count("config init") == len(names)

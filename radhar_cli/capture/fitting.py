@@ -53,7 +53,6 @@ MIN_SNRS = 3  # SNRs needed to fit a spread
 MIN_S = 0.5  # shortest duration of the longest recording
 PART_S = 4.0  # length of a part, which gives one SNR
 MAX_PARTS = 50  # parts of a recording
-SURE = 0.5  # least confidence of the track at ranges that are used
 HANN_GAIN = 0.5**2 + 2 * 0.25**2  # gain of white noise in hann_in_range
 QUARTILE = 0.25
 SLOW_MPS = 0.15  # slower movement does not count as a person's
@@ -65,7 +64,7 @@ class Estimates(NamedTuple):
     """Estimates from a few seconds of a recording."""
 
     snr_db: float  # moving echo within reach of the torso, per raw sample; NaN if nobody is found
-    ranges: Float  # of the torso where its track is reliable, m
+    ranges: Float  # of the torso where it is sure, m; none of a track that may be lost
     floor: Float  # noise in each range bin, as variance of a raw sample [K]
 
     @property
@@ -96,6 +95,19 @@ class Fit:
         """Noise floor relative to its median [K]; a lower quartile over parts leaves people out."""
         floor = np.quantile([part.floor for part in self.parts], QUARTILE, axis=0)
         return np.asarray(10 * np.log10(floor / np.median(floor)))
+
+    @property
+    def doubt(self) -> str | None:
+        """Note on parts whose ranges are not used, as the track may be lost, or None."""
+        walked = [part for part in self.parts if np.isfinite(part.snr_db)]
+        doubtful = sum(not part.ranges.size for part in walked)
+        if self.ranges is None or not doubtful:
+            return None
+        left_out = (
+            f"ranges of {doubtful} of {len(walked)} parts are left out, as the torso's track "
+        )
+        config_has_none = "; motion.place.range_m is not fitted" if doubtful == len(walked) else ""
+        return f"{left_out}is unsure{config_has_none}"
 
     def numbers(self) -> dict[str, float]:
         """Summary of the estimates, and the noise floor, for which the config has no key.
@@ -309,7 +321,7 @@ def _part(moving: Complex, segments: PulseTimes, cells: DopplerCells) -> Estimat
         of_frame = track.range_at(segments.times(middle))[:, None]
         reach = REACH_M + 2 * cells.waveform.range_step
         near = np.abs(cells.waveform.range_axis() - of_frame) <= reach
-        ranges = track.range[track.confidence >= SURE]
+        ranges = track.range[track.is_sure] if track.is_reliable else ranges
     if not nobody.noise > 0:
         return nobody
     # Curtains and fans move slowly, and would be mistaken for a person; where pulses are too few

@@ -21,7 +21,6 @@ from radhar_cli.single_scene.board_file import write_frames
 from radhar_cli.single_scene.scene_file import write_map
 
 FILES = MAPS_FILE, FIGURE, FRAMES = "maps.h5", "maps.png", "frames.png"
-SURE = 0.5  # confidence from which the track is drawn as found
 TRACK_UNITS = {
     "time": "s",
     "range": "m",
@@ -89,7 +88,7 @@ def _draw_maps(maps: Maps, config: Config, title: str, path: Path) -> None:
 
     def over(axes: Axes, name: str, unit: float) -> None:
         if track is not None and name == "rtm":
-            sure = np.where(track.confidence >= SURE, track.range, np.nan)
+            sure = np.where(track.is_sure, track.range, np.nan)
             axes.plot(track.time, track.range, "w:", linewidth=0.8, scalex=False, scaley=False)
             axes.plot(track.time, sure, "w-", linewidth=1.0, scalex=False, scaley=False)
 

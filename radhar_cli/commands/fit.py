@@ -49,8 +49,9 @@ def fit(
     fitted = fit_recordings(recordings, set_ or [])
     for key, value in fitted.numbers().items():
         tell(f"  {key:<19} {value:.4g}")
-    if fitted.remark is not None:
-        tell(f"warning: {fitted.remark}", err=True)
+    for note in (fitted.remark, fitted.doubt):
+        if note is not None:
+            tell(f"warning: {note}", err=True)
     text = f"# Fitted to {len(fitted.parts)} parts of recordings.\n"
     out.parent.mkdir(parents=True, exist_ok=True)
     write_text(out, text + yaml_text(fitted.document))

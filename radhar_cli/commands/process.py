@@ -91,6 +91,8 @@ def process(
             results.add_products_of_frames(products)
     if gaps:
         tell(f"{counted(gaps, 'gap')}: the stretches between are processed separately")
+    if results.track is not None and not results.track.is_reliable:
+        results.notes.append(_describe_doubt(results.track))
     for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *results.notes]:
         tell(f"warning: {note}", err=True)
     written = maps_file.write_maps(results, loaded, info, out)
@@ -136,6 +138,19 @@ def _title(recording: Path, info: "RecordingInfo") -> str:
     labels = ", ".join(label.label for label in info.labels) or "no label"
     carrier = f"{info.carrier_hz / 1e9:g} GHz, PRF {info.prf_hz:.6g} Hz"
     return f"{recording.name}   |   {labels}   |   {carrier}"
+
+
+def _describe_doubt(track: "TorsoTrack") -> str:
+    """Say where the track of the torso may be lost: in its last frames, or here and there."""
+    unsure = (~track.is_sure).nonzero()[0]
+    from_last_sure = track.is_sure.nonzero()[0].max(initial=-1) + 1
+    lost = f"is unsure in {unsure.size} of {track.time.size} frames"
+    if 2 * (track.time.size - from_last_sure) > unsure.size:
+        lost = f"may be lost from {track.time[from_last_sure]:.2f} s on: it {lost}"
+    return (
+        f"the torso's track {lost}; maps that follow it (range_sum: gated, compensated) "
+        "may miss the person"
+    )
 
 
 def _describe_track(track: "TorsoTrack") -> str:

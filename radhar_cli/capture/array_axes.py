@@ -127,6 +127,7 @@ def as_source(
         )
         if note is not None
     ]
+    guess = () if settings.axes else axes[::-1] if of_matlab else axes
     chunk = array.chunk[axes.index("frame" if has_frames else "pulse")]
     return Source(
         (path,),
@@ -137,6 +138,7 @@ def as_source(
         pulses.parts,
         pulses.read,
         times=times,
+        axes=guess if len(guess) > 1 else (),
         step=max(chunk * (pulses.per_frame if has_frames else 1) // pulses.turns, 1),
         settings={"frame_pulses": pulses.per_frame // pulses.turns} if has_frames else {},
         notes=tuple(notes),
@@ -262,7 +264,59 @@ def _axes(array: Samples, s: CaptureSettings, of_matlab: bool) -> tuple[AxisName
             f"{problem}; --set axes=[...] should name each, outermost first",
             {"axes": f"[{','.join(likely_axes)}]"},
         )
+    if s.axes is None and axes[:2] == ("sample", "pulse"):
+        _require_axes_of_matrix(array.where, shape, s, axes[2:])
     return axes[::-1] if of_matlab else axes
+
+
+def _require_axes_of_matrix(
+    where: str, shape: tuple[int, ...], s: CaptureSettings, iq: tuple[AxisName, ...]
+) -> None:
+    """Require that the two axes of a matrix have names where a guess may be the transposition.
+
+    Args:
+        where: file and array, for messages.
+        shape: sizes of the axes, in the order of the program that wrote it.
+        s: header of the capture, without axes.
+        iq: the axis that follows the two; none of complex numbers.
+
+    Raises:
+        MissingKeysError: nothing tells samples from pulses, or from receivers.
+    """
+    rows, columns = shape[:2]
+    has_beat_keys = s.bandwidth_hz is not None and s.adc_rate_hz is not None
+    may_be_receivers = min(rows, columns) <= MOST_GUESSED_RECEIVERS and not (
+        s.are_profiles or has_beat_keys
+    )
+    is_long = rows > columns or s.are_profiles
+    if s.samples is not None or not (is_long or may_be_receivers):
+        return
+    by_pulse: tuple[AxisName, ...] = ("pulse", "sample", *iq)
+    by_sample: tuple[AxisName, ...] = ("sample", "pulse", *iq)
+    meanings = {
+        by_pulse: _words_of_pulses(rows, columns, s),
+        by_sample: _words_of_pulses(columns, rows, s),
+    }
+    likely = by_pulse
+    if may_be_receivers:
+        likely = ("pulse", "receiver", *iq) if rows > columns else ("receiver", "pulse", *iq)
+        receivers = f"slow time of {min(rows, columns)} receivers, {max(rows, columns)} pulses"
+        meanings = {likely: receivers, **meanings}
+    choices = ", or ".join(f"axes=[{','.join(a)}]: {text}" for a, text in meanings.items())
+    raise MissingKeysError(
+        f"{where}: has the shape {[*shape]}, and axes should say what that is: {choices}",
+        {"axes": f"[{','.join(likely)}]"},
+    )
+
+
+def _words_of_pulses(pulses: int, samples: int, s: CaptureSettings) -> str:
+    """Words for a number of pulses of a number of samples, or profiles of bins to a range."""
+    if not s.are_profiles:
+        return f"{pulses} pulses of {samples} samples"
+    if s.first_range_m is None or s.range_step_m is None:
+        return f"{pulses} profiles of {samples} bins"
+    last_m = s.first_range_m + (samples - 1) * s.range_step_m
+    return f"{pulses} profiles of {samples} bins to {last_m:.2g} m"
 
 
 def _usual_axes(parts: int, shape: tuple[int, ...], s: CaptureSettings) -> tuple[AxisName, ...]:

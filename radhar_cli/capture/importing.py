@@ -354,6 +354,13 @@ def _content(source: Source, s: CaptureSettings, prf_hz: float, notes: list[str]
     if s.are_profiles:
         assert s.first_range_m is not None
         assert s.range_step_m is not None
+        last_m = s.first_range_m + (source.samples - 1) * s.range_step_m
+        if last_m > FARTHEST_PROFILE_M:
+            raise CaptureError(
+                f"{source.name}: {source.samples} bins from first_range_m = {s.first_range_m:g} in "
+                f"steps of range_step_m = {s.range_step_m:g} end at {last_m:.4g} m; should end at "
+                f"most at {FARTHEST_PROFILE_M:g} m: both keys are in m, 5 cm is 0.05"
+            )
         bandwidth_hz = s.bandwidth_hz
         if bandwidth_hz is None:
             bandwidth_hz = min(SPEED_OF_LIGHT / (2 * s.range_step_m), s.carrier_hz)
@@ -376,6 +383,10 @@ def _content(source: Source, s: CaptureSettings, prf_hz: float, notes: list[str]
     return Beat(timing)
 
 
+BEAT_KEYS = ("bandwidth_hz", "adc_rate_hz")
+PROFILE_KEYS = ("first_range_m", "range_step_m")
+HINT_ON_BINS = "range bins have first_range_m and range_step_m instead of adc_rate_hz"
+FARTHEST_PROFILE_M = 1000.0
 # {key: a value of it that a message shows}
 EXAMPLES = {
     "carrier_hz": "77e9",
@@ -412,13 +423,16 @@ def _as_word(value: object) -> str:
 def _with_missing_keys(error: MissingKeysError, files: CaptureFiles) -> str:
     """Message of keys that opening needs, with what is missing besides, and a command."""
     s = files.settings
-    usual = ["carrier_hz", "prf_hz"] + ["bandwidth_hz", "adc_rate_hz"] * (
-        "samples" in error.examples
-    )
+    examples = error.examples
+    has_samples = "samples" in examples or "sample" in examples.get("axes", "")
+    of_samples = PROFILE_KEYS if s.are_profiles else BEAT_KEYS
+    usual = ["carrier_hz", "prf_hz"] + [*of_samples] * has_samples
     missing = {k: EXAMPLES[k] for k in usual if getattr(s, k) is None}
     also = f"; so may be {', '.join(missing)}" if missing else ""
-    keys = {**missing, **error.examples}
-    return f"{error}{also}; with your values: {_command_with(files.paths, keys, s, files.header)}"
+    keys = {**missing, **examples}
+    bins = f"; {HINT_ON_BINS}" if has_samples and not s.are_profiles and missing else ""
+    command = _command_with(files.paths, keys, s, files.header)
+    return f"{error}{also}; with your values: {command}{bins}"
 
 
 def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
@@ -429,20 +443,24 @@ def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
     """
     keys = ["carrier_hz"] + ["prf_hz"] * (source.times is None)
     if source.samples is not None:
-        beat, profiles = ["bandwidth_hz", "adc_rate_hz"], ["first_range_m", "range_step_m"]
-        keys += profiles if s.are_profiles else beat
+        keys += PROFILE_KEYS if s.are_profiles else BEAT_KEYS
     if s.frame_pulses is not None:
         keys += ["frame_s"]
     missing = [key for key in keys if getattr(s, key) is None]
     if not missing:
         return
     are = "are" if len(missing) > 1 else "is"
-    command = _command_with(source.files, {key: EXAMPLES[key] for key in missing}, s, header)
+    examples = {key: EXAMPLES[key] for key in missing}
+    if source.axes and s.axes is None:
+        examples["axes"] = _as_word(source.axes)
+    command = _command_with(source.files, examples, s, header)
     several = "s" * (source.receivers > 1)
     shape = f"{source.receivers} receiver{several}, {source.samples or 'no'} samples a pulse, "
     also = ""
     if source.samples is not None and not s.are_profiles:
-        also = "; range bins have first_range_m and range_step_m instead of adc_rate_hz"
+        also = f"; {HINT_ON_BINS}"
+    if "axes" in examples:
+        also += f"; axes={examples['axes']} is a guess, which may be the other way round"
     raise CaptureError(
         f"{header}: {', '.join(missing)} {are} missing; of {shape}{source.pulses} pulses, with "
         f"your numbers: {command}, or --radar FILE with these keys{also}"

@@ -23,6 +23,7 @@ POLAR = (
     ("abs", "phase"),
 )
 FILLERS = {"part", "channel", "value", "values", "data", "signal", "component", "adc", "raw"}
+NUMBERED = ("ch", "chan", "rx", "ant", "antenna", "receiver")  # words before a receiver's number
 ANGLES = {"deg": "deg", "degree": "deg", "degrees": "deg", "°": "deg", "rad": "rad"}
 _UNIT = re.compile(r"\s*[\[(]([^\])]*)[\])]\s*$")
 _TIMES = re.compile(
@@ -73,8 +74,12 @@ def is_quadrature_first(names: Sequence[str]) -> bool:
 
 
 def _stems(name: str, ending: str) -> list[tuple[str, str]]:
-    """What stands before an ending that is a word of its own in a name, and a number after it."""
-    match = re.fullmatch(rf"(|.*[_./ ]){re.escape(ending)}(_?\d*)", name)
+    """What stands before an ending that is a word of its own in a name, and what numbers it.
+
+    A number may have a word before it, as in `I_ch1` and `I_rx1`.
+    """
+    number = rf"_?\d*|_?(?:{'|'.join(NUMBERED)})_?\d+"
+    match = re.fullmatch(rf"(|.*[_./ ]){re.escape(ending)}({number})", name)
     return [(match[1], match[2])] if match else []
 
 

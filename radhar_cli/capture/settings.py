@@ -40,6 +40,7 @@ def axis_named(word: object) -> object:
 AxisName: TypeAlias = Literal["receiver", "transmitter", "sample", "frame", "pulse", "iq"]
 AxisWord: TypeAlias = Annotated[AxisName, BeforeValidator(axis_named)]
 NUMBER_TYPE = r"^[<>]?(u?int(8|16|32|64)|float(16|32|64)|complex(64|128))$"
+MAX_RANGE_STEP_M = 3.0  # of range profiles; a coarser one is of cm
 NO_TIMES = "none"  # for `times`: those of the file are not used
 USUAL_AXES: dict[int, tuple[AxisName, ...]] = {
     1: ("pulse",),
@@ -53,11 +54,13 @@ class CaptureSettings(Section):
     """The header of a capture; None is unknown, and requested where it is needed."""
 
     # at the first sample of a chirp; of slow time, the frequency of its Doppler
-    carrier_hz: Above | None = None
-    bandwidth_hz: Above | None = None  # swept while the samples are taken
+    carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True)] | None = None
+    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True)] | None = (
+        None  # swept while the samples are taken
+    )
     adc_rate_hz: Above | None = None  # samples per second within a chirp
     # pulses per second of one transmitter: 1/(transmitters times chirp interval)
-    prf_hz: Above | None = None
+    prf_hz: Annotated[float, Field(ge=1e-3, le=1e7, strict=True)] | None = None
     samples: Annotated[int, Field(ge=2, le=2**24, strict=True)] | None = None  # of a chirp
     receivers: Annotated[int, Field(ge=1, le=64, strict=True)] | None = None
     transmitters: Annotated[int, Field(ge=1, le=512, strict=True)] = 1  # they take turns
@@ -85,8 +88,25 @@ class CaptureSettings(Section):
     # what samples are, where they do not look like it; slow_time follows from axes without sample
     holds: Literal["beat", "profiles"] | None = None
     # of range profiles: range of the first sample and step to the next, m
-    first_range_m: Annotated[float, Field(ge=0, le=1e7)] | None = None
-    range_step_m: Annotated[float, Field(gt=0, le=1e7)] | None = None
+    first_range_m: (
+        Annotated[
+            float,
+            Field(ge=0),
+            require(lambda value: value <= 1000, "should be at most 1000, a number in m"),
+        ]
+        | None
+    ) = None
+    range_step_m: (
+        Annotated[
+            float,
+            Field(gt=0),
+            require(
+                lambda value: value <= MAX_RANGE_STEP_M,
+                f"should be at most {MAX_RANGE_STEP_M:g}, a number in m: 5 cm is 0.05",
+            ),
+        ]
+        | None
+    ) = None
     # of a file of numbers without a mark: their type, as NumPy names it, and bytes before them
     dtype: Annotated[str | None, Field(pattern=NUMBER_TYPE)] = None
     skipped_bytes: Annotated[int, Field(ge=0, le=2**40, strict=True)] = 0

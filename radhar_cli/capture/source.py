@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.capture.settings import CaptureSettings
+from radhar_cli.capture.settings import AxisName, CaptureSettings
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 
@@ -35,6 +35,7 @@ class Source:
     is_part: bool = False  # whether its files hold pulses of other subframes, too
     # fields of `CaptureSettings` that the capture itself contains
     settings: dict[str, Any] = field(default_factory=dict)
+    axes: tuple[AxisName, ...] = ()  # that were guessed of an array, in its program's order
     notes: tuple[str, ...] = ()  # findings on opening it, in words
     # sign of the beat frequencies where the samples do not show it
     usual_beat: Literal["negative", "positive"] = "negative"

@@ -199,7 +199,7 @@ def test_beat_signals_are_not_taken_for_range_bins(tmp_path):
             np.save(tmp_path / "beat.npy", values)
             info, _ = taken(
                 tmp_path, ["beat.npy"], "carrier_hz=24e9", "bandwidth_hz=2.5e8",
-                "adc_rate_hz=1e6", "prf_hz=1000",
+                "adc_rate_hz=1e6", "prf_hz=1000", "axes=[sample,pulse]",
             )  # fmt: skip
             assert info.content.dataset == "beat"
 
@@ -297,7 +297,7 @@ def test_scripts_of_mmwave_studio_are_read_as_its_json_is(tmp_path):
 
 
 def test_missing_keys_are_all_named_at_once_with_a_command(tmp_path):
-    np.save(tmp_path / "x.npy", np.ones((64, 40)))
+    np.save(tmp_path / "x.npy", np.ones((40, 64)))
     done = radhar("import", tmp_path / "x.npy", "-o", tmp_path / "y.h5")
     assert done.returncode == 2
     keys = ("carrier_hz", "prf_hz", "bandwidth_hz", "adc_rate_hz")
@@ -307,7 +307,7 @@ def test_missing_keys_are_all_named_at_once_with_a_command(tmp_path):
 
 
 def test_a_missing_out_is_named_with_the_missing_keys_in_a_command_to_copy(tmp_path):
-    np.save(tmp_path / "my x.npy", np.ones((64, 40)))
+    np.save(tmp_path / "my x.npy", np.ones((40, 64)))
     done = radhar("import", tmp_path / "my x.npy", "--set", "carrier_hz=24e9")
     assert done.returncode == 2
     assert "-o, the recording to write, is missing; " in done.stderr

@@ -170,10 +170,18 @@ def test_slow_time_is_the_same_in_every_form(tmp_path, name):
     assert likeness.real > 0.9999
 
 
+RECEIVER_COLUMNS = (
+    "time,I1,Q1,I2,Q2",
+    "time,rx1_i,rx1_q,rx2_i,rx2_q",
+    "time,I_ch1,Q_ch1,I_ch2,Q_ch2",
+    "time,I rx1,Q rx1,I rx2,Q rx2",
+)
+
+
 def test_receivers_are_pairs_of_channels_and_of_columns(tmp_path):
     both = np.column_stack([IN_PHASE, Q, -Q, IN_PHASE])  # the second turned by 90 degrees
     wavfile.write(tmp_path / "four.wav", 1000, both)
-    for head in ("time,I1,Q1,I2,Q2", "time,rx1_i,rx1_q,rx2_i,rx2_q"):
+    for head in RECEIVER_COLUMNS:
         rows = [f"{n / RATE},{','.join(map(str, row))}" for n, row in enumerate(both)]
         (tmp_path / "four.csv").write_bytes(csv([head], rows))
         for name in ("four.wav", "four.csv"):

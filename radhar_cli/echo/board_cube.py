@@ -148,16 +148,19 @@ def fast_cube(
     for at NODES instants of a frame, some milliseconds, and are polynomials between them; some
     chirps are compared with the exact sum. Unless the error is SPARE_DB below the tolerance, or
     the default where that is tighter, frames are made again in double precision, from MORE_NODES
-    instants and then from those of all loops.
+    instants and then from those of all loops. The samples that are returned have the precision
+    that the tolerance asks for, however they were made, so that those of all scenes agree.
 
     Raises:
         AccuracyError: The tolerance is missed all the same.
     """
-    attempts = _attempts(channels, board, target_error_db(tolerance_db))
+    target_db = target_error_db(tolerance_db)
+    attempts = _attempts(channels, board, target_db)
     cube, power, error = min(attempts, key=lambda attempt: attempt[2])
     if error > tolerance_db - SPARE_DB:
         raise AccuracyError(error + SPARE_DB)
-    return cube, power, error
+    precision = np.complex128 if target_db < SINGLE_DB else np.complex64
+    return cube.astype(precision, copy=False), power, error
 
 
 def _attempts(

@@ -252,14 +252,7 @@ class Script:
 
     def _loop(self, statement: Loop, scope: Variables) -> None:
         """Follow a loop whose condition is known; the body of another once, apart."""
-        if statement.is_repeat:
-            try:
-                self._block(statement.body, Variables(scope))
-            except _Leave as leave:
-                if leave.kind != "break":
-                    raise
-                return
-        while True:
+        while not statement.is_repeat or self._goes_on(statement.body, Variables(scope)):
             self._count_step()
             value = self._value(statement.condition, scope)
             if isinstance(value, Unknown):
@@ -269,12 +262,18 @@ class Script:
             holds = value is not None and value is not False
             if holds == statement.is_repeat:
                 return
-            try:
-                self._block(statement.body, Variables(scope))
-            except _Leave as leave:
-                if leave.kind != "break":
-                    raise
+            if not statement.is_repeat and not self._goes_on(statement.body, Variables(scope)):
                 return
+
+    def _goes_on(self, body: Block, scope: Variables) -> bool:
+        """Follow the body of a loop once; whether it ended without a break."""
+        try:
+            self._block(body, scope)
+        except _Leave as leave:
+            if leave.kind != "break":
+                raise
+            return False
+        return True
 
     def _count(self, statement: CountingLoop, scope: Variables) -> None:
         """Follow a loop over numbers; the body once, apart, where its ends are unknown."""
@@ -306,12 +305,9 @@ class Script:
 
     def _each(self, body: Block, scope: Variables, names: Iterable[dict[str, Value]]) -> None:
         """Follow a body once for each set of its names, up to a break."""
-        try:
-            for values in names:
-                self._block(body, scope.enter(values))
-        except _Leave as leave:
-            if leave.kind != "break":
-                raise
+        for values in names:
+            if not self._goes_on(body, scope.enter(values)):
+                return
 
     # Expressions.
 

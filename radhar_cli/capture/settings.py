@@ -11,8 +11,9 @@ from radhar_cli.config.section import Section
 Count: TypeAlias = Annotated[int, Field(ge=1, le=2**24, strict=True)]
 Above: TypeAlias = Annotated[float, Field(gt=0, le=1e15, strict=True)]
 Text: TypeAlias = Annotated[str, Field(max_length=1000)]
-# What else the axes of captures are called, in lower case, with _ for spaces and hyphens.
+# {what an axis of a capture is called, one of it, in lower case, with _ for spaces: its name}
 AXIS_WORDS = {
+    **{name: name for name in ("receiver", "transmitter", "sample", "frame", "pulse")},
     **dict.fromkeys(("range", "range_bin", "bin", "adc", "adc_sample", "fast_time"), "sample"),
     **dict.fromkeys(("chirp", "sweep", "slow_time", "loop"), "pulse"),
     **dict.fromkeys(("rx", "channel", "antenna"), "receiver"),
@@ -20,25 +21,16 @@ AXIS_WORDS = {
 }
 
 
-def axis_named(word: object) -> object:
-    """Name of the axis that a word of other software means; any other value as it is."""
+def axis_of_word(word: object) -> object:
+    """Name of the axis that a word of other software means, such as chirps; others as they are."""
     if not isinstance(word, str):
         return word
-    plain = word.strip().lower().replace(" ", "_").replace("-", "_")
-    singular = plain.removesuffix("s")
-    return (
-        AXIS_WORDS.get(plain)
-        or AXIS_WORDS.get(singular)
-        or (
-            singular
-            if singular in ("receiver", "transmitter", "sample", "frame", "pulse")
-            else word
-        )
-    )
+    plain = word.strip().lower().replace(" ", "_").replace("-", "_").removesuffix("s")
+    return AXIS_WORDS.get(plain, word)
 
 
 AxisName: TypeAlias = Literal["receiver", "transmitter", "sample", "frame", "pulse", "iq"]
-AxisWord: TypeAlias = Annotated[AxisName, BeforeValidator(axis_named)]
+AxisWord: TypeAlias = Annotated[AxisName, BeforeValidator(axis_of_word)]
 NUMBER_TYPE = r"^[<>]?(u?int(8|16|32|64)|float(16|32|64)|complex(64|128))$"
 MAX_RANGE_STEP_M = 3.0  # of range profiles; a coarser one is of cm
 NO_TIMES = "none"  # for `times`: those of the file are not used
@@ -55,9 +47,8 @@ class CaptureSettings(Section):
 
     # at the first sample of a chirp; of slow time, the frequency of its Doppler
     carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True)] | None = None
-    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True)] | None = (
-        None  # swept while the samples are taken
-    )
+    # swept while the samples are taken
+    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True)] | None = None
     adc_rate_hz: Above | None = None  # samples per second within a chirp
     # pulses per second of one transmitter: 1/(transmitters times chirp interval)
     prf_hz: Annotated[float, Field(ge=1e-3, le=1e7, strict=True)] | None = None

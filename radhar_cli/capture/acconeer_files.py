@@ -85,7 +85,7 @@ def read_sparse_iq(file: UntrustedFile, frame: str) -> SparseIq | None:
 
 
 def _find_sensor(config: object, depth: int = 0) -> dict[str, Any] | None:
-    """Find the section of the only sensor with one subsweep in a session's config."""
+    """Find the section of the first sensor with one subsweep in a config of a session."""
     if isinstance(config, dict) and isinstance(config.get("subsweeps"), list):
         is_plain = len(config["subsweeps"]) == 1 and isinstance(config["subsweeps"][0], dict)
         return config if is_plain else None

@@ -65,16 +65,16 @@ def open_mat5(
         names = choose_arrays(path, shapes, settings, is_complex, advice)
         top = [n for n in names[:3] if n is not None and n not in parts and n not in loaded]
         loaded |= loadmat(str(path), appendmat=False, variable_names=top) if top else {}
-        return names, {n: _stored(path, n, parts, loaded) for n in names[:3] if n is not None}
+        return names, {n: _array_of(path, n, parts, loaded) for n in names[:3] if n is not None}
 
 
-def _stored(
+def _array_of(
     path: Path,
     name: str,
     parts: Mapping[str, Sequence[NDArray[Any]]],
     loaded: Mapping[str, NDArray[Any]],
 ) -> Samples:
-    """Array of a name, or those of the cells or structs of a name, a frame each."""
+    """Array of a name; of cells or structs, whose arrays are frames, an array of all of them."""
     arrays = parts[name] if name in parts else [loaded[name]]
     stored = [StoredArray(f"{path}: {name}", partial(np.transpose, values)) for values in arrays]
     return stored[0] if len(stored) == 1 else FrameFiles(stored)

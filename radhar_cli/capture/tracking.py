@@ -156,7 +156,7 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
     measured = np.full((ridge.size, 2), np.nan)
     for f in np.flatnonzero(ridge >= 0).tolist():
         measured[f] = peaks_of_frames[f].range[ridge[f]], peaks_of_frames[f].velocity[ridge[f]]
-    position, velocity = _smoothed(measured, times, errors)
+    position, velocity = _smooth_track(measured, times, errors)
     profile = np.array(profiles)
     near = np.where(np.abs(ranges - position[:, None]) <= NEAR_M, profile, 0).sum(axis=1)
     total = np.maximum(profile.sum(axis=1), least)
@@ -329,7 +329,7 @@ def _cost(before: Peaks, now: Peaks, dt: float, errors: PeakErrors) -> Float:
     return np.where(too_far, np.inf, cost / 2)
 
 
-def _smoothed(measured: Float, time: Float, errors: PeakErrors) -> tuple[Float, Float]:
+def _smooth_track(measured: Float, time: Float, errors: PeakErrors) -> tuple[Float, Float]:
     """Smooth ranges and velocities by Kalman filter and Rauch-Tung-Striebel smoother.
 
     Args:

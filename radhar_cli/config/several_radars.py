@@ -131,7 +131,7 @@ def problems_of_radars(document: Mapping[str, Any]) -> Iterator[Problem]:
         if entry is not None and not isinstance(entry, dict):
             yield Problem(key, entry, "should be a mapping of keys of radar, or {}")
         else:
-            yield from _misplaced(key, _mapping(entry))
+            yield from _misplaced_problems(key, _mapping(entry))
             yield from _aspect_problems(key, _mapping(entry), _mapping(shared))
     if OTHERS_KEY in document:
         right = "should be left out with radars, of which the others are"
@@ -141,7 +141,7 @@ def problems_of_radars(document: Mapping[str, Any]) -> Iterator[Problem]:
         yield Problem(NAME_KEY, chosen, f"should be one of radars: {', '.join(map(str, radars))}")
 
 
-def _misplaced(key: str, entry: Mapping[str, Any]) -> Iterator[Problem]:
+def _misplaced_problems(key: str, entry: Mapping[str, Any]) -> Iterator[Problem]:
     """Find what an entry of `radars` has that is one for all radars, or that holds a radar."""
     for name, value in entry.items():
         if name in _OF_ALL:

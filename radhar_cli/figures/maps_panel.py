@@ -170,21 +170,21 @@ def title(simulation: Simulation) -> str:
 def describe_scene(scene: Scene, waveform: Waveform) -> list[str]:
     """Describe a scene: activity, radar, surroundings, noise and seed, a few words each."""
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
-    noise = "no noise" if figure is None else f"noise figure {_rounded(nominal(figure), 1)} dB"
+    noise = "no noise" if figure is None else f"noise figure {_write_number(nominal(figure), 1)} dB"
     kind = scene.radar.kind
-    bandwidth = f" + {_rounded(waveform.bandwidth / 1e9, 4)} GHz"
+    bandwidth = f" + {_write_number(waveform.bandwidth / 1e9, 4)} GHz"
     band = bandwidth if scene.radar.has_range else " CW"
     band += " impulses" if kind == "impulse" else ""
     rooms = scene.config.room.faces is not None
     return [
         f"{scene.activity.label} {scene.activity.slug.replace('_', ' ')}",
-        f"{_rounded(waveform.fc / 1e9, 3)} GHz{band}, PRF {_rounded(waveform.prf, 1)} Hz",
+        f"{_write_number(waveform.fc / 1e9, 3)} GHz{band}, PRF {_write_number(waveform.prf, 1)} Hz",
         "through a wall" if scene.config.wall else "in a room" if rooms else "free space",
-        noise if snr is None else f"SNR {_rounded(nominal(snr), 1)} dB",
+        noise if snr is None else f"SNR {_write_number(nominal(snr), 1)} dB",
         f"seed {scene.config.seed}",
     ]
 
 
-def _rounded(value: float, decimals: int) -> str:
-    """Text of a number, which a law may have drawn, with so many decimals at most."""
+def _write_number(value: float, decimals: int) -> str:
+    """Write a number, which a law may have drawn, with so many decimals at most."""
     return f"{round(value, decimals) + 0.0:.10g}"

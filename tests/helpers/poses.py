@@ -2,11 +2,14 @@
 
 import io
 import struct
+from pathlib import Path
 
 import joint_set_errors
 import numpy as np
 
+from radhar_cli.motion.files.clip import Clip, make_clip
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
+from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.numerics.arrays import Float
 
 RATE = 30.0
@@ -116,3 +119,20 @@ def npy_bytes(array: Float) -> bytes:
     buffer = io.BytesIO()
     np.save(buffer, array)
     return buffer.getvalue()
+
+
+def clip_of(path: Path, data: bytes | None = None, **options: object) -> Clip:
+    """Clip of a motion file, or of a folder of them; data, where given, is written to it first."""
+    if data is not None:
+        path.write_bytes(data)
+    return make_clip(read_motion(path).recording(path.name), **options)  # type: ignore[arg-type]
+
+
+def joint_errors(clip: Clip) -> Float:
+    """Rms errors [joint] of the thirteen joints of a clip of the walker, m."""
+    return joint_set_errors.joint_errors(WALKER[:, :13], clip.positions[:, :13])
+
+
+def largest_error(clip: Clip) -> float:
+    """Largest rms error of a joint of a clip of the walker, m."""
+    return float(joint_errors(clip).max())

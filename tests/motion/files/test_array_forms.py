@@ -6,12 +6,22 @@ from pathlib import Path
 import joint_set_errors
 import numpy as np
 import pytest
-from helpers.poses import COCO, RATE, WALKER, T, camera, csv_text, names, npy_bytes, npz_bytes
+from helpers.poses import (
+    COCO,
+    RATE,
+    WALKER,
+    T,
+    camera,
+    clip_of,
+    csv_text,
+    largest_error,
+    names,
+    npy_bytes,
+    npz_bytes,
+)
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.numerics.arrays import Float
 
 CERTAIN = np.concatenate([COCO, np.full((*COCO.shape[:2], 1), 0.9)], axis=2)
@@ -66,15 +76,6 @@ ARCHIVES: dict[str, dict[str, object]] = {
         "times": np.insert(T, 50, T[50]),
     },
 }
-
-
-def clip_of(path: Path, data: bytes, rate: float | None = None) -> Clip:
-    path.write_bytes(data)
-    return make_clip(read_motion(path).recording(path.name), rate=rate)
-
-
-def largest_error(clip: Clip) -> float:
-    return float(joint_set_errors.joint_errors(WALKER[:, :13], clip.positions[:, :13]).max())
 
 
 @pytest.mark.parametrize("shape", SHAPES)

@@ -14,6 +14,7 @@ from helpers.poses import (
     WALKER,
     T,
     camera,
+    clip_of,
     csv_text,
     names,
     npy_bytes,
@@ -22,10 +23,9 @@ from helpers.poses import (
 )
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip
+from radhar_cli.motion.files.clip import make_clip
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.keypoints import make_keypoints
-from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.numerics.arrays import Float
 
 SETS = ("blazepose33", "coco17", "h36m17")
@@ -65,11 +65,6 @@ FILES: dict[str, tuple[str, Callable[[Float, list[str]], bytes]]] = {
     "csv": ("x.csv", lambda p, joints: csv_text(p, joints).encode()),
     "json": ("x.json", json_bytes),
 }
-
-
-def clip_of(path: Path, data: bytes, **how: object) -> Clip:
-    path.write_bytes(data)
-    return make_clip(read_motion(path).recording(path.name), **how)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("file", FILES)

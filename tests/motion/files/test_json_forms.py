@@ -8,10 +8,20 @@ import joint_set_errors
 import numpy as np
 import pytest
 from helpers.json_forms import JSON_FORMS, azure
-from helpers.poses import BLAZE, COCO, RATE, WALKER, T, camera, names
+from helpers.poses import (
+    BLAZE,
+    COCO,
+    RATE,
+    WALKER,
+    T,
+    camera,
+    clip_of,
+    joint_errors,
+    largest_error,
+    names,
+)
 
 from radhar_cli.errors import FolderError, MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.reading import read_motion
 
@@ -20,24 +30,13 @@ PIXELS = (500 + 300 * camera(COCO)[..., :2]).round(1)
 OPENPOSE = joint_set_errors.poses_of(JOINT_SETS["openpose25"], WALKER)
 
 
-def clip_of(path: Path, data: bytes | None = None, **how: object) -> Clip:
-    if data is not None:
-        path.write_bytes(data)
-    return make_clip(read_motion(path).recording(path.name), **how)  # type: ignore[arg-type]
-
-
-def largest_error(clip: Clip) -> float:
-    """Largest rms error of a joint, m."""
-    return float(joint_set_errors.joint_errors(WALKER[:, :13], clip.positions[:, :13]).max())
-
-
 @pytest.mark.parametrize("form", JSON_FORMS)
 @pytest.mark.parametrize("key", SETS)
 def test_the_walker_comes_back_from_every_json(form: str, key: str, tmp_path: Path) -> None:
     suffix, write = JSON_FORMS[form]
     p = joint_set_errors.poses_of(JOINT_SETS[key], WALKER)
     clip = clip_of(tmp_path / f"x{suffix}", write(p, names(key)))
-    errors = joint_set_errors.joint_errors(WALKER[:, :13], clip.positions[:, :13])
+    errors = joint_errors(clip)
     assert errors.mean() < 0.03
     assert errors.max() < 0.07
     assert clip.rate == pytest.approx(RATE, rel=2e-3)

@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-import joint_set_errors
 import numpy as np
 import pytest
-from helpers.poses import COCO, RATE, WALKER, names
+from helpers.poses import COCO, RATE, largest_error, names
 from helpers.recorded import frames, write_bvh, write_npz
 
 from radhar_cli.activities.activity import MOVEMENTS
@@ -21,11 +20,6 @@ WRIST = names("coco17").index("left_wrist")
 
 def clip_of(p: Float) -> Clip:
     return make_clip(make_keypoints("x.npz", names("coco17"), p, RATE))
-
-
-def largest_error(clip: Clip) -> float:
-    """Largest rms error of a joint, m."""
-    return float(joint_set_errors.joint_errors(WALKER[:, :13], clip.positions[:, :13]).max())
 
 
 @pytest.mark.parametrize("far", [0.3, 1.0, 5.0])

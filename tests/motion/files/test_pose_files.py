@@ -16,8 +16,10 @@ from helpers.poses import (
     T,
     c3d_bytes,
     camera,
+    clip_of,
     csv_text,
     landmarks,
+    largest_error,
     names,
     npy_bytes,
     npz_bytes,
@@ -26,20 +28,8 @@ from helpers.poses import (
 )
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.numerics.arrays import Float
-
-
-def clip_of(path: Path, **how: object) -> Clip:
-    return make_clip(read_motion(path).recording(path.name), **how)  # type: ignore[arg-type]
-
-
-def largest_error(clip: Clip) -> float:
-    """Largest rms error of a joint, m."""
-    return float(joint_set_errors.joint_errors(WALKER[:, :13], clip.positions[:, :13]).max())
-
 
 H36M = joint_set_errors.poses_of(JOINT_SETS["h36m17"], WALKER)
 OPENPOSE = joint_set_errors.poses_of(JOINT_SETS["openpose25"], WALKER)

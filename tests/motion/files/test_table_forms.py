@@ -4,20 +4,13 @@ from pathlib import Path
 
 import joint_set_errors
 import pytest
-from helpers.poses import COCO, RATE, WALKER, csv_text, names
+from helpers.poses import COCO, RATE, WALKER, clip_of, csv_text, joint_errors, names
 from helpers.tables import TABLES, two_lines
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.reading import read_motion
 
 SETS = ("coco17", "openpose25", "h36m17", "kinect2_25", "smpl24", "blazepose33", "azure32")
-
-
-def clip_of(path: Path, data: bytes) -> Clip:
-    path.write_bytes(data)
-    return make_clip(read_motion(path).recording(path.name))
 
 
 @pytest.mark.parametrize("form", TABLES)
@@ -26,7 +19,7 @@ def test_the_walker_comes_back_from_every_table(form: str, key: str, tmp_path: P
     suffix, write = TABLES[form]
     p = joint_set_errors.poses_of(JOINT_SETS[key], WALKER)
     clip = clip_of(tmp_path / f"x{suffix}", write(p, names(key)))
-    errors = joint_set_errors.joint_errors(WALKER[:, :13], clip.positions[:, :13])
+    errors = joint_errors(clip)
     assert errors.mean() < 0.03
     assert errors.max() < 0.07
     assert clip.rate == pytest.approx(RATE, rel=2e-3)

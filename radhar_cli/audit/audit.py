@@ -154,7 +154,7 @@ def audit(
     scan = scan_pictures(data, rows, progress)
     if scan is not None:
         features = list(_read_pictures(data, rows, scan.far_bands(rows), progress))
-        evidence += picture_evidence(features, data.is_simulated, data.is_decibel)
+        evidence += picture_evidence(features, data.is_simulated, data.is_relative)
     recording = np.arange(rows.size)
     if data.recording is not None:
         recording = numbered([data.recording[row] for row in rows])

@@ -50,7 +50,7 @@ class AuditedSet:
         on_cue: sentences on onsets that do not vary.
         has_clouds: whether the dataset.h5 holds point clouds.
         is_simulated: whether a config can be changed.
-        is_decibel: whether levels are known to be relative to the largest power of each image.
+        is_relative: whether levels are known to be relative to the largest power of each image.
     """
 
     where: Path
@@ -66,7 +66,7 @@ class AuditedSet:
     on_cue: tuple[str, ...] = ()
     has_clouds: bool = False
     is_simulated: bool = False
-    is_decibel: bool = False
+    is_relative: bool = False
 
     def __len__(self) -> int:
         return len(self.label)
@@ -167,7 +167,8 @@ def _open_h5(path: Path, map_name: str | None) -> AuditedSet:
             on_cue=tuple(_sentences_on_cue(data, samples.label)),
             has_clouds=has_clouds(data),
             is_simulated=isinstance(config, Config),
-            is_decibel=isinstance(config, Config) and config.image.kind == "decibel",
+            is_relative=isinstance(config, Config)
+            and (config.image.kind, config.image.reference) == ("decibel", "peak"),
         )
 
 

@@ -160,21 +160,21 @@ def _correlation(values: Float, is_noise: Bool, axis: int, lag: int) -> float:
 
 
 def picture_evidence(
-    features: list[PictureFeatures], is_simulated: bool, is_decibel: bool
+    features: list[PictureFeatures], is_simulated: bool, is_relative: bool
 ) -> list[Evidence]:
     """Evidence of margins and noise of images.
 
     Args:
         features: features of each image [N].
         is_simulated: whether there is a config, in which numbers can be drawn otherwise.
-        is_decibel: whether levels are known to be relative to the largest power of each image.
+        is_relative: whether levels are known to be relative to the largest power of each image.
     """
     first, last, far, level, size, noise, texture = (
         np.stack([getattr(image, name) for image in features])
         for name in ("first", "last", "far", "level", "size", "noise_level", "noise_texture")
     )
     cures = _SIMULATED_CURES if is_simulated else _MEASURED_CURES
-    strength = f"{_RELATIVE if is_decibel else ''}{cures['strength']}"
+    strength = f"{_RELATIVE if is_relative else ''}{cures['strength']}"
     margins = [
         _margin("first columns", first, cures["onset"]),
         _margin("last columns", last, cures["onset"]),
@@ -202,7 +202,7 @@ def _margin(name: str, values: Float, cure: str) -> Evidence:
     return Evidence(EvidencePart.MARGINS, name, values, cure=cure, may_be_movement=True)
 
 
-_RELATIVE = "levels are relative to each image's peak; "
+_RELATIVE = "image.reference: noise, as levels are relative to each image's peak; "
 _SIMULATED_CURES = {
     "onset": "timing.onset: {uniform: [0, 1]}, or windows cut anywhere",
     "strength": "snr_db: {uniform: [0, 30]}, one law for all classes",

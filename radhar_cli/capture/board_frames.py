@@ -22,7 +22,7 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.products.board import products_of_frames
-from radhar_cli.products.images import scale_of
+from radhar_cli.products.images import level_scale_of, scale_of
 from radhar_cli.products.plan import plan
 from radhar_cli.products.run import run
 from radhar_cli.products.table import products
@@ -72,7 +72,8 @@ def frames_of_recording(
         pulse = part.first + start
         beat = recording.beat(pulse, pulse + board.loops).transpose(2, 0, 1)
         cube[frame] = beat.real if board.is_real else beat
-    inputs = {"cube": cube, "board": board, "image_scale": scale_of(config)}
+    scales = {"image_scale": scale_of(config), "level_scale": level_scale_of(config)}
+    inputs = {"cube": cube, "board": board, **scales}
     table = products(config) if isinstance(config, Config) else products_of_frames(config)
     outputs = run(plan(table, names, inputs), inputs).products
     middles = part.segments.times(np.array(starts)) + board.loops * board.loop / 2

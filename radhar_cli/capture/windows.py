@@ -47,7 +47,7 @@ from radhar_cli.files.untrusted import refuse_outside, text_of
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frame_sheets import cloud_sheet
 from radhar_cli.processing.power_map import MapImage, PowerMap
-from radhar_cli.products.images import draw_measured_map
+from radhar_cli.products.images import draw_measured_map, level_scale_of
 from radhar_cli.products.maps import image_name
 from radhar_cli.scene import nominal_scene
 
@@ -381,8 +381,8 @@ class WindowFactory:
                 images = {
                     name: outputs[image_name(name)] for name in of_frames if name in FRAME_MAPS
                 }
-                deepest = config.image.dynamic_range_db
-                products = {name: storable_array(outputs[name], name, deepest) for name in images}
+                scale = level_scale_of(config)
+                products = {name: storable_array(outputs[name], name, scale) for name in images}
         for name, power_map in maps.items():
             images[name] = draw_measured_map(config, _from_start(power_map, start))
         ordered = {name: images[name] for name in config.maps}

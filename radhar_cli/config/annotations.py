@@ -296,7 +296,7 @@ def conditions(kind: type[BaseModel], key: str) -> tuple[Condition, ...]:
 
 
 def at(config: BaseModel, key: str) -> Any:
-    """Value under a dotted key, such as `radar.tx_m.0`; None below what is null.
+    """Value under a dotted key, such as `radar.tx_m.0`; None below what is null, or a word.
 
     Raises:
         AttributeError, KeyError, IndexError: the config has no such key.
@@ -307,6 +307,8 @@ def at(config: BaseModel, key: str) -> Any:
             place = place[int(name)]
         elif isinstance(place, dict):
             place = place[name]
+        elif isinstance(place, str):  # a word in the place of a section
+            place = None
         elif place is not None:
             place = None if _is_of_alternative(place, name) else getattr(place, name)
     return place

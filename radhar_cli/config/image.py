@@ -1,8 +1,8 @@
 """What an image of a map shows."""
 
-from typing import Annotated, Generic, Literal
+from typing import Annotated, Generic, Literal, TypeAlias
 
-from pydantic import BeforeValidator, Field, field_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, field_validator
 
 from radhar_cli.config.acting import CADENCES, OVER_RANGE, RANGES, SPECTRA
 from radhar_cli.config.annotations import ActsIf
@@ -43,6 +43,33 @@ class CfarConfig(Section, Generic[N]):
     """What stands for cells beyond an edge: those of the opposite edge, or none."""
 
 
+class AbsoluteReference(Section):
+    """Power of the brightest level, the same for all images."""
+
+    dbm: Annotated[float, Field(ge=-300, le=100, strict=True)]
+    """Received power of level 255; the radar sends radar.transmit_power_dbm."""
+
+
+def _reference_kind(value: object) -> str:
+    """Tag of a reference: a word, or a power."""
+    return "<power>" if isinstance(value, dict | AbsoluteReference) else "<word>"
+
+
+def _require_reference(value: object) -> object:
+    """Refuse what is neither a word of a reference nor a mapping."""
+    if value not in ("noise", "peak") and _reference_kind(value) == "<word>":
+        raise value_error("should be noise, peak or {dbm: NUMBER}")
+    return value
+
+
+ImageReference: TypeAlias = Annotated[
+    Annotated[Literal["noise", "peak"], Tag("<word>")]
+    | Annotated[AbsoluteReference, Tag("<power>")],
+    Discriminator(_reference_kind),
+    BeforeValidator(_require_reference),
+]
+
+
 class ImageConfig(Section):
     """Size (height, width; one number means square), what pixels show, colour map, limits.
 
@@ -63,7 +90,11 @@ class ImageConfig(Section):
     clipped: Annotated[float, Field(ge=0, lt=1, strict=True), ActsIf("image.kind", "signed")] = 0.02
     """Share of the samples that are black or white."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
-    """Range of the grey levels below the largest power (`kind: decibel`)."""
+    """Range of the grey levels (`kind: decibel`)."""
+    reference: Annotated[ImageReference, ActsIf("image.kind", "decibel")] = "noise"
+    """What grey levels are relative to: noise, of which the image's noise floor is level 0 (or
+    dynamic_range_db below its peak, if that is more); peak, its largest power, level 255; or {dbm:
+    NUMBER}, the received power of level 255 in all images."""
     cfar: Annotated[CfarConfig, ActsIf("image.kind", "cfar")] = defaults_of(CfarConfig)
     colour_map: str = DEFAULT_COLOUR_MAP
     """Colour map of PNGs and figures, any Matplotlib name; dataset.h5 holds grey levels."""

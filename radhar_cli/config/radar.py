@@ -213,9 +213,13 @@ class _Emission(AnyRadar[N], Generic[N]):
     """Polarisation of the antennas' field, for room.faces and wall.echoes; horizontal is along
     y."""
     transmit_power_dbm: Annotated[
-        N, DECIBEL, ActsIf("snr_db", None), ActsIf("receiver.noise_figure_db", GIVEN)
+        N,
+        DECIBEL,
+        ActsIfAny(ActsIf("snr_db", None), ActsIf("image.reference.dbm", GIVEN)),
+        ActsIfAny(ActsIf("receiver.noise_figure_db", GIVEN), ActsIf("image.reference.dbm", GIVEN)),
     ] = default_draw(12.0)
-    """Transmitted power, which thermal noise (receiver.noise_figure_db) is compared with."""
+    """Transmitted power, which thermal noise (receiver.noise_figure_db) is compared with, and by
+    which image.reference has its dBm."""
 
 
 class _Sweep(_Band[N], Generic[N]):

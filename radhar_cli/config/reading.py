@@ -58,6 +58,7 @@ _UNION_TAGS = {
     *("<same>", "<per_activity>"),
     *("<movements>", "<recordings>"),
     *("<material>", "<dielectric>"),
+    *("<word>", "<power>"),
     *PART_TAGS,
     *(f"<{radar.kind}>" for radar in RADARS),
 }

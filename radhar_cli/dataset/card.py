@@ -19,6 +19,7 @@ from radhar_cli.dataset.card_contents import (
     describe_streams,
     table_of,
 )
+from radhar_cli.dataset.file_description import describe_levels
 from radhar_cli.dataset.files import refuse_links, write_whole
 from radhar_cli.dataset.image_tables import hub_configs
 from radhar_cli.dataset.layout import CARD, GALLERY, Rows, column_axis, row_axis
@@ -161,10 +162,7 @@ def _describe_axes(data: Dataset, name: str) -> str:
         sides += f"up: {rows}, {bottom} to {top} {row_unit}"
     image, colours = data.config.image, ""
     if image.kind == "decibel":
-        colours = (
-            f"; brightest: the largest power of the image, darkest: {image.dynamic_range_db:g}"
-        )
-        colours += " dB below it"
+        colours = f"; {describe_levels(image, 'brightest', 'darkest')}"
     return f"`{name}`, {sides}{colours}."
 
 
@@ -262,8 +260,7 @@ def _maps(data: Dataset) -> str:
         lines.append([f"`{name}`", *axes, reach])
     image = data.config.image
     level = (
-        f"255 is the largest power of the image, 0 is {image.dynamic_range_db:g} dB below it or "
-        "less, linear in dB between"
+        f"{describe_levels(image, '255', '0')}, linear in dB between"
         if image.kind == "decibel"
         else "255 where the cell exceeds its CFAR threshold, else 0"
     )

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.config.radar import ArrayRadar
+from radhar_cli.dataset.file_description import describe_levels
 from radhar_cli.dataset.layout import row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.figures.page import DPI, page_of_rows, write_figure
@@ -45,7 +46,7 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
         panel.label_outer()
     figure.supxlabel("time (s)", fontsize=8)
     figure.supylabel("{} ({})".format(*row_axis(name)), fontsize=8)
-    power = f"power, {image.dynamic_range_db:g} dB down from the largest of each map"
+    power = describe_levels(image, "brightest", "darkest")
     meaning = "cells that the CFAR sets" if image.kind == "cfar" else power
     figure.suptitle(f"{name}: {meaning}", fontsize=9)
     write_figure(figure, path, DPI)

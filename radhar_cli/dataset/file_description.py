@@ -7,8 +7,10 @@ import h5py
 import numpy as np
 
 from radhar_cli.assembly.room import kinds_of
+from radhar_cli.config.annotations import value_text
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.identity import config_hash, resolved
+from radhar_cli.config.image import AbsoluteReference, ImageConfig
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.dataset import layout, scene_fields
@@ -27,8 +29,8 @@ CFAR_TEXT = (
     "(image.cfar in the config)"
 )
 LEVELS_TEXT = (
-    "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
-    "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
+    "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / white), "
+    "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map; "
 )
 SHEET_TEXT = "frames side by side, row by row, evenly spread over the sample; edges are a frame's"
 SLOW_TIME_TEXT = (
@@ -90,7 +92,8 @@ def _describe_map(file: h5py.File, config: AnyConfig, name: str) -> None:
         "column_right": right,
         "kind": image.kind,
         **({"dynamic_range_db": image.dynamic_range_db} if is_decibel else {}),
-        "levels": LEVELS_TEXT if is_decibel else CFAR_TEXT,
+        **({"reference": value_text(image.reference)} if is_decibel else {}),
+        "levels": LEVELS_TEXT + describe_levels(image) if is_decibel else CFAR_TEXT,
         **({"sheet": SHEET_TEXT} if name in FRAME_MAPS else {}),
         **({"edges": "differ from sample to sample: see /extent"} if extent is None else {}),
     }
@@ -99,6 +102,25 @@ def _describe_map(file: h5py.File, config: AnyConfig, name: str) -> None:
     edges += [f"{row_quantity} bottom ({row_unit})", f"{row_quantity} top ({row_unit})"]
     file[f"extent/{name}"].attrs["columns"] = edges
     file[f"entropy/{name}"].attrs["unit"] = "bit"
+
+
+def describe_levels(image: ImageConfig, white: str = "level 255", black: str = "level 0") -> str:
+    """Say which powers the brightest and the darkest level of decibels are.
+
+    Args:
+        image: section `image` of the config.
+        white: what the brightest level is called.
+        black: what the darkest level is called.
+    """
+    span = f"{image.dynamic_range_db:g} dB"
+    if isinstance(image.reference, AbsoluteReference):
+        return f"{white} is {image.reference.dbm:g} dBm received or more, {black} {span} below"
+    if image.reference == "peak":
+        return f"{white} is the largest power of the image, {black} {span} below it or less"
+    return (
+        f"{black} is the noise floor of the image, {white} {span} above it; where the largest "
+        f"power is farther above the floor, {white} is the largest power"
+    )
 
 
 def _common_extent(extents: h5py.Dataset) -> tuple[float, float, float, float] | None:

@@ -23,9 +23,10 @@ from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError
 from radhar_cli.numerics.arrays import Complex, Float, Levels
 from radhar_cli.processing.frame_maps import FrameMaps
-from radhar_cli.processing.image import levels
 from radhar_cli.processing.power_map import MapImage
+from radhar_cli.processing.scale import DecibelScale
 from radhar_cli.products.fallback import EchoAccuracy, Fallback
+from radhar_cli.products.images import level_scale_of
 from radhar_cli.products.plan import Plan
 from radhar_cli.products.run import Results, run
 from radhar_cli.products.segments import column_times, label_frames
@@ -127,9 +128,9 @@ def store(recording: Results, scene: Scene, config: Config) -> StoredSample:
     fell_back, error_db = isinstance(accuracy, Fallback), nan
     if isinstance(accuracy, Accuracy) and isfinite(accuracy.error_db):
         error_db = accuracy.error_db
-    deepest = scene.config.image.dynamic_range_db
+    scale = level_scale_of(scene.config)
     products = {
-        name: storable_array(recording[product], name, deepest)
+        name: storable_array(recording[product], name, scale)
         for name, product in scene.config.stored.items()
     }
     return StoredSample(
@@ -202,14 +203,14 @@ def frame_labels_of(
     }
 
 
-def storable_array(value: Any, name: str, dynamic_range_db: float) -> NDArray[Any]:
+def storable_array(value: Any, name: str, scale: DecibelScale) -> NDArray[Any]:
     """Array of a product as it is stored: the power of a map, the samples of a signal, or an array.
 
-    Frame maps are stored as images are: grey levels, in decibels below the peak of the sample, of
+    Frame maps are stored as images are: grey levels, on the scale of all frames of the sample, of
     the ranges that images show.
     """
     if isinstance(value, FrameMaps):
-        return levels(value.shown.power, dynamic_range_db)
+        return scale.levels(value.shown.power)
     value = getattr(value, "power", getattr(value, "x", value))
     array = np.asarray(None if isinstance(value, (tuple, list, dict)) else value)
     if array.ndim == 0 or array.dtype.kind not in "iufc":

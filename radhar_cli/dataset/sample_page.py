@@ -113,7 +113,7 @@ def _maps(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Iterator
             grey, (left, right, bottom, top) = data.maps[name][row], extents[name]
             columns = Axis(*column_axis(name), _cells(left, right, grey.shape[1]))
             rows = Axis(*row_axis(name), _cells(bottom, top, grey.shape[0]))
-            scale = LevelScale.of(image, image.kind)
+            scale = LevelScale.of_data_set(image, image.kind)
             yield MapLevels(name, grey[None, ::-1], scale, columns, rows)
 
 
@@ -164,7 +164,7 @@ def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] =
 
 def _frames(data: Dataset, row: int, board: Board) -> Iterator[MapLevels]:
     """Yield the stored frame maps of a row."""
-    scale = LevelScale.of(data.config.image, "decibel")
+    scale = LevelScale.of_data_set(data.config.image, "decibel")
     for name, kind in FRAME_MAP_KINDS.items():
         if name in data.products:
             rows, columns = kind.rows.of(board), kind.columns.of(board)

@@ -45,9 +45,19 @@ class LevelScale:
 
     @classmethod
     def of(cls, image: ImageConfig, kind: str) -> "LevelScale":
-        """Scale of images of a kind: decibel, signed or cfar."""
+        """Scale of maps that a page draws, by their kind (decibel, signed, cfar) and their peak."""
         low, high, unit = SCALES.get(kind, (-image.dynamic_range_db, 0.0, "dB re peak"))
         return cls(low, high, unit, image.colour_map)
+
+    @classmethod
+    def of_data_set(cls, image: ImageConfig, kind: str) -> "LevelScale":
+        """Scale of the images of a data set, by their kind (decibel or cfar) and `reference`."""
+        if kind != "decibel" or image.reference == "peak":
+            return cls.of(image, kind)
+        if image.reference == "noise":
+            return cls(0.0, image.dynamic_range_db, "dB over darkest", image.colour_map)
+        white = image.reference.dbm
+        return cls(white - image.dynamic_range_db, white, "dBm", image.colour_map)
 
     def colours(self) -> list[tuple[float, str]]:
         """Colours of plotly: places from 0 to 1, and the colour there."""

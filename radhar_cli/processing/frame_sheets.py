@@ -14,6 +14,7 @@ from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.image import binary_exponent, levels, reduced
 from radhar_cli.processing.points import Cloud
 from radhar_cli.processing.power_map import MapImage
+from radhar_cli.processing.scale import DecibelScale
 
 MOST_TILES = 16
 BONE, LEAST, GAP = 70, 120, 1  # grey of bones, of the weakest point; pixels between tiles
@@ -32,19 +33,21 @@ def _tiles(frames: int, size: Size) -> tuple[Index, list[tuple[slice, slice]]]:
     return chosen, list(product(high, wide))[: chosen.size]
 
 
-def maps_sheet(maps: FrameMaps, size: Size, dynamic_range_db: float) -> MapImage:
-    """Sheet of frames side by side, in decibels below their common peak; row 0 is the farthest."""
+def maps_sheet(maps: FrameMaps, size: Size, scale: DecibelScale) -> MapImage:
+    """Sheet of frames side by side, on the scale of all of them; row 0 is the farthest."""
     maps = maps.shown
     chosen, places = _tiles(len(maps.power), size)
     cells = np.zeros(size, np.float32)
-    scaled = np.ldexp(maps.power[chosen].astype(float), -binary_exponent(maps.power))
+    exponent = binary_exponent(maps.power)
+    scaled = np.ldexp(maps.power[chosen].astype(float), -exponent)
     span = None if maps.limits is None else maps.rows.places_of(maps.limits)
     for power, (rows, columns) in zip(scaled, places, strict=True):
         shape = rows.stop - rows.start, columns.stop - columns.start
         if min(shape) > 0:
             small = reduced([power.T], power.shape[1], shape, entropy=False, rows=span)
             cells[rows, columns] = small.cells
-    return MapImage(levels(cells, dynamic_range_db), entropy_bits(maps.power), maps.extent)
+    white = float(np.ldexp(scale.white(maps.power), -exponent))
+    return MapImage(levels(cells, scale.range_db, white), entropy_bits(maps.power), maps.extent)
 
 
 def cloud_sheet(cloud: Cloud, size: Size) -> MapImage:

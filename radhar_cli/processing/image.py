@@ -13,6 +13,7 @@ from radhar_cli.processing.cfar import FLOOR_DB
 from radhar_cli.processing.entropy import EntropySum, largest_power
 
 BAND = 64  # rows or columns per matrix product, besides the overlap
+FLOOR_SHARE = 0.25  # of the rows of a map, whose medians are its noise floor
 Span: TypeAlias = tuple[float, float]  # where it begins and ends
 
 
@@ -104,14 +105,19 @@ def unclipped(power: Float, exponent: int) -> tuple[Half, float]:
     return level.astype(np.float16), 10 * (log10(largest) + exponent * log10(2))
 
 
-def levels(power: Float, dynamic_range_db: float) -> Levels:
-    """Grey levels 0 to 255 of resized power: from dynamic_range_db below the largest, rounded.
+def levels(power: Float, dynamic_range_db: float, white: float | None = None) -> Levels:
+    """Grey levels 0 to 255 of resized power: from dynamic_range_db below white to white, rounded.
 
     A map of zeros is level 0 everywhere.
+
+    Args:
+        power: power [...], in the unit of `white`.
+        dynamic_range_db: range of the levels, dB.
+        white: power of level 255, and of all that is larger; None for the largest of the map.
     """
     if not power.any():
         return np.zeros(power.shape, np.uint8)
-    grey = decibels(power, dynamic_range_db)
+    grey = decibels(power, dynamic_range_db, white)
     grey *= 255 / max(dynamic_range_db, 1e-30)
     grey += 255.5
     return grey.astype(np.uint8)
@@ -134,18 +140,48 @@ def signed_levels(
     return np.rint(127.5 * (1 + np.clip(cells / q, -1, 1))).astype(np.uint8)
 
 
-def decibels(power: Float, dynamic_range_db: float) -> Float:
-    """Decibels 10 log10(P/max P), at least -dynamic_range_db, as everywhere in a map of zeros."""
-    largest = largest_power(power)
-    if largest == 0:
+def decibels(power: Float, dynamic_range_db: float, reference: float | None = None) -> Float:
+    """Decibels 10 log10(P/reference) of powers P [...], clipped to [-dynamic_range_db, 0].
+
+    Args:
+        power: power, in the unit of `reference`; zeros are at -dynamic_range_db.
+        dynamic_range_db: range of the decibels.
+        reference: power of 0 dB; None for the largest of the map.
+    """
+    reference = largest_power(power) if reference is None else reference
+    if reference == 0:
         return np.full_like(power, -dynamic_range_db)
-    level = power / largest
+    level = np.minimum(power / reference, 1)
     below = level < 10 ** (-dynamic_range_db / 10)  # float32 may round that to 1
     level[below] = 1
     np.log(level, out=level)
     level *= 10 / log(10)
     level[below] = -dynamic_range_db
     return level
+
+
+def noise_floor(power: Float) -> float:
+    """Level of the noise of a map, as a power: where most of its rows have their median.
+
+    Medians over time leave out what passes through a row; of their decibels the shortest interval
+    that holds a quarter of all rows is taken, and its middle (Andrews et al., Robust Estimates of
+    Location, 1972: the shorth). Rows that a canceller has emptied, and those of people, whose
+    levels scatter, are outside of it.
+
+    Args:
+        power: power [..., rows, columns], the columns over time or over what else a row repeats.
+
+    Returns:
+        The floor, in the unit of the power; 0 where a quarter of the rows is 0.
+    """
+    medians = np.median(np.moveaxis(power, -2, 0).reshape(power.shape[-2], -1), axis=1)
+    medians = np.sort(medians.astype(float))
+    count = ceil(len(medians) * FLOOR_SHARE)
+    low, high = medians[: len(medians) - count + 1], medians[count - 1 :]
+    if low[0] <= 0:
+        return 0.0
+    shortest = int((high / low).argmin())
+    return float(np.exp(np.log(medians[shortest : shortest + count]).mean()))
 
 
 def _bands(

@@ -2,11 +2,27 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 from typing import TypeAlias
+
+import numpy as np
 
 from radhar_cli.numerics.arrays import Float, Levels
 from radhar_cli.processing.cfar import CellAveraging, decibels_of
-from radhar_cli.processing.image import levels
+from radhar_cli.processing.entropy import largest_power
+from radhar_cli.processing.image import levels, noise_floor
+
+
+class Reference(Enum):
+    """What of an image its grey levels are relative to.
+
+    PEAK: its largest power, which is level 255.
+    NOISE: its noise floor, which is level 0; of a map whose largest power is farther above it than
+    the range of the levels, the largest power is level 255, so that nothing is saturated.
+    """
+
+    PEAK = "peak"
+    NOISE = "noise"
 
 
 @dataclass(frozen=True)
@@ -14,18 +30,30 @@ class DecibelScale:
     """Grey levels of decibels.
 
     Attributes:
-        range_db: range of the levels below the largest power, dB.
+        range_db: range of the levels, dB.
+        reference: what the levels are relative to; a number is the power of level 255, the same
+            for all images, in dB for unit transmit power.
     """
 
     range_db: float
+    reference: Reference | float = Reference.PEAK
 
     @property
     def before_resizing(self) -> None:
         """Power is resized as it is."""
 
-    def levels(self, cells: Float) -> Levels:
-        """Grey levels 0 to 255 of resized power [height, width]."""
-        return levels(cells, self.range_db)
+    def levels(self, cells: Float, exponent: int = 0) -> Levels:
+        """Grey levels 0 to 255 of resized power [..., height, width] in units of 2^exponent."""
+        return levels(cells, self.range_db, self.white(cells, exponent))
+
+    def white(self, cells: Float, exponent: int = 0) -> float:
+        """Power of level 255 of resized power [..., height, width] in units of 2^exponent."""
+        if isinstance(self.reference, float):
+            return float(np.ldexp(10 ** (self.reference / 10), -exponent))
+        largest = largest_power(cells)
+        if self.reference is Reference.PEAK:
+            return largest
+        return max(largest, noise_floor(cells) * 10 ** (self.range_db / 10))
 
 
 @dataclass(frozen=True)
@@ -43,8 +71,8 @@ class CfarMask:
         """Function of the power that is resized instead of it; None for the power itself."""
         return decibels_of if self.detector.decibel else None
 
-    def levels(self, cells: Float) -> Levels:
-        """Levels 0 and 255 of resized cells [height, width]."""
+    def levels(self, cells: Float, exponent: int = 0) -> Levels:
+        """Levels 0 and 255 of resized cells [height, width], whatever their unit."""
         return self.detector.levels(cells)
 
 

@@ -232,8 +232,8 @@ def _frame_map_rows(config: AnyConfig) -> Iterator[Product]:
         )
         does = f"{kind.title} maps of the frames"
         yield Product(kind.name, ("cube", "board"), make, does, is_array=True)
-        sheet = partial(maps_sheet, size=image.size_px, dynamic_range_db=image.dynamic_range_db)
-        yield Product(image_name(kind.name), (kind.name,), sheet, "sheet of frames")
+        sheet = partial(maps_sheet, size=image.size_px)
+        yield Product(image_name(kind.name), (kind.name, "level_scale"), sheet, "sheet of frames")
 
 
 def _cloud_rows(config: Config) -> Iterator[Product]:

@@ -7,6 +7,8 @@ from typing import TypeAlias
 
 from radhar_cli.assembly.processing import cfar_of
 from radhar_cli.config.data_set import AnyConfig
+from radhar_cli.config.image import AbsoluteReference
+from radhar_cli.config.number import nominal
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.doppler_power import DopplerPower
 from radhar_cli.processing.image import (
@@ -18,7 +20,7 @@ from radhar_cli.processing.image import (
     unclipped,
 )
 from radhar_cli.processing.power_map import MapImage, PowerMap
-from radhar_cli.processing.scale import CfarMask, DecibelScale, Scale
+from radhar_cli.processing.scale import CfarMask, DecibelScale, Reference, Scale
 from radhar_cli.scene import Scene
 
 # Resizes a function of the power, or for None the power itself.
@@ -50,12 +52,26 @@ def scale_of(config: AnyConfig) -> Scale:
     """Scale of the images of a config; numbers still to be drawn are taken at their middle."""
     if config.image.kind == "cfar":
         return CfarMask(cfar_of(config))
-    return DecibelScale(config.image.dynamic_range_db)
+    return level_scale_of(config)
+
+
+def level_scale_of(config: AnyConfig) -> DecibelScale:
+    """Scale of grey levels of a config, which frame maps have whatever images show."""
+    image = config.image
+    if isinstance(image.reference, AbsoluteReference):
+        transmitted_dbm = nominal(config.radar.transmit_power_dbm)
+        return DecibelScale(image.dynamic_range_db, image.reference.dbm - transmitted_dbm)
+    return DecibelScale(image.dynamic_range_db, Reference(image.reference))
 
 
 def scale_of_scene(scene: Scene) -> Scale:
     """Scale of the images of a scene, by the numbers that it has drawn."""
     return scale_of(scene.config)
+
+
+def level_scale_of_scene(scene: Scene) -> DecibelScale:
+    """Scale of the grey levels of a scene, by the transmitted power that it has drawn."""
+    return level_scale_of(scene.config)
 
 
 def draw_measured_map(config: AnyConfig, power_map: PowerMap) -> MapImage:
@@ -111,7 +127,7 @@ def _draw_resized(
         has_decibels: whether unclipped decibels are stored, too.
     """
     small = resize(scale.before_resizing)
-    image = MapImage(scale.levels(small.cells), small.entropy, extent)
+    image = MapImage(scale.levels(small.cells, exponent), small.entropy, extent)
     if not has_decibels:
         return image
     power = small.cells if scale.before_resizing is None else resize(None).cells

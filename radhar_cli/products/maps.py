@@ -19,7 +19,13 @@ from radhar_cli.processing.map_kind import CADENCE_KINDS, RTM, MapKind, Transfor
 from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
 from radhar_cli.processing.scale import Scale
 from radhar_cli.processing.signal import Signal
-from radhar_cli.products.images import ImageForm, draw_doppler_image, draw_map, scale_of_scene
+from radhar_cli.products.images import (
+    ImageForm,
+    draw_doppler_image,
+    draw_map,
+    level_scale_of_scene,
+    scale_of_scene,
+)
 from radhar_cli.products.plan import Product
 from radhar_cli.products.signal import bins_name, signal_name
 from radhar_cli.radar.waveform import Waveform
@@ -62,7 +68,7 @@ def map_products(config: AnyConfig) -> Iterator[Product]:
     )
     does = "power of the range profiles"
     yield Product(str(RTM), ("range_profiles",), rtm, does, is_array=True)
-    yield Product("image_scale", ("scene",), scale_of_scene, "law from power to grey levels")
+    yield from scale_products()
     draw = partial(draw_map, form=ImageForm.of(config))
     for name in (str(RTM), *(product.name for product in own_products())):
         yield Product(
@@ -73,6 +79,13 @@ def map_products(config: AnyConfig) -> Iterator[Product]:
         if transform is not None:
             yield from _doppler_rows(config, kind, transform, is_held=name in config.maps)
             yield from _cadence_rows(config, name, kind, transform)
+
+
+def scale_products() -> Iterator[Product]:
+    """Rows of the scales of images, and of frame maps, which are no masks."""
+    yield Product("image_scale", ("scene",), scale_of_scene, "law from power to image")
+    does = "law from power to grey levels"
+    yield Product("level_scale", ("scene",), level_scale_of_scene, does)
 
 
 def window_products() -> Iterator[Product]:

@@ -10,7 +10,7 @@ from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processing.signal import Signal
 from radhar_cli.products.gated import gate_in_windows
-from radhar_cli.products.images import scale_of
+from radhar_cli.products.images import level_scale_of, scale_of
 from radhar_cli.products.plan import Plan, Product, plan
 from radhar_cli.products.table import products, products_of_signals
 from radhar_cli.scene import Scene
@@ -108,6 +108,7 @@ def process(
         "fsst_frames": fsst_frames_of(config, duration, signal.prf, signal.f0),
         "canceller": canceller_of(config, signal.prf),
         "image_scale": scale_of(config),
+        "level_scale": level_scale_of(config),
         **inputs,
     }
     canceller, track = inputs["canceller"], inputs.get("torso_track")

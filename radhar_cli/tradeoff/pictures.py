@@ -15,10 +15,10 @@ from radhar_cli.echo.direct import Accuracy
 from radhar_cli.numerics.arrays import Bool, Complex, Float
 from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, FrameMaps
-from radhar_cli.processing.image import levels
 from radhar_cli.processing.points import Cloud
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.processing.signal import Signal
+from radhar_cli.products.images import level_scale_of
 from radhar_cli.products.maps import image_name
 from radhar_cli.products.plan import plan
 from radhar_cli.products.run import record
@@ -225,7 +225,7 @@ def _picture(results: MapImage | FrameMaps, config: Config) -> ShownMap:
     if isinstance(results, FrameMaps):
         results = results.shown
         axes = (results.times, results.rows.values, results.columns.values)
-        return ShownMap(levels(results.power, config.image.dynamic_range_db), axes)
+        return ShownMap(level_scale_of(config).levels(results.power), axes)
     left, right, low, high = results.extent
     height, width = results.levels.shape
     rows = high - (np.arange(height) + 0.5) * (high - low) / height

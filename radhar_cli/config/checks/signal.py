@@ -10,6 +10,7 @@ from radhar_cli.config.checks.smallest_waveform import (
     waveform_at,
     window_pulses,
 )
+from radhar_cli.config.image import AbsoluteReference
 from radhar_cli.config.maps import (
     ANGLE_TIME_MAPS,
     CADENCE_MAPS,
@@ -183,6 +184,9 @@ def _image_problems(c: AnyRequest) -> Iterator[Problem]:
             f"{list(cfar.guard)} on each side it takes {reach[0]} x {reach[1]}"
         )
         yield Problem("image.cfar.training", list(cfar.training), right)
+    if isinstance(c.image.reference, AbsoluteReference) and not isinstance(c, Request):
+        right = "should be noise or peak: powers of recordings have no unit"
+        yield Problem("image.reference.dbm", c.image.reference.dbm, right)
     cadences = [name for name in c.maps if name in CADENCE_MAPS]
     if c.output.column_labels and cadences:
         right = f"should be false with {', '.join(cadences)}, whose columns are no times"

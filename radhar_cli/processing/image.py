@@ -151,7 +151,7 @@ def decibels(power: Float, dynamic_range_db: float, reference: float | None = No
     reference = largest_power(power) if reference is None else reference
     if reference == 0:
         return np.full_like(power, -dynamic_range_db)
-    level = np.minimum(power / reference, 1)
+    level: Float = np.minimum(power / reference, 1)
     below = level < 10 ** (-dynamic_range_db / 10)  # float32 may round that to 1
     level[below] = 1
     np.log(level, out=level)

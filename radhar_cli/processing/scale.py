@@ -3,14 +3,15 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from math import log10
 from typing import TypeAlias
-
-import numpy as np
 
 from radhar_cli.numerics.arrays import Float, Levels
 from radhar_cli.processing.cfar import CellAveraging, decibels_of
 from radhar_cli.processing.entropy import largest_power
 from radhar_cli.processing.image import levels, noise_floor
+
+FLOAT32_DECADES = 30  # of powers that float32 holds, and their quotients
 
 
 class Reference(Enum):
@@ -49,7 +50,8 @@ class DecibelScale:
     def white(self, cells: Float, exponent: int = 0) -> float:
         """Power of level 255 of resized power [..., height, width] in units of 2^exponent."""
         if isinstance(self.reference, float):
-            return float(np.ldexp(10 ** (self.reference / 10), -exponent))
+            decades = self.reference / 10 - exponent * log10(2)
+            return float(10 ** min(max(decades, -FLOAT32_DECADES), FLOAT32_DECADES))
         largest = largest_power(cells)
         if self.reference is Reference.PEAK:
             return largest

@@ -92,9 +92,9 @@ class ImageConfig(Section):
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
     """Range of the grey levels (`kind: decibel`)."""
     reference: Annotated[ImageReference, ActsIf("image.kind", "decibel")] = "noise"
-    """What grey levels are relative to: noise, of which the image's noise floor is level 0 (or
-    dynamic_range_db below its peak, if that is more); peak, its largest power, level 255; or {dbm:
-    NUMBER}, the received power of level 255 in all images."""
+    """What grey levels are relative to: noise, the image's noise floor, which is 0.4
+    dynamic_range_db above level 0, less where the image's peak would exceed level 255; peak, its
+    largest power, level 255; or {dbm: NUMBER}, the received power of level 255 in all images."""
     cfar: Annotated[CfarConfig, ActsIf("image.kind", "cfar")] = defaults_of(CfarConfig)
     colour_map: str = DEFAULT_COLOUR_MAP
     """Colour map of PNGs and figures, any Matplotlib name; dataset.h5 holds grey levels."""

@@ -70,7 +70,7 @@ subject:
   height_m: {uniform: [1.5, 1.9]}         # drawn for each sample; any number may be
 snr_db: {choice: [30, 20, 10]}
 maps: [rtm, stft]                         # range-time map, Doppler-time map
-image: {size_px: 128, dynamic_range_db: 40}
+image: {size_px: 128, dynamic_range_db: 50}
 split: {train: 0.8, validation: 0.2}
 """
 

@@ -20,6 +20,7 @@ from radhar_cli.dataset.layout import SPLITS, TIME, Rows
 from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.processing.points import COLUMNS
+from radhar_cli.processing.scale import NOISE_PLACE
 from radhar_cli.products.segments import SEGMENT_COLUMNS
 from radhar_cli.products.segments import label_names as stream_label_names
 
@@ -117,9 +118,10 @@ def describe_levels(image: ImageConfig, white: str = "level 255", black: str = "
         return f"{white} is {image.reference.dbm:g} dBm received or more, {black} {span} below"
     if image.reference == "peak":
         return f"{white} is the largest power of the image, {black} {span} below it or less"
+    below, above = (share * image.dynamic_range_db for share in (NOISE_PLACE, 1 - NOISE_PLACE))
     return (
-        f"{black} is the noise floor of the image, {white} {span} above it; where the largest "
-        f"power is farther above the floor, {white} is the largest power"
+        f"{black} is {below:g} dB below the noise floor of the image, {white} {above:g} dB above "
+        f"it; where the largest power is more, {white} is the largest power, {black} {span} below"
     )
 
 

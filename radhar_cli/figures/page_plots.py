@@ -55,7 +55,7 @@ class LevelScale:
         if kind != "decibel" or image.reference == "peak":
             return cls.of(image, kind)
         if image.reference == "noise":
-            return cls(0.0, image.dynamic_range_db, "dB over darkest", image.colour_map)
+            return cls(0.0, image.dynamic_range_db, "dB above level 0", image.colour_map)
         white = image.reference.dbm
         return cls(white - image.dynamic_range_db, white, "dBm", image.colour_map)
 

@@ -11,6 +11,7 @@ from radhar_cli.processing.cfar import CellAveraging, decibels_of
 from radhar_cli.processing.entropy import largest_power
 from radhar_cli.processing.image import levels, noise_floor
 
+NOISE_PLACE = 0.4  # of the range of levels, where the noise floor is
 FLOAT32_DECADES = 30  # of powers that float32 holds, and their quotients
 
 
@@ -18,8 +19,10 @@ class Reference(Enum):
     """What of an image its grey levels are relative to.
 
     PEAK: its largest power, which is level 255.
-    NOISE: its noise floor, which is level 0; of a map whose largest power is farther above it than
-    the range of the levels, the largest power is level 255, so that nothing is saturated.
+    NOISE: its noise floor, which is two fifths of the range above level 0, as a canceller lowers
+    the noise of slow bodies, and so what is seen of them, by some 20 dB. Of a map whose largest
+    power is more than the other three fifths above it, the largest power is level 255, so that
+    nothing is saturated.
     """
 
     PEAK = "peak"
@@ -55,7 +58,7 @@ class DecibelScale:
         largest = largest_power(cells)
         if self.reference is Reference.PEAK:
             return largest
-        return max(largest, noise_floor(cells) * 10 ** (self.range_db / 10))
+        return max(largest, noise_floor(cells) * 10 ** ((1 - NOISE_PLACE) * self.range_db / 10))
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ def _tiles(frames: int, size: Size) -> tuple[Index, list[tuple[slice, slice]]]:
     return chosen, list(product(high, wide))[: chosen.size]
 
 
-def maps_sheet(maps: FrameMaps, size: Size, scale: DecibelScale) -> MapImage:
+def maps_sheet(maps: FrameMaps, scale: DecibelScale, size: Size) -> MapImage:
     """Sheet of frames side by side, on the scale of all of them; row 0 is the farthest."""
     maps = maps.shown
     chosen, places = _tiles(len(maps.power), size)

@@ -148,7 +148,7 @@ def test_the_card_says_what_classes_mean_and_what_sides_of_images_are(whole: Pat
     assert "| `walking` | walks |" in text
     assert "| `walking_to_falling` | walks and falls |" in text
     assert "`stft`, across: slow time, " in text
-    assert "dB below the noise floor of the image, brightest is" in text
+    assert "dB below the noise floor of the image, brightest 30 dB" in text
     assert "an FMCW radar (" in text
     assert "url = {https://arxiv.org/abs/2509.06751}" in text
     assert "year = {2026}" in text

@@ -13,12 +13,13 @@ from radhar_cli.motion.files.image_landmarks import (
     refuse_landmarks_in_depth,
 )
 from radhar_cli.motion.files.joint_frames import LostSection, blend, read_frames
-from radhar_cli.motion.files.joint_order import find_joint_order
+from radhar_cli.motion.files.joint_order import arrange_joints
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.jumps import bridge_jumps, describe_jumps, find_jumps
 from radhar_cli.motion.files.keypoints import Keypoints
 from radhar_cli.motion.files.names import JointMean, JointNames, joint_means
 from radhar_cli.motion.files.plain_names import canonical_name
+from radhar_cli.motion.files.proportions import refuse_impossible_body
 from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
 from radhar_cli.motion.files.side_swaps import undo_side_swaps
 from radhar_cli.motion.files.travel import travel_by_feet
@@ -133,7 +134,8 @@ def make_clip(
     """
     remarks: tuple[str, ...] = ()
     if isinstance(file, Keypoints):
-        joints, remarks = _find_order(file, joints, unit)
+        file, joints = _arrange(file, joints, unit)
+        remarks = file.remarks
     means = joint_means(file, joints or {})
     remarks += _head_remarks(file, joints, means[_HEAD])
     has_hip_joints = None not in means
@@ -142,6 +144,7 @@ def make_clip(
     p, exchanged = undo_side_swaps(frames.positions) if has_hip_joints else (frames.positions, 0)
     if exchanged:
         remarks += (f"left and right are exchanged in {exchanged} frames, which are put right",)
+    refuse_impossible_body(p, file.where)
     units = _stature_in_units(p)
     stature, unit_remarks = _stature(units, unit, file.unit, file.where)
     p, is_away = bridge_jumps(p, frames.rate, stature / units)
@@ -176,20 +179,20 @@ def make_clip(
     )
 
 
-def _find_order(
+def _arrange(
     file: Keypoints, joints: JointNames | None, unit: float | None
-) -> tuple[JointNames | None, tuple[str, ...]]:
-    """Find the joint set of poses without names, unless it is said; refuse landmarks of a picture.
+) -> tuple[Keypoints, JointNames | None]:
+    """Arrange joints as they make a body; refuse landmarks of a picture.
 
     Returns:
-        Joints as a config says them, or the key of the set, and what there is to say of the file.
+        The recording, and its joints as a config says them, or the key of the set.
     """
     if unit is None:
         refuse_landmarks(file.values, file.where)
-    if file.is_named or joints:
-        return joints, file.remarks
-    key, remark = find_joint_order(file)
-    return key, (*file.remarks, remark)
+    arranged, joints = arrange_joints(file, joints)
+    if unit is None and arranged is not file:
+        refuse_landmarks(arranged.values, file.where)
+    return arranged, joints
 
 
 def _look_for_pictures(

@@ -185,11 +185,16 @@ def _stack_arrays(
 def _may_be_positions(
     archive: zipfile.ZipFile, name: str, names: list[str] | None, where: str
 ) -> bool:
-    """Whether an array has an axis of three coordinates and one of as many joints as are usual."""
+    """Whether an array has an axis of three coordinates and one of as many joints as are usual.
+
+    Both may be one axis, of the columns of a table.
+    """
     array = _try_array(archive, name, where)
-    if array is None or array.dtype.kind not in "iuf" or array.ndim not in (3, 4):
+    if array is None or array.dtype.kind not in "iuf" or array.ndim not in (2, 3, 4):
         return False
     sizes = SIZES if names is None else {len(names)}
+    if array.ndim == 2:
+        return name.lower() not in _BODY_MODEL and array.shape[1] in {3 * size for size in sizes}
     return (3 in array.shape and bool(sizes & set(array.shape))) or array.shape[-1] in (4, 5)
 
 

@@ -24,11 +24,9 @@ JOINTS = (
     *("joints19", "joints15", "joints26"),
 )
 BODIES = ("bodies", "body_list", "instances", "people", "persons", "skeletons", "users", "objects")
-IMAGE = ("landmarks", "pose_landmarks", "poselandmarks", "keypoints_2d", "pose_keypoints_2d")
-NORMALISED = (
-    "has landmarks of an image, which lie from 0 to 1 and have no scale in depth; write "
-    "pose_world_landmarks, which are in m"
-)
+# MediaPipe calls those of an image so, and who writes world landmarks often calls them so, too.
+LANDMARKS = ("landmarks", "pose_landmarks", "poselandmarks", "landmark")
+PIXELS = ("keypoints_2d", "pose_keypoints_2d")
 MAX_BODIES = 50  # in a frame
 _TIMES = ("time", "timestamp", "t", "times", "timestamps", "univtime", "relativetime", "ts")
 _MORE_UNITS = {"usec": "us", "nsec": "ns", "msec": "ms", "sec": "s", "seconds": "s"}

@@ -34,7 +34,7 @@ _BONES = {
     "half of the hip": _Bone("hip", "{}_hip_joint", 0.02, 0.3),
     "way between the shoulders": _Bone("right_shoulder", "left_shoulder", 0.2, 0.8),
 }
-_SHORT = "half of the hip"  # so short that noise alone makes it wobble; 0 where a file has a hip only
+_SHORT = "half of the hip"  # noise alone makes it wobble, and it is 0 where a file has a hip only
 _RIGHT, _LEFT = (WANTED.index(f"{side}_shoulder") for side in ("right", "left"))
 
 
@@ -66,8 +66,8 @@ def refuse_impossible_body(p: Float, where: str) -> None:
         where: Name of the file in messages.
 
     Raises:
-        MotionFileError: A right and a left bone differ nearly twofold, or a bone is far too long or too
-            short beside the legs.
+        MotionFileError: A right and a left bone differ nearly twofold, or a bone is far too long or
+            too short beside the legs.
     """
     bones = [bone for bone in _BONES if bone != _SHORT]
     medians = {

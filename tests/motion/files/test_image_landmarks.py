@@ -155,7 +155,7 @@ def test_values_tell_world_landmarks_of_any_key(key: str, form: str, tmp_path: P
 def test_landmarks_of_who_is_partly_outside_of_the_image_are_refused(
     key: str, form: str, shift: tuple[float, float], tmp_path: Path
 ) -> None:
-    p = picture_of(BLAZE, "blazepose33", "from 0 to 1, tall") + [*shift, 0.0]
+    p = picture_of(BLAZE, "blazepose33", "from 0 to 1, tall") + np.append(shift, 0.0)
     with pytest.raises(MotionFileError, match=r"landmarks of an image.*pose_world_landmarks"):
         clip_of(tmp_path / "x.json", json.dumps(landmark_files(key, p)[form]).encode())
 

@@ -23,7 +23,7 @@ from radhar_cli.motion.files.jumps import (
 )
 from radhar_cli.motion.files.keypoints import Keypoints
 from radhar_cli.motion.files.names import JointMean, JointNames, joint_means
-from radhar_cli.motion.files.plain_names import canonical_name
+from radhar_cli.motion.files.plain_names import canonical_name, own_names
 from radhar_cli.motion.files.proportions import refuse_impossible_body
 from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
 from radhar_cli.motion.files.side_swaps import undo_side_swaps
@@ -232,7 +232,7 @@ def _head_remarks(
         return ()
     if head.is_of_trunk:
         return (NO_HEAD,)
-    names = JOINT_SETS[joints].names if isinstance(joints, str) else file.names
+    names = JOINT_SETS[joints].names if isinstance(joints, str) else own_names(file.names)
     is_one = isinstance(file, Keypoints) and len(head.numbers) == 1
     is_nose = is_one and canonical_name(names[head.numbers[0]].split("|")[0]) == "nose"
     return (ONLY_NOSE,) if is_nose else ()

@@ -184,6 +184,9 @@ def _without_names(table: CellTable) -> Keypoints:
     )
     width = len(table.rows[begin])
     numbers = numbers_of(table, begin, range(width), width)
+    columns = width - width % 3
+    if np.array_equal(numbers[0, -columns:], np.arange(columns)):  # as pandas names columns
+        numbers = numbers[1:]
     if width % 3 == 1:  # the first column is time, or the number of the frame
         first, numbers = numbers[:, 0], numbers[:, 1:]
         is_time = len(first) > 1 and not (np.diff(first) == 1).all()

@@ -190,6 +190,15 @@ BY_AXIS = {
         ".tsv",
         "\n".join("\t".join(map(str, [n, *r])) for n, r in enumerate(LABELS_57.tolist())).encode(),
     ),
+    "csv of pandas": (
+        ".csv",
+        "\n".join(
+            [
+                ",".join(["", *map(str, range(57))]),
+                *(",".join(map(str, [n, *r])) for n, r in enumerate(LABELS_57.tolist())),
+            ]
+        ).encode(),
+    ),
     "json": (".json", json.dumps(LABELS_57.tolist()).encode()),
 }
 

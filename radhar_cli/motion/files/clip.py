@@ -26,7 +26,7 @@ from radhar_cli.motion.files.names import JointMean, JointNames, joint_means
 from radhar_cli.motion.files.plain_names import canonical_name, own_names
 from radhar_cli.motion.files.proportions import refuse_impossible_body
 from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
-from radhar_cli.motion.files.side_swaps import undo_side_swaps
+from radhar_cli.motion.files.side_swaps import describe_side_swaps, undo_side_swaps
 from radhar_cli.motion.files.travel import travel_by_feet
 from radhar_cli.motion.files.up_axis import UPRIGHT, find_up_axis
 from radhar_cli.motion.skeleton import JOINTS
@@ -143,11 +143,10 @@ def make_clip(
         MotionFileError: Joints or the rate are missing, the person has no human size, or nothing
             tells which axis points up.
     """
-    remarks: tuple[str, ...] = ()
     if isinstance(file, Keypoints):
         file, joints = _arrange(file, joints, unit)
-        remarks = file.remarks
     means = joint_means(file, joints or {})
+    remarks = file.remarks if isinstance(file, Keypoints) else ()
     remarks += _head_remarks(file, joints, means[_HEAD])
     has_hip_joints = None not in means
     blends = [mean for mean in (mean or means[_HIP] for mean in means) if mean is not None]
@@ -158,8 +157,7 @@ def make_clip(
     first, last, apart = find_poses_apart(frames.positions, frames.rate, stature / units)
     frames = frames.cut(first, last)
     p, exchanged = undo_side_swaps(frames.positions) if has_hip_joints else (frames.positions, 0)
-    if exchanged:
-        remarks += (f"left and right are exchanged in {exchanged} frames, which are put right",)
+    remarks += describe_side_swaps(exchanged)
     p, is_away = bridge_jumps(p, frames.rate, stature / units)
     remarks += (*unit_remarks, *apart, *describe_jumps(is_away, frames.rate))
     jumps = find_jumps(file, p, frames.rate, stature / units, first)

@@ -15,7 +15,7 @@ HEAD = (1.0, 1.9)  # least and largest way from hip to head along the trunk, ove
 IMPOSSIBLE_SIDES, IMPOSSIBLE = 1.8, 1.5
 
 
-class _Bone(NamedTuple):
+class _BoneRange(NamedTuple):
     """Two joints of a side; least and largest distance over the leg's length, thigh and shank."""
 
     begin: str
@@ -26,13 +26,13 @@ class _Bone(NamedTuple):
 
 # Of people of all ages, with a margin.
 _BONES = {
-    "thigh": _Bone("{}_hip_joint", "{}_knee", 0.35, 0.65),
-    "shank": _Bone("{}_knee", "{}_ankle", 0.35, 0.65),
-    "upper arm": _Bone("{}_shoulder", "{}_elbow", 0.2, 0.6),
-    "forearm": _Bone("{}_elbow", "{}_hand", 0.15, 0.6),
-    "way from hip to shoulder": _Bone("hip", "{}_shoulder", 0.35, 0.95),
-    "half of the hip": _Bone("hip", "{}_hip_joint", 0.02, 0.3),
-    "way between the shoulders": _Bone("right_shoulder", "left_shoulder", 0.2, 0.8),
+    "thigh": _BoneRange("{}_hip_joint", "{}_knee", 0.35, 0.65),
+    "shank": _BoneRange("{}_knee", "{}_ankle", 0.35, 0.65),
+    "upper arm": _BoneRange("{}_shoulder", "{}_elbow", 0.2, 0.6),
+    "forearm": _BoneRange("{}_elbow", "{}_hand", 0.15, 0.6),
+    "way from hip to shoulder": _BoneRange("hip", "{}_shoulder", 0.35, 0.95),
+    "half of the hip": _BoneRange("hip", "{}_hip_joint", 0.02, 0.3),
+    "way between the shoulders": _BoneRange("right_shoulder", "left_shoulder", 0.2, 0.8),
 }
 _SHORT = "half of the hip"  # noise alone makes it wobble, and it is 0 where a file has a hip only
 _RIGHT, _LEFT = (WANTED.index(f"{side}_shoulder") for side in ("right", "left"))

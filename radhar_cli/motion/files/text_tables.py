@@ -87,10 +87,10 @@ def _trajectories(table: CellTable) -> CellTable:
         return table
     parts = {words[a]: (a, b) for a, b in pairwise([*begins, len(words)])}
     if "trajectories" not in parts:
-        found = " and ".join(NEXUS_PARTS[word] for word in parts)
+        listed = " and ".join(NEXUS_PARTS[word] for word in parts)
         raise motion_file_error(
             table.where,
-            f"has {found} of Vicon Nexus, which are no positions of joints; export Trajectories, "
+            f"has {listed} of Vicon Nexus, which are no positions of joints; export Trajectories, "
             "too (Export ASCII: Trajectories), or C3D",
         )
     begin, end = parts["trajectories"]

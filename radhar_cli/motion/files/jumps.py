@@ -49,13 +49,13 @@ def find_poses_apart(p: Float, rate: float, metres: float) -> tuple[int, int, tu
         return 0, len(p) - 1, ()
     remarks = list[str]()
     for count, word, so in (
-        (first, "first", f", and seconds count from frame {first + 1}"),
+        (first, "first", f"; seconds count from frame {first + 1}"),
         (after, "last", ""),
     ):
         if count:
             frames = "frame is" if count == 1 else f"{count} frames are"
             remarks.append(
-                f"its {word} {frames} a pose apart, as the T-pose of a suit is: left out{so}"
+                f"its {word} {frames} left out, a pose apart such as the T-pose of a suit{so}"
             )
     return first, len(p) - 1 - after, tuple(remarks)
 

@@ -137,7 +137,7 @@ def test_a_t_pose_before_or_after_a_walk_is_left_out(
         assert largest_error(clip) < 0.01
         (remark,) = clip.remarks
         count = "frame is" if held == 1 else f"{held} frames are"
-        assert f"its {'last' if is_end else 'first'} {count} a pose apart" in remark
+        assert f"its {'last' if is_end else 'first'} {count} left out" in remark
         assert is_end or f"seconds count from frame {held + 1}" in remark
         require_complete(clip, 0.0, clip.seconds)
 

@@ -138,9 +138,10 @@ def _held_frames(p: Float, rate: float) -> int:
     if not 0 < count < len(p) - 1:
         return 0
     leave, onward = np.linalg.norm(np.diff(p[count - 1 : count + 2], axis=0), axis=2)
-    is_jump = (leave > FARTHEST) & (leave > ABRUPT * onward)
-    is_jump &= (leave - onward) * rate**2 > HARDEST
-    return count if is_jump.any() else 0
+    is_abrupt = (leave > FARTHEST) & (leave > ABRUPT * onward)
+    is_hard = (leave - onward) * rate**2 > HARDEST
+    is_whole = bool((is_abrupt & (leave * rate > FAST)).all())  # at few frames a second
+    return count if is_whole or (is_abrupt & is_hard).any() else 0
 
 
 def _frames_away(p: Float, rate: float) -> Bool:

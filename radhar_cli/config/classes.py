@@ -56,7 +56,8 @@ class FilesConfig(Section, Generic[N]):
     """ASF file of AMC files, where it is not beside them."""
     joints: dict[str, str | tuple[str, ...]] | str = {}
     """Names of joints {radhar's: the file's, or a list whose mean it is}, where the tables of names
-    do not know the file's; or the set in whose order the file's joints are, such as coco17."""
+    do not know the file's, or their numbers from 0 where it has no names; or the set in whose order
+    the file's joints are, such as coco17."""
     up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None
     """Axis of the files that points up; null finds it by the body's pose."""
     unit_m: Annotated[float, Field(ge=1e-6, le=1e3, strict=True)] | None = None
@@ -124,7 +125,7 @@ class FilesConfig(Section, Generic[N]):
                     did_you_mean(str(joint), WANTED, f"joints are {', '.join(WANTED)}")
                 )
             _require_joint_names(joint, names)
-        return value
+        return {joint: _texts_of(names) for joint, names in value.items()}
 
     @model_validator(mode="after")
     def _require_fitting_files(self) -> "FilesConfig[N]":
@@ -141,14 +142,25 @@ class FilesConfig(Section, Generic[N]):
 
 
 def _require_joint_names(joint: str, names: Any) -> None:
-    """Refuse what is neither a name nor a list of names."""
+    """Refuse what is neither a name or a number nor a list of them."""
     listed = names if isinstance(names, (list, tuple)) else [names]
-    are_names = all(isinstance(name, str) and 0 < len(name) <= LONGEST_NAME for name in listed)
-    if not listed or len(listed) > MAX_MEANS or not are_names:
+    if not 0 < len(listed) <= MAX_MEANS or not all(map(_is_joint_name, listed)):
         raise value_error(
-            f"{joint} should be the name of a joint in the file, or a list of up to {MAX_MEANS} "
-            "names, whose mean it is"
+            f"{joint} should be the name of a joint in the file, its number from 0 where it has "
+            f"none, or a list of up to {MAX_MEANS} of them, whose mean it is"
         )
+
+
+def _is_joint_name(name: Any) -> bool:
+    """Whether a value is a name, or a whole number from 0."""
+    if isinstance(name, int):
+        return not isinstance(name, bool) and name >= 0
+    return isinstance(name, str) and 0 < len(name) <= LONGEST_NAME
+
+
+def _texts_of(names: Any) -> str | tuple[str, ...]:
+    """Names, or numbers as texts, by which joints without names are known."""
+    return tuple(map(str, names)) if isinstance(names, (list, tuple)) else str(names)
 
 
 def _class_kind(value: Any) -> str:

@@ -4,6 +4,7 @@ import json
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from helpers.recorded import frames, write_bvh, write_npz
 
@@ -12,6 +13,9 @@ from radhar_cli.assembly.motion_files import file_motion
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.identity import config_hash, flat_document
 from radhar_cli.errors import ConfigError, MotionFileError
+from radhar_cli.motion.files.clip import make_clip
+from radhar_cli.motion.files.keypoints import make_keypoints
+from radhar_cli.motion.files.names import WANTED
 from radhar_cli.scene import draw_scene, nominal_scene
 
 TEXT = """
@@ -103,6 +107,12 @@ def test_another_file_of_the_same_name_is_another_data_set(place: Path) -> None:
         ("classes: {wave: [../../../etc/passwd]}", "should be paths of"),
         ("classes: {wave: []}", "should have 1 to 1500 files"),
         ("classes: {wave: {files: [b.npz], joints: {knee: x}}}", "did you mean"),
+        ("classes: {wave: {files: [b.npz], joints: {head: -1}}}", "its number from 0 where"),
+        ("classes: {wave: {files: [b.npz], joints: {head: 1.5}}}", "head should be the name of"),
+        (
+            "classes: {wave: {files: [b.npz], joints: {hip: [1, true]}}}",
+            "hip should be the name of",
+        ),
         ("classes: {wave: {files: [b.npz], up: w}}", "classes.wave.up"),
         ("classes: {wave: {files: [b.npz], start: 2}}", "should be from 0 to 1"),
         (
@@ -187,3 +197,30 @@ def test_a_folder_of_frames_is_a_file_of_a_class(tmp_path: Path) -> None:
     config.write_text("classes: {wave: {files: [openpose.out]}}\nactivities: [wave, walking]\n")
     with pytest.raises(ConfigError, match="or FOLDER/ of JSON"):
         load_config(config)
+
+
+def test_joints_without_names_are_known_by_their_numbers(tmp_path: Path) -> None:
+    """As the refusal of a file whose order is unknown asks for them: alone and in lists."""
+    p = frames(seconds=3.0, rate=30.0)[:, ::-1]
+    np.savez(tmp_path / "x.npz", positions=p, rate=30.0)
+    places = {name: len(WANTED) - 1 - n for n, name in enumerate(WANTED)}
+    places["hip"] = [places["right_hip_joint"], places["left_hip_joint"]]
+    for numbers in (places, {name: as_texts(place) for name, place in places.items()}):
+        document = {
+            "duration_s": 1,
+            "classes": {"wave": {"files": ["x.npz"], "joints": numbers}},
+            "activities": ["wave"],
+        }
+        (tmp_path / "x.yaml").write_text(json.dumps(document))
+        config = load_config(tmp_path / "x.yaml")
+        joints = config.model_dump()["classes"]["wave"]["joints"]
+        assert joints["head"] == str(places["head"])
+        assert list(joints["hip"]) == [str(place) for place in places["hip"]]
+        scene = draw_scene(config, config.chosen_activities[0], 0)
+        clip = file_motion(scene.people[0]).clip
+        own = make_clip(make_keypoints("x", WANTED, p[:, ::-1], 30.0))
+        assert np.abs(clip.positions - own.positions).max() < 0.01
+
+
+def as_texts(place: int | list[int]) -> str | list[str]:
+    return [str(one) for one in place] if isinstance(place, list) else str(place)

@@ -41,8 +41,11 @@ def vicon(p: Float, names: list[str]) -> bytes:
     return ("\ufeff" + "\r\n".join([*devices, *head, *rows.split("\n")]) + "\r\n").encode()
 
 
-def motive(p: Float, names: list[str]) -> bytes:
-    """OptiTrack Motive: a line of settings, types, names, numbers, turns and positions; y up."""
+def motive(p: Float, names: list[str], numbered: bool = False) -> bytes:
+    """OptiTrack Motive: a line of settings, types, names, identities, turns and positions; y up.
+
+    Bones are `numbered` from 1, as those of a skeleton are, or have an identity.
+    """
     q = np.stack([p[..., 1], p[..., 2], p[..., 0]], axis=-1)
     head = [
         "Format Version,1.23,Take Name,walk,Capture Frame Rate,120.000000,Export Frame Rate,"
@@ -56,6 +59,8 @@ def motive(p: Float, names: list[str]) -> bytes:
         ("", ["Rotation"] * 4 + ["Position"] * 3),
     ):
         per_joint = [cells or [f"Skeleton 001:{name}"] for name in names]
+        if numbered and label == "ID":
+            per_joint = [[str(number)] for number, _ in enumerate(names, 1)]
         head.append(f",{label}," + ",".join(c for cs in per_joint for c in cs * (7 // len(cs))))
     head.append("Frame,Time (Seconds)" + ",X,Y,Z,W,X,Y,Z" * len(names))
     turned = np.concatenate([np.full((*q.shape[:2], 4), 0.5), q], axis=2)
@@ -138,6 +143,7 @@ TABLES: dict[str, tuple[str, Writer]] = {
     "two lines, names repeated": (".csv", lambda p, names: two_lines(p, names, ";", blank=False)),
     "Vicon": (".csv", vicon),
     "OptiTrack": (".csv", motive),
+    "OptiTrack with numbers of bones": (".csv", lambda p, names: motive(p, names, numbered=True)),
     "Qualisys": (".tsv", qualisys),
     "Qualisys with a line of columns": (".tsv", lambda p, names: qualisys(p, names, is_new=True)),
     "Visual3D": (".txt", visual3d),

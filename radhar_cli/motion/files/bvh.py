@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.motion.files.frames import bvh_frames, concatenate_blocks
+from radhar_cli.motion.files.plain_names import END_SITE, text_of_names
 from radhar_cli.motion.files.recording import (
     LONGEST_NAME,
     MAX_FRAMES,
@@ -135,7 +136,7 @@ def read_bvh(data: bytes, where: str) -> Bvh:
     if motion is None:
         problem = "has no line MOTION" if b"HIERARCHY" in data[:MAX_HEADER] else "is not a BVH file"
         raise motion_file_error(where, f"{problem} in its first MiB")
-    joints = _hierarchy(data[: motion.start()].decode("utf-8", "replace"), where)
+    joints = _hierarchy(text_of_names(data[: motion.start()]), where)
     line = data.count(b"\n", 0, motion.start()) + 1
     head = _FRAMES.match(data, motion.end())
     if head is None:
@@ -213,7 +214,7 @@ def _make_joint(
     parent = stack[-1] if stack else None
     name = name_words[0].strip() if name_words else ""
     if word == "End" and parent is not None:
-        name = f"{joints[parent].name}.end"
+        name = f"{joints[parent].name}{END_SITE}"
     if not 0 < len(name) <= LONGEST_NAME:
         raise motion_file_error(
             place, f"a joint should have a name of 1 to {LONGEST_NAME} characters"

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.motion.files.keypoints import Keypoints, make_keypoints
+from radhar_cli.motion.files.plain_names import text_of_names
 from radhar_cli.motion.files.recording import MAX_FRAMES, MAX_JOINTS, motion_file_error
 
 BLOCK = 512
@@ -124,7 +125,7 @@ def _texts(parameter: _Parameter | None) -> list[str]:
         return []
     size = parameter.shape[0]
     pieces = (parameter.data[n : n + size] for n in range(0, len(parameter.data), size))
-    return [piece.decode("utf-8", "replace").strip(" \0") for piece in pieces]
+    return [text_of_names(piece).strip(" \0") for piece in pieces]
 
 
 def _labels(parameters: Mapping[str, _Parameter], points: int) -> list[str]:

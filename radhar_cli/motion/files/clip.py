@@ -1,7 +1,7 @@
 """A recording as the thirteen joints of a person of 1 m: scaled, upright, on the floor, smooth."""
 
 from dataclasses import dataclass
-from math import atan, pi, sqrt, tan
+from math import atan, ceil, floor, pi, sqrt, tan
 from typing import Literal
 
 import numpy as np
@@ -13,14 +13,20 @@ from radhar_cli.motion.files.image_landmarks import (
     refuse_landmarks_in_depth,
 )
 from radhar_cli.motion.files.joint_frames import LostSection, blend, read_frames
-from radhar_cli.motion.files.joint_order import find_joint_order
+from radhar_cli.motion.files.joint_order import arrange_joints
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.jumps import bridge_jumps, describe_jumps, find_jumps
+from radhar_cli.motion.files.jumps import (
+    bridge_jumps,
+    describe_jumps,
+    find_jumps,
+    find_poses_apart,
+)
 from radhar_cli.motion.files.keypoints import Keypoints
 from radhar_cli.motion.files.names import JointMean, JointNames, joint_means
-from radhar_cli.motion.files.plain_names import canonical_name
+from radhar_cli.motion.files.plain_names import canonical_name, own_names
+from radhar_cli.motion.files.proportions import refuse_impossible_body
 from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
-from radhar_cli.motion.files.side_swaps import undo_side_swaps
+from radhar_cli.motion.files.side_swaps import describe_side_swaps, undo_side_swaps
 from radhar_cli.motion.files.travel import travel_by_feet
 from radhar_cli.motion.files.up_axis import UPRIGHT, find_up_axis
 from radhar_cli.motion.skeleton import JOINTS
@@ -87,21 +93,27 @@ def require_complete(clip: Clip, begin: float, end: float) -> None:
     lost = [section for section in clip.lost if section.begin < end and begin < section.end]
     if not lost and first - 1e-9 <= begin < last:
         return
-    ends = [first, *(edge for section in clip.lost for edge in (section.begin, section.end)), last]
-    sections = sorted(
-        zip(ends[::2], ends[1::2], strict=True), key=lambda edges: edges[0] - edges[1]
-    )
-    usable = " and ".join(f"{a:.2f} to {b:.2f} s" for a, b in sorted(sections[:5]))
-    a, b = sections[0]
+    usable, start = list[tuple[float, float]](), first
+    for section in clip.lost:
+        usable.append((start, section.begin))
+        start = max(start, section.end)
+    usable.append((start, last))
+    # In whole hundredths of a second, which lie within.
+    usable = [(ceil(100 * a - 1e-6) / 100, floor(100 * b + 1e-6) / 100) for a, b in usable]
+    usable = [(a, b) for a, b in usable if a < b]
     place, problem = clip.where, f"a joint is lost before {first:.2f} s"
     if lost:
         place = lost[0].place or clip.where
         problem = f"{lost[0].joint} is lost from {lost[0].begin:.2f} to {lost[0].end:.2f} s"
         problem = lost[0].jump or problem
+    longest = sorted(usable, key=lambda edges: edges[0] - edges[1])[:5]
+    listed = " and ".join(f"{a:.2f} to {b:.2f} s" for a, b in sorted(longest)) or "no seconds"
+    command = "".join(
+        f": section_s: [{a:.2f}, {b:.2f}] of its class (--section {a:.2f},{b:.2f})"
+        for a, b in longest[:1]
+    )
     raise motion_file_error(
-        place,
-        f"{problem}; gaps of up to {BRIDGED_S:g} s are bridged; usable are {usable}: section_s: "
-        f"[{a:.2f}, {b:.2f}] of its class (--section {a:.2f},{b:.2f})",
+        place, f"{problem}; gaps of up to {BRIDGED_S:g} s are bridged; usable are {listed}{command}"
     )
 
 
@@ -131,22 +143,24 @@ def make_clip(
         MotionFileError: Joints or the rate are missing, the person has no human size, or nothing
             tells which axis points up.
     """
-    remarks: tuple[str, ...] = ()
     if isinstance(file, Keypoints):
-        joints, remarks = _find_order(file, joints, unit)
+        file, joints = _arrange(file, joints, unit)
     means = joint_means(file, joints or {})
+    remarks = file.remarks if isinstance(file, Keypoints) else ()
     remarks += _head_remarks(file, joints, means[_HEAD])
     has_hip_joints = None not in means
     blends = [mean for mean in (mean or means[_HIP] for mean in means) if mean is not None]
     frames = read_frames(file, blends, rate)
-    p, exchanged = undo_side_swaps(frames.positions) if has_hip_joints else (frames.positions, 0)
-    if exchanged:
-        remarks += (f"left and right are exchanged in {exchanged} frames, which are put right",)
-    units = _stature_in_units(p)
+    refuse_impossible_body(frames.positions, file.where)
+    units = _stature_in_units(frames.positions)
     stature, unit_remarks = _stature(units, unit, file.unit, file.where)
+    first, last, apart = find_poses_apart(frames.positions, frames.rate, stature / units)
+    frames = frames.cut(first, last)
+    p, exchanged = undo_side_swaps(frames.positions) if has_hip_joints else (frames.positions, 0)
+    remarks += describe_side_swaps(exchanged)
     p, is_away = bridge_jumps(p, frames.rate, stature / units)
-    remarks += (*unit_remarks, *describe_jumps(is_away, frames.rate))
-    jumps = find_jumps(file, p, frames.rate, stature / units)
+    remarks += (*unit_remarks, *apart, *describe_jumps(is_away, frames.rate))
+    jumps = find_jumps(file, p, frames.rate, stature / units, first)
     if up is None:
         up, doubt = _find_up_axis(file, blends, p, frames.rate, units)
         remarks += (doubt,) if doubt else ()
@@ -176,20 +190,20 @@ def make_clip(
     )
 
 
-def _find_order(
+def _arrange(
     file: Keypoints, joints: JointNames | None, unit: float | None
-) -> tuple[JointNames | None, tuple[str, ...]]:
-    """Find the joint set of poses without names, unless it is said; refuse landmarks of a picture.
+) -> tuple[Keypoints, JointNames | None]:
+    """Arrange joints as they make a body; refuse landmarks of a picture.
 
     Returns:
-        Joints as a config says them, or the key of the set, and what there is to say of the file.
+        The recording, and its joints as a config says them, or the key of the set.
     """
     if unit is None:
         refuse_landmarks(file.values, file.where)
-    if file.is_named or joints:
-        return joints, file.remarks
-    key, remark = find_joint_order(file)
-    return key, (*file.remarks, remark)
+    arranged, joints = arrange_joints(file, joints)
+    if unit is None and arranged is not file:
+        refuse_landmarks(arranged.values, file.where)
+    return arranged, joints
 
 
 def _look_for_pictures(
@@ -216,7 +230,7 @@ def _head_remarks(
         return ()
     if head.is_of_trunk:
         return (NO_HEAD,)
-    names = JOINT_SETS[joints].names if isinstance(joints, str) else file.names
+    names = JOINT_SETS[joints].names if isinstance(joints, str) else own_names(file.names)
     is_one = isinstance(file, Keypoints) and len(head.numbers) == 1
     is_nose = is_one and canonical_name(names[head.numbers[0]].split("|")[0]) == "nose"
     return (ONLY_NOSE,) if is_nose else ()

@@ -30,6 +30,13 @@ ADVICE = (
 )
 
 
+def share_in_picture(values: NDArray[Any]) -> float:
+    """Share of the joints [frames, J, 3 or more] that are known whose x and y are from 0 to 1."""
+    plane = values[np.isfinite(values).all(axis=2)][:, :2]
+    is_inside = ((plane > -BEYOND) & (plane < 1 + BEYOND)).all(axis=1)
+    return float(is_inside.mean()) if len(plane) else 0.0
+
+
 def refuse_landmarks(values: NDArray[Any], where: str) -> None:
     """Refuse positions whose x and y all lie from 0 to 1: landmarks of an image.
 
@@ -44,13 +51,13 @@ def refuse_landmarks(values: NDArray[Any], where: str) -> None:
     plane = values[is_known][:, :2]
     if len(plane) < MIN_JOINTS or not (is_known.sum(axis=1) > 2).any():
         return
-    is_inside = ((plane > -BEYOND) & (plane < 1 + BEYOND)).all(axis=1)
     is_spread = bool((np.ptp(plane, axis=0) > BEYOND).all())
     is_in_middle = bool((np.median(plane, axis=0) > BEYOND).all())
     frames = np.where(is_known[..., None], values, np.nan)[is_known.sum(axis=1) > 2][..., :3]
     extents = np.median(np.nanmax(frames, axis=1) - np.nanmin(frames, axis=1), axis=0)
     is_upright = bool(extents[:2].max() > extents[2])
-    if is_inside.mean() >= IN_PICTURE and is_in_middle and is_spread and is_upright:
+    is_inside = share_in_picture(values[is_known][None]) >= IN_PICTURE
+    if is_inside and is_in_middle and is_spread and is_upright:
         raise motion_file_error(
             where, f"has x and y from 0 to 1, as landmarks of an image have; {ADVICE}"
         )
@@ -70,7 +77,7 @@ def refuse_landmarks_in_depth(p: Float, units: float, where: str) -> None:
     """
     hips = p[:, _HIP_JOINTS].mean(axis=1) / units
     is_off = np.linalg.norm(hips[:, :2], axis=1) > OFF
-    is_in_picture = (p[..., :2] > 0).all(axis=2).mean() >= IN_PICTURE
+    is_in_picture = (hips[:, :2] > 0).all(axis=1).mean() >= IN_PICTURE
     has_no_depth = np.percentile(np.abs(hips[:, 2]), 95) < DEEP
     if has_no_depth and is_in_picture and is_off.mean() >= IN_PICTURE:
         raise motion_file_error(

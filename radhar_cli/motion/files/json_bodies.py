@@ -17,14 +17,17 @@ from radhar_cli.motion.files.position_arrays import two_dimensional
 from radhar_cli.motion.files.recording import MAX_JOINTS, motion_file_error
 from radhar_cli.numerics.arrays import Float
 
+# MediaPipe's landmarks of an image; some write its world landmarks under these names, too.
+LANDMARKS = ("landmarks", "pose_landmarks", "poselandmarks", "landmark")
+PIXELS = ("keypoints_2d", "keypoints2d", "pose_keypoints_2d")
 JOINTS = (
     *("pose_world_landmarks", "poseworldlandmarks", "world_landmarks", "worldlandmarks"),
     *("keypoints_3d", "keypoints3d", "pose_keypoints_3d", "joints_3d", "joints3d", "pose_3d"),
     *("positions", "joint_positions", "joints", "keypoint", "keypoints", "skeleton", "xyz"),
     *("joints19", "joints15", "joints26"),
+    *LANDMARKS,
 )
 BODIES = ("bodies", "body_list", "instances", "people", "persons", "skeletons", "users", "objects")
-IMAGE = ("landmarks", "pose_landmarks", "poselandmarks", "keypoints_2d", "pose_keypoints_2d")
 NORMALISED = (
     "has landmarks of an image, which lie from 0 to 1 and have no scale in depth; write "
     "pose_world_landmarks, which are in m"
@@ -76,6 +79,7 @@ class JsonBody(NamedTuple):
     identity: str | None
     joints: Float  # [J, 3]; NaN where a joint is lost
     names: list[str] | None
+    are_landmarks: bool = False  # by their key, which is that of landmarks of an image
 
 
 class JsonFrame(NamedTuple):
@@ -166,10 +170,10 @@ def _read_body(body: Any, place: str) -> JsonBody | None:
         raise motion_file_error(
             place, two_dimensional("is a frame of OpenPose with pose_keypoints_2d")
         )
-    if key is None and any(name in keys for name in IMAGE) and not is_openpose:
-        if not any(keys.get(name) for name in IMAGE):
-            return None
-        raise motion_file_error(place, NORMALISED)
+    if key is None and any(keys.get(name) for name in PIXELS) and not is_openpose:
+        raise motion_file_error(place, two_dimensional("has keypoints of an image"))
+    if key is None and any(name in keys for name in (*JOINTS, *PIXELS)):
+        return None
     if key is None and not _is_joint(next(iter(body.values()), None)):
         raise motion_file_error(place, "should have its joints as pose_world_landmarks")
     value = body if key is None else keys[key]
@@ -184,7 +188,7 @@ def _read_body(body: Any, place: str) -> JsonBody | None:
         is_lost = [is_real(c) and c <= 0 for c in confidence]
         joints[np.array(is_lost, dtype=bool)] = np.nan
     identity = next((str(keys[name]) for name in _IDENTITIES if is_identity(keys.get(name))), None)
-    return JsonBody(identity, joints, names)
+    return JsonBody(identity, joints, names, key in LANDMARKS)
 
 
 def is_identity(value: Any) -> bool:

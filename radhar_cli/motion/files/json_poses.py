@@ -13,12 +13,14 @@ from typing import Any
 
 import numpy as np
 
+from radhar_cli.motion.files.image_landmarks import share_in_picture
 from radhar_cli.motion.files.instants import seconds_of_texts
 from radhar_cli.motion.files.json_bodies import (
     BODIES,
-    IMAGE,
     JOINTS,
+    LANDMARKS,
     NORMALISED,
+    PIXELS,
     JsonBody,
     JsonFrame,
     is_real,
@@ -32,6 +34,9 @@ from radhar_cli.motion.files.text_cells import decode_text
 from radhar_cli.numerics.arrays import Float
 
 MAX_JSON = 2**25  # bytes
+# Least share of joints in the picture of landmarks of an image, whose feet are often below it; of
+# world landmarks, whose origin is the hip, most are not.
+MOSTLY = 0.7
 OFTEN = 0.5  # share of the frames of the main body from which another one is a second person
 _FRAMES = ("frames", "poses", "data", "results", "instance_info", "annotations", "sequence")
 _RATES = ("rate", "rate_hz", "fps", "frame_rate", "framerate")
@@ -82,7 +87,7 @@ def _frames_of(document: Mapping[str, Any], keys: Mapping[str, Any], where: str)
         if isinstance(value, list) and not (key == "joints" and _is_texts(value)):
             if key in JOINTS and _is_flat(value):
                 break
-            return value, times
+            return [{key: frame} for frame in value] if key in LANDMARKS else value, times
         if isinstance(value, dict) and key in _FRAMES:
             return _frames_of(value, lower_keys(value), where)
     by_joint = _frames_by_joint(document)
@@ -95,8 +100,8 @@ def _frames_of(document: Mapping[str, Any], keys: Mapping[str, Any], where: str)
     if any(key in keys for key in (*BODIES, *JOINTS)):
         read_frame(document, where)  # which refuses pixels
         raise motion_file_error(where, ONE_FRAME)
-    if any(key in keys for key in IMAGE):
-        raise motion_file_error(where, NORMALISED)
+    if any(keys.get(key) for key in PIXELS):
+        read_frame(document, where)  # which refuses them
     return None, None
 
 
@@ -150,6 +155,8 @@ def _recording(
             )
     lost = np.full(shape, np.nan)
     values = np.stack([lost if body is None else body.joints for body in bodies])
+    if any(body.are_landmarks for body in known) and share_in_picture(values) > MOSTLY:
+        raise motion_file_error(where, NORMALISED)
     names = next((body.names for body in known if body.names), names)
     if names is not None and len(names) != shape[0]:
         names = None

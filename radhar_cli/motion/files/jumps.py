@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from radhar_cli.motion.files.gaps import BRIDGED_S, bridge_gaps, true_runs
-from radhar_cli.motion.files.joint_frames import LostSection
+from radhar_cli.motion.files.joint_frames import MIN_FRAMES, LostSection
 from radhar_cli.motion.files.recording import MotionRecording
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Bool, Float
@@ -27,7 +27,37 @@ OPPOSITE = -0.8  # most cosine of a jump and the one that undoes it
 WALK = 3.0  # m/s, at which a joint may have gone on in the meantime
 _SHOULDERS = ("right_shoulder", "left_shoulder")
 _TRUNK = [JOINTS.index(name) for name in ("torso", "head", "hip", *_SHOULDERS)]
+STILL = 0.001  # m; farther no joint goes in a pose that is held
 ABRUPT = 3.0  # times as far in a frame as in the frame before
+
+
+def find_poses_apart(p: Float, rate: float, metres: float) -> tuple[int, int, tuple[str, ...]]:
+    """Find poses at the ends that are no part of the movement, such as a T-pose before it.
+
+    They are held, for a frame or more, and in the frame beside them somebody is elsewhere at once.
+
+    Args:
+        p: Positions [frames, joints, 3].
+        rate: Frames per second.
+        metres: Length of their unit.
+
+    Returns:
+        First and last frame of the movement, and what there is to say of those that are left out.
+    """
+    first, after = _held_frames(p * metres, rate), _held_frames(p[::-1] * metres, rate)
+    if len(p) - first - after < MIN_FRAMES:
+        return 0, len(p) - 1, ()
+    remarks = list[str]()
+    for count, word, so in (
+        (first, "first", f"; seconds count from frame {first + 1}"),
+        (after, "last", ""),
+    ):
+        if count:
+            frames = "frame is" if count == 1 else f"{count} frames are"
+            remarks.append(
+                f"its {word} {frames} left out, a pose apart such as the T-pose of a suit{so}"
+            )
+    return first, len(p) - 1 - after, tuple(remarks)
 
 
 def bridge_jumps(p: Float, rate: float, metres: float) -> tuple[Float, Bool]:
@@ -70,7 +100,7 @@ def describe_jumps(is_away: Bool, rate: float) -> tuple[str, ...]:
 
 
 def find_jumps(
-    file: MotionRecording, p: Float, rate: float, metres: float
+    file: MotionRecording, p: Float, rate: float, metres: float, first: int = 0
 ) -> tuple[LostSection, ...]:
     """Find seconds in which a joint is faster than people are.
 
@@ -79,6 +109,7 @@ def find_jumps(
         p: Positions [frames, 15, 3].
         rate: Frames per second.
         metres: Length of their unit.
+        first: Frame of the recording that is the first of the positions.
     """
     steps = np.linalg.norm(np.diff(p[:, : len(JOINTS)], axis=0), axis=2) * metres
     limits = np.full(len(JOINTS), FASTEST)
@@ -87,7 +118,7 @@ def find_jumps(
     fast = np.flatnonzero(is_fast.any(axis=1))
     sections = list[LostSection]()
     for step in fast.tolist():
-        begin, end = step / rate - JUMP_MARGIN_S, (step + 1) / rate + JUMP_MARGIN_S
+        begin, end = max(0.0, step / rate - JUMP_MARGIN_S), (step + 1) / rate + JUMP_MARGIN_S
         if sections and begin <= sections[-1].end:
             sections[-1] = replace(sections[-1], end=end)
             continue
@@ -96,8 +127,21 @@ def find_jumps(
             f"{JOINTS[joint]} jumps {steps[step, joint]:.3g} m from one frame to the next "
             f"({steps[step, joint] * rate:.3g} m/s); should move {limits[joint]:g} m/s at most"
         )
-        sections.append(LostSection(JOINTS[joint], begin, end, jump, file.place(step + 1)))
+        sections.append(LostSection(JOINTS[joint], begin, end, jump, file.place(first + step + 1)))
     return tuple(sections)
+
+
+def _held_frames(p: Float, rate: float) -> int:
+    """Number of frames p [frames, joints, 3] (m) for which a pose is held that ends by a jump."""
+    is_other = np.linalg.norm(p - p[0], axis=2).max(axis=1) > STILL
+    count = int(np.argmax(is_other))
+    if not 0 < count < len(p) - 1:
+        return 0
+    leave, onward = np.linalg.norm(np.diff(p[count - 1 : count + 2], axis=0), axis=2)
+    is_abrupt = (leave > FARTHEST) & (leave > ABRUPT * onward)
+    is_hard = (leave - onward) * rate**2 > HARDEST
+    is_whole = bool((is_abrupt & (leave * rate > FAST)).all())  # at few frames a second
+    return count if is_whole or (is_abrupt & is_hard).any() else 0
 
 
 def _frames_away(p: Float, rate: float) -> Bool:

@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.motion.files.gaps import Bridged, bridge_gaps
-from radhar_cli.motion.files.plain_names import canonical_name
+from radhar_cli.motion.files.plain_names import canonical_name, own_names
 from radhar_cli.motion.files.position_arrays import refuse_images
 from radhar_cli.motion.files.recording import (
     LONGEST_NAME,
@@ -93,9 +94,13 @@ class Keypoints:
                 shares[joint] = 1.0
         return shares
 
+    @cached_property
+    def _own_names(self) -> tuple[str, ...]:
+        return own_names(self.names)
+
     def _may_be_root(self, joint: int) -> bool:
         """Whether a joint may be the origin of poses: a hip, or the first of nameless joints."""
-        return canonical_name(self.names[joint]) in ROOTS or (not self.is_named and joint == 0)
+        return canonical_name(self._own_names[joint]) in ROOTS or (not self.is_named and joint == 0)
 
     def bridged(self, joints: Sequence[int], rate: float | None) -> Bridged:
         """Positions of some joints at an even rate, with short gaps bridged.

@@ -141,7 +141,7 @@ def _rows_of_person(
     Raises:
         MotionFileError: Another one is in more than half as many.
     """
-    if person is None:
+    if person is None or not rows:
         return [*rows], ()
     counts: dict[str, int] = {}
     for _, row in rows:

@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 from radhar_cli.errors import did_you_mean
 from radhar_cli.motion.files.joint_sets import JOINT_SETS, JointSet, find_joint_set
 from radhar_cli.motion.files.keypoints import Keypoints
-from radhar_cli.motion.files.plain_names import canonical_name, plain_name
+from radhar_cli.motion.files.plain_names import canonical_name, own_names, plain_name
 from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
 from radhar_cli.motion.skeleton import JOINTS, SKELETON, TORSO
 from radhar_cli.numerics.arrays import Float
@@ -126,7 +126,7 @@ def joint_means(file: MotionRecording, configured: JointNames) -> list[JointMean
     Raises:
         MotionFileError: One of the thirteen is not there.
     """
-    names, joint_set, numbers = file.names, None, dict[int, int]()
+    names, joint_set, numbers = own_names(file.names), None, dict[int, int]()
     if isinstance(configured, str):
         joint_set = JOINT_SETS[configured]
         _require_size(file, configured, joint_set)

@@ -24,7 +24,7 @@ from radhar_cli.motion.files.keypoints import (
     describe_array,
     make_keypoints,
 )
-from radhar_cli.motion.files.plain_names import canonical_name
+from radhar_cli.motion.files.plain_names import canonical_name, own_names, text_of_names
 from radhar_cli.motion.files.position_arrays import SIZES, shape_positions
 from radhar_cli.motion.files.recording import MAX_BYTES, MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.numerics.arrays import Float
@@ -49,7 +49,8 @@ _POSITIONS = (
 )
 _NAMES = ("names", "joint_names", "keypoint_names")
 _RATES = (
-    *("rate", "rate_hz", "fps", "frame_rate", "framerate", "mocap_framerate", "hz", "fs", "freq"),
+    *("rate", "rate_hz", "fps", "frame_rate", "framerate", "hz", "fs", "freq"),
+    *("mocap_framerate", "mocap_frame_rate"),
     *("frequency", "sampling_rate", "samplingrate", "sample_rate", "samplerate"),
     *("frames_per_second", "video_fps", "camera_fps"),
 )
@@ -61,14 +62,8 @@ _CONFIDENCES = (
 )
 _BODY_MODEL = frozenset({"poses", "pose_body", "root_orient", "betas", "fullpose", "body_pose"})
 _BODY_MODEL |= frozenset({"smpl_poses", "smpl_trans", "global_orient", "transl"})
-# The three lines of NumPy that make joints of what AMASS has.
-OF_BODY_MODEL = (
-    "has parameters of a body model (SMPL: poses, betas, trans), no joints; its model makes them: "
-    "p = np.load(FILE); j = smplx.create(MODELS, 'smplh', batch_size=len(p['poses']))("
-    "body_pose=..., global_orient=..., transl=...).joints.detach().numpy()[:, :22]; "
-    "np.savez(OUT, names=smplx.joint_names.JOINT_NAMES[:22], positions=j, "
-    "rate=p['mocap_framerate']) (docs/guide/motion_files.md)"
-)
+_ANGLES = ("poses", "fullpose", "smpl_poses", "pose_body", "body_pose")  # of a body model, by frame
+_MODELS = {72: "smpl", 156: "smplh", 165: "smplx"}  # {columns of all angles: the body model}
 
 
 def read_npz(data: bytes, where: str) -> Keypoints:
@@ -126,7 +121,7 @@ def _find_names(archive: zipfile.ZipFile, members: Sequence[str], where: str) ->
         if texts is None or texts.dtype.kind not in "US" or texts.ndim != 1:
             continue
         names = _names(texts, member, where) if 0 < texts.size <= MAX_JOINTS else []
-        if sum(_is_joint(name) for name in names) >= 5:
+        if sum(map(_is_joint, own_names(names))) >= 5:
             return names
     return None
 
@@ -153,7 +148,7 @@ def _find_positions(
         {"betas", "trans"} & {name.lower() for name in members}
     )
     if is_body_model and not only_poses:
-        raise motion_file_error(where, OF_BODY_MODEL)
+        raise motion_file_error(where, _describe_body_model(archive, members, where))
     if len(possible) == 1:
         return _read_array(archive, possible[0], MAX_BYTES, where), names
     listed = ", ".join(name[:30] for name in members[:10]) or "nothing"
@@ -164,11 +159,34 @@ def _find_positions(
     )
 
 
+def _describe_body_model(archive: zipfile.ZipFile, members: Sequence[str], where: str) -> str:
+    """Say which three lines of NumPy make joints of parameters of a body model, as AMASS has."""
+    frames = _first_of(_ANGLES, members) or "poses"
+    angles = _try_array(archive, frames, where) if frames in members else None
+    key = _first_of(("surface_model_type", "model_type"), members)
+    kind = None if key is None else _try_array(archive, key, where)
+    model = str(kind.item()).lower() if kind is not None and kind.size == 1 else ""
+    if model not in _MODELS.values():
+        columns = 0 if angles is None or angles.ndim != 2 else angles.shape[1]
+        model = _MODELS.get(columns, "smplh")
+    rate = _first_of(_RATES, members)
+    return (
+        "has parameters of a body model (SMPL: poses, betas, trans), no joints; its model makes "
+        f"them: p = np.load(FILE); j = smplx.create(MODELS, '{model}', batch_size=len(p['{frames}"
+        "']))(body_pose=..., global_orient=..., transl=...).joints.detach().numpy()[:, :22]; "
+        "np.savez(OUT, names=smplx.joint_names.JOINT_NAMES[:22], positions=j, rate="
+        + (f"p['{rate}']" if rate else "HZ")
+        + ") (docs/guide/poses.md)"
+    )
+
+
 def _stack_arrays(
     archive: zipfile.ZipFile, members: Sequence[str], names: list[str] | None, where: str
 ) -> tuple[NDArray[Any], list[str] | None] | None:
     """Positions of an array [frames, 3] a joint, or of arrays x, y and z [frames, J], if so."""
-    of_joints = [name for name in members if _is_joint(name)]
+    of_joints = [
+        name for name, own in zip(members, own_names(members), strict=True) if _is_joint(own)
+    ]
     by_axis = [axis for axis in (_first_of((axis,), members) for axis in "xyz") if axis]
     if names is None and len(of_joints) >= 5:
         keys, axis, labels = of_joints, 1, of_joints
@@ -185,11 +203,16 @@ def _stack_arrays(
 def _may_be_positions(
     archive: zipfile.ZipFile, name: str, names: list[str] | None, where: str
 ) -> bool:
-    """Whether an array has an axis of three coordinates and one of as many joints as are usual."""
+    """Whether an array has an axis of three coordinates and one of as many joints as are usual.
+
+    Both may be one axis, of the columns of a table.
+    """
     array = _try_array(archive, name, where)
-    if array is None or array.dtype.kind not in "iuf" or array.ndim not in (3, 4):
+    if array is None or array.dtype.kind not in "iuf" or array.ndim not in (2, 3, 4):
         return False
     sizes = SIZES if names is None else {len(names)}
+    if array.ndim == 2:
+        return name.lower() not in _BODY_MODEL and array.shape[1] in {3 * size for size in sizes}
     return (3 in array.shape and bool(sizes & set(array.shape))) or array.shape[-1] in (4, 5)
 
 
@@ -213,7 +236,7 @@ def _names(names: NDArray[Any], key: str, where: str) -> list[str]:
         raise motion_file_error(
             where, f"{key} should be 1 to {MAX_JOINTS} texts, not {describe_array(names)}"
         )
-    return [n.decode("utf-8", "replace") if isinstance(n, bytes) else n for n in names.tolist()]
+    return [text_of_names(n) if isinstance(n, bytes) else n for n in names.tolist()]
 
 
 def _rate(archive: zipfile.ZipFile, members: Iterable[str], where: str) -> float | None:

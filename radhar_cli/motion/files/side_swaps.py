@@ -34,6 +34,13 @@ def undo_side_swaps(p: Float) -> tuple[Float, int]:
     return q, int(is_any.sum())
 
 
+def describe_side_swaps(exchanged: int) -> tuple[str, ...]:
+    """Say in how many frames limbs were exchanged; nothing of none."""
+    if not exchanged:
+        return ()
+    return (f"left and right are exchanged in {exchanged} frames, which are put right",)
+
+
 _SIDES = ("right", "left")
 
 

@@ -80,21 +80,22 @@ def find_heading(table: CellTable) -> Heading | None:
     Raises:
         MotionFileError: No joint has x, y and z.
     """
-    first = None
-    for number, row in enumerate(table.rows[:MOST_LINES]):
-        if not _is_filled(row):
-            continue
-        first = number if first is None else first
-        if _is_numeric(row) and len([cell for cell in row if cell.strip()]) > 3:
-            return None if number == first else _above_numbers(table, number)
-        if number > first and _has_axes(row):
+    lines = [n for n, row in enumerate(table.rows[:MOST_LINES]) if _is_filled(row)]
+    first = lines[0] if lines else 0
+    axes = next((n for n in lines[1:] if _has_axes(table.rows[n])), None)
+    for number in lines:
+        row = table.rows[number]
+        if number == axes:
             return _of_axes(table, number)
+        # Numbers of bones, as OptiTrack has them, are above the axes.
+        if _is_numeric(row) and sum(map(bool, map(str.strip, row))) > 3 and axes is None:
+            return None if number == first else _above_numbers(table, number)
         if _joints_of_names(row)[0]:
             return _of_names(table, number)
-    row = table.rows[first or 0]
+    row = table.rows[first]
     _refuse_pixels([_clean(cell) for cell in row], table.where)
     raise motion_file_error(
-        table.place(first or 0),
+        table.place(first),
         "should name its columns, such as time, nose_x, nose_y, nose_z; it has "
         + ", ".join(name[:20] for name in row[:8]),
     )
@@ -172,7 +173,7 @@ def _above_numbers(table: CellTable, begin: int) -> Heading:
         MotionFileError: No line above has as many names as there are joints.
     """
     width = len(_trim(table.rows[begin]))
-    for row in reversed(table.rows[:begin]):
+    for row in filter(None, reversed(table.rows[:begin])):
         label, *names = [_clean(cell) for cell in row]
         names = [name for name in names if name]
         plain = re.sub(r"[^a-z]", "", label.lower())

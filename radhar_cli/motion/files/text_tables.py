@@ -1,5 +1,7 @@
 """Tables of positions as text: `.csv`, `.tsv` and `.txt`; `.trc` of OpenSim and Pose2Sim."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from radhar_cli.motion.files.instants import seconds_of_texts
@@ -24,6 +26,12 @@ from radhar_cli.motion.files.text_cells import (
 )
 from radhar_cli.numerics.arrays import Float
 
+# Parts of a table of Vicon Nexus, each below a line with its name and one with its rate.
+NEXUS_PARTS = {
+    name.lower(): name
+    for name in ("Devices", "Joints", "Segments", "Model Outputs", "Events", "Trajectories")
+}
+
 
 def read_table(data: bytes, where: str) -> Keypoints:
     """Read a table of a row a frame, whose lines above name its columns, or of a row a joint.
@@ -36,7 +44,7 @@ def read_table(data: bytes, where: str) -> Keypoints:
         MotionFileError: Names the line and what is odd.
     """
     table = split_cells(decode_text(data, where), where)
-    table = _last_part(table)
+    table = _trajectories(table)
     long_heading = find_long_heading(table)
     if long_heading is not None:
         return _read_long(table, *long_heading)
@@ -45,7 +53,7 @@ def read_table(data: bytes, where: str) -> Keypoints:
         return _without_names(table)
     columns = [column for place in heading.places for column in place]
     numbers = numbers_of(table, heading.begin, columns, heading.width)
-    values = numbers.reshape(len(numbers), -1, 3)
+    values = numbers.reshape(len(numbers), len(heading.places), 3)
     lost = [column for column in heading.confidences if column is not None]
     if lost:
         certain = iter(numbers_of(table, heading.begin, lost, heading.width).T)
@@ -63,17 +71,35 @@ def read_table(data: bytes, where: str) -> Keypoints:
     )
 
 
-def _last_part(table: CellTable) -> CellTable:
-    """Part of a table of Vicon Nexus that has trajectories, below devices and model outputs."""
-    for number, row in enumerate(table.rows):
-        if (
-            number
-            and row
-            and row[0].strip().lower() == "trajectories"
-            and not any(map(str.strip, row[1:]))
-        ):
-            return CellTable(table.rows[number:], table.first + number, table.where)
-    return table
+def _trajectories(table: CellTable) -> CellTable:
+    """Part of a table of Vicon Nexus that has trajectories; the table itself if of another program.
+
+    Raises:
+        MotionFileError: It has other parts of Nexus alone.
+    """
+    words = [_only_word(row) for row in table.rows]
+    begins = [
+        number
+        for number, (word, rate) in enumerate(zip(words, [*words[1:], ""], strict=True))
+        if word in NEXUS_PARTS and (word == "trajectories" or is_number(rate))
+    ]
+    if not begins:
+        return table
+    parts = {words[a]: (a, b) for a, b in pairwise([*begins, len(words)])}
+    if "trajectories" not in parts:
+        listed = " and ".join(NEXUS_PARTS[word] for word in parts)
+        raise motion_file_error(
+            table.where,
+            f"has {listed} of Vicon Nexus, which are no positions of joints; export Trajectories, "
+            "too (Export ASCII: Trajectories), or C3D",
+        )
+    begin, end = parts["trajectories"]
+    return CellTable(table.rows[begin:end], table.first + begin, table.where)
+
+
+def _only_word(row: list[str]) -> str:
+    """First cell of a row in lower case; "" where others are filled."""
+    return "" if not row or any(map(str.strip, row[1:])) else row[0].strip().lower()
 
 
 def _read_long(table: CellTable, heading: int, xyz: tuple[int, int, int], joint: int) -> Keypoints:
@@ -158,6 +184,9 @@ def _without_names(table: CellTable) -> Keypoints:
     )
     width = len(table.rows[begin])
     numbers = numbers_of(table, begin, range(width), width)
+    columns = width - width % 3
+    if np.array_equal(numbers[0, -columns:], np.arange(columns)):  # as pandas names columns
+        numbers = numbers[1:]
     if width % 3 == 1:  # the first column is time, or the number of the frame
         first, numbers = numbers[:, 0], numbers[:, 1:]
         is_time = len(first) > 1 and not (np.diff(first) == 1).all()

@@ -42,7 +42,8 @@ def find_up_axis(p: Float, rate: float, stature: float, rest: Float | None = Non
 
     Of the axes along which the body is ever straight, those go that have no floor while another
     one has, and those along which somebody seems to get up where another says that he falls. The
-    rest pose comes last, for it need not stand: in games its root is turned by every frame.
+    rest pose comes last, for it need not stand: in games its root is turned by every frame. Where
+    it stands along a usual vertical, another one of frames in which nobody moves needs a floor.
 
     Args:
         p: Positions [frames, 15, 3], the thirteen joints and the hip joints.
@@ -66,7 +67,7 @@ def find_up_axis(p: Float, rate: float, stature: float, rest: Float | None = Non
     if len(axes) == 1 and clear:
         name = _name(*clear[0])
         doubt = "" if name == of_rest else _doubt(p, body, clear[0])
-        if doubt and of_rest:
+        if doubt and of_rest and not _is_on_floor(p, clear[0]):
             return UpAxis(None, _name_choice([name, f"{of_rest} in its rest pose"]))
         others = _axes_of_who_lies(p, clear[0]) if doubt else []
         if doubt and (others or name not in USUAL):
@@ -117,11 +118,12 @@ def _directions(vectors: Float) -> Float:
 
 
 def _axis_of_rest(rest: Float | None) -> str | None:
-    """Axis along which the rest pose [15, 3] stands."""
+    """Usual vertical along which the rest pose [15, 3] stands; along another one bones are laid."""
     if rest is None:
         return None
     body = _directions(rest[_HEAD] - rest[_ANKLES].mean(axis=0))
-    return next((_name(*signed) for signed in _AXES if body @ _vector(*signed) > UPRIGHT), None)
+    names = [_name(*signed) for signed in _AXES if body @ _vector(*signed) > UPRIGHT]
+    return next((name for name in names if name in USUAL), None)
 
 
 def _floor_range(p: Float, axis: int, sign: int) -> float:
@@ -189,7 +191,7 @@ def _axes_of_who_lies(p: Float, signed: tuple[int, int]) -> list[str]:
     A room has its floor at 0, and a bed not far above it; a camera is farther away from a body
     that it has in its picture whole.
     """
-    own_floor = FLOOR_AT[0] < _height(p, signed) < FLOOR_AT[1]
+    own_floor = _is_on_floor(p, signed)
     possible = []
     for name, other in zip(USUAL, ((1, 2), (1, 1), (-1, 1)), strict=True):
         height = _height(p, other)
@@ -198,6 +200,11 @@ def _axes_of_who_lies(p: Float, signed: tuple[int, int]) -> list[str]:
         if other[1] != signed[1] and is_flat and is_low:
             possible.append(name)
     return possible
+
+
+def _is_on_floor(p: Float, signed: tuple[int, int]) -> bool:
+    """Whether the lowest joint along an axis is at the height of a floor at 0."""
+    return FLOOR_AT[0] < _height(p, signed) < FLOOR_AT[1]
 
 
 def _height(p: Float, signed: tuple[int, int]) -> float:

@@ -175,6 +175,45 @@ def test_sides_that_are_exchanged_for_some_frames_are_put_right(part: str, tmp_p
     assert f"exchanged in {rows.stop - rows.start} frames" in clip.remarks[0]
 
 
+MARS = joint_set_errors.poses_of(JOINT_SETS["mars19"], WALKER)
+LABELS_57 = np.swapaxes(MARS, 1, 2).reshape(len(MARS), 57)
+# {kind: (suffix, bytes of columns [frames, 57] by axis)}
+BY_AXIS = {
+    "npy": (".npy", npy_bytes(LABELS_57.astype(np.float32))),
+    "npy that was cut into threes": (".npy", npy_bytes(LABELS_57.reshape(-1, 19, 3))),
+    "npz": (".npz", npz_bytes(arr_0=LABELS_57)),
+    "npz under another name": (".npz", npz_bytes(labels=LABELS_57, notes=np.zeros(5))),
+    "npz with names": (".npz", npz_bytes(positions=LABELS_57, names=names("mars19"))),
+    "csv": (".csv", "\n".join(",".join(map(str, r)) for r in LABELS_57.tolist()).encode()),
+    "txt": (".txt", "\n".join(" ".join(map(str, r)) for r in LABELS_57.tolist()).encode()),
+    "tsv with frames": (
+        ".tsv",
+        "\n".join("\t".join(map(str, [n, *r])) for n, r in enumerate(LABELS_57.tolist())).encode(),
+    ),
+    "csv of pandas": (
+        ".csv",
+        "\n".join(
+            [
+                ",".join(["", *map(str, range(57))]),
+                *(",".join(map(str, [n, *r])) for n, r in enumerate(LABELS_57.tolist())),
+            ]
+        ).encode(),
+    ),
+    "json": (".json", json.dumps(LABELS_57.tolist()).encode()),
+}
+
+
+@pytest.mark.parametrize("kind", BY_AXIS)
+def test_all_x_then_all_y_then_all_z(kind: str, tmp_path: Path) -> None:
+    """The labels of MARS, as our own conversion writes them."""
+    suffix, data = BY_AXIS[kind]
+    clip = clip_of(tmp_path / f"x{suffix}", data, rate=RATE)
+    assert largest_error(clip) < 0.01
+    assert clip.remarks[0] == "its columns are all x, then all y, then all z"
+    of_set = clip_of(tmp_path / f"x{suffix}", data, rate=RATE, joints="mars19")
+    assert np.array_equal(of_set.positions, clip.positions)
+
+
 HEADINGS = ["{}_{}", "{} {}", "{}.{}", "{}:{}", "{}({})", "{}[{}]", "{}_pos_{}", "{}_position_{}"]
 
 

@@ -116,3 +116,53 @@ def test_a_unit_that_makes_no_person_is_said(tmp_path: Path) -> None:
     assert "says that a unit is 1 m, of which somebody would be 17" in clip.remarks[0]
     assert "taken for mm" in clip.remarks[0]
     assert 1.7 < clip.stature < 1.85
+
+
+WORLD = camera(BLAZE) - camera(BLAZE)[:, 23:25].mean(axis=1, keepdims=True)
+KEYS = ("landmarks", "pose_landmarks", "poseLandmarks", "pose_world_landmarks")
+
+
+def landmark_files(key: str, p: Float) -> dict[str, object]:
+    """JSON of landmarks under a key: objects and lists, in frames, lists of people, at the top."""
+    lists = p.tolist()
+    frames = [
+        [dict(zip("xyz", xyz, strict=True), visibility=0.9) for xyz in body] for body in lists
+    ]
+    return {
+        "a frame each": [{"time": n / RATE, key: frame} for n, frame in enumerate(frames)],
+        "people": {"fps": RATE, "frames": [{key: [frame]} for frame in frames]},
+        "lists": {"fps": RATE, "frames": [{key: frame} for frame in lists]},
+        "at the top": {"fps": RATE, key: frames},
+        "of a protocol": {"fps": RATE, "frames": [{key: {"landmark": frame}} for frame in frames]},
+    }
+
+
+@pytest.mark.parametrize("form", landmark_files("landmarks", WORLD))
+@pytest.mark.parametrize("key", KEYS)
+def test_values_tell_world_landmarks_of_any_key(key: str, form: str, tmp_path: Path) -> None:
+    """Metres about the hips, of which half are negative, are no landmarks of an image."""
+    assert WORLD.min() < -0.5
+    data = json.dumps(landmark_files(key, WORLD)[form]).encode()
+    clip = clip_of(tmp_path / "x.json", data)
+    true = make_clip(make_keypoints("x", names("blazepose33"), WORLD, RATE))
+    assert clip.stature == pytest.approx(true.stature)
+    assert np.abs(clip.positions - true.positions).max() < 1e-9
+
+
+@pytest.mark.parametrize("shift", [(0.0, 0.0), (0.1, 0.35), (-0.5, 0.0), (0.42, 0.0)])
+@pytest.mark.parametrize("form", landmark_files("landmarks", WORLD))
+@pytest.mark.parametrize("key", KEYS[:3])
+def test_landmarks_of_who_is_partly_outside_of_the_image_are_refused(
+    key: str, form: str, shift: tuple[float, float], tmp_path: Path
+) -> None:
+    p = picture_of(BLAZE, "blazepose33", "from 0 to 1, tall") + np.append(shift, 0.0)
+    with pytest.raises(MotionFileError, match=r"landmarks of an image.*pose_world_landmarks"):
+        clip_of(tmp_path / "x.json", json.dumps(landmark_files(key, p)[form]).encode())
+
+
+@pytest.mark.parametrize("suffix", ["npy", "npz", "csv"])
+def test_world_landmarks_are_read_from_other_files(suffix: str, tmp_path: Path) -> None:
+    name, write = FILES[suffix]
+    how = {"rate": RATE} if suffix == "npy" else {}
+    clip = clip_of(tmp_path / name, write(WORLD, names("blazepose33")), **how)
+    assert 1.7 < clip.stature < 1.85

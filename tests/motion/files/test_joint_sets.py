@@ -128,3 +128,46 @@ def test_other_spellings_of_a_set(walker: Float) -> None:
         p = joint_set_errors.poses_of(JOINT_SETS[key], walker)
         clip = make_clip(make_keypoints("x", names, p, 30.0))
         assert joint_set_errors.joint_errors(walker[:, :13], clip.positions[:, :13]).max() < 0.05
+
+
+@pytest.mark.parametrize("key", JOINT_SETS)
+def test_columns_by_axis_are_told_from_columns_by_joint(key: str, walker: Float) -> None:
+    """All x, then all y, then all z, as MARS has them: with names, a set or neither of them."""
+    p = joint_set_errors.poses_of(JOINT_SETS[key], walker)
+    p = p + np.random.default_rng(2).normal(0, 0.01, p.shape)
+    own = make_clip(make_keypoints("x", named(key), p, 30.0)).positions
+    by_axis = np.swapaxes(p, 1, 2).reshape(p.shape)
+    for names, joints in ((None, None), (None, key), (named(key), None)):
+        clip = make_clip(make_keypoints("x", names, by_axis, 30.0), joints)
+        assert np.array_equal(clip.positions, own)
+        assert clip.remarks[0] == "its columns are all x, then all y, then all z"
+
+
+def test_a_mapping_of_columns_by_axis(walker: Float) -> None:
+    p = joint_set_errors.poses_of(JOINT_SETS["mars19"], walker)
+    by_axis = np.swapaxes(p, 1, 2).reshape(p.shape)
+    numbers = {"hip": "0", "head": "3", "left_shoulder": "4", "left_elbow": "5", "left_hand": "6"}
+    numbers |= {"right_shoulder": "7", "right_elbow": "8", "right_hand": "9"}
+    numbers |= {"left_hip_joint": "10", "left_knee": "11", "left_ankle": "12"}
+    numbers |= {"right_hip_joint": "14", "right_knee": "15", "right_ankle": "16"}
+    clip = make_clip(make_keypoints("x", None, by_axis, 30.0), numbers)
+    assert joint_set_errors.joint_errors(walker[:, :13], clip.positions[:, :13]).max() < 0.01
+
+
+@pytest.mark.parametrize("unit", [None, 0.3, 1.0, 2.0])
+@pytest.mark.parametrize(
+    ("joints", "bone"),
+    [
+        ({"left_knee": "left_ankle", "left_ankle": "left_knee"}, "right thigh is .* its left"),
+        ({"right_elbow": "right_knee"}, "right upper arm is .* its left"),
+        ({"right_hip_joint": "left_ear"}, "right thigh is"),
+        ({"right_knee": "right_wrist", "left_knee": "left_wrist"}, "thigh is"),
+        ({"right_shoulder": "right_ankle", "left_shoulder": "left_ankle"}, "upper arm is"),
+    ],
+)
+def test_bones_of_nobody_are_refused_whatever_the_unit(
+    joints: dict[str, str], bone: str, unit: float | None, walker: Float
+) -> None:
+    p = joint_set_errors.poses_of(JOINT_SETS["coco17"], walker)
+    with pytest.raises(MotionFileError, match=rf"^x: its ({bone}).*--joints SET or FILE\.yaml"):
+        make_clip(make_keypoints("x", named("coco17"), p, 30.0), joints, "z", unit)

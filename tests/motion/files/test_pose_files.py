@@ -1,6 +1,7 @@
 """Poses in the formats that people have: the joints of a known walker come back from each."""
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -26,10 +27,64 @@ from helpers.poses import (
     skeleton_text,
     trc_text,
 )
+from helpers.recorded import frames, write_bvh
+from helpers.tables import long_form, vicon
 
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.numerics.arrays import Float
+
+PREFIXES = ["Character1_", "Bob.", "actor-01 ", "Skel|", "person2", "Left", "hip_"]
+PREFIXED: dict[str, tuple[str, Callable[[list[str]], bytes]]] = {
+    "npz": ("x.npz", lambda n: npz_bytes(names=n, positions=COCO, rate=RATE)),
+    "npz of labels": ("x.npz", lambda n: npz_bytes(labels=n, positions=COCO, rate=RATE)),
+    "npz of arrays": (
+        "x.npz",
+        lambda n: npz_bytes(**{one: COCO[:, i] for i, one in enumerate(n)}, fps=RATE),
+    ),
+    "csv": ("x.csv", lambda n: csv_text(COCO, n).encode()),
+    "trc": ("x.trc", lambda n: trc_text(COCO, n).encode()),
+    "json": (
+        "x.json",
+        lambda n: json.dumps({"names": n, "positions": COCO.tolist(), "rate": RATE}).encode(),
+    ),
+    "Vicon": ("x.csv", lambda n: vicon(COCO, n)),
+    "long": ("x.csv", lambda n: long_form(COCO, n)),
+}
+
+
+@pytest.mark.parametrize("form", PREFIXED)
+@pytest.mark.parametrize("prefix", PREFIXES)
+def test_what_all_names_begin_with_is_no_part_of_them(
+    prefix: str, form: str, tmp_path: Path
+) -> None:
+    name, write = PREFIXED[form]
+    data = write([prefix + joint for joint in names("coco17")])
+    assert largest_error(clip_of(tmp_path / name, data)) < 0.01
+
+
+def test_a_prefixed_hip_that_is_the_origin_is_not_lost(tmp_path: Path) -> None:
+    prefixed = [f"Anna_{name}" for name in names("h36m17")]
+    data = npz_bytes(names=prefixed, positions=H36M - H36M[:, :1], rate=30)
+    clip = clip_of(tmp_path / "x.npz", data)
+    assert not clip.bridged
+    assert clip.marches
+
+
+@pytest.mark.parametrize("pattern", ["Character1_{}", "{}_jnt", "Bob:{}", "a.b_{}", "x{}"])
+@pytest.mark.parametrize("root", [None, "Reference"])
+def test_a_bvh_whose_joints_have_a_prefix(pattern: str, root: str | None, tmp_path: Path) -> None:
+    p = frames(seconds=1.0)
+    text = write_bvh(tmp_path / "x.bvh", p).read_text()
+    text = re.sub(r"(ROOT|JOINT) (\w+)", lambda m: f"{m[1]} {pattern.format(m[2])}", text)
+    own = clip_of(write_bvh(tmp_path / "y.bvh", p)).positions
+    if root is not None:  # a joint that hangs on one of another name
+        head, rest = text.split("\n", 1)
+        outer = f"{head}\nROOT {root}\n{{\nOFFSET 0 0 0\nCHANNELS 0\n"
+        text = outer + rest.replace("ROOT ", "JOINT ", 1).replace("\nMOTION", "\n}\nMOTION")
+    (tmp_path / "x.bvh").write_text(text)
+    assert np.abs(clip_of(tmp_path / "x.bvh").positions - own).max() < 1e-9
+
 
 H36M = joint_set_errors.poses_of(JOINT_SETS["h36m17"], WALKER)
 OPENPOSE = joint_set_errors.poses_of(JOINT_SETS["openpose25"], WALKER)
@@ -167,6 +222,35 @@ def test_parameters_of_a_body_model_are_told_how_to_become_joints(tmp_path: Path
         MotionFileError, match=r"body model .*smplx\.create.*np\.savez\(OUT, names="
     ):
         clip_of(tmp_path / "x.npz")
+
+
+@pytest.mark.parametrize(
+    ("columns", "kind", "rate_key", "model"),
+    [
+        (156, None, "mocap_framerate", "smplh"),
+        (156, "smplh", "mocap_frame_rate", "smplh"),
+        (165, "smplx", "mocap_frame_rate", "smplx"),
+        (165, None, "mocap_frame_rate", "smplx"),
+        (165, "SMPLX", "mocap_framerate", "smplx"),
+        (72, None, "fps", "smpl"),
+    ],
+)
+def test_the_lines_for_a_body_model_fit_the_file(
+    columns: int, kind: str | None, rate_key: str, model: str, tmp_path: Path
+) -> None:
+    arrays = {"poses": np.zeros((9, columns)), "betas": np.zeros(16), "trans": np.zeros((9, 3))}
+    arrays |= {rate_key: np.array(120.0), "gender": np.array("neutral")}
+    arrays |= {} if kind is None else {"surface_model_type": np.array(kind)}
+    with pytest.raises(MotionFileError) as refused:
+        clip_of(tmp_path / "x.npz", npz_bytes(**arrays))
+    assert f"smplx.create(MODELS, '{model}', batch_size=len(p['poses']))" in str(refused.value)
+    assert f"rate=p['{rate_key}'])" in str(refused.value)
+
+
+def test_the_lines_for_a_body_model_name_what_is_there(tmp_path: Path) -> None:
+    data = npz_bytes(pose_body=np.zeros((9, 63)), betas=np.zeros(16), root_orient=np.zeros((9, 3)))
+    with pytest.raises(MotionFileError, match=r"len\(p\['pose_body'\]\).* rate=HZ\)"):
+        clip_of(tmp_path / "x.npz", data)
 
 
 def test_a_second_body_that_is_there_briefly_is_no_person(tmp_path: Path) -> None:

@@ -1,15 +1,18 @@
 """BVH and ASF/AMC against transforms written out one by one, and our motions there and back."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers.poses import c3d_bytes
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import radhar_cli.motion.files.frames
 from radhar_cli.motion.files.bvh import read_bvh
+from radhar_cli.motion.files.clip import make_clip
 from radhar_cli.motion.files.names import WANTED, joint_means
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.motion.files.recording import MotionRecording
@@ -129,3 +132,35 @@ def test_cmu_keeps_one_skeleton_a_subject(tmp_path: Path) -> None:
     with pytest.raises(Exception, match=r"needs its skeleton beside it, 02_01\.asf or 02\.asf; or"):
         read_motion(path)
     assert read_motion(path, tmp_path / "other.asf").recording().names[0] == "root"
+
+
+GERMAN = {"left_knee": "Knie_l\u00fcnks", "right_knee": "Knie_b\u00f6", "hip": "H\u00fcfte"}
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8"])
+@pytest.mark.parametrize("suffix", [".bvh", ".c3d", ".npz"])
+def test_names_with_umlauts_are_kept(suffix: str, encoding: str, tmp_path: Path) -> None:
+    """In UTF-8 and in Latin-1, which some programs of Windows write."""
+    p = frames(seconds=0.5)
+    path = tmp_path / f"x{suffix}"
+    if suffix == ".npz":
+        names = [GERMAN.get(name, name).encode(encoding) for name in WANTED]
+        write_npz(path, p, names=names)
+        theirs = GERMAN
+    elif suffix == ".c3d":
+        ascii_names = [GERMAN.get(name, name) for name in WANTED]
+        data = c3d_bytes(p, [n.encode("ascii", "replace").decode() for n in ascii_names])
+        for name in GERMAN.values():
+            plain = name.encode("ascii", "replace").ljust(16)
+            data = data.replace(plain, name.encode(encoding).ljust(16)[:16])
+        path.write_bytes(data)
+        theirs = GERMAN
+    else:
+        text = write_bvh(path, p).read_text()
+        theirs = {name: GERMAN[name] for name in ("left_knee", "right_knee")}
+        for own_name, name in zip(("LeftLeg", "RightLeg"), theirs.values(), strict=True):
+            text = re.sub(rf"\b{own_name}\b", name, text)
+        path.write_bytes(text.encode(encoding))
+    clip = make_clip(read_motion(path).recording("x"), theirs, rate=120.0)
+    own = make_clip(read_motion(write_npz(tmp_path / "own.npz", p)).recording("x"))
+    assert np.abs(clip.positions - own.positions).max() < 1e-3

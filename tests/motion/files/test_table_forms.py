@@ -3,12 +3,18 @@
 from pathlib import Path
 
 import joint_set_errors
+import numpy as np
 import pytest
 from helpers.poses import COCO, RATE, WALKER, clip_of, csv_text, joint_errors, names
-from helpers.tables import TABLES, two_lines
+from helpers.tables import TABLES, motive, two_lines, vicon
+from hypothesis import given
+from hypothesis import strategies as st
 
 from radhar_cli.errors import MotionFileError
+from radhar_cli.motion.files.clip import make_clip
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
+from radhar_cli.motion.files.names import WANTED
+from radhar_cli.motion.files.text_tables import read_table
 
 SETS = ("coco17", "openpose25", "h36m17", "kinect2_25", "smpl24", "blazepose33", "azure32")
 
@@ -65,3 +71,75 @@ def test_only_pixels_of_a_two_line_table(tmp_path: Path) -> None:
     data = two_lines(COCO, names("coco17")).replace(b",Z", b",C")
     with pytest.raises(MotionFileError, match="pixels of an image"):
         clip_of(tmp_path / "x.csv", data)
+
+
+BONES = "Hip:hip Chest:torso Head:head LShoulder:leftcollar LUArm:left_shoulder LFArm:left_elbow"
+BONES += " LHand:left_hand RShoulder:rightcollar RUArm:right_shoulder RFArm:right_elbow"
+BONES += " RHand:right_hand LThigh:left_hip_joint LShin:left_knee LFoot:left_ankle"
+BONES += " RThigh:right_hip_joint RShin:right_knee RFoot:right_ankle"
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize("empty", [True, False])
+@pytest.mark.parametrize("label", ["ID", ""])
+def test_bones_of_optitrack(label: str, empty: bool, separator: str, tmp_path: Path) -> None:
+    """A bone is where it begins: the end that is nearer the trunk."""
+    pairs = [pair.split(":") for pair in BONES.split()]
+    collars = {
+        f"{side}collar": WALKER[:, [WANTED.index(f"{side}_shoulder"), 0]].mean(axis=1)
+        for side in ("left", "right")
+    }
+    p = np.stack(
+        [collars[j] if j in collars else WALKER[:, WANTED.index(j)] for _, j in pairs], axis=1
+    )
+    text = motive(p, [name for name, _ in pairs], numbered=True).decode()
+    text = text.replace(",ID,", f",{label},").replace(",", separator)
+    clip = clip_of(tmp_path / "x.csv", (text if empty else text.replace("\n\n", "\n")).encode())
+    assert joint_errors(clip).max() < 0.01
+    assert clip.up == "y"
+
+
+OUTPUTS = """Model Outputs
+100
+,,P1:CentreOfMass,,,P1:LKneeAngles,,
+Frame,Sub Frame,X,Y,Z,X,Y,Z
+,,mm,mm,mm,deg,deg,deg
+1,0,5289.91,-1028.32,968.49,20.00,0.00,0.00
+2,0,5239.17,-1010.22,960.86,21.99,0.00,0.00
+"""
+DEVICES = "Devices\n1000\n,,Force,,\nFrame,Sub Frame,Fx,Fy,Fz\n,,N,N,N\n1,0,0,0,1\n\n"
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize(
+    "text", [OUTPUTS, DEVICES + OUTPUTS, OUTPUTS.replace("puts\n", "puts,,\n")]
+)
+def test_nexus_without_trajectories_is_told_to_export_them(
+    text: str, separator: str, tmp_path: Path
+) -> None:
+    data = text.replace(",", separator).encode()
+    with pytest.raises(MotionFileError, match=r"x\.csv: has .*Model Outputs.* export Trajectories"):
+        clip_of(tmp_path / "x.csv", data)
+
+
+def test_parts_of_nexus_around_trajectories_are_left_out(tmp_path: Path) -> None:
+    text = vicon(COCO, names("coco17")).decode() + "\n" + OUTPUTS
+    clip = clip_of(tmp_path / "x.csv", text.encode())
+    assert joint_errors(clip).max() < 0.01
+
+
+WORDS = ["", "Title", "Joints", "Trajectories", "Frame", "time", "X", "Y", "Z", "nose_x", "nose_y"]
+WORDS += ["nose_z", "joint", "id", "MARKER_NAMES", "Name", "ID", "1", "-2.5", "nan", "12:00:00.1"]
+WORDS += ["#", "mm", "fps: 30", "Rotation", "x", "y", "z", "x1", "y1", "z1", "x2", "y2"]
+LINES = st.lists(st.sampled_from(WORDS), max_size=9) | st.lists(
+    st.floats(-2, 2).map("{:.3f}".format), max_size=9
+)
+
+
+@given(lines=st.lists(LINES, max_size=9), separator=st.sampled_from([",", ";", "\t", " "]))
+def test_no_table_ends_in_a_traceback(lines: list[list[str]], separator: str) -> None:
+    text = "\n".join(separator.join(line) for line in [*lines, ["1.5"] * 6, ["2.5"] * 6])
+    try:
+        make_clip(read_table(text.encode(), "x.csv"))
+    except MotionFileError as refused:
+        assert str(refused).startswith("x.csv")  # noqa: PT017

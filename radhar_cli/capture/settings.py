@@ -133,6 +133,11 @@ class CaptureSettings(Section):
         return prod(sizes)
 
     @property
+    def words_of_a_frame(self) -> int:
+        """Number of 16-bit words of a frame in TI's stream; of a pulse where there are none."""
+        return self.frame_words or self.words_of_a_pulse * (self.frame_pulses or 1)
+
+    @property
     def stored_receivers(self) -> int:
         """Number of receivers in TI's stream: four with four interleaved lanes, used or not."""
         return 4 if self.interleaved and self.lanes == 4 else self.receivers or 1

@@ -21,6 +21,7 @@ from radhar_cli.capture.named_arrays import ArrayNames, choose_arrays
 from radhar_cli.capture.named_parts import is_quadrature_first
 from radhar_cli.capture.packed_files import MAX_PACKING
 from radhar_cli.capture.parser_errors import parser_errors_as_capture_errors
+from radhar_cli.capture.point_tables import refuse_array_of_points, refuse_file_of_points
 from radhar_cli.capture.pulse_clock import seconds_of
 from radhar_cli.capture.raw_files import map_raw
 from radhar_cli.capture.settings import NO_TIMES
@@ -66,6 +67,7 @@ def _map_npy(path: Path, where: str) -> StoredArray:
 
 def _open_raw(path: Path, files: CaptureFiles) -> Arrays:
     """Map a file of numbers."""
+    refuse_file_of_points(path)
     return Arrays(UNNAMED, {"": map_raw(path, files.settings)})
 
 
@@ -178,6 +180,8 @@ def _open_with(
         opened = [open_file(path, capture) for path in capture.paths]
         frames = [samples_of(names, arrays) for names, arrays, _ in opened]
         settings, path = capture.settings, capture.paths[0]
+        for frame in frames:
+            refuse_array_of_points(frame)
         header = opened[0].header
         if header is not None and settings.axes is None and len(frames) == 1:
             settings = settings.model_copy(update={"axes": header.axes})

@@ -31,6 +31,7 @@ from radhar_cli.capture.lost_packets import (
     WordStream,
     fill_losses,
 )
+from radhar_cli.capture.point_tables import refuse_file_of_points
 from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import (
     CaptureFiles,
@@ -154,6 +155,7 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     """
     settings, header = capture.settings, capture.header
     files = whole_capture(capture.paths)
+    refuse_file_of_points(files[0])
     missing = [key for key in ("samples", "receivers") if getattr(settings, key) is None]
     if missing:
         verb = "are" if len(missing) > 1 else "is"

@@ -24,6 +24,7 @@ from radhar_cli.capture.named_parts import (
     find_times,
     unit_of_angle,
 )
+from radhar_cli.capture.point_tables import refuse_array_of_points, refuse_names_of_points
 from radhar_cli.capture.pulse_clock import replace_clocks, seconds_of
 from radhar_cli.capture.settings import NO_TIMES, AxisName, CaptureSettings
 from radhar_cli.capture.source import CaptureFiles, CaptureFormat, MissingKeysError, Source
@@ -173,6 +174,7 @@ def _signal_of(path: Path, lines: Sequence[str], settings: CaptureSettings) -> T
         return _choose_columns(path, dict(zip(layout.names, table.T, strict=True)), settings)
     if table.shape[1] == 1:
         return TextSignal(table[:, 0])
+    refuse_array_of_points(StoredArray(str(path), partial(np.asarray, table)))
     if table.shape[1] == 2 and np.isrealobj(table) and settings.axes is None:
         return TextSignal(table[:, 0] + 1j * table[:, 1])
     if table.shape[1] < FEWEST_COLUMNS and settings.axes is None:
@@ -329,6 +331,7 @@ def _choose_columns(
     Raises:
         CaptureError: nothing tells which columns the samples are.
     """
+    refuse_names_of_points(path, columns)
     named_times = None if settings.times == NO_TIMES else settings.times
     for name in filter(None, (settings.dataset, settings.imaginary, named_times)):
         if name not in columns:

@@ -203,7 +203,7 @@ FORMAT = CaptureFormat(
     has_subframes=True,
 )
 NETWORK = CaptureFormat(
-    ".pcap of a DCA1000 (with --radar)",
+    ".pcap of its network",
     lambda path, head: is_network_capture(head),
     open_dca1000,
     is_split=True,

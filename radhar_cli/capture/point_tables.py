@@ -13,6 +13,7 @@ from radhar_cli.capture.stored_arrays import Samples
 from radhar_cli.errors import CaptureError
 
 PROBED_ROWS = 4096
+PROBED_ENTRIES = 16  # of each axis of an array of more than two
 FEWEST_ROWS = 8  # by which the signs of columns tell something
 COLUMNS = range(5, 9)  # of an array of points
 MOST_LEADING = 2  # columns before the places: number of the frame, and of its points
@@ -56,8 +57,8 @@ def refuse_array_of_points(array: Samples) -> None:
     shape = array.shape
     if array.parts != 1 or len(shape) < 2:
         return
-    key = tuple(slice(0, PROBED_ROWS if n == int(np.argmax(shape)) else size)
-                for n, size in enumerate(shape))  # fmt: skip
+    longest = PROBED_ROWS if len(shape) == 2 else PROBED_ENTRIES
+    key = tuple(slice(0, min(size, longest)) for size in shape)
     for axis in (len(shape) - 1, 0):
         if shape[axis] in COLUMNS:
             rows = np.moveaxis(array.read(key)[..., 0], axis, -1).reshape(-1, shape[axis])

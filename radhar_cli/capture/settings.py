@@ -60,6 +60,8 @@ class CaptureSettings(Section):
     frame_delay_s: Annotated[float, Field(ge=0, le=1e6)] = 0.0  # from there to its first pulse
     # of frames of several subframes: number of the one that is read; None is all
     subframe: Annotated[int, Field(ge=0, le=3, strict=True)] | None = None
+    # of an acconeer recording of several subsweeps: number of the one that is read
+    subsweep: Annotated[int, Field(ge=0, le=63, strict=True)] | None = None
     # words from frame to frame of TI's stream where there are others than these pulses, and words
     # of a frame before the first of them
     frame_words: Annotated[int, Field(ge=1, le=2**40, strict=True)] | None = None

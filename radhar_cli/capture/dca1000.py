@@ -48,6 +48,8 @@ PROBED_WORDS = 2**20
 SHORTEST_CHIRP = 32  # words
 REPEATS = 0.6  # least correlation of a repetition
 ALIKE = 0.7  # least share of the best correlation at the length that the header gives
+MOST_JOINED, FEWEST_JOINED = 8, 16  # chirps that are taken for one, and samples of each
+JUMP = 2.0  # square of a jump between chirps, over the largest step within them
 _NUMBERED = re.compile(r"(.*_)(\d+)(\.bin)", re.IGNORECASE)
 
 
@@ -175,6 +177,8 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     words = _filled(words, settings, notes) if packets is None else words
     layout, pulses = _layout_of(words, files[0], settings, header, notes)
     _check_length(words, files[0], layout, pulses, settings, header)
+    if note := _note_of_joined_chirps(words, layout, pulses, settings):
+        notes.append(note)
     if len(files) > 1:
         notes.insert(0, f"{len(files)} files: {files[0].name} to {files[-1].name}")
 
@@ -331,6 +335,28 @@ def _check_length(
         f"{s.transmitters}: {path} does not repeat after a pulse of {pulse_words} words; "
         f"{fits} would fit"
     )
+
+
+def _note_of_joined_chirps(
+    words: WordStream, layout: FrameLayout, pulses: int, s: CaptureSettings
+) -> str | None:
+    """Words for samples that are too many by a factor: static echoes jump within every chirp."""
+    assert s.samples is not None
+    probed = min(max(PROBED_WORDS // layout.unit, 1), pulses)
+    start = (pulses - probed) // 2
+    values = decode(layout.read(words, start, start + probed), s).astype(float).mean(axis=2)
+    steps = np.sum(np.diff(values, axis=1) ** 2, axis=(0, 2))
+    for factor in range(2, MOST_JOINED + 1):
+        if s.samples % factor or s.samples // factor < FEWEST_JOINED:
+            continue
+        is_seam = np.zeros(steps.size, bool)
+        is_seam[s.samples // factor - 1 :: s.samples // factor] = True
+        if steps[is_seam].min() > JUMP * np.max(steps[~is_seam], initial=0):
+            return (
+                f"every chirp of {s.samples} samples jumps at each {s.samples // factor}th: "
+                f"samples = {s.samples // factor} may be right"
+            )
+    return None
 
 
 def autocorrelation(words: NDArray[np.uint16]) -> NDArray[np.float64]:

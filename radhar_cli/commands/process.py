@@ -29,7 +29,10 @@ def process(
         Path, typer.Argument(help="Recording written by import or simulate --raw.")
     ],
     config: Annotated[
-        Path | None, typer.Option(help="YAML config, whose processing, image and maps are used.")
+        Path | None,
+        typer.Option(
+            help="YAML config, whose processing, image and maps are used; slow time needs none."
+        ),
     ] = None,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="Folder for the results.")] = None,
     set_: Overrides = None,
@@ -62,16 +65,21 @@ def process(
     from radhar_cli.capture.chain import maps_of, part_of
     from radhar_cli.capture.content import radar_section
     from radhar_cli.capture.recording import Recording
-    from radhar_cli.config import resolved
+    from radhar_cli.capture.usual_config import has_usual_config, usual_config
+    from radhar_cli.config import Config, resolved
     from radhar_cli.config.data_set import ConfigOfRecordings, ProcessedConfig
     from radhar_cli.config.reading import load_config, validated
     from radhar_cli.scene import nominal_scene
     from radhar_cli.scene_checks.unused_keys import unused_keys
     from radhar_cli.single_scene.request import map_names
 
-    if config is None or out is None:
+    if out is None or (config is None and not has_usual_config(recording)):
         raise _describe_missing(recording, config, out)
-    loaded = load_config(config, set_ or [], ConfigOfRecordings)
+    if config is None:
+        loaded: Config = usual_config(recording, set_ or [])
+        tell("slow time without --config: maps stft, without what stands (processing.clutter mean)")
+    else:
+        loaded = load_config(config, set_ or [], ConfigOfRecordings)
     fixed = nominal_scene(loaded, loaded.every_class[0]).config
     names = loaded.maps if maps is None else map_names(maps.split(","), loaded)
     _require_folder(out, overwrite)
@@ -84,7 +92,7 @@ def process(
         radar = radar_section(document["radar"], info.content)
         document |= {"maps": signals or ("rtm",), "radar": radar}
         if signals or fixed.radar.has_range:  # else no map but those of frames
-            validated(ProcessedConfig, document, str(config), *loaded._places)
+            validated(ProcessedConfig, document, str(config or "--set"), *loaded._places)
         results = maps_of(opened, fixed, signals, start, stop, receiver)
         if frames:
             products, results.board = frames_of_recording(opened, fixed, frames, start, stop)

@@ -87,7 +87,9 @@ def _read_column(matches: Sequence[re.Match[str]]) -> list[float]:
 
 
 def _read_instants(matches: Sequence[re.Match[str]], is_day_first: bool) -> list[float]:
-    """Seconds of instants from the first; times without a date may pass midnight, those without hours the hour.
+    """Seconds of instants from the first.
+
+    Times without a date may pass midnight, those without hours the hour.
 
     Args:
         matches: Instants, of the patterns of this file.

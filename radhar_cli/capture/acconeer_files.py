@@ -125,12 +125,13 @@ def _read_subsweeps(items: list[Any], metadata: dict[str, Any]) -> list[Subsweep
     subsweeps = list[Subsweep]()
     for item in items:
         keys = ("start_point", "step_length", "num_points")
-        numbers = [item.get(key) if isinstance(item, dict) else None for key in keys]
-        if not all(isinstance(number, int | float) for number in (base, *numbers)):
+        values = [base, *(item.get(key) if isinstance(item, dict) else None for key in keys)]
+        numbers = [float(value) for value in values if isinstance(value, int | float)]
+        if len(numbers) < len(values):
             return None
-        start, step, points = numbers
+        base_m, start, step, points = numbers
         profile = item.get("profile")
-        subsweeps.append(Subsweep(start * base, step * base, int(points), profile, offset))
+        subsweeps.append(Subsweep(start * base_m, step * base_m, int(points), profile, offset))
         offset += int(points)
     return subsweeps
 

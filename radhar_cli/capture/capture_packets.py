@@ -29,7 +29,7 @@ PCAPNG = b"\x0a\x0d\x0d\x0a"
 _ETHERNET, _IPV4, _VLAN, _UDP_PROTOCOL = 1, 0x0800, 0x8100, 17
 
 
-class Packet(NamedTuple):
+class CardPacket(NamedTuple):
     """Samples of a packet.
 
     Attributes:
@@ -118,7 +118,7 @@ def _are_studio_packets(path: Path) -> bool:
     )
 
 
-def _packets_of(file: BinaryIO) -> Iterator[Packet]:
+def _packets_of(file: BinaryIO) -> Iterator[CardPacket]:
     """Yield packets of a file of mmWave Studio up to where there are no more."""
     while len(head := file.read(_STUDIO.size)) == _STUDIO.size:
         number, length, low, high = _STUDIO.unpack(head)
@@ -127,10 +127,10 @@ def _packets_of(file: BinaryIO) -> Iterator[Packet]:
         data = file.read(length)
         if len(data) < length:
             return
-        yield Packet(number, low + (high << 32), data)
+        yield CardPacket(number, low + (high << 32), data)
 
 
-def _studio_packets(files: Sequence[Path]) -> Iterator[Packet]:
+def _studio_packets(files: Sequence[Path]) -> Iterator[CardPacket]:
     """Yield packets of files of mmWave Studio, the last of which may be cut off.
 
     Raises:
@@ -144,7 +144,7 @@ def _studio_packets(files: Sequence[Path]) -> Iterator[Packet]:
                 raise CaptureError(f"{path}: has no packet before byte {place}; damaged?")
 
 
-def _network_packets(files: Sequence[Path]) -> Iterator[Packet]:
+def _network_packets(files: Sequence[Path]) -> Iterator[CardPacket]:
     """Yield packets of a card out of captures of a network."""
     for path in files:
         with path.open("rb") as file:
@@ -154,7 +154,7 @@ def _network_packets(files: Sequence[Path]) -> Iterator[Packet]:
                 data = _udp_data(frame)
                 if len(data) > _UDP.size:
                     number, low, high = _UDP.unpack_from(data)
-                    yield Packet(number, low + (high << 32), data[_UDP.size :])
+                    yield CardPacket(number, low + (high << 32), data[_UDP.size :])
 
 
 def _pcap_frames(path: Path, file: BinaryIO, magic: bytes) -> Iterator[bytes]:

@@ -173,8 +173,8 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     settings = settings.model_copy(update=stream)
     notes = list[str]()
     packets = unpack_packets(files, capture.scratch, 2 * settings.words_of_a_frame, notes)
-    words: Words | FilledWords = Words([packets] if packets else files)
-    words = _filled(words, settings, notes) if packets is None else words
+    stored = Words([packets] if packets else files)
+    words = _filled(stored, settings, notes) if packets is None else stored
     layout, pulses = _layout_of(words, files[0], settings, header, notes)
     _check_length(words, files[0], layout, pulses, settings, header)
     if note := _note_of_joined_chirps(words, layout, pulses, settings):
@@ -250,7 +250,7 @@ def _filled(words: Words, s: CaptureSettings, notes: list[str]) -> Words | Fille
         return words
     if lost := sum(loss.packets for loss in filled.losses):
         gaps = [loss for loss in filled.losses if loss.packets]
-        places = ", ".join(str(loss.at * WORD.itemsize) for loss in gaps[:5])
+        places = ", ".join(str(loss.begin * WORD.itemsize) for loss in gaps[:5])
         notes.append(
             f"{size}: {lost} packets of {PACKET_WORDS * WORD.itemsize} bytes are missing, by the "
             f"static echoes at byte {places}{', ...' * (len(gaps) > 5)}; zeros stand there"

@@ -47,13 +47,13 @@ class Loss(NamedTuple):
     """Packets that are missing.
 
     Attributes:
-        at: Number of the first stored word that is not used: the first after the loss, or the first
+        begin: Number of the first stored word that is not used: the first after the loss, or the first
             of pulses in which nothing tells where it is.
         resume: Number of the first stored word that is used again.
         packets: Number of packets.
     """
 
-    at: int
+    begin: int
     resume: int
     packets: int
 
@@ -87,10 +87,10 @@ class FilledWords:
         out = np.zeros(key.stop - key.start, np.uint16)
         begin, moved = 0, 0  # first stored word of a stretch, and how much farther on it belongs
         for loss in [*self.losses, Loss(self.stop, self.stop, 0)]:
-            first, stop = max(key.start - moved, begin), min(key.stop - moved, loss.at)
+            first, stop = max(key.start - moved, begin), min(key.stop - moved, loss.begin)
             if first < stop:
-                at = first + moved - key.start
-                out[at : at + stop - first] = self.words[slice(first, stop)]
+                place = first + moved - key.start
+                out[place : place + stop - first] = self.words[slice(first, stop)]
             begin, moved = loss.resume, moved + PACKET_WORDS * loss.packets
         return out
 
@@ -163,9 +163,9 @@ class _Scan:
             if packets and shift == 0:  # from here on shifts repeat
                 break
             begin = place + self.period + shift
-            places = [begin + n * self.period for n in range(AFTER)]
-            whole = [at for at in places if at + self.period <= self.words.count]
-            likeness = float(np.mean([self.likeness(at) for at in whole])) if whole else -1.0
+            ends = range(begin + self.period, self.words.count + 1, self.period)[:AFTER]
+            pulses = [self.likeness(end - self.period) for end in ends]
+            likeness = float(np.mean(pulses)) if pulses else -1.0
             if likeness > best_likeness + CLEAR * self.usual:
                 best, best_likeness = (packets, begin), likeness
         return best if best_likeness > DROP * self.usual else (None, place)
@@ -185,10 +185,10 @@ class _Scan:
         # Squared error if all words from n on come after the loss.
         error = np.concatenate([[0.0], np.cumsum((stored - before) ** 2 - (stored - after) ** 2)])
         places = np.arange(-(-low // PACKET_WORDS) * PACKET_WORDS, following + 1, PACKET_WORDS)
-        at = int(places[np.argmin(error[places - low])]) if places.size else place
-        fitted = np.concatenate([before[: at - low], after[at - low :]])
+        begin = int(places[np.argmin(error[places - low])]) if places.size else place
+        fitted = np.concatenate([before[: begin - low], after[begin - low :]])
         if packets and _correlation(stored, fitted) > ALIKE * self.usual:
-            return Loss(at, at, packets)
+            return Loss(begin, begin, packets)
         return Loss(low, following, packets)
 
     def fits_elsewhere(self, place: int) -> bool:
@@ -199,7 +199,7 @@ class _Scan:
         places = range(place + self.period, self.words.count - self.period + 1, self.period)[:AFTER]
         if not places:
             return True  # what is left is less than a pulse
-        pulse = np.mean([self._pulse(at) for at in places], axis=0)
+        pulse = np.mean([self._pulse(begin) for begin in places], axis=0)
         pulse, usual = pulse - pulse.mean(), self.mean - self.mean.mean()
         spectrum = np.fft.rfft(pulse) * np.conj(np.fft.rfft(usual))
         largest = float(np.fft.irfft(spectrum, self.period).max())

@@ -110,7 +110,8 @@ def refuse_file_of_points(path: Path) -> None:
     size = path.stat().st_size
     if size % row:
         return
-    rows = np.fromfile(path, "<f8", COLUMNS[0] * PROBED_ROWS).reshape(-1, COLUMNS[0])
+    with path.open("rb") as file:
+        rows = np.frombuffer(file.read(row * PROBED_ROWS), "<f8").reshape(-1, COLUMNS[0])
     with np.errstate(invalid="ignore", over="ignore"):
         is_of_points = are_points(rows)
     if is_of_points:

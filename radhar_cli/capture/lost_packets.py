@@ -47,8 +47,8 @@ class Loss(NamedTuple):
     """Packets that are missing.
 
     Attributes:
-        begin: Number of the first stored word that is not used: the first after the loss, or the first
-            of pulses in which nothing tells where it is.
+        begin: Number of the first stored word that is not used: the first after the loss, or the
+            first of pulses in which nothing tells where it is.
         resume: Number of the first stored word that is used again.
         packets: Number of packets.
     """

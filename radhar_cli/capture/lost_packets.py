@@ -18,7 +18,7 @@ from radhar_cli.numerics.arrays import Float
 PACKET_WORDS = 728  # words of 16 bits
 MEMORY = 16  # pulses of which the usual one is the mean
 LIKENESS = 0.3  # least correlation of pulses with the usual one, by which losses can be found
-ALIKE = 0.95  # share of the usual correlation of pulses about a loss whose place is sure
+ALIKE = 0.9  # share of the usual correlation of pulses about a loss whose place is sure
 DROP = 0.75  # share of the usual correlation below which a pulse has moved
 CLEAR = 0.02  # share of the usual correlation by which more packets have to be likelier
 AFTER = 4  # pulses by which a move is told
@@ -122,8 +122,10 @@ def fill_losses(words: WordStream, period: int) -> FilledWords | None:
         if packets is None:
             has_moved = scan.fits_elsewhere(place)
             return FilledWords(words, losses, max(place - period, 0)) if has_moved else None
-        low = max(place - period, losses[-1].resume if losses else 0)
-        losses.append(scan.find_loss(low, place, following, packets))
+        last = losses[-1].resume if losses else -AFTER * period
+        # A pulse that does not fit is a person's, or lies between two losses that are close.
+        if packets or place - last < AFTER * period:
+            losses.append(scan.find_loss(max(place - period, last, 0), place, following, packets))
         place = following
     return FilledWords(words, losses, words.count)
 

@@ -21,6 +21,7 @@ from radhar_cli.capture.named_arrays import ArrayNames, choose_arrays
 from radhar_cli.capture.named_parts import is_quadrature_first
 from radhar_cli.capture.packed_files import MAX_PACKING
 from radhar_cli.capture.parser_errors import parser_errors_as_capture_errors
+from radhar_cli.capture.point_tables import refuse_array_of_points, refuse_file_of_points
 from radhar_cli.capture.pulse_clock import seconds_of
 from radhar_cli.capture.raw_files import map_raw
 from radhar_cli.capture.settings import NO_TIMES
@@ -28,6 +29,7 @@ from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Source
 from radhar_cli.capture.stored_arrays import (
     FrameFiles,
     PairedArray,
+    PointsOfArray,
     Samples,
     StoredArray,
     SwappedPairs,
@@ -66,6 +68,7 @@ def _map_npy(path: Path, where: str) -> StoredArray:
 
 def _open_raw(path: Path, files: CaptureFiles) -> Arrays:
     """Map a file of numbers."""
+    refuse_file_of_points(path)
     return Arrays(UNNAMED, {"": map_raw(path, files.settings)})
 
 
@@ -118,8 +121,16 @@ def _open_hdf5(path: Path, files: CaptureFiles) -> Arrays:
     cells = {name: parts for name, parts in file.cells().items() if parts}
     shapes |= {name: (*file.shape(parts[0]), len(parts)) for name, parts in cells.items()}
     frames = [name for name in shapes if f"/{name}".endswith(FRAME)]
-    if settings.dataset is None and len(frames) == 1:
-        settings = settings.model_copy(update={"dataset": frames[0], "times": NO_TIMES})
+    if settings.dataset is None and len(frames) > 1:
+        raise CaptureError(
+            f"{path}: is an acconeer recording of {len(frames)} sensors; --set dataset=NAME should "
+            f"say which is read: {', '.join(frames)}"
+        )
+    name = settings.dataset or "".join(frames)
+    if name in frames:
+        settings = settings.model_copy(
+            update={"dataset": name, "times": settings.times or NO_TIMES}
+        )
     chosen = choose_arrays(
         path, shapes, settings, lambda name: name not in cells and _is_pair(file, name)
     )
@@ -132,8 +143,12 @@ def _open_hdf5(path: Path, files: CaptureFiles) -> Arrays:
         for name in chosen[:3]
         if name is not None
     }
-    is_frame = chosen.samples in frames
-    return Arrays(chosen, arrays, read_sparse_iq(file, chosen.samples) if is_frame else None)
+    if chosen.samples not in frames:
+        return Arrays(chosen, arrays)
+    header = read_sparse_iq(file, chosen.samples, settings.subsweep)
+    if header is not None:
+        arrays[chosen.samples] = PointsOfArray(arrays[chosen.samples], header.points)
+    return Arrays(chosen, arrays, header)
 
 
 def _is_pair(file: UntrustedFile, name: str) -> bool:
@@ -178,6 +193,8 @@ def _open_with(
         opened = [open_file(path, capture) for path in capture.paths]
         frames = [samples_of(names, arrays) for names, arrays, _ in opened]
         settings, path = capture.settings, capture.paths[0]
+        for frame in frames:
+            refuse_array_of_points(frame)
         header = opened[0].header
         if header is not None and settings.axes is None and len(frames) == 1:
             settings = settings.model_copy(update={"axes": header.axes})

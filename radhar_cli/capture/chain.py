@@ -125,7 +125,15 @@ def part_of(
             f"{max(last - first, 0)} pulses; it lasts {segments.duration:.4g} s"
         )
     numbers = range(receivers) if receiver is None else [receiver]
-    return RecordingPart(recording, numbers, first, last, _within(segments, first, last))
+    return part_of_pulses(recording, numbers, first, last)
+
+
+def part_of_pulses(
+    recording: Recording, receivers: Sequence[int], first: int, stop: int
+) -> RecordingPart:
+    """Take pulses first .. stop - 1 of some receivers of a recording."""
+    segments = _within(recording.segments, first, stop)
+    return RecordingPart(recording, receivers, first, stop, segments)
 
 
 def maps_of(

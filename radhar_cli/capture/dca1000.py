@@ -10,7 +10,8 @@ Capture", sections on DCA1000, and rawDataReader.m of mmWave Studio):
     Then the next chirp, of the next transmitter where they take turns. Of frames of several
     subframes all chirps of the first, then those of the next (`subframes.py`).
 
-The card splits a capture into files of 1 GiB anywhere, and fills lost packets with zeros.
+The card splits a capture into files of 1 GiB anywhere. Lost packets are zeros; of other software
+they are left out (`lost_packets.py`), or it keeps the packets as they came (`capture_packets.py`).
 """
 
 import re
@@ -23,6 +24,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.capture.capture_packets import is_network_capture, unpack_packets
+from radhar_cli.capture.lost_packets import (
+    PACKET_WORDS,
+    FilledWords,
+    WordStream,
+    fill_losses,
+)
+from radhar_cli.capture.point_tables import refuse_file_of_points
 from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import (
     CaptureFiles,
@@ -39,6 +48,8 @@ PROBED_WORDS = 2**20
 SHORTEST_CHIRP = 32  # words
 REPEATS = 0.6  # least correlation of a repetition
 ALIKE = 0.7  # least share of the best correlation at the length that the header gives
+MOST_JOINED, FEWEST_JOINED = 8, 16  # chirps that are taken for one, and samples of each
+JUMP = 2.0  # square of a jump between chirps, over the largest step within them
 _NUMBERED = re.compile(r"(.*_)(\d+)(\.bin)", re.IGNORECASE)
 
 
@@ -59,8 +70,16 @@ class Words:
             if size == 0:
                 raise CaptureError(f"{path}: holds 0 bytes; should hold samples of 16 bits")
             self._ends.append(self._ends[-1] + size)
-        self.bytes = self._ends[-1]
-        self.count = self.bytes // WORD.itemsize
+
+    @property
+    def bytes(self) -> int:
+        """Number of bytes."""
+        return self._ends[-1]
+
+    @property
+    def count(self) -> int:
+        """Number of words."""
+        return self.bytes // WORD.itemsize
 
     def __getitem__(self, key: slice) -> NDArray[np.uint16]:
         """Read words from key.start to key.stop - 1."""
@@ -100,7 +119,7 @@ class FrameLayout:
             high = min(stop - frame * self.pulses, self.pulses)
             yield slice(begin + low * self.unit, begin + high * self.unit)
 
-    def read(self, words: Words, first: int, stop: int) -> NDArray[np.uint16]:
+    def read(self, words: WordStream, first: int, stop: int) -> NDArray[np.uint16]:
         """Read the words of pulses first .. stop - 1."""
         return np.concatenate([words[place] for place in self.slices(first, stop)])
 
@@ -138,6 +157,7 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     """
     settings, header = capture.settings, capture.header
     files = whole_capture(capture.paths)
+    refuse_file_of_points(files[0])
     missing = [key for key in ("samples", "receivers") if getattr(settings, key) is None]
     if missing:
         verb = "are" if len(missing) > 1 else "is"
@@ -151,9 +171,14 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     interleaved, lanes = bool(settings.interleaved), settings.lanes
     stream = {"lanes": lanes or (4 if interleaved else 2), "interleaved": interleaved}
     settings = settings.model_copy(update=stream)
-    words, notes = Words(files), list[str]()
-    layout, pulses = _layout_of(words, settings, header, notes)
-    _check_length(words, layout, pulses, settings, header)
+    notes = list[str]()
+    packets = unpack_packets(files, capture.scratch, 2 * settings.words_of_a_frame, notes)
+    stored = Words([packets] if packets else files)
+    words = _filled(stored, settings, notes) if packets is None else stored
+    layout, pulses = _layout_of(words, files[0], settings, header, notes)
+    _check_length(words, files[0], layout, pulses, settings, header)
+    if note := _note_of_joined_chirps(words, layout, pulses, settings):
+        notes.append(note)
     if len(files) > 1:
         notes.insert(0, f"{len(files)} files: {files[0].name} to {files[-1].name}")
 
@@ -181,6 +206,13 @@ FORMAT = CaptureFormat(
     is_split=True,
     has_subframes=True,
 )
+NETWORK = CaptureFormat(
+    ".pcap of its network",
+    lambda path, head: is_network_capture(head),
+    open_dca1000,
+    is_split=True,
+    has_subframes=True,
+)
 
 
 def decode(words: NDArray[np.uint16], s: CaptureSettings) -> Parts:
@@ -202,8 +234,39 @@ def decode(words: NDArray[np.uint16], s: CaptureSettings) -> Parts:
     return samples.reshape(-1, s.samples, samples.shape[3], parts)
 
 
+def _filled(words: Words, s: CaptureSettings, notes: list[str]) -> Words | FilledWords:
+    """Put zeros where a stream that is no whole number of frames lacks packets; add a note."""
+    frame = s.words_of_a_frame
+    if words.bytes % (frame * WORD.itemsize) == 0:
+        return words
+    unit = "frames" if s.frame_pulses or s.frame_words else "pulses"
+    size = f"{words.bytes} bytes are no whole number of {unit} of {frame * WORD.itemsize} bytes"
+    filled = fill_losses(words, s.frame_words or s.words_of_a_pulse)
+    if filled is None:
+        notes.append(
+            f"{size}: nothing static shows whether bytes are missing within, after which "
+            "transmitters and ranges would be exchanged"
+        )
+        return words
+    if lost := sum(loss.packets for loss in filled.losses):
+        gaps = [loss for loss in filled.losses if loss.packets]
+        places = ", ".join(str(loss.begin * WORD.itemsize) for loss in gaps[:5])
+        notes.append(
+            f"{size}: {lost} packets of {PACKET_WORDS * WORD.itemsize} bytes are missing, by the "
+            f"static echoes at byte {places}{', ...' * (len(gaps) > 5)}; zeros stand there"
+        )
+    if filled.stop < words.count:
+        rest = words.bytes - filled.stop * WORD.itemsize
+        notes.append(
+            f"{size}: bytes are missing after byte {filled.stop * WORD.itemsize}, static echoes do "
+            f"not show how many, and pulses after that cannot be assigned: the last {rest} bytes "
+            "are left out"
+        )
+    return filled
+
+
 def _layout_of(
-    words: Words, s: CaptureSettings, header: str, notes: list[str]
+    words: WordStream, path: Path, s: CaptureSettings, header: str, notes: list[str]
 ) -> tuple[FrameLayout, int]:
     """Find where the pulses of a stream lie, and how many are whole; add a note on what is not.
 
@@ -225,7 +288,7 @@ def _layout_of(
     count, incomplete_words = divmod(words.count, period)
     if count == 0:
         raise CaptureError(
-            f"{words.files[0]}: holds {words.bytes} bytes; a {noun} by {header} takes {period * 2}"
+            f"{path}: holds {words.bytes} bytes; a {noun} by {header} takes {period * 2}"
         )
     if incomplete_words:
         notes.append(f"the last {incomplete_words * 2} bytes (an incomplete {noun}) are left out")
@@ -236,7 +299,7 @@ def _layout_of(
 
 
 def _check_length(
-    words: Words, layout: FrameLayout, pulses: int, s: CaptureSettings, header: str
+    words: WordStream, path: Path, layout: FrameLayout, pulses: int, s: CaptureSettings, header: str
 ) -> None:
     """Refuse a header whose chirps are not those of the file.
 
@@ -258,7 +321,7 @@ def _check_length(
         place = "the pulses of frames" if s.subframe is None else f"subframe {s.subframe}"
         raise CaptureError(
             f"{header}: {place}: samples = {s.samples}, receivers = {s.receivers}, transmitters = "
-            f"{s.transmitters}, frame_pulses = {s.frame_pulses}: {words.files[0]} does not repeat "
+            f"{s.transmitters}, frame_pulses = {s.frame_pulses}: {path} does not repeat "
             f"from chirp to chirp there, in frames of {layout.frame_words * 2} bytes"
         )
     # One receiver's chirp may repeat, a chirp of all, or a cycle of the transmitters.
@@ -269,9 +332,31 @@ def _check_length(
     fits = f"samples: {nearest}" if fitting else f"chirps of {lag} words"
     raise CaptureError(
         f"{header}: samples = {s.samples}, receivers = {s.receivers}, transmitters = "
-        f"{s.transmitters}: {words.files[0]} does not repeat after a pulse of {pulse_words} words; "
+        f"{s.transmitters}: {path} does not repeat after a pulse of {pulse_words} words; "
         f"{fits} would fit"
     )
+
+
+def _note_of_joined_chirps(
+    words: WordStream, layout: FrameLayout, pulses: int, s: CaptureSettings
+) -> str | None:
+    """Words for samples that are too many by a factor: static echoes jump within every chirp."""
+    assert s.samples is not None
+    probed = min(max(PROBED_WORDS // layout.unit, 1), pulses)
+    start = (pulses - probed) // 2
+    values = decode(layout.read(words, start, start + probed), s).astype(float).mean(axis=2)
+    steps = np.sum(np.diff(values, axis=1) ** 2, axis=(0, 2))
+    for factor in range(2, MOST_JOINED + 1):
+        if s.samples % factor or s.samples // factor < FEWEST_JOINED:
+            continue
+        is_seam = np.zeros(steps.size, bool)
+        is_seam[s.samples // factor - 1 :: s.samples // factor] = True
+        if steps[is_seam].min() > JUMP * np.max(steps[~is_seam], initial=0):
+            return (
+                f"every chirp of {s.samples} samples jumps at each {s.samples // factor}th: "
+                f"samples = {s.samples // factor} may be right"
+            )
+    return None
 
 
 def autocorrelation(words: NDArray[np.uint16]) -> NDArray[np.float64]:

@@ -11,6 +11,7 @@ has a bin.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from math import pi, sqrt
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,10 +21,11 @@ import scipy.fft
 from scipy.special import gammaincinv
 
 from radhar_cli.capture.chain import (
+    MIN_FRAME_PULSES,
     RecordingPart,
     analytic,
     bins_of_part,
-    part_of,
+    part_of_pulses,
     slow_time_of_part,
 )
 from radhar_cli.capture.content import Beat, Content, SlowTime
@@ -38,7 +40,7 @@ from radhar_cli.capture.fitted_radar import (
     read_radar,
 )
 from radhar_cli.capture.recording import Recording
-from radhar_cli.capture.tracking import WINDOW_S, hann_in_range, track_torso, without_static
+from radhar_cli.capture.tracking import WINDOW_S, TorsoTrack, hann_in_range, track_torso
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.errors import CaptureError
@@ -51,8 +53,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 MIN_SNRS = 3  # SNRs needed to fit a spread
 MIN_S = 0.5  # shortest duration of the longest recording
-PART_S = 4.0  # length of a part, which gives one SNR
-MAX_PARTS = 50  # parts of a recording
+PART_S = 4.0  # shortest part of a longer recording; none is twice as long
 HANN_GAIN = 0.5**2 + 2 * 0.25**2  # gain of white noise in hann_in_range
 QUARTILE = 0.25
 SLOW_MPS = 0.15  # slower movement does not count as a person's
@@ -63,9 +64,12 @@ REACH_M = 1.2  # limbs from the torso
 class Estimates(NamedTuple):
     """Estimates from a few seconds of a recording."""
 
-    snr_db: float  # moving echo within reach of the torso, per raw sample; NaN if nobody is found
+    # SNR per raw sample of the moving echo within reach of the torso; 0 where nothing rises above
+    # the noise, NaN where what moves is too slow for a person
+    snr: float
     ranges: Float  # of the torso where it is sure, m; none of a track that may be lost
     floor: Float  # noise in each range bin, as variance of a raw sample [K]
+    pulses: int  # pulses of the part
 
     @property
     def noise(self) -> float:
@@ -77,7 +81,7 @@ class Estimates(NamedTuple):
 class Fit:
     """Estimates from all recordings."""
 
-    parts: list[Estimates]  # the estimates of each part
+    recordings: list[list[Estimates]]  # estimates of the parts of each recording
     radar: Mapping[str, Any]  # section of a config, common to all recordings
     ranges: Float | None  # of the range bins [K], m; None of slow time
     seconds: float  # median duration of the recordings
@@ -85,10 +89,18 @@ class Fit:
     remark: str | None = None  # on frames that were chosen; None where recordings tell them
 
     @property
+    def parts(self) -> list[Estimates]:
+        """Estimates of the parts of all recordings."""
+        return [part for parts in self.recordings for part in parts]
+
+    @property
     def snr_db(self) -> Float:
-        """SNR of each part in which somebody moves."""
-        snr = np.array([part.snr_db for part in self.parts])
-        return np.asarray(snr[np.isfinite(snr)])
+        """SNR of each recording in which somebody moves, dB.
+
+        It is the power mean over pulses, as `snr_db` of a config is of a simulated recording.
+        """
+        snr = np.array([_mean_snr(parts) for parts in self.recordings])
+        return np.asarray(10 * np.log10(snr[snr > 0]))
 
     @property
     def floor_db(self) -> Float:
@@ -99,7 +111,7 @@ class Fit:
     @property
     def doubt(self) -> str | None:
         """Note on parts whose ranges are not used, as the track may be lost, or None."""
-        walked = [part for part in self.parts if np.isfinite(part.snr_db)]
+        walked = [part for part in self.parts if part.snr > 0]
         doubtful = sum(not part.ranges.size for part in walked)
         if self.ranges is None or not doubtful:
             return None
@@ -171,11 +183,11 @@ def fit(paths: Sequence[Path], overrides: Sequence[str] = ()) -> Fit:
     """
     radar, seconds, remark = _common_radar(paths, overrides)
     is_whole = keeps_whole_band(radar)
-    parts = [part for path in paths for part in parts_of(path, is_whole)]
-    if not any(np.isfinite(part.snr_db) for part in parts):
+    recordings = [[*parts_of(path, is_whole)] for path in paths]
+    if not any(_mean_snr(parts) > 0 for parts in recordings):
         raise CaptureError(f"{paths[0]}: nobody moves faster than {SLOW_MPS} m/s in any recording")
     others = [text for text in overrides if not text.strip().startswith("radar.")]
-    fitted = Fit(parts, radar, _ranges_of(paths[0], is_whole), seconds, others, remark)
+    fitted = Fit(recordings, radar, _ranges_of(paths[0], is_whole), seconds, others, remark)
     validated(Config, fitted.document, str(paths[0]), {})
     return fitted
 
@@ -186,10 +198,18 @@ def _common_radar(
     """Section `radar` of all recordings, their median duration, s, and a remark on its frames."""
     radar: dict[str, Any] | None = None
     remark: str | None = None
+    first_kind = ""
     says_chirps = any("radar.frame.chirps" in text for text in overrides)
     seconds = []
     for path in paths:
         with Recording(path) as recording:
+            kind = ("real", "complex")[recording.samples.parts - 1]
+            first_kind = first_kind or kind
+            if kind != first_kind:
+                raise CaptureError(
+                    f"{path}: has {kind} samples; should have {first_kind} ones, as {paths[0]}: "
+                    "a config has one kind"
+                )
             section = radar_of_recording(recording, overrides)
             radar = section if radar is None else radar
             if difference := differing_key(section, radar):
@@ -225,8 +245,18 @@ def _ranges_of(path: Path, is_whole: bool) -> Float | None:
         return content.waveform(1.0).range_axis()
 
 
+def _mean_snr(parts: Sequence[Estimates]) -> float:
+    """SNR of a recording of which these are the parts: their power mean; 0 where nobody moves.
+
+    Of slow movement nothing tells whether it is a person's, so its part is left out.
+    """
+    known = [part for part in parts if not np.isnan(part.snr)]
+    pulses = sum(part.pulses for part in known)
+    return sum(part.snr * part.pulses for part in known) / max(pulses, 1)
+
+
 def parts_of(path: Path, is_whole: bool = False) -> Iterator[Estimates]:
-    """Yield estimates from parts of about PART_S, at most MAX_PARTS, spread over a recording.
+    """Yield estimates from parts of equal duration that cover a recording, of PART_S or more.
 
     Parts without noise, or without a complete pulse, are left out.
 
@@ -236,19 +266,27 @@ def parts_of(path: Path, is_whole: bool = False) -> Iterator[Estimates]:
             found.
     """
     with Recording(path) as recording:
-        content, length = recording.info.content, recording.segments.duration
+        content = recording.info.content
         if is_whole and isinstance(content, Beat):
             content = replace(content, is_whole=True)
         cells = DopplerCells.of_content(content, recording.samples.parts == 2)
-        count = min(max(int(length / PART_S), 1), MAX_PARTS)
-        for start in np.linspace(0, max(length - PART_S, 0), count).tolist():
-            part = part_of(recording, start, min(start + PART_S, length))
-            part = replace(part, receivers=_first_receivers(recording))
+        for part in _parts(recording):
             if part.lost.all():
                 continue
-            estimates = _part(without_static(_bins(part, cells)), part.segments, cells)
+            estimates = _part(_bins(part, cells), part.segments, cells)
             if estimates.noise > 0:
                 yield estimates
+
+
+def _parts(recording: Recording) -> Iterator[RecordingPart]:
+    """Yield the parts of a recording, which hold all its pulses but a few between long gaps."""
+    segments, receivers = recording.segments, _first_receivers(recording)
+    times = segments.times(np.arange(segments.pulses))
+    count = max(int(segments.duration / PART_S), 1)
+    begins = times[0] + segments.duration / count * np.arange(count)
+    for first, stop in pairwise([*np.searchsorted(times, begins).tolist(), times.size]):
+        if stop - first >= MIN_FRAME_PULSES:
+            yield part_of_pulses(recording, receivers, first, stop)
 
 
 def _first_receivers(recording: Recording) -> list[int]:
@@ -292,6 +330,18 @@ class DopplerCells:
         return cls(w.f0, w.prf, w, False, not is_iq, parts, parts * spread)
 
 
+def _track(bins: Complex, segments: PulseTimes, waveform: Waveform) -> TorsoTrack | None:
+    """Track the torso in range bins [receiver, K, M], from which their median is taken.
+
+    A strong echo that comes for a while into a bin is part of the mean there, which would remain
+    in all other pulses: a ghost that is stronger than a person far away.
+    """
+    for receiver in bins:  # one at a time, as a median takes a copy
+        receiver.real -= np.median(receiver.real, axis=-1, keepdims=True)
+        receiver.imag -= np.median(receiver.imag, axis=-1, keepdims=True)
+    return track_torso(bins, segments, waveform)
+
+
 def _bins(part: RecordingPart, cells: DopplerCells) -> Complex:
     """Range bins [receiver, K, M] of a part, real profiles as analytic ones."""
     if cells.waveform is None:
@@ -301,23 +351,24 @@ def _bins(part: RecordingPart, cells: DopplerCells) -> Complex:
     return analytic(samples) if cells.is_real else samples
 
 
-def _part(moving: Complex, segments: PulseTimes, cells: DopplerCells) -> Estimates:
-    """Estimate SNR, ranges and floor from range bins [receiver, K, M] without static echoes."""
-    maps, middle, window_power = _range_doppler(moving, segments, cells)
+def _part(bins: Complex, segments: PulseTimes, cells: DopplerCells) -> Estimates:
+    """Estimate SNR, ranges and floor from range bins [receiver, K, M], which are overwritten."""
+    track = None if cells.waveform is None else _track(bins, segments, cells.waveform)
+    bins -= bins.mean(axis=-1, keepdims=True)
+    maps, middle, window_power = _range_doppler(bins, segments, cells)
     length, white = maps.shape[2], cells.noise * window_power
     # The mean of |.|^2 of noise over R receivers has a gamma distribution. The lower quartile of a
     # frame contains little of the person, and the median over frames little of those in which a
     # person fills the bin.
     floor = np.median(np.quantile(maps, QUARTILE, axis=2), axis=0)
-    receivers = len(moving)
+    receivers = len(bins)
     quartile = float(gammaincinv(receivers, QUARTILE)) / receivers
-    nobody = Estimates(np.nan, np.empty(0), floor / (quartile * white))
+    nobody = Estimates(0.0, np.empty(0), floor / (quartile * white), segments.pulses)
     near = np.ones(maps.shape[:2], bool)
     ranges: Float = np.empty(0)
-    if cells.waveform is not None:
-        track = track_torso(moving, segments, cells.waveform)
-        if track is None:
-            return nobody
+    if cells.waveform is not None and track is None:
+        return nobody
+    if cells.waveform is not None and track is not None:
         of_frame = track.range_at(segments.times(middle))[:, None]
         reach = REACH_M + 2 * cells.waveform.range_step
         near = np.abs(cells.waveform.range_axis() - of_frame) <= reach
@@ -334,10 +385,12 @@ def _part(moving: Complex, segments: PulseTimes, cells: DopplerCells) -> Estimat
     signal = _power_near(maps.sum(axis=2), near, cell * length)
     fast_signal = _power_near(maps[:, :, fast].sum(axis=2), near, cell * np.count_nonzero(fast))
     is_fast = not fast.any() or fast_signal > FAST_SHARE * signal
-    if not (signal > 0 and is_fast):
+    if signal <= 0:
         return nobody
+    if not is_fast:
+        return nobody._replace(snr=np.nan)
     snr = signal / (length * window_power * cells.signal) / nobody.noise
-    return nobody._replace(snr_db=10 * float(np.log10(snr)), ranges=ranges)
+    return nobody._replace(snr=snr, ranges=ranges)
 
 
 def _range_doppler(
@@ -386,8 +439,8 @@ def draw(fit: Fit, path: Path) -> None:
         floor.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
         floor.legend()
     snr = fit.snr_db
-    snrs.hist(snr, bins=min(20, max(3, snr.size // 2)), label="measured")
+    snrs.hist(snr, bins=min(20, max(3, snr.size // 2)), label="of each recording")
     snrs.axvline(snr.mean(), color="k", linestyle="--", label="mean")
-    snrs.set(xlabel="SNR of a raw sample (dB)", ylabel="parts")
+    snrs.set(xlabel="SNR of a raw sample (dB)", ylabel="recordings")
     snrs.legend()
     write_figure(figure, path, 90)

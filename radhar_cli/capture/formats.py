@@ -12,6 +12,7 @@ from radhar_cli.files.untrusted import regular_size
 # The first that recognises a file opens it; raw words, which have no mark, go by the name.
 FORMATS: list[CaptureFormat] = [
     dca1000.FORMAT,
+    dca1000.NETWORK,
     array_files.NPY,
     array_files.NPZ,
     array_files.MAT,

@@ -307,7 +307,7 @@ def _info(
     source: Source, s: CaptureSettings, segments: PulseTimes, notes: list[str], is_whole: bool
 ) -> RecordingInfo:
     """Describe the recording that is made of a capture, whose echoes may fill the whole band."""
-    content = _content(source, s, segments.prf, notes)
+    content = _content(source, s, segments.prf)
     if isinstance(content, Beat) and is_whole:
         content = Beat(content.timing, is_whole)
         notes.append(
@@ -346,7 +346,7 @@ def _radar_note(s: CaptureSettings, content: Content) -> dict[str, Any]:
     return note
 
 
-def _content(source: Source, s: CaptureSettings, prf_hz: float, notes: list[str]) -> Content:
+def _content(source: Source, s: CaptureSettings, prf_hz: float) -> Content:
     """Content of a capture whose keys are known: chirps, range profiles, or slow time."""
     assert s.carrier_hz is not None
     if source.samples is None:
@@ -361,16 +361,10 @@ def _content(source: Source, s: CaptureSettings, prf_hz: float, notes: list[str]
                 f"steps of range_step_m = {s.range_step_m:g} end at {last_m:.4g} m; should end at "
                 f"most at {FARTHEST_PROFILE_M:g} m: both keys are in m, 5 cm is 0.05"
             )
-        bandwidth_hz = s.bandwidth_hz
-        if bandwidth_hz is None:
-            bandwidth_hz = min(SPEED_OF_LIGHT / (2 * s.range_step_m), s.carrier_hz)
-            notes.append(
-                f"bandwidth_hz is unknown; {bandwidth_hz:.4g} Hz assumed, whose resolution is a "
-                "step of range"
-            )
+        assert s.bandwidth_hz is not None
         return RangeProfiles(
             s.carrier_hz,
-            bandwidth_hz,
+            s.bandwidth_hz,
             source.samples,
             prf_hz,
             s.first_range_m,
@@ -384,7 +378,7 @@ def _content(source: Source, s: CaptureSettings, prf_hz: float, notes: list[str]
 
 
 BEAT_KEYS = ("bandwidth_hz", "adc_rate_hz")
-PROFILE_KEYS = ("first_range_m", "range_step_m")
+PROFILE_KEYS = ("bandwidth_hz", "first_range_m", "range_step_m")
 HINT_ON_BINS = "range bins have first_range_m and range_step_m instead of adc_rate_hz"
 FARTHEST_PROFILE_M = 1000.0
 # {key: a value of it that a message shows}
@@ -459,6 +453,12 @@ def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
     also = ""
     if source.samples is not None and not s.are_profiles:
         also = f"; {HINT_ON_BINS}"
+    if s.are_profiles and s.range_step_m and "bandwidth_hz" in missing:
+        step_hz = SPEED_OF_LIGHT / (2 * s.range_step_m)
+        also += (
+            f"; bandwidth_hz is that of the pulse, of bins of a transform without padding "
+            f"{min(step_hz, s.carrier_hz or step_hz):.4g}"
+        )
     if "axes" in examples:
         also += f"; axes={examples['axes']} is a guess, which may be the other way round"
     raise CaptureError(

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from radhar_cli.capture.named_parts import find_pair, find_times
+from radhar_cli.capture.point_tables import refuse_names_of_points
 from radhar_cli.capture.settings import NO_TIMES, CaptureSettings
 from radhar_cli.errors import CaptureError, did_you_mean
 
@@ -45,6 +46,8 @@ def choose_arrays(
     Raises:
         CaptureError: a name is unknown, or several arrays could be meant; lists them.
     """
+    if len({shape for shape in shapes.values() if prod(shape) > 1}) == 1:
+        refuse_names_of_points(path, (name for name, shape in shapes.items() if prod(shape) > 1))
     named_times = None if settings.times == NO_TIMES else settings.times
     for name in filter(None, (settings.dataset, named_times, settings.imaginary)):
         if name not in shapes:

@@ -60,6 +60,8 @@ class CaptureSettings(Section):
     frame_delay_s: Annotated[float, Field(ge=0, le=1e6)] = 0.0  # from there to its first pulse
     # of frames of several subframes: number of the one that is read; None is all
     subframe: Annotated[int, Field(ge=0, le=3, strict=True)] | None = None
+    # of an acconeer recording of several subsweeps: number of the one that is read
+    subsweep: Annotated[int, Field(ge=0, le=63, strict=True)] | None = None
     # words from frame to frame of TI's stream where there are others than these pulses, and words
     # of a frame before the first of them
     frame_words: Annotated[int, Field(ge=1, le=2**40, strict=True)] | None = None
@@ -131,6 +133,11 @@ class CaptureSettings(Section):
         """Number of 16-bit words for one pulse of every transmitter in TI's stream."""
         sizes = self.transmitters, self.stored_receivers, self.samples or 1, 1 + self.complex
         return prod(sizes)
+
+    @property
+    def words_of_a_frame(self) -> int:
+        """Number of 16-bit words of a frame in TI's stream; of a pulse where there are none."""
+        return self.frame_words or self.words_of_a_pulse * (self.frame_pulses or 1)
 
     @property
     def stored_receivers(self) -> int:

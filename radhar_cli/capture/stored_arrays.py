@@ -92,6 +92,25 @@ class SwappedPairs(StoredArray):
         return self.array.read(key)[..., ::-1]
 
 
+class PointsOfArray(StoredArray):
+    """Array of which a part of the last axis is read.
+
+    Args:
+        array: the numbers.
+        points: entries of the last axis that are read.
+    """
+
+    def __init__(self, array: "StoredArray | NumberColumn", points: slice) -> None:
+        self.array, self.where, self.first = array, array.where, points.start
+        self.shape = (*array.shape[:-1], points.stop - points.start)
+        self.number, self.parts, self.chunk = array.number, array.parts, array.chunk
+
+    def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
+        """Read a block [..., part]."""
+        first, stop, _ = key[-1].indices(self.shape[-1])
+        return self.array.read((*key[:-1], slice(self.first + first, self.first + stop)))
+
+
 class FrameFiles(StoredArray):
     """Arrays of one shape, a frame each, as an array whose first axis numbers the frames.
 

@@ -24,11 +24,14 @@ from radhar_cli.capture.named_parts import (
     find_times,
     unit_of_angle,
 )
-from radhar_cli.capture.pulse_clock import replace_clocks, seconds_of
+from radhar_cli.capture.point_tables import refuse_array_of_points, refuse_names_of_points
+from radhar_cli.capture.pulse_clock import seconds_of
 from radhar_cli.capture.settings import NO_TIMES, AxisName, CaptureSettings
 from radhar_cli.capture.source import CaptureFiles, CaptureFormat, MissingKeysError, Source
 from radhar_cli.capture.stored_arrays import FrameFiles, StoredArray
 from radhar_cli.errors import CaptureError, did_you_mean
+from radhar_cli.files import plain_text
+from radhar_cli.files.clocks import replace_clocks
 from radhar_cli.files.untrusted import regular_size
 from radhar_cli.numerics.arrays import Complex, Float
 
@@ -39,7 +42,6 @@ FEWEST_COLUMNS = 8  # of a matrix, a pulse a line, whose columns have no names
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc")
 HEADER_OF_GLASGOW = 4  # numbers
 EPOCH_S = 1e9  # seconds from 1970 to 2001, before which nobody has recorded
-BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 _SPLIT = re.compile(r"[,;\t ]+")
 _IMAGINARY = re.compile(r"[ij]\s*\)?\s*$", re.IGNORECASE)
 _REAL = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -72,27 +74,28 @@ class TextSignal(NamedTuple):
 
 def _is_text(path: Path, head: bytes) -> bool:
     """Whether a file is text by its name and its first bytes."""
-    is_wide = head[:2] in (b"\xff\xfe", b"\xfe\xff")
-    return path.suffix.lower() in SUFFIXES and (is_wide or b"\0" not in head)
+    if path.suffix.lower() not in SUFFIXES:
+        return False
+    try:
+        plain_text.decode_text(head)
+    except ValueError:
+        return False
+    return True
 
 
 def _decode(path: Path) -> str:
-    """Text of a file in UTF-8 or UTF-16, or in Latin-1, in which numbers are the same.
+    """Text of a file.
 
     Raises:
-        CaptureError: it is too large.
+        CaptureError: it is too large, or no text.
     """
     size = regular_size(path)
     if size > MAX_TEXT:
         raise CaptureError(f"{path}: has {size} bytes; should have at most {MAX_TEXT}")
-    data = path.read_bytes()
-    encoding = next((name for mark, name in BYTE_ORDERS.items() if data.startswith(mark)), "utf-8")
     try:
-        return data.decode(encoding)
-    except UnicodeDecodeError:
-        if encoding == "utf-16":
-            raise CaptureError(f"{path}: cannot be read as text in UTF-16") from None
-        return data.decode("latin-1")
+        return plain_text.decode_text(path.read_bytes())
+    except ValueError as error:
+        raise CaptureError(f"{path}: {error}") from None
 
 
 def _open_text(capture: CaptureFiles) -> Source:
@@ -173,6 +176,7 @@ def _signal_of(path: Path, lines: Sequence[str], settings: CaptureSettings) -> T
         return _choose_columns(path, dict(zip(layout.names, table.T, strict=True)), settings)
     if table.shape[1] == 1:
         return TextSignal(table[:, 0])
+    refuse_array_of_points(StoredArray(str(path), partial(np.asarray, table)))
     if table.shape[1] == 2 and np.isrealobj(table) and settings.axes is None:
         return TextSignal(table[:, 0] + 1j * table[:, 1])
     if table.shape[1] < FEWEST_COLUMNS and settings.axes is None:
@@ -329,6 +333,7 @@ def _choose_columns(
     Raises:
         CaptureError: nothing tells which columns the samples are.
     """
+    refuse_names_of_points(path, columns)
     named_times = None if settings.times == NO_TIMES else settings.times
     for name in filter(None, (settings.dataset, settings.imaginary, named_times)):
         if name not in columns:

@@ -1,6 +1,7 @@
 """`radhar process`: the maps of a recording, processed as a config describes."""
 
 import shlex
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -19,6 +20,7 @@ from radhar_cli.errors import FolderError
 if TYPE_CHECKING:
     from radhar_cli.capture.recording import RecordingInfo
     from radhar_cli.capture.tracking import TorsoTrack
+    from radhar_cli.config import Config
 
 # A track that stays within these, m and m/s, moves less than somebody who breathes.
 RESTING_M, RESTING_MPS = 0.01, 0.01
@@ -29,7 +31,10 @@ def process(
         Path, typer.Argument(help="Recording written by import or simulate --raw.")
     ],
     config: Annotated[
-        Path | None, typer.Option(help="YAML config, whose processing, image and maps are used.")
+        Path | None,
+        typer.Option(
+            help="YAML config, whose processing, image and maps are used; slow time needs none."
+        ),
     ] = None,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="Folder for the results.")] = None,
     set_: Overrides = None,
@@ -62,16 +67,17 @@ def process(
     from radhar_cli.capture.chain import maps_of, part_of
     from radhar_cli.capture.content import radar_section
     from radhar_cli.capture.recording import Recording
+    from radhar_cli.capture.usual_config import has_usual_config
     from radhar_cli.config import resolved
-    from radhar_cli.config.data_set import ConfigOfRecordings, ProcessedConfig
-    from radhar_cli.config.reading import load_config, validated
+    from radhar_cli.config.data_set import ProcessedConfig
+    from radhar_cli.config.reading import validated
     from radhar_cli.scene import nominal_scene
     from radhar_cli.scene_checks.unused_keys import unused_keys
     from radhar_cli.single_scene.request import map_names
 
-    if config is None or out is None:
+    if out is None or (config is None and not has_usual_config(recording)):
         raise _describe_missing(recording, config, out)
-    loaded = load_config(config, set_ or [], ConfigOfRecordings)
+    loaded = _load_config(recording, config, set_ or [])
     fixed = nominal_scene(loaded, loaded.every_class[0]).config
     names = loaded.maps if maps is None else map_names(maps.split(","), loaded)
     _require_folder(out, overwrite)
@@ -84,7 +90,7 @@ def process(
         radar = radar_section(document["radar"], info.content)
         document |= {"maps": signals or ("rtm",), "radar": radar}
         if signals or fixed.radar.has_range:  # else no map but those of frames
-            validated(ProcessedConfig, document, str(config), *loaded._places)
+            validated(ProcessedConfig, document, str(config or "--set"), *loaded._places)
         results = maps_of(opened, fixed, signals, start, stop, receiver)
         if frames:
             products, results.board = frames_of_recording(opened, fixed, frames, start, stop)
@@ -101,6 +107,18 @@ def process(
     if results.track is not None:
         tell(_describe_track(results.track))
     report(files=written, gaps=gaps, warnings=results.notes, maps=names)
+
+
+def _load_config(recording: Path, config: Path | None, overrides: Sequence[str]) -> "Config":
+    """Read the config, or take the usual one of slow time, which is said."""
+    from radhar_cli.capture.usual_config import usual_config
+    from radhar_cli.config.data_set import ConfigOfRecordings
+    from radhar_cli.config.reading import load_config
+
+    if config is not None:
+        return load_config(config, overrides, ConfigOfRecordings)
+    tell("slow time without --config: maps stft, without what stands (processing.clutter mean)")
+    return usual_config(recording, overrides)
 
 
 def _describe_missing(recording: Path, config: Path | None, out: Path | None) -> FolderError:

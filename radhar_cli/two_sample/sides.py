@@ -14,6 +14,7 @@ from radhar_cli.learning.images.image_set import ImageSet, Resized
 from radhar_cli.learning.images.opening import is_h5, open_images
 from radhar_cli.numerics.arrays import Float, Index, Levels
 
+MAPS = "maps.h5"  # that `radhar process` writes
 MAX_SIDE = 512  # px; larger images are brought there
 ASSUMED_DB = 40.0  # that levels span where a file does not say
 TWO_VALUED = 8  # images looked at to tell masks from grey
@@ -125,6 +126,13 @@ def open_sides(
 
 def _open(path: Path, map_name: str | None) -> ImageSet:
     """Open a data set; a foreign tree, which names no map, has the one that it has."""
+    results = path / MAPS if path.is_dir() else path
+    if results.name == MAPS and results.is_file():
+        raise FolderError(
+            f"{results}: holds the maps of one recording, and is no data set: `radhar generate "
+            "CONFIG --recordings MANIFEST -o FOLDER` makes a data set of recordings "
+            "(docs/guide/measured.md)"
+        )
     foreign = path.is_dir() and not is_h5(path) and map_of_folder(path) is None
     if foreign and map_name is not None and not (path / map_name).is_dir():
         map_name = None

@@ -236,3 +236,20 @@ def test_damaged_headers_are_refused_in_one_line_or_imported(
     with suppress(RadharError):
         read = read_settings(path, [])
         import_capture([tmp_path / "adc_data_Raw_0.bin"], tmp_path / "o.h5", read, str(path))
+
+
+@pytest.mark.parametrize("factor", [2, 4])
+def test_chirps_that_are_joined_are_told(tmp_path: Path, factor: int) -> None:
+    """By a header of so many times the samples; of the right one nothing is said."""
+    n, pulses = np.arange(64)[:, None], np.arange(256)
+    still = np.exp(-2j * np.pi * (1.3 * n / 64 + 0 * pulses))
+    moving = 0.1 * np.exp(-2j * np.pi * (6.4 * n / 64 - 0.05 * pulses))
+    x = np.stack([(still + moving) * gain for gain in (0.5, 0.5j, -0.4, 0.3)])
+    words(x, 2).tofile(tmp_path / "adc_data_Raw_0.bin")
+    for samples in (64, 64 * factor):
+        changed = {"numAdcSamples": samples, "freqSlopeConst_MHz_usec": 60 * 64 / samples}
+        times = {"rampEndTime_usec": 180.0, "framePeriodicity_msec": 80.0}
+        write_studio(tmp_path / "radar.mmwave.json", RADAR, **changed, **times)
+        with imported(tmp_path) as recording:
+            told = " ".join(recording.info.source.findings)
+        assert ("samples = 64 may be right" in told) is (samples != 64)

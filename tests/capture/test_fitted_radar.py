@@ -12,6 +12,7 @@ from radhar_cli.capture.fitted_radar import differing_key, frames_in
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config import load_config
 from radhar_cli.config.radar import ArrayRadar
+from radhar_cli.motion.skeleton import TORSO
 from radhar_cli.radar.pulse_times import PulseTimes
 
 CHIRPS = {
@@ -34,6 +35,8 @@ RADARS = {
                    "bandwidth_hz": 1e9,
                    "frame": {"chirps": 32, "interval_s": 4e-3, "period_s": 0.2},
                    "array": {"rx": [[0, 0], [1, 0]]}},
+    "sfcw_fine": {"waveform": "sfcw", "steps": 160, "dwell_s": 1e-5, "carrier_hz": 2e9,
+                  "bandwidth_hz": 1e9, "prf_hz": 500},
     "cw_array": {"waveform": "cw", "carrier_hz": 24e9, "prf_hz": 4000, "frame": {"chirps": 64},
                  "array": {"rx": [[0, 0], [1, 0]]}},
     "cw_iq": {"waveform": "cw", "carrier_hz": 24e9, "prf_hz": 4000},
@@ -116,6 +119,51 @@ def test_the_snr_comes_back_as_received(tmp_path, name, snr_db, seed):
     assert found == pytest.approx(snr_db, abs=1.5)
     has_beam = name not in ("fmcw", "saw")
     assert ("snr_reference" in yaml.safe_load(fitted.read_text())) == has_beam
+
+
+# {radar: SNR of a walk, and where it begins, m}
+WALKS = {
+    "fmcw": (12, 8),
+    "array_real": (10, 7),
+    "sfcw_fine": (8, 8),
+    "impulse_iq": (30, 5),
+    "cw_iq": (10, 8),
+    "board": (-5, 5.5),
+}
+
+
+@pytest.mark.parametrize("name", WALKS)
+def test_a_walk_counts_as_a_whole(tmp_path, name):
+    """Most of its power is in its last second, when the walker is near (A^2 goes with R^-4)."""
+    snr_db, begin_m = WALKS[name]
+    motion = {"range_m": begin_m, "angle_deg": 180, "speed_mps": 1}
+    more = {"snr_reference": "received", "duration_s": 5, "motion": motion, "maps": ["stft"]}
+    found, fitted = fitted_snr(written(tmp_path, name, snr_db, **more), tmp_path / "raw", 1)
+    assert found == pytest.approx(snr_db, abs=2)
+    if name not in ("cw_iq", "board"):  # without ranges, and with a track that is unsure
+        with h5py.File(tmp_path / "raw/scene.h5") as scene:
+            torso = scene["truth/positions"][:, TORSO]
+        expected = np.percentile(np.linalg.norm(torso[:, :2], axis=1), [5, 95])
+        ranges = yaml.safe_load(fitted.read_text())["motion"]["place"]["range_m"]["uniform"]
+        assert ranges == pytest.approx(expected, abs=0.3)
+
+
+def test_the_snr_of_parts_is_their_power_mean(tmp_path):
+    """Of a recording of two parts, and of recordings the mean of their decibels."""
+    near = {"duration_s": 9, "motion": {"range_m": 11, "angle_deg": 180, "speed_mps": 1}}
+    config = written(tmp_path, "cw_iq", 12, snr_reference="received", **near)
+    found, _ = fitted_snr(config, tmp_path / "raw", 1)
+    assert found == pytest.approx(12, abs=2)
+
+
+def test_complex_and_real_recordings_are_refused_as_such(tmp_path):
+    paths = []
+    for name in ("cw_iq", "cw_real"):
+        ok("simulate", written(tmp_path, name, 20), "--raw", "--no-figures", "-o", tmp_path / name)
+        paths.append(tmp_path / name / "recording.h5")
+    done = radhar("fit", *paths, "-o", tmp_path / "fitted.yaml")
+    assert done.returncode == 2
+    assert f"has real samples; should have complex ones, as {paths[0]}" in done.stderr
 
 
 def test_a_walker_in_the_far_half_of_the_band_counts(tmp_path):

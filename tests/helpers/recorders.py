@@ -37,30 +37,41 @@ def x4_waves(bins=1024, pulses=64):
     return (wave + 0.001 * noise).astype("f4")
 
 
-def write_acconeer(path, sweeps=16, frames=20, root="session"):
-    """Write a recording of acconeer's Exploration Tool: one who comes from 1.2 m at 0.5 m/s."""
+def write_acconeer(path, sweeps=16, frames=20, root="session", profile=3, sensors=1, halves=False):
+    """Write a recording of acconeer's Exploration Tool: one who comes from 1.2 m at 0.5 m/s.
+
+    Of two halves the second subsweep has a profile 5 and steps of twice the length.
+    """
+    subsweeps = [
+        {"start_point": 200, "step_length": 24, "num_points": 40, "profile": profile, "hwaas": 8}
+    ]
+    steps = 24 * np.arange(40)
+    if halves:
+        subsweeps[0]["num_points"] = 20
+        subsweeps += [{**subsweeps[0], "start_point": 440, "step_length": 48, "num_points": 9,
+                       "profile": "PROFILE_5"}]  # fmt: skip
+        steps = np.concatenate([steps[:20], 240 + 48 * np.arange(9)])
     sensor = {
-        "subsweeps": [
-            {"start_point": 200, "step_length": 24, "num_points": 40, "profile": 3, "hwaas": 8}
-        ],
+        "subsweeps": subsweeps,
         "sweeps_per_frame": sweeps, "sweep_rate": 1000.0 if sweeps > 1 else None,
         "frame_rate": 20.0, "continuous_sweep_mode": False,
     }  # fmt: skip
-    ranges = 0.0025 * (200 + 24 * np.arange(40))
+    ranges = 0.0025 * (200 + steps)
     times = np.arange(frames)[:, None] / 20 + np.arange(sweeps) / 1000
     r = 1.2 - 0.5 * times[..., None]
     x = 3000 * np.exp(-((ranges - r) ** 2) / 0.01 - 4j * np.pi * 60.5e9 / C * r)
     values = np.zeros(x.shape, [("real", "<i2"), ("imag", "<i2")])
     values["real"], values["imag"] = np.round(x.real), np.round(x.imag)
     with h5py.File(path, "w") as file:
-        file[f"{root}/group_0/entry_0/result/frame"] = values
-        file[f"{root}/group_0/entry_0/result/tick"] = np.arange(frames) * 50000
-        file[f"{root}/group_0/entry_0/result/temperature"] = np.full(frames, 25, "<i2")
-        file[f"{root}/group_0/entry_0/metadata"] = json.dumps(
-            {"base_step_length_m": 0.0025, "max_sweep_rate": 2000.0, "tick_period": 50}
-        )
+        for entry in (f"{root}/group_0/entry_{n}" for n in range(sensors)):
+            file[f"{entry}/result/frame"] = values
+            file[f"{entry}/result/tick"] = np.arange(frames) * 50000
+            file[f"{entry}/result/temperature"] = np.full(frames, 25, "<i2")
+            file[f"{entry}/metadata"] = json.dumps(
+                {"base_step_length_m": 0.0025, "max_sweep_rate": 2000.0, "tick_period": 50}
+            )
         file[f"{root}/session_config"] = json.dumps(
-            {"groups": [{"1": sensor}], "update_rate": None}
+            {"groups": [{str(n + 1): sensor for n in range(sensors)}], "update_rate": None}
         )
         file["server_info"] = json.dumps({"ticks_per_second": 1000000})
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from radhar_cli.files.clocks import seconds_of_texts
 from radhar_cli.motion.files.image_landmarks import share_in_picture
-from radhar_cli.motion.files.instants import seconds_of_texts
 from radhar_cli.motion.files.json_bodies import (
     BODIES,
     JOINTS,

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.instants import dates_of
+from radhar_cli.files.clocks import seconds_of_texts
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.keypoints import (
     TIME_UNITS,
@@ -272,12 +272,18 @@ def _times(archive: zipfile.ZipFile, members: Iterable[str], where: str) -> Floa
             continue
         times = _read_array(archive, key, MAX_BYTES // 16, where).ravel()
         if times.dtype.kind in "US":
-            times = dates_of(times)
+            instants = seconds_of_texts(_texts_of(times))
+            return times if instants is None else instants
         if times.dtype.kind == "M":
             nanoseconds = times.astype("datetime64[ns]").astype(np.int64)
             return np.asarray((nanoseconds - nanoseconds[:1]) * 1e-9)
         return times if seconds is None or times.dtype.kind not in "iuf" else times * seconds
     return None
+
+
+def _texts_of(values: NDArray[Any]) -> list[str]:
+    """Texts of an array [N] of texts, or of bytes."""
+    return [v.decode("ascii", "replace") if isinstance(v, bytes) else v for v in values.tolist()]
 
 
 def _first_of(keys: Iterable[str], members: Iterable[str]) -> str | None:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from radhar_cli.files import plain_text
 from radhar_cli.motion.files.recording import MAX_FRAMES, MAX_JOINTS, motion_file_error
 from radhar_cli.numerics.arrays import Float
 
@@ -37,16 +38,10 @@ def decode_text(data: bytes, where: str) -> str:
     """
     if len(data) > MAX_TEXT:
         raise motion_file_error(where, f"is {len(data)} bytes; should be at most {MAX_TEXT}")
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return data.decode("utf-16", "replace")
-    if b"\0" in data:
-        odd, even = data[1:2000:2], data[:2000:2]
-        if 0 < len(odd) == odd.count(0) and not even.count(0):
-            return data.decode("utf-16-le", "replace")
-        if 0 < len(even) == even.count(0) and not odd.count(0):
-            return data.decode("utf-16-be", "replace")
-        raise motion_file_error(where, "is not a text")
-    return data.decode("utf-8-sig", "replace")
+    try:
+        return plain_text.decode_text(data)
+    except ValueError as error:
+        raise motion_file_error(where, str(error)) from None
 
 
 def split_cells(text: str, where: str) -> CellTable:

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from radhar_cli.motion.files.instants import seconds_of_texts
+from radhar_cli.files.clocks import seconds_of_texts
 from radhar_cli.motion.files.keypoints import TIME_UNITS, Keypoints, make_keypoints
 from radhar_cli.motion.files.long_tables import find_long_heading, read_long
 from radhar_cli.motion.files.recording import MAX_JOINTS, motion_file_error

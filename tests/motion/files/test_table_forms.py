@@ -1,5 +1,6 @@
 """Tables that laboratories and cameras export: joints of a known walker come back from each."""
 
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import joint_set_errors
@@ -14,6 +15,7 @@ from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import make_clip
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.names import WANTED
+from radhar_cli.motion.files.text_cells import decode_text
 from radhar_cli.motion.files.text_tables import read_table
 
 SETS = ("coco17", "openpose25", "h36m17", "kinect2_25", "smpl24", "blazepose33", "azure32")
@@ -65,6 +67,27 @@ def test_encodings(tmp_path: Path) -> None:
     expected = clip_of(tmp_path / "x.csv", text.encode()).positions
     for encoding in ("utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "latin-1"):
         assert (clip_of(tmp_path / "x.csv", text.encode(encoding)).positions == expected).all()
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-16-le", "utf-16-be", "latin-1"])
+def test_names_keep_their_letters(encoding: str) -> None:
+    data = "Schulter_für_x,Schulter_für_y,Schulter_für_z\n1,2,3\n".encode(encoding)
+    assert "Schulter_für_y" in decode_text(data, "x.csv")
+
+
+@pytest.mark.parametrize(
+    "begin", ["01/05/2026 23:59:59.900", "27/10/2026 11:59:59.900", "2026-05-01 23:59:59.900"]
+)
+def test_dates_of_frames_pass_midnight(tmp_path: Path, begin: str) -> None:
+    lines = csv_text(COCO, names("coco17")).splitlines()
+    form = "%Y-%m-%d %H:%M:%S.%f" if begin[4] == "-" else "%d/%m/%Y %H:%M:%S.%f"
+    first = datetime.strptime(begin, form)
+    dated = [
+        f"{(first + timedelta(seconds=n / RATE)).strftime(form)},{row.partition(',')[2]}"
+        for n, row in enumerate(lines[1:])
+    ]
+    clip = clip_of(tmp_path / "x.csv", "\n".join([lines[0], *dated]).encode())
+    assert clip.rate == pytest.approx(RATE, rel=2e-3)
 
 
 def test_only_pixels_of_a_two_line_table(tmp_path: Path) -> None:

@@ -4,10 +4,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import acos, exp, log, radians, sqrt
 
-from radhar_cli.motion.skeleton import JOINTS, links
-
-GROWN_UP = 1.5  # stature from which on people count as grown up, m
-SHORTER_LEGS = 0.08  # loss of leg length of a child of 1.0 m beside a grown-up, over that
+from radhar_cli.motion.skeleton import (
+    ANKLE_HEIGHT,
+    GROWN_UP,
+    JOINTS,
+    SHORTER_LEGS,
+    childlike,
+    leg_length,
+    links,
+)
 
 
 @dataclass(frozen=True)
@@ -15,13 +20,12 @@ class Physique:
     """A body with the paper's links; heights and widths are fractions of the stature.
 
     Ankle height: Winter, Biomechanics and Motor Control, after Drillis and Contini. Hip width: CMU
-    motion capture, subject 02. Who is smaller than 1.5 m counts as a child, with shorter legs and a
-    longer trunk: sitting height is 56 % of the stature at 1.0 m, 52 % of grown-ups' (Snyder et al.,
-    Anthropometry of Infants, Children, and Youths, UM-HSRI-77-17, 1977); linear between them.
+    motion capture, subject 02. Children have shorter legs and a longer trunk, as
+    `radhar_cli.motion.skeleton` has them.
     """
 
     stature: float  # m
-    ankle_height: float = 0.039  # height of the ankle above the floor
+    ankle_height: float = ANKLE_HEIGHT  # height of the ankle above the floor
     # distance of a hip joint beside the hip point; at rest the feet are below the hip joints
     hip_width: float = 0.052
     ball: float = 0.10  # distance of the ball of the foot ahead of the ankle
@@ -42,7 +46,7 @@ class Physique:
     @property
     def childlike(self) -> float:
         """Share of the way from a grown-up's proportions to those of a child of 1.0 m."""
-        return min(max((GROWN_UP - self.stature) / (GROWN_UP - 1.0), 0.0), 1.0)
+        return childlike(self.stature)
 
     @property
     def smallness(self) -> float:
@@ -64,7 +68,7 @@ class Physique:
     @cached_property
     def leg(self) -> float:
         """Length of the thigh, and of the shank, m."""
-        return -self._links["right_knee"][2] * (1 - SHORTER_LEGS * self.childlike)
+        return leg_length(self.stature) / 2
 
     @cached_property
     def arm(self) -> float:

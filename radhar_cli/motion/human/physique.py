@@ -29,9 +29,12 @@ class Physique:
     # distance of a hip joint beside the hip point; at rest the feet are below the hip joints
     hip_width: float = 0.052
     ball: float = 0.10  # distance of the ball of the foot ahead of the ankle
-    standing: float = 0.997  # length of a standing leg over thigh and shank together
-    straightest: float = 0.995  # the longest that a leg gets, likewise (a knee of 11.5 degrees)
-    softness: float = 160.0  # k of the soft minimum that sets the pelvis's height, 1/m
+    # Length of a standing leg, and the longest that a leg gets, over thigh and shank together:
+    # people stand with knees bent by 5 degrees.
+    standing: float = 0.9992
+    straightest: float = 0.9998
+    # k of the soft minimum that sets the pelvis's height at rest, over the stature
+    softness: float = 4000.0
     elbow: float = radians(8)  # flexion at rest, rad
     weight: float | None = None  # kg; 26 kg/m^2 times the stature squared where it is not given
 
@@ -110,6 +113,11 @@ class Physique:
         """Longest distance from hip joint to ankle that a leg gets, m."""
         return self.straightest * 2 * self.leg
 
+    @property
+    def sharpness(self) -> float:
+        """K of the soft minimum that sets the pelvis's height at rest, 1/m."""
+        return self.softness / self.stature
+
     @cached_property
     def tallest(self) -> float:
         """Height of the hip above standing legs, m."""
@@ -121,7 +129,7 @@ class Physique:
 
         It is the soft minimum of `tallest` and of both legs at full reach.
         """
-        k, stretched = self.softness, self.ankle + self.reach
+        k, stretched = self.sharpness, self.ankle + self.reach
         return stretched - log(2 + exp(k * (stretched - self.tallest))) / k
 
     @cached_property

@@ -47,7 +47,7 @@ from radhar_cli.numerics.arrays import Float
 
 START_PHASE = 0.5  # of the stride: the right foot goes first
 EARLIEST_SWING = 0.3
-FIRST_SIZE = 0.72  # roll and lift of a foot's first swing from rest over those of its length
+FIRST_SIZE = 0.55  # roll and lift of a foot's first swing from rest over those of its length
 HIP = 0.997  # height h of the hip in Rv = v/h above the ankles, over thigh and shank together
 # Times in which knees bend at the beginning of a walk, and straighten at its end, over those of
 # gaining speed and of a stride.

@@ -57,7 +57,6 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("trip",), ("tripping",)),
     **dict.fromkeys(("limp", "antalgic_gait", "hobbling", "limping_leg"), ("limping",)),
     **dict.fromkeys(("walking_with_cane", "walking_with_crutch"), ("walking_with_stick",)),
-    **dict.fromkeys(("walking_with_rollator", "walking_with_frame"), ("walking_with_walker",)),
     **dict.fromkeys(("carry", "carrying_box", "carrying_bag", "carry_box"), ("carrying",)),
     **dict.fromkeys(("getting_up_from_floor", "get_up_from_floor"), ("getting_up",)),
     **dict.fromkeys(("get_up_from_bed", "rise_from_bed"), ("getting_up_from_bed",)),
@@ -176,6 +175,20 @@ WITH_KEY: dict[str, tuple[str, str]] = {
     **dict.fromkeys(
         ("walking_sideways", "walking_across", "walking_tangentially"),
         ("walking", "motion.angle_deg: 90, across the line of sight"),
+    ),
+    **dict.fromkeys(
+        (
+            "walking_with_rollator",
+            "rollator",
+            "wheeled_walker",
+            "rolling_walker",
+            "walking_behind_rollator",
+        ),
+        ("walking_with_walker", "motion.aids.rollator: 1, one that is rolled"),
+    ),
+    **dict.fromkeys(
+        ("walking_with_frame", "walking_frame", "zimmer_frame", "zimmer", "pickup_walker"),
+        ("walking_with_walker", "motion.aids.rollator: 0, a frame that is lifted"),
     ),
 }
 # Movements that no model of ours makes, nor one that means the same.

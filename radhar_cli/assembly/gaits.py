@@ -49,7 +49,10 @@ def other_gaits(person: Person, gait: Gait, place: int) -> dict[str, Gait]:
         "limping": limper,
         "walking_with_stick": walking_with_stick(with_stick, bool(hand < OTHER_HAND)),
         "walking_with_walker": walking_with_walker(
-            _slow_down(gait, aids.walker_pace), aids.rollator > 0.5, radians(aids.walker_pitch_deg)
+            _slow_down(gait, aids.walker_pace),
+            aids.rollator > 0.5,
+            radians(aids.walker_pitch_deg),
+            person.subject.height_m,
         ),
         "carrying": carrying(
             _slow_down(gait, load.pace), (int(bag < 0.5) if load.bag > 0.5 else None)

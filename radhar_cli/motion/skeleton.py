@@ -11,6 +11,13 @@ REFERENCE_HEIGHT = 1.8
 REFERENCE_WEIGHT = 84.24
 BODY_MASS_INDEX = 26.0
 CHILDREN = (1.1, 1.35, 1.5), (15.5, 17.0, BODY_MASS_INDEX)  # statures, m, and kg/m^2
+# Proportions of people who stand on the floor, of the human model and of motion files. Who is
+# smaller than GROWN_UP counts as a child, with shorter legs and a longer trunk: sitting height is
+# 56 % of the stature at SMALL_CHILD, 52 % of grown-ups' (Snyder et al., Anthropometry of Infants,
+# Children, and Youths, UM-HSRI-77-17, 1977); linear between them.
+SMALL_CHILD, GROWN_UP = 1.0, 1.5  # statures, m
+SHORTER_LEGS = 0.08  # loss of leg length of a child of 1.0 m beside a grown-up, over that
+ANKLE_HEIGHT = 0.039  # of the ankle above the floor, over the stature (Winter)
 
 
 class Joint(NamedTuple):
@@ -72,3 +79,25 @@ def standing_height(height: float) -> float:
 def thigh_length(height: float) -> float:
     """Length (m) of the link from hip to knee."""
     return 0.45 * (height / REFERENCE_HEIGHT)
+
+
+def childlike(stature: float) -> float:
+    """Share of the way from a grown-up's proportions to those of a child of 1.0 m."""
+    return min(max((GROWN_UP - stature) / (GROWN_UP - SMALL_CHILD), 0.0), 1.0)
+
+
+def leg_length(stature: float) -> float:
+    """Length (m) of thigh and shank together of people who stand on the floor."""
+    return 2 * thigh_length(stature) * (1 - SHORTER_LEGS * childlike(stature))
+
+
+def stature_of_leg(length: float) -> float:
+    """Stature (m) of people whose `leg_length` (m) is given."""
+    if length >= leg_length(GROWN_UP):
+        return length / (2 * thigh_length(1.0))
+    if length <= leg_length(SMALL_CHILD):
+        return SMALL_CHILD * length / leg_length(SMALL_CHILD)
+    # Between them the length is linear + square * stature, times the stature.
+    square = 2 * thigh_length(1.0) * SHORTER_LEGS / (GROWN_UP - SMALL_CHILD)
+    linear = 2 * thigh_length(1.0) - GROWN_UP * square
+    return (sqrt(linear**2 + 4 * square * length) - linear) / (2 * square)

@@ -34,6 +34,14 @@ def test_the_table_leads_to_movements_and_is_no_list_of_them() -> None:
         ("Picking up", "did you mean 'grabbing'?"),
         ("boxing", "did you mean 'punching'?"),
         ("walking_towards", "it is 'walking' with motion.angle_deg: 180, towards the radar"),
+        (
+            "rollator",
+            "it is 'walking_with_walker' with motion.aids.rollator: 1, one that is rolled",
+        ),
+        (
+            "zimmer frame",
+            "it is 'walking_with_walker' with motion.aids.rollator: 0, a frame that is lifted",
+        ),
         ("walking away", "it is 'walking' with motion.angle_deg: 0, away from the radar"),
         ("left front lunge", "did you mean 'left_lunge'?"),
         ("left limb extension", "'raising_left_arm_and_leg' comes near it"),

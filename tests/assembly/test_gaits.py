@@ -138,3 +138,26 @@ def test_slow_gaits_are_slower_than_walks(slug: str) -> None:
     p = moving(nominal_scene(config, activity_named(slug))).torso(np.array([1.5, 4.5]))
     if slug != "tripping":
         assert np.hypot(*(p[:2, 0, 1] - p[:2, 0, 0])) / 3 < 1.25
+
+
+WALKS = ("walking", "limping", "walking_with_stick", "walking_with_walker", "carrying")
+
+
+@pytest.mark.parametrize("slug", WALKS)
+@pytest.mark.parametrize("stature", [1.0, 1.4, 1.75, 2.1])
+def test_knees_of_walkers_bend_as_those_of_people(slug: str, stature: float) -> None:
+    """About 60 to 65 degrees in the swing; behind a walker a leg is never straighter than 15."""
+    config = people(slug, subject__height_m=stature)
+    largest, least = [], []
+    for index in range(6):
+        motion = moving(draw_scene(config, activity_named(slug), index))
+        p, hips = motion.positions(T), motion.hip_joints(T)
+        for side, name in enumerate(("right", "left")):
+            knee, ankle = (p[:, JOINTS.index(f"{name}_{part}")] for part in ("knee", "ankle"))
+            cosine = ((knee - hips[:, side]) * (ankle - knee)).sum(axis=0) / motion.person.leg**2
+            flexion = np.degrees(np.arccos(cosine))
+            largest.append(flexion.max())
+            least.append(flexion.min())
+    assert 56 < np.median(largest) < 71
+    assert max(largest) < 79
+    assert max(least) < 17

@@ -29,13 +29,13 @@ from radhar_cli.motion.files.recording import MotionRecording, motion_file_error
 from radhar_cli.motion.files.side_swaps import describe_side_swaps, undo_side_swaps
 from radhar_cli.motion.files.travel import travel_by_feet
 from radhar_cli.motion.files.up_axis import UPRIGHT, find_up_axis
-from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.motion.skeleton import ANKLE_HEIGHT, JOINTS, stature_of_leg
 from radhar_cli.numerics.arrays import Float
 
-LEG = 0.491  # thigh and shank over the stature (Winter, after Drillis and Contini)
-ANKLE = 0.039  # height of the ankle over the stature
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inches": 0.0254, "CMU's 0.0564 m": 0.0254 / 0.45}
 STATURES = (0.9, 2.3)  # m, of people
+# m, of people in a unit that nothing tells: those in one unit are hardly giants in another
+LIKELY_STATURES = (0.96, 2.3)
 STAYS = 0.03  # most that hips move in the plane which stay where they are, over the stature
 SLIPS = 0.1  # least speed of a foot that is not at rest, statures per second
 BENT = 0.01  # least distance of knees before the line from hip to ankle, over the stature
@@ -65,7 +65,7 @@ class Clip:
     """The thirteen joints, then the right and left hip joint, over the frames of a file."""
 
     where: str  # name of the file in messages
-    positions: Float  # [frames, 15, 3], over the stature; z is up, the lowest ankle at 0.039
+    positions: Float  # [frames, 15, 3], over the stature; z is up, lowest ankle ANKLE_HEIGHT
     rate: float  # frames per second
     hip_joints: bool  # whether the file has them; else they are at the hip
     stature: float  # of the recorded person by the legs, m
@@ -152,9 +152,11 @@ def make_clip(
     blends = [mean for mean in (mean or means[_HIP] for mean in means) if mean is not None]
     frames = read_frames(file, blends, rate)
     refuse_impossible_body(frames.positions, file.where)
-    units = _stature_in_units(frames.positions)
-    stature, unit_remarks = _stature(units, unit, file.unit, file.where)
-    first, last, apart = find_poses_apart(frames.positions, frames.rate, stature / units)
+    leg = _leg_in_units(frames.positions, has_hip_joints)
+    unit_m, unit_remarks = _find_unit(leg, unit, file.unit, file.where)
+    stature = stature_of_leg(leg * unit_m)
+    units = stature / unit_m
+    first, last, apart = find_poses_apart(frames.positions, frames.rate, unit_m)
     frames = frames.cut(first, last)
     p, exchanged = undo_side_swaps(frames.positions) if has_hip_joints else (frames.positions, 0)
     remarks += describe_side_swaps(exchanged)
@@ -170,7 +172,7 @@ def make_clip(
     p = _smooth(p, frames.rate, low_pass) / units
     if travel == "feet":
         p += travel_by_feet(p[:, _ANKLES], frames.rate)[:, None]
-    p[..., 2] += ANKLE - p[:, _ANKLES, 2].min()
+    p[..., 2] += ANKLE_HEIGHT - p[:, _ANKLES, 2].min()
     mirrored = _is_mirrored(p)
     if mirrored:
         p[..., 1] *= -1
@@ -215,11 +217,14 @@ def _look_for_pictures(
     return describe_growth(p)
 
 
-def _stature_in_units(p: Float) -> float:
-    """Stature by the legs of positions [frames, 15, 3], in their unit."""
-    legs = np.linalg.norm(p[:, len(JOINTS) :] - p[:, _KNEES], axis=2)
-    legs += np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
-    return float(np.median(legs)) / LEG
+def _leg_in_units(p: Float, has_hip_joints: bool) -> float:
+    """Length of thigh and shank together in positions [frames, 15, 3], in their unit.
+
+    Without hip joints a thigh counts as long as its shank.
+    """
+    links = np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
+    thighs = np.linalg.norm(p[:, len(JOINTS) :] - p[:, _KNEES], axis=2) if has_hip_joints else links
+    return float(np.median(links + thighs))
 
 
 def _head_remarks(
@@ -258,52 +263,53 @@ def _ahead(p: Float) -> Float:
     return unit
 
 
-def _stature(
-    units: float, unit: float | None, unit_of_file: float | None, where: str
+def _find_unit(
+    leg: float, unit: float | None, unit_of_file: float | None, where: str
 ) -> tuple[float, tuple[str, ...]]:
-    """Stature of the person, m, in the unit of the config, or else the first that makes a person.
+    """Length of a unit, m: that of the config, or else the first that makes a person.
 
     Returns:
-        The stature, and what to say where it is not in the unit of the file.
+        The length, and what to say where it is not that of the file.
 
     Args:
-        units: Stature in units of the file.
+        leg: Length of a leg in units of the file.
         unit: Length of a unit by the config, m, or None.
         unit_of_file: Length of a unit by the file, m, or None.
         where: Name of the file in messages.
     """
     low, high = STATURES
-    if not 1e-9 < units < 1e9:
-        raise motion_file_error(where, f"has legs of {units * LEG:.3g} units")
+    if not 1e-9 < leg < 1e9:
+        raise motion_file_error(where, f"has legs of {leg:.3g} units")
     if unit is not None:
-        stature = units * unit
+        stature = stature_of_leg(leg * unit)
         if not low <= stature <= high:
             kind = "giant" if stature > high else "dwarf"
             raise motion_file_error(
                 where,
-                f"has legs of {units * LEG:.4g} units of {unit:.4g} m, those of a {kind} of "
+                f"has legs of {leg:.4g} units of {unit:.4g} m, those of a {kind} of "
                 f"{stature:.3g} m; should be {low} to {high} m: unit_m",
             )
-        return stature, ()
-    if unit_of_file and low <= units * unit_of_file <= high:
-        return units * unit_of_file, ()
+        return unit, ()
+    if unit_of_file and low <= stature_of_leg(leg * unit_of_file) <= high:
+        return unit_of_file, ()
+    low, high = LIKELY_STATURES
     for name, candidate in UNITS.items():
-        if low <= units * candidate <= high:
-            return units * candidate, _describe_unit(units, unit_of_file, name)
+        if low <= stature_of_leg(leg * candidate) <= high:
+            return candidate, _describe_unit(leg, unit_of_file, name)
     raise motion_file_error(
         where,
-        f"has legs of {units * LEG:.4g} units, which make a person of {low} to {high} m in none of "
+        f"has legs of {leg:.4g} units, which make a person of {low} to {high} m in none of "
         f"{', '.join(UNITS)}; unit_m should say what a unit is",
     )
 
 
-def _describe_unit(units: float, unit_of_file: float | None, taken_for: str) -> tuple[str, ...]:
+def _describe_unit(leg: float, unit_of_file: float | None, taken_for: str) -> tuple[str, ...]:
     """Say that the unit of a file makes no person; nothing where the file says none."""
     if not unit_of_file:
         return ()
     return (
         f"it says that a unit is {unit_of_file:g} m, of which somebody would be "
-        f"{units * unit_of_file:.4g} m tall: taken for {taken_for} (unit_m, --unit)",
+        f"{stature_of_leg(leg * unit_of_file):.4g} m tall: taken for {taken_for} (unit_m, --unit)",
     )
 
 

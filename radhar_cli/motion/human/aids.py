@@ -15,6 +15,7 @@ from radhar_cli.numerics.arrays import Float
 DOWNWARDS = np.array([[-0.3, -0.3], [-0.35, 0.35], [-1.0, -1.0]])
 STRETCHED, SOFTNESS = 0.97, 60.0  # of arms: of their length at most; of that bound, 1/m
 TILT = 0.75  # of how far a hand is from above the tip of its stick, how far it is beside that
+TILTED = 0.5  # most of that over the length of the stick (30 degrees)
 
 
 @dataclass(frozen=True)
@@ -78,9 +79,11 @@ def hands_of_aid(aid: Aid, body: Physique, foot: Float | None, hip_ahead: Float)
     ahead, up = aid.ahead * over + 0 * hip_ahead, aid.height * over + 0 * hip_ahead
     if foot is not None:
         if aid.tilts:
-            tilt = TILT * (aid.ahead * over + hip_ahead - foot[0])
-            ahead = foot[0] + tilt
-            up = foot[2] + np.sqrt((aid.height * over) ** 2 - np.clip(tilt, -0.3, 0.3) ** 2)
+            length = aid.height * over
+            tilt = TILT * (aid.ahead * over + hip_ahead - foot[0]) / length
+            tilt = tilt / (1 + (tilt / TILTED) ** 4) ** 0.25
+            ahead = foot[0] + length * tilt
+            up = foot[2] + length * np.sqrt(1 - tilt**2)
         else:
             ahead, up = foot[0], up + foot[2]
     return np.array([np.stack([ahead, ahead]), beside + 0 * up, np.stack([up, up])])

@@ -19,7 +19,12 @@ from radhar_cli.motion.human.arms import raised_arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
+from radhar_cli.motion.human.pelvis import (
+    LegBound,
+    hip_joints,
+    hip_point_with_sway,
+    sway_displacement,
+)
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Repetition, repetitions
@@ -37,8 +42,8 @@ SIDE = ("right", "left")
 # straight leg raised outwards, the arm ahead and outwards, rad.
 LIMBS = ("ahead", "out", "up", "leg", "forwards", "sideways")
 # Channels of the body: the hip ahead, to the left and down, over the stature; the trunk ahead and
-# to the left, rad.
-BODY = ("hip_ahead", "hip_left", "drop", "pitch", "lean")
+# to the left, rad; and whether the legs are ready to move.
+BODY = ("hip_ahead", "hip_left", "drop", "pitch", "lean", "ready")
 
 REST = (0.0, 0.0, 0.0)
 Knot = tuple[float, tuple[float, float, float]]  # time, and a value with two derivatives
@@ -123,8 +128,10 @@ class Exercising:
 
     @cached_property
     def _steps(self) -> list[Step]:
-        """Steps of all repetitions."""
-        steps = []
+        """Steps of all repetitions, and of getting ready for them."""
+        steps = [Step("ready", 1.0, self.begin, self.exercise.first)]
+        if not isinf(self._end):
+            steps.append(Step("ready", -1.0, self._end, self.exercise.entry))
         hops, flights = self.exercise.hops, iter(self._flights)
         for start, pace, size in self._repetitions:
             period, in_air = pace * self.exercise.period, [next(flights) for _ in hops]
@@ -202,7 +209,7 @@ class Exercising:
         body = self.person
         values = iter(self.course(t))
         limbs = {channel: np.array([next(values), next(values)]) for channel in LIMBS}
-        ahead, left, drop, pitch, lean = values
+        ahead, left, drop, pitch, lean, ready = values
         feet, hop = self._hop_heights(t)
         swing = limbs["leg"]
         out = body.stature * limbs["out"] + body.reach * np.sin(swing)
@@ -214,7 +221,8 @@ class Exercising:
         sway = sway_displacement(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
         standing = body.tallest - body.stature * drop + hop
         place = body.stature * np.array([ahead, left])
-        hip = hip_point_with_sway(body, standing, place, aside, ankles, body.softness, sway)
+        bound = LegBound.at_rest(body).towards(LegBound.under_way(body), ready)
+        hip = hip_point_with_sway(body, standing, place, aside, ankles, sway, bound)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         trunk = axes(pitch + idle.pitch, idle.yaw, idle.roll + lean)

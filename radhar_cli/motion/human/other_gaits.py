@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import radians, sqrt
 
 from radhar_cli.motion.human.aids import Aid, Load
-from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.physique import Physique, froude_scale
 from radhar_cli.motion.human.walking import MAX_LIMP, STANCE, Gait
 
 RIGHT, LEFT = 0, 1
@@ -13,8 +13,12 @@ OTHER_GAITS = ("limping", "walking_with_stick", "walking_with_walker", "carrying
 BOX = Load((RIGHT, LEFT), (0.48, -0.12, -0.62))
 BAG = (0.02, 0.05, -0.98)
 ROLLATOR = Aid((RIGHT, LEFT), ahead=0.17, beside=0.15, height=0.53)
-FRAME = Aid((RIGHT, LEFT), ahead=0.20, beside=0.15, height=0.52, down=0.9, up=0.55)
-SHORT_STEPS = 0.85  # time of a stride behind a walker over that of others who are as slow
+FRAME = Aid((RIGHT, LEFT), ahead=0.20, beside=0.15, height=0.52, down=0.95, up=0.5)
+# Time of a stride behind a rollator, and with a frame, over that of others who are as slow.
+SHORT_STEPS, SHORTER_STEPS = 0.85, 0.7
+# Speed of who lifts a frame over that behind a rollator, and at most, m/s of a person of 1.7 m, so
+# that it is put ahead by 0.3 to 0.5 m; a guess.
+FRAME_PACE, FRAME_FASTEST = 0.5, 0.45
 LEAN_BACK = radians(4)  # of who carries a box
 # Speeds over sqrt(g l), l the length of the leg: up to which a leg is spared as much as can be, and
 # from which on it is not. Beyond, the foot of the leg would dip into the floor.
@@ -60,17 +64,20 @@ def walking_with_stick(gait: Gait, other_hand: bool) -> Gait:
     return replace(gait, held=stick, name="walking with a stick")
 
 
-def walking_with_walker(gait: Gait, rolled: bool, pitch: float) -> Gait:
+def walking_with_walker(gait: Gait, rolled: bool, pitch: float, stature: float) -> Gait:
     """Gait behind a rollator, or a frame that is lifted once a stride.
 
     Args:
-        gait: Gait of somebody as slow.
+        gait: Gait of somebody as slow behind a rollator; who lifts a frame is slower.
         rolled: Whether it is a rollator.
+        stature: m.
         pitch: Lean of the trunk ahead, rad.
     """
+    fastest = FRAME_FASTEST * froude_scale(stature)
     return replace(
         gait,
-        period_scale=SHORT_STEPS * gait.period_scale,
+        speed=gait.speed if rolled else min(FRAME_PACE * gait.speed, fastest),
+        period_scale=(SHORT_STEPS if rolled else SHORTER_STEPS) * gait.period_scale,
         trunk_pitch=pitch,
         held=ROLLATOR if rolled else FRAME,
         name="walking with a walker",
@@ -91,6 +98,6 @@ def usual_gaits() -> dict[str, Gait]:
     return {
         "limping": limp,
         "walking_with_stick": walking_with_stick(limp, other_hand=True),
-        "walking_with_walker": walking_with_walker(Gait(0.6), True, radians(16)),
+        "walking_with_walker": walking_with_walker(Gait(0.6), True, radians(16), 1.7),
         "carrying": carrying(Gait(1.15), None),
     }

@@ -1,10 +1,38 @@
 """Hip joints, and a height of the pelvis at which no leg is over-stretched."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES
 from radhar_cli.numerics.arrays import Float
+
+# Of legs that move: the longest that they get over thigh and shank together, and k of the soft
+# minimum over the stature.
+BENT, SOFTNESS = 0.9965, 280.0
+
+
+class LegBound(NamedTuple):
+    """How straight legs get: D (m) and k (1/m) of `hip_height`, numbers or [M]."""
+
+    reach: Float | float
+    softness: Float | float
+
+    @classmethod
+    def at_rest(cls, person: Physique) -> "LegBound":
+        """Bound on the legs of people who stand."""
+        return cls(person.reach, person.sharpness)
+
+    @classmethod
+    def under_way(cls, person: Physique) -> "LegBound":
+        """Bound on the legs of people who step, or stand ready to move."""
+        return cls(BENT * 2 * person.leg, SOFTNESS / person.stature)
+
+    def towards(self, other: "LegBound", share: Float) -> "LegBound":
+        """Bound between this one (share 0) and another (1); both D and 1/k go in proportion."""
+        sag = (1 - share) / self.softness + share / other.softness
+        return LegBound(self.reach + share * (other.reach - self.reach), 1 / sag)
 
 
 def hip_joints(person: Physique, yaw: Float, roll: Float) -> Float:
@@ -27,7 +55,7 @@ def hip_height(
     hip: Float,
     joint_offsets: Float,
     ankles: Float,
-    softness: Float | float,
+    bound: "LegBound",
 ) -> Float:
     """Height of the hip point [M] (m) that no leg is too short for.
 
@@ -36,20 +64,22 @@ def hip_height(
     least, so the reach D holds exactly.
 
     Args:
-        person: Has the reach D.
+        person: Whose hip.
         standing: z_stand, the height on standing legs, m.
         hip: x and y of the hip point [2, M], m.
         joint_offsets: Hip joints relative to the hip point [3, 2, M], m.
         ankles: Right and left ankle [3, 2, M], m.
-        softness: k, 1/m.
+        bound: D and k.
     """
+    softness = bound.softness
     dx = hip[0] + joint_offsets[0] - ankles[0]
     dy = hip[1] + joint_offsets[1] - ankles[1]
-    square = np.maximum(person.reach**2 - dx * dx - dy * dy, 0.0)
+    square = np.maximum(bound.reach**2 - dx * dx - dy * dy, 0.0)
     limits = ankles[2] + np.sqrt(square) - joint_offsets[2]
-    total = np.exp(softness * (person.tallest - limits)).sum(axis=0)
-    total += np.exp(softness * (person.tallest - standing))
-    height: Float = person.tallest - np.log(total) / softness
+    least = np.minimum(limits.min(axis=0), standing)
+    total = np.exp(softness * (least - limits)).sum(axis=0)
+    total += np.exp(softness * (least - standing))
+    height: Float = least - np.log(total) / softness
     return height
 
 
@@ -71,8 +101,8 @@ def hip_point_with_sway(
     hip: Float,
     joint_offsets: Float,
     ankles: Float,
-    softness: Float | float,
     sway: Float,
+    bound: "LegBound | None" = None,
 ) -> Float:
     """Hip point [3, M] (m) of a body that sways over its ankles, at a height its legs can reach.
 
@@ -80,17 +110,18 @@ def hip_point_with_sway(
     which the hip is then, so the difference between the two is added.
 
     Args:
-        person: Whose hip; all arguments but the last are those of `hip_height`.
+        person: Whose hip; all arguments but `sway` are those of `hip_height`.
         standing: m.
         hip: x and y without sway [2, M], m.
         joint_offsets: [3, 2, M], m.
         ankles: [3, 2, M], m.
-        softness: 1/m.
         sway: `sway_displacement` of a hip at its height at rest [3, M], m.
+        bound: Bound on the legs; None for that of people at rest.
     """
+    at_rest = LegBound.at_rest(person)
     x, y = hip[0] + sway[0], hip[1] + sway[1]
-    z = hip_height(person, standing, np.array([x, y]), joint_offsets, ankles, softness)
+    z = hip_height(person, standing, np.array([x, y]), joint_offsets, ankles, bound or at_rest)
     limit = person.ankle + np.sqrt(np.maximum(person.reach**2 - sway[0] ** 2 - sway[1] ** 2, 0.0))
-    k = person.softness
+    k = at_rest.softness
     soft = person.tallest - np.log1p(2 * np.exp(k * (person.tallest - limit))) / k
     return np.array([x, y, z + (person.rest_height + sway[2] - soft)])

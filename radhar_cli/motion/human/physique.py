@@ -4,10 +4,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import acos, exp, log, radians, sqrt
 
-from radhar_cli.motion.skeleton import JOINTS, links
-
-GROWN_UP = 1.5  # stature from which on people count as grown up, m
-SHORTER_LEGS = 0.08  # loss of leg length of a child of 1.0 m beside a grown-up, over that
+from radhar_cli.motion.skeleton import (
+    ANKLE_HEIGHT,
+    GROWN_UP,
+    JOINTS,
+    SHORTER_LEGS,
+    childlike,
+    leg_length,
+    links,
+)
 
 
 @dataclass(frozen=True)
@@ -15,19 +20,21 @@ class Physique:
     """A body with the paper's links; heights and widths are fractions of the stature.
 
     Ankle height: Winter, Biomechanics and Motor Control, after Drillis and Contini. Hip width: CMU
-    motion capture, subject 02. Who is smaller than 1.5 m counts as a child, with shorter legs and a
-    longer trunk: sitting height is 56 % of the stature at 1.0 m, 52 % of grown-ups' (Snyder et al.,
-    Anthropometry of Infants, Children, and Youths, UM-HSRI-77-17, 1977); linear between them.
+    motion capture, subject 02. Children have shorter legs and a longer trunk, as
+    `radhar_cli.motion.skeleton` has them.
     """
 
     stature: float  # m
-    ankle_height: float = 0.039  # height of the ankle above the floor
+    ankle_height: float = ANKLE_HEIGHT  # height of the ankle above the floor
     # distance of a hip joint beside the hip point; at rest the feet are below the hip joints
     hip_width: float = 0.052
     ball: float = 0.10  # distance of the ball of the foot ahead of the ankle
-    standing: float = 0.997  # length of a standing leg over thigh and shank together
-    straightest: float = 0.995  # the longest that a leg gets, likewise (a knee of 11.5 degrees)
-    softness: float = 160.0  # k of the soft minimum that sets the pelvis's height, 1/m
+    # Length of a standing leg, and the longest that a leg gets, over thigh and shank together:
+    # people stand with knees bent by 5 degrees.
+    standing: float = 0.9992
+    straightest: float = 0.9998
+    # k of the soft minimum that sets the pelvis's height at rest, over the stature
+    softness: float = 4000.0
     elbow: float = radians(8)  # flexion at rest, rad
     weight: float | None = None  # kg; 26 kg/m^2 times the stature squared where it is not given
 
@@ -42,7 +49,7 @@ class Physique:
     @property
     def childlike(self) -> float:
         """Share of the way from a grown-up's proportions to those of a child of 1.0 m."""
-        return min(max((GROWN_UP - self.stature) / (GROWN_UP - 1.0), 0.0), 1.0)
+        return childlike(self.stature)
 
     @property
     def smallness(self) -> float:
@@ -64,7 +71,7 @@ class Physique:
     @cached_property
     def leg(self) -> float:
         """Length of the thigh, and of the shank, m."""
-        return -self._links["right_knee"][2] * (1 - SHORTER_LEGS * self.childlike)
+        return leg_length(self.stature) / 2
 
     @cached_property
     def arm(self) -> float:
@@ -106,6 +113,11 @@ class Physique:
         """Longest distance from hip joint to ankle that a leg gets, m."""
         return self.straightest * 2 * self.leg
 
+    @property
+    def sharpness(self) -> float:
+        """K of the soft minimum that sets the pelvis's height at rest, 1/m."""
+        return self.softness / self.stature
+
     @cached_property
     def tallest(self) -> float:
         """Height of the hip above standing legs, m."""
@@ -117,7 +129,7 @@ class Physique:
 
         It is the soft minimum of `tallest` and of both legs at full reach.
         """
-        k, stretched = self.softness, self.ankle + self.reach
+        k, stretched = self.sharpness, self.ankle + self.reach
         return stretched - log(2 + exp(k * (stretched - self.tallest))) / k
 
     @cached_property

@@ -13,7 +13,12 @@ import numpy as np
 from radhar_cli.motion.human.arms import OUTWARDS, arm_directions_to_hands, hanging_hands
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
+from radhar_cli.motion.human.pelvis import (
+    LegBound,
+    hip_joints,
+    hip_point_with_sway,
+    sway_displacement,
+)
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Striking, repetitions
@@ -97,9 +102,8 @@ class Punching(Striking[Punch]):
         hip[0] += scale * punch.thrust * (right + left)
         legs_roll = idle.roll + out_of_guard * (idle.legs_roll - idle.roll)
         sway = sway_displacement(body.rest_height - body.ankle, idle.lean, legs_roll)
-        hip = hip_point_with_sway(
-            body, body.tallest, hip, joint_offsets, ankles, body.softness, sway
-        )
+        bound = LegBound.at_rest(body).towards(LegBound.under_way(body), guard)
+        hip = hip_point_with_sway(body, body.tallest, hip, joint_offsets, ankles, sway, bound)
         pitch = punch.pitch * guard + punch.bow * (right + left)
         pitch += idle.lean + out_of_guard * (idle.pitch - idle.lean)
         trunk = axes(pitch, yaw + out_of_guard * idle.yaw, idle.roll)

@@ -14,7 +14,12 @@ from radhar_cli.motion.human.arms import arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import HERE, STANDING, Phase, Place
-from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
+from radhar_cli.motion.human.pelvis import (
+    LegBound,
+    hip_joints,
+    hip_point_with_sway,
+    sway_displacement,
+)
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import scale_steps
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, turned
@@ -128,8 +133,9 @@ class Stepping:
         sway = sway_displacement(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
         hip_xy = share * np.array([[place.ahead], [place.left]])
         standing = body.tallest - self.step.drop * upset
+        bound = LegBound.at_rest(body).towards(LegBound.under_way(body), 1 - (1 - upset) ** 4)
         hip = hip_point_with_sway(
-            body, standing, hip_xy, joint_offsets, ankles, body.softness, turned(sway, turn)
+            body, standing, hip_xy, joint_offsets, ankles, turned(sway, turn), bound
         )
         joints = hip[:, None] + joint_offsets
         ahead = np.array([np.cos(turn), np.sin(turn), np.zeros(t.size)])

@@ -116,9 +116,7 @@ class Turning:
         ankles = np.array([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankles, (3, 2, t.size))
         sway = sway_displacement(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
-        hip = hip_point_with_sway(
-            body, body.tallest, np.zeros((2, t.size)), aside, ankles, body.softness, sway
-        )
+        hip = hip_point_with_sway(body, body.tallest, np.zeros((2, t.size)), aside, ankles, sway)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         trunk = axes(idle.pitch, yaw + idle.yaw, idle.roll)

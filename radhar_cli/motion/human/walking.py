@@ -30,7 +30,7 @@ from radhar_cli.motion.human.lane import (
 )
 from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.pelvis import hip_height, hip_joints, hip_point_with_sway
+from radhar_cli.motion.human.pelvis import LegBound, hip_height, hip_joints, hip_point_with_sway
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import (
     ELBOWS,
@@ -47,6 +47,12 @@ from radhar_cli.numerics.arrays import Float
 
 START_PHASE = 0.5  # of the stride: the right foot goes first
 EARLIEST_SWING = 0.3
+FIRST_SIZE = 0.55  # roll and lift of a foot's first swing from rest over those of its length
+HIP = 0.997  # height h of the hip in Rv = v/h above the ankles, over thigh and shank together
+# Times in which knees bend at the beginning of a walk, and straighten at its end, over those of
+# gaining speed and of a stride.
+UNLOCKING, LOCKING = 0.5, 0.4
+FIRST_LIFT = 0.3  # of the time in which an aid is off the floor, that may be missing at first
 MAX_LIMP = 0.25
 STANCE = 0.62  # share of a stride that a foot is on the floor, of which a limp takes its share
 SHORTER_STEP = 0.3  # how much later than half a stride a limper's other foot is stepped over
@@ -72,13 +78,15 @@ class Gait:
     surge: float = 0.125  # speed of the hip's surge, twice a stride, over the speed
     sidewards: float = 0.018  # amplitude of the hip from side to side, m
     sink: float = 0.003  # loss of standing height while walking, fraction of the stature
-    softness: float = 80.0  # `Physique.softness` while walking, 1/m
+    # of walking legs, as `Physique` has them of legs at rest
+    straightest: float = 0.9985
+    softness: float = 170.0
     # touch_down, heel_off: phases between which the foot lies flat
     touch_down: float = 0.085
     heel_off: float = 0.42
     below: float = 0.25  # phase at which the body is above the foothold
     roll: float = radians(52)  # turn of the foot about its ball until toe-off, rad
-    lift: float = 0.10  # height of the swinging foot, m
+    lift: float = 0.048  # height of the swinging foot, over the length of a stride
     # distance of the foot in mid-swing behind a smooth course, over the length of the step
     lag: float = 0.21
     ramp: float = 0.6  # time in which a walk gains and loses its speed, in strides
@@ -179,7 +187,8 @@ class Walking:
     @cached_property
     def relative_speed(self) -> float:
         """Relative speed Rv = v/h, 1/s; of children as of grown-ups at their Froude number."""
-        return self.gait.speed / self.person.tallest * self.person.quickness
+        height = self.person.ankle + HIP * 2 * self.person.leg
+        return self.gait.speed / height * self.person.quickness
 
     @cached_property
     def stride(self) -> float:
@@ -216,6 +225,25 @@ class Walking:
         if self.stops:
             g *= 1 - minimum_jerk((t - self.stop) / self.ramp)
         return g
+
+    def _bent(self, t: Float) -> Float:
+        """How far [M] the legs are as bent as those that walk at times t [M] (s), not at rest."""
+        share: Float = np.ones(t.size)
+        if self.from_rest:
+            share = minimum_jerk((t - self.begin) / self._unlocking)
+        if self.stops:
+            share = share * (1 - minimum_jerk((t - self.end) / self._locking + 1))
+        return share
+
+    @property
+    def _unlocking(self) -> float:
+        """Time in which knees bend at the beginning, s."""
+        return UNLOCKING * self.start
+
+    @property
+    def _locking(self) -> float:
+        """Time in which knees straighten at the end, s."""
+        return LOCKING * self.stride
 
     @cached_property
     def _initial_lead(self) -> Float | float:
@@ -384,9 +412,10 @@ class Walking:
         tracks = (*self._foot_tracks, self._aid_track)
         ends = [track.breakpoints for track in tracks if track is not None]
         if self.from_rest:
-            ends.append(np.array([self.begin, self.begin + self.start]))
+            ends.append(self.begin + np.array([0.0, self._unlocking, self.start]))
         if self.stops:
             ends.append(np.array([self.stop, self.stop + self.ramp]))
+            ends.append(np.array([self.end - self._locking, self.end]))
         if self._jitter is not None:
             ends.append(np.array(self._jitter.breakpoints))
         if self._turn_starts.size:
@@ -409,7 +438,7 @@ class Walking:
                 self.person,
                 self._footfalls(times_of_foot.reshape(4, -1), side),
                 gait.roll,
-                gait.lift * self.person.smallness,
+                gait.lift * gait.speed * self.stride,
                 gait.lag,
             )
             for times_of_foot, side in zip(times_of_both, (-1.0, 1.0), strict=True)
@@ -481,6 +510,9 @@ class Walking:
         if heading is None:
             heading = np.zeros_like(distances)
         footholds = np.array([x - half_widths * np.sin(heading), y + half_widths * np.cos(heading)])
+        size = np.minimum(1.0, np.diff(distances) / (gait.speed * self.stride))
+        if self.from_rest:
+            size[:1] *= FIRST_SIZE
         return Footfalls(
             off=off[:-1],
             toe=toe[:-1],
@@ -488,7 +520,7 @@ class Walking:
             before=footholds[:, :-1],
             after=footholds[:, 1:],
             heading=heading[:-1],
-            size=np.minimum(1.0, np.diff(distances) / (gait.speed * self.stride)),
+            size=size,
         )
 
     def _phase_at(self, t: float) -> float:
@@ -608,8 +640,10 @@ class Walking:
         until = self.stop + self.ramp if self.stops else max(self.horizon, self.begin)
         last = self._phase_at(until + (0.0 if self.stops else 2 * self.stride))
         lifted = aid.down + aid.up
-        k = np.arange(np.ceil(first - lifted), max(np.ceil(last - lifted), 1.0) + 1)
-        off = k + lifted
+        # From rest it goes ahead with the first foot, if there is time to set it down.
+        earliest = first - FIRST_LIFT * (1 - aid.up) if self.from_rest else first
+        k = np.arange(np.ceil(earliest - lifted), max(np.ceil(last - lifted), 1.0) + 1)
+        off = np.maximum(k + lifted, first) if self.from_rest else k + lifted
         phases = np.array([off, off + 0.02, k + 1 + aid.down, k + aid.down + aid.up / 2])
         times: Float = self._times_of_phases(phases.ravel()).reshape(4, -1)
         off, toe, down, above = times
@@ -689,15 +723,16 @@ class Walking:
         ankles = self._ankles(t, x, y, heading)
         joint_offsets = hip_joints(body, channels.pelvis_yaw, channels.pelvis_roll)
         height = body.tallest - self.gait.sink * body.stature * g
-        softness = body.softness + (self.gait.softness - body.softness) * g
+        walking = LegBound(self.gait.straightest * 2 * body.leg, self.gait.softness / body.stature)
+        bound = LegBound.at_rest(body).towards(walking, self._bent(t))
         if self.from_rest or self.stops:
             stance = self._stance(t, distance, idle, 1 - g)
             hip = hip_point_with_sway(
-                body, height, channels.hip, joint_offsets, ankles, softness, stance.sway
+                body, height, channels.hip, joint_offsets, ankles, stance.sway, bound
             )
             channels = blend(channels, stance)
         else:
-            z = hip_height(body, height, channels.hip, joint_offsets, ankles, softness)
+            z = hip_height(body, height, channels.hip, joint_offsets, ankles, bound)
             hip = np.array([*channels.hip, z])
         upset = self._trip_pitch(t, g)
         trunk = axes(channels.pitch + upset, channels.twist, channels.lean)

@@ -8,13 +8,13 @@ import pytest
 from helpers.recorded import frames, write_npz
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import ANKLE, LEG, Clip, make_clip
+from radhar_cli.motion.files.clip import Clip, make_clip
 from radhar_cli.motion.files.cycle import find_cycle
 from radhar_cli.motion.files.keypoints import Keypoints
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import read_motion
-from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.motion.skeleton import ANKLE_HEIGHT, JOINTS, PARENTS, leg_length
 from radhar_cli.numerics.arrays import Float
 
 ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
@@ -103,13 +103,13 @@ def test_the_rest_pose_tells_the_up_axis_where_nobody_stands(tmp_path: Path) -> 
 
 
 def test_legs_give_the_stature_and_ankles_the_floor() -> None:
-    """Contract: (thigh + shank)/0.491, lowest ankle at 0.039 of the stature."""
+    """Contract: the human model's leg of that stature, lowest ankle at 0.039 of it."""
     one = clip(frames())
     p = one.positions
     legs = np.linalg.norm(p[:, 13] - p[:, 9], axis=1) + np.linalg.norm(p[:, 9] - p[:, 10], axis=1)
-    assert np.median(legs) == pytest.approx(LEG, abs=1e-4)
-    assert p[:, ANKLES, 2].min() == pytest.approx(ANKLE)
-    assert one.stature == pytest.approx(2 * 0.45 * 1.75 / 1.8 / LEG, abs=1e-3)
+    assert np.median(legs) == pytest.approx(leg_length(one.stature) / one.stature, abs=1e-4)
+    assert p[:, ANKLES, 2].min() == pytest.approx(ANKLE_HEIGHT)
+    assert one.stature == pytest.approx(1.75, abs=1e-3)
     tall = mover(one, stature=2.0).positions(np.array([0.5]))[:, :, 0]
     small = mover(one, stature=1.6).positions(np.array([0.5]))[:, :, 0]
     np.testing.assert_allclose(tall - tall[:, :1], 1.25 * (small - small[:, :1]), atol=1e-9)
@@ -220,7 +220,7 @@ def test_a_walk_in_a_loop_walks_on() -> None:
     assert a < 1.5 * own
     lengths = link_lengths(p) / link_lengths(p[..., :1])
     assert np.abs(lengths - 1).max() < 0.05
-    assert p[2, ANKLES].min() > 0.9 * ANKLE * one.stature
+    assert p[2, ANKLES].min() > 0.9 * ANKLE_HEIGHT * one.stature
     # the feet still stand: whichever is lower is slow most of the time
     lower = p[2, ANKLES].argmin(axis=0)
     slow = np.linalg.norm(np.take_along_axis(v[:, ANKLES], lower[None, None, 1:], axis=1), axis=0)

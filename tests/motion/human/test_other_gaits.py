@@ -96,7 +96,7 @@ def test_a_stick_keeps_its_length_and_stands(side: float, other: bool) -> None:
 
 
 def test_hands_on_a_rollator_go_ahead_steadily() -> None:
-    motion = walking(walking_with_walker(Gait(0.6), True, radians(16)))
+    motion = walking(walking_with_walker(Gait(0.6), True, radians(16), 1.75))
     t = np.arange(2.0, 5.0, DT)
     hands = motion.positions(t)[:, HANDS]
     speed = np.gradient(hands[0], DT, axis=1)
@@ -105,14 +105,25 @@ def test_hands_on_a_rollator_go_ahead_steadily() -> None:
     assert np.ptp(hands[2], axis=1).max() < 0.03
 
 
-def test_a_frame_is_lifted_once_a_stride() -> None:
-    motion = walking(walking_with_walker(Gait(0.45), False, radians(16)))
-    t = np.arange(2.0, 2.0 + 2 * motion.parts[0][0].stride, DT)
-    hand = motion.positions(t)[:, HANDS[0]]
-    speed = np.gradient(hand[0], DT)
-    assert (speed < 0.1).mean() > 0.4
-    assert speed.max() > 2 * 0.45
-    assert np.diff((speed > 0.6).astype(int)).clip(0).sum() == 2
+@pytest.mark.parametrize("stature", [1.0, 1.4, 1.75, 2.1])
+@pytest.mark.parametrize("seconds", [inf, 5.0])
+def test_a_frame_is_lifted_once_a_stride_and_not_thrown(stature: float, seconds: float) -> None:
+    """It is put ahead by 0.2 to 0.32 statures within 0.5 s or more, from the first one on."""
+    usual = Gait(0.45 * 1.3 * sqrt(stature / 1.75))
+    motion = walking(walking_with_walker(usual, False, radians(16), stature), stature, seconds)
+    stride = motion.parts[0][0].stride
+    t = np.arange(0.4, 8.0, DT)
+    hands = motion.positions(t)[:, HANDS]
+    speed = np.linalg.norm(np.gradient(hands, DT, axis=2), axis=0)
+    assert speed.max() < 1.5 * sqrt(stature / 1.75)
+    ahead = np.gradient(hands[0, 0], DT)
+    whole = (t > 1.6) & (t < 1.6 + 2 * stride)
+    assert (ahead[whole] < 0.1).mean() > 0.4
+    assert np.diff((ahead[whole] > 0.5 * speed.max()).astype(int)).clip(0).sum() == 2
+    gone = np.ptp(hands[0, 0][whole]) / stature
+    assert 0.4 < gone < 0.64
+    hip = motion.positions(t)[0, HIP]
+    assert (hands[0] - hip)[:, whole].min() > 0.0
 
 
 @pytest.mark.parametrize("bag", [None, 0, 1])
@@ -156,7 +167,7 @@ def test_everybody_can(
     gait = {
         "limping": limp,
         "walking_with_stick": walking_with_stick(limp, choice),
-        "walking_with_walker": walking_with_walker(usual, choice, radians(30)),
+        "walking_with_walker": walking_with_walker(usual, choice, radians(30), stature),
         "carrying": carrying(usual, int(side > 0) if choice else None),
     }[name]
     motion = walking(gait, stature, seconds)

@@ -33,7 +33,7 @@ from radhar_cli.motion.human.lying import Lie, Rest, TurnOver
 from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
-from radhar_cli.motion.human.physique import GROWN_UP, Physique, froude_scale
+from radhar_cli.motion.human.physique import Physique, froude_scale
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.sitting import Seat, Sit, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
@@ -41,7 +41,7 @@ from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.transfer import GoToBed, LeaveBed, LieStill, RiseFromRest, Settle
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
-from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.motion.skeleton import GROWN_UP, JOINTS, PARENTS
 
 ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
 KNEES = [JOINTS.index("right_knee"), JOINTS.index("left_knee")]

@@ -203,22 +203,24 @@ class Crawling:
         """Axes of the trunk of which both shoulders are an arm's length from hands on the floor.
 
         Arms are as long as at rest, then nearly straight. Where the shoulders are ahead is taken
-        from the trunk's pitch at rest, which errs by millimetres.
+        from the axes at rest, then from those that follow, which leaves less than a millimetre.
         """
-        body, up = self.person, self.rest.trunk.up
+        body = self.person
         length = body.trunk + body.shoulder
         resting = shoulder_points(body, self.rest.hip, self.rest.trunk)
         arm = ((resting - self._resting_hands) ** 2).sum(axis=0)
         arm = arm + under_way * ((STRAIGHT * 2 * body.arm) ** 2 - arm)
-        ahead = hip[0] + length * up[0] - body.shoulder * SIDES * np.sin(yaw)
-        beside = hip[1] + body.shoulder * SIDES * np.cos(yaw) + length * up[0] * np.sin(yaw)
-        apart = (hands[0] - ahead) ** 2 + (hands[1] - beside) ** 2
-        heights = hands[2] + np.sqrt(np.maximum(arm - apart, SHORTEST * arm))
-        roll = np.arcsin((heights[0] - heights[1]) / (2 * body.shoulder * np.cos(yaw)))
-        lean, across = np.cos(roll), np.sin(yaw) * np.sin(roll)
-        rise = (heights.mean(axis=0) - hip[2]) / length
-        pitch = np.arccos(rise / np.hypot(lean, across)) - np.arctan2(across, lean)
-        return axes(pitch, yaw, roll)
+        trunk = self.rest.trunk
+        for _ in range(2):
+            across = (hands - shoulder_points(body, hip, trunk))[:2]
+            apart = across[0] ** 2 + across[1] ** 2
+            heights = hands[2] + np.sqrt(np.maximum(arm - apart, SHORTEST * arm))
+            roll = np.arcsin((heights[0] - heights[1]) / (2 * body.shoulder * np.cos(yaw)))
+            lean, aside = np.cos(roll), np.sin(yaw) * np.sin(roll)
+            rise = (heights.mean(axis=0) - hip[2]) / length
+            pitch = np.arccos(rise / np.hypot(lean, aside)) - np.arctan2(aside, lean)
+            trunk = axes(pitch, yaw, roll)
+        return trunk
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ class Prone:
     thigh: float = radians(90)
     trunk: float = radians(88)
     # place of the hands ahead of and outside the shoulders, fractions of the stature
-    hands: tuple[float, float] = (0.12, 0.05)
+    hands: tuple[float, float] = (0.12, 0.07)
 
     def posture(self, person: Physique) -> dict[str, float]:
         """Channels of `planted.posture` on the floor, hands beside the head, elbows on it."""

@@ -80,7 +80,7 @@ class GetUp:
     # where the hands push, fractions of the stature: of who is on hands and knees, ahead of the
     # ankles; of who lies on the belly, behind and outside the shoulders; in the crouch that follows
     hands: float = 0.57
-    beside_chest: tuple[float, float] = (0.14, 0.03)
+    beside_chest: tuple[float, float] = (0.14, 0.05)
     crouched: float = 0.45
     on_knees: float = radians(84)  # pitch of the trunk on hands and knees
     # shank, thigh, trunk: angles in that crouch

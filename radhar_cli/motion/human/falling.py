@@ -29,19 +29,20 @@ ON_FLOOR, PROPPED = "lying against the seat", "lying on the hands"
 
 @dataclass(frozen=True)
 class Prone:
-    """How people lie after a fall ahead: height of the knees in m, angles in rad."""
+    """How people lie after a fall ahead: height of the knees over the stature, angles in rad."""
 
-    knee_height: float = 0.10
-    thigh: float = radians(90)
+    knee_height: float = 0.05
+    thigh: float = radians(90)  # or in line with the shank, where that is less
     trunk: float = radians(88)
     # place of the hands ahead of and outside the shoulders, fractions of the stature
     hands: tuple[float, float] = (0.12, 0.07)
 
     def posture(self, person: Physique) -> dict[str, float]:
         """Channels of `planted.posture` on the floor, hands beside the head, elbows on it."""
-        shank = acos((self.knee_height - person.ankle) / person.leg)
-        lying = posture(shank, self.thigh, self.trunk, 0.0, person.elbow, upright=0.0)
-        shoulders = person.leg * (sin(shank) + sin(self.thigh))
+        shank = acos((self.knee_height * person.stature - person.ankle) / person.leg)
+        thigh = min(self.thigh, shank)
+        lying = posture(shank, thigh, self.trunk, 0.0, person.elbow, upright=0.0)
+        shoulders = person.leg * (sin(shank) + sin(thigh))
         shoulders += (person.trunk + person.shoulder) * sin(self.trunk)
         lying["hands"] = 1.0
         lying["hands_ahead"] = shoulders + self.hands[0] * person.stature

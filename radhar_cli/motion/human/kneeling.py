@@ -43,7 +43,7 @@ class Kneel:
 
 
 # Posture on hands and knees of who is about to crawl, on nearly straight arms.
-CRAWLING = OnFours(knee_height=0.06, trunk=radians(79))
+CRAWLING = OnFours(knee_height=KNEE, trunk=radians(79))
 HANDS = "hands_ahead", "hands_beside"
 TO_FOURS = 0.3  # share of getting up from the knees in which the hands go to the floor
 

@@ -42,7 +42,7 @@ SHOULDERS = 5 / 18  # distance of that middle from the hip
 THIGHS = (0.18, 0.04, -1.0), ((0.75, 0.06, -0.7), (0.35, 0.0, -0.95)), (0.04, 0.06, -1.0)
 SHANKS = (-0.26, 0.04, -1.0), ((-0.45, 0.03, -0.85), (-0.17, 0.0, -1.0)), (-0.03, 0.06, -1.0)
 ARMS = (-0.12, 0.30, -1.0), ((0.50, 0.05, -0.20), (1.07, 0.0, 0.19)), (-0.08, 0.45, 0.77)
-FOREARMS = (0.05, -0.05, -1.0), ((1.50, 0.95, 1.90), (1.78, 0.0, 1.20)), (-0.05, -0.50, 1.25)
+FOREARMS = (0.30, -0.10, -0.95), ((1.50, 0.95, 1.90), (1.78, 0.0, 1.20)), (-0.05, -0.50, 1.25)
 # Arms of whose hands are on the belly, who lies on the back.
 ARM_ON_BELLY, FOREARM_ON_BELLY = (-0.10, 0.35, -0.95), (0.50, -0.75, -0.50)
 # Where a knee that is drawn up, and an arm that reaches across, have thigh, shank, arm and forearm:

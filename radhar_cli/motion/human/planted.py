@@ -134,7 +134,10 @@ class Planted:
         shoulder = np.array(arms[:2]) + upright * idle.shoulders
         elbow = np.array(arms[2:]) + upright * idle.elbows
         if share.any():
-            over, along = UPWARDS[:, :, None], ALONG_FLOOR[:, :, None]
+            elbows = UPWARDS
+            if splayed.any():
+                over, along = UPWARDS[:, :, None], ALONG_FLOOR[:, :, None]
+                elbows = over + splayed * (along - over)
             upper, fore = arm_directions_near_floor(
                 body,
                 tilted,
@@ -142,7 +145,7 @@ class Planted:
                 (shoulder, elbow),
                 _places_on_floor(far, beside),
                 share,
-                over + splayed * (along - over),
+                elbows,
             )
         else:
             upper, fore = arm_directions(tilted, shoulder, elbow)

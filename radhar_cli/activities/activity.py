@@ -93,9 +93,9 @@ MOVEMENTS = {
     "getting_on_fours": MovementInfo("standing", "on_fours", 3.0),
     "crawling": MovementInfo("on_fours", "on_fours", None),
     "lying": MovementInfo("lying", "lying", None, also=(("in_bed", "in_bed"),)),
-    "turning_over": MovementInfo("lying", "lying", 2.5, also=(("in_bed", "in_bed"),)),
-    "lying_down": MovementInfo("standing", "in_bed", 5.0),
-    "getting_up_from_bed": MovementInfo("in_bed", "standing", 4.5),
+    "turning_over": MovementInfo("lying", "lying", 5.0, also=(("in_bed", "in_bed"),)),
+    "lying_down": MovementInfo("standing", "in_bed", 6.5),
+    "getting_up_from_bed": MovementInfo("in_bed", "standing", 6.0),
     **{name: MovementInfo("standing", "standing", None, in_place=True) for name in EXERCISES},
     **{
         name: MovementInfo(state, state, None, in_place=True)

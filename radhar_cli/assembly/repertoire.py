@@ -287,7 +287,7 @@ def _fall_direction(person: Person) -> FallName:
 def _stumble(person: Person) -> StepTo:
     """Stumble in the direction in which the person would fall."""
     motion = person.motion
-    stumble = STUMBLES[_fall_direction(person)]
+    stumble = STUMBLES[_fall_direction(person)].for_stature(person.subject.height_m)
     pitch = radians(motion.falling.stumble_deg)
     if _fall_direction(person) == "forward":
         return replace(stumble, pitch=pitch)

@@ -7,10 +7,12 @@ from radhar_cli.motion.human.pose import SIDES, Axes
 from radhar_cli.motion.human.two_link import two_link
 from radhar_cli.numerics.arrays import Float
 
-# Directions in which elbows bend, ahead, left and up: in a guard, and with hands on the floor.
+# Directions in which elbows bend, ahead, left and up: in a guard; with hands on the floor, over it
+# and along it.
 OUTWARDS = np.concatenate([np.full((1, 2), -0.2), 0.45 * SIDES.T, np.full((1, 2), -1.0)])
 STRETCHED = 0.93  # of the arm's length, which a hand on the floor does not exceed
 UPWARDS = np.concatenate([np.full((1, 2), -0.9), 0.6 * SIDES.T, np.full((1, 2), -0.5)])
+ALONG_FLOOR = np.concatenate([np.full((1, 2), -0.1), 1.0 * SIDES.T, np.full((1, 2), -0.4)])
 SOFTNESS = 25.0  # of that bound, 1/m
 
 
@@ -98,7 +100,7 @@ def arm_directions_near_floor(
         floor: Points on the floor that the hands reach for [3, 2, M], m.
         share: How far the hands are on the floor [M].
         elbows: Directions in which the elbows bend with hands on the floor, in the trunk's axes [3,
-            2].
+            2] or [3, 2, M].
 
     Returns:
         Upper arms and forearms [3, 2, M].
@@ -110,5 +112,5 @@ def arm_directions_near_floor(
     reached = -np.log(np.exp(-SOFTNESS * distance) + np.exp(-SOFTNESS * stretched)) / SOFTNESS
     hands, poles = hanging_hands(body, *flexion)
     hands += share * (to_floor * (reached / distance) - hands)
-    poles += share * (elbows[:, :, None] - poles)
+    poles += share * ((elbows if elbows.ndim == 3 else elbows[:, :, None]) - poles)
     return arm_directions_to_hands(trunk, hands, poles, body.arm)

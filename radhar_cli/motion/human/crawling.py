@@ -3,8 +3,10 @@
 Adults and infants move diagonal limbs together, the less so the slower they are (Patrick, Noah and
 Yang, J. Neurophysiol. 101 (2009) 603), in the lateral sequence: after a knee comes the hand of its
 side (Righetti et al., Front. Neurol. 6 (2015) 17, of infants, whose arms are stretched and reach
-far ahead). Adults were measured at 0.28 to 0.69 m/s (Ma et al., Sensors 17 (2017) 692). Stride
-length, share of the stance and lifts are guesses.
+far ahead, and whose elbows hardly bend on the floor). Adults were measured at 0.28 to 0.69 m/s (Ma
+et al., Sensors 17 (2017) 692). Stride length, shares of swings, their speeds and lifts are guesses:
+knees are dragged, so they get 2.5 times the body's speed, which is the least where one of both
+bears it at any time.
 
 A thigh is as long as it is: the hip joint is on a circle about the planted knee, so the pelvis
 rises and sinks with each stride, and rolls as a knee is lifted. Feet trail behind the knees.
@@ -19,23 +21,26 @@ import numpy as np
 from radhar_cli.motion.human.arms import UPWARDS, arm_directions_to_hands
 from radhar_cli.motion.human.idle import IdleState, motionless
 from radhar_cli.motion.human.kneeling import CRAWLING
-from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk_integral
+from radhar_cli.motion.human.minimum_jerk import Course, minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.human.part import ON_FOURS, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted
-from radhar_cli.motion.human.pose import SIDES, Pose, axes, shoulder_points
+from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, shoulder_points
 from radhar_cli.numerics.arrays import Float
 
 # Length of a stride at 0.5 m/s of who is 1.75 m tall, and the longest that thighs allow, over the
 # stature.
 STRIDE, LONGEST = 0.36, 0.5
-SWING_SHARE = 0.36, 0.12  # share of a stride in which a limb swings: at rest, and more per m/s
+# Share of a stride in which a knee is dragged ahead, so that one of both bears the body, and in
+# which a hand swings: at rest, and more per m/s.
+KNEE_SWING, HAND_SWING = 0.5, (0.40, 0.08)
+RAMPS = 0.2, 0.3  # share of a swing of knee and hand in which it gets its speed, and loses it
 # By how much of a stride a hand is ahead of the knee across: at rest, and less per m/s.
 LEAD, LEAD_LOSS = 0.14, 0.10
 LIFTS = 0.018, 0.032  # of a swinging knee and hand, over the stature
-ARM = 0.96  # length of an arm on which the trunk rests at most, over upper arm and forearm
-SOFTNESS = 60.0  # of that bound, 1/m
-TRUNK_ROLL, TRUNK_YAW = -0.3, 0.10  # of the pelvis's roll, and of the turn that hands ask for
+STRAIGHT = 0.97  # distance of a shoulder from its planted hand, over upper arm and forearm
+SHORTEST = 0.25  # square of the least height of a shoulder over its hand, over that of an arm
+TRUNK_YAW = 0.10  # share of the turn that hands ask for that the trunk makes
 KNEES, HANDS = ("right_knee", "left_knee"), ("right_hand", "left_hand")
 
 
@@ -90,8 +95,7 @@ class Crawling:
         """When the last limb has come down, s; infinity for who goes on."""
         if self.crawl.duration == inf:
             return inf
-        course = self.course
-        return float((course.starts + course.lengths).max())
+        return max(swings.end for swings in self.swings.values())
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -104,13 +108,20 @@ class Crawling:
     def breakpoints(self) -> tuple[float, ...]:
         """Instants at which a position is not smooth, s."""
         ramps = [start + k * self.period for start in (self.begin, self._stops) for k in (0, 1)]
-        return (*self.course.breakpoints, *ramps)
+        swings = (t for swings in self.swings.values() for t in swings.breakpoints)
+        return (*swings, *ramps)
 
     def _way(self, t: Float) -> Float:
         """How far the body has come at times t [M] (s), m."""
         up, down = ((t - start) / self.period for start in (self.begin, self._stops))
         strides = minimum_jerk_integral(up) - minimum_jerk_integral(down)
         return self.crawl.speed * self.period * strides
+
+    def _under_way(self, t: Float) -> Float:
+        """How far the body is from rest on hands and knees at times t [M] (s), 0 to 1."""
+        begin, stops = ((t - start) / self.period for start in (self.begin, self._stops))
+        share: Float = minimum_jerk(begin) - minimum_jerk(stops)
+        return share
 
     @cached_property
     def rest(self) -> Pose:
@@ -119,53 +130,49 @@ class Crawling:
         return Planted(self.person, course, 0.0, 0.0, ()).pose(t, motionless(self.person)(t))
 
     @cached_property
-    def course(self) -> Course:
-        """Course of how far each limb is ahead of where it is at rest, and of its lift, m."""
+    def swings(self) -> dict[str, "Swings"]:
+        """Swings of each limb: how far it is ahead of where it is at rest, and how high, m."""
         speed, period, body = self.crawl.speed, self.period, self.person
-        swing = SWING_SHARE[0] + SWING_SHARE[1] * speed
         lead = max(LEAD - LEAD_LOSS * speed, 0.0)
         phases = dict(zip((*KNEES, *HANDS), (0.0, 0.5, 0.5 - lead, 1 - lead), strict=True))
         count = ceil((self._stops - self.begin) / period) + 3
         misses = iter(np.resize(self.crawl.misses or (0.0,), 4 * count).tolist())
-        steps = list[Step]()
+        swings = {}
         for limb, phase in phases.items():
-            lift = LIFTS[limb in HANDS] * body.stature
+            share = HAND_SWING[0] + HAND_SWING[1] * speed if limb in HANDS else KNEE_SWING
             starts = self.begin + (np.arange(count) + phase) * period
-            targets = self._way(starts + (1 + swing) / 2 * period)
-            place = 0.0
+            targets = self._way(starts + (1 + share) / 2 * period)
+            rows, place = [], 0.0
             for start, target in zip(starts.tolist(), targets.tolist(), strict=True):
                 goes_on = target < self.place.ahead - 1e-9
                 target += next(misses) * speed * period * goes_on
-                change = target - place
-                if abs(change) < 1e-6:
+                if abs(target - place) < 1e-6:
                     continue
-                height = lift * min(1.0, 2 * abs(change) / (speed * period))
-                half = swing * period / 2
-                steps += [
-                    Step(limb, change, start, 2 * half),
-                    Step(f"{limb}_up", height, start, half),
-                    Step(f"{limb}_up", -height, start + half, half),
-                ]
+                height = min(1.0, 2 * abs(target - place) / (speed * period))
+                rows.append((start, place, target - place, LIFTS[limb in HANDS] * height))
                 place = target
-        channels = (*KNEES, *HANDS, *(f"{limb}_up" for limb in (*KNEES, *HANDS)))
-        return Course.of(dict.fromkeys(channels, 0.0), steps)
+            rows = rows or [(self.begin, 0.0, 0.0, 0.0)]
+            columns = np.array(rows).T * np.array([[1.0], [1.0], [1.0], [body.stature]])
+            swings[limb] = Swings(*columns, share * period, RAMPS[limb in HANDS])
+        return swings
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """Pose of the body at times t [M] (s)."""
         body, rest = self.person, self.rest
-        course, zero = self.course(t), np.zeros((2, t.size))
-        distance = self._way(t)
-        knees = rest.knees + np.array([course[:2], zero, course[4:6]])
-        hip, joints, roll = self._pelvis(knees, rest.hip[0] + distance)
+        zero, distance = np.zeros((2, t.size)), self._way(t)
+        swings = np.stack([self.swings[limb](t) for limb in (*KNEES, *HANDS)], axis=1)
+        knees = rest.knees + np.array([swings[0, :2], zero, swings[1, :2]])
+        hip, joints = self._pelvis(knees, rest.hip[0] + distance)
         down = joints - knees
         level = np.sqrt(body.leg**2 - down[0] ** 2 - down[1] ** 2)
         knees = np.array([knees[0], knees[1], joints[2] - level])
         drop = knees[2] - body.ankle
         trailing = np.sqrt(body.leg**2 - drop**2)
         ankles = np.array([knees[0] - trailing, knees[1], zero + body.ankle])
-        hands = self._resting_hands + np.array([course[2:4], zero, course[6:8]])
+        hands = self._resting_hands + np.array([swings[0, 2:], zero, 0 * zero])
         yaw = -TRUNK_YAW * (hands[0, 1] - hands[0, 0]) / (2 * body.shoulder)
-        trunk = axes(self._pitch(hip, hands, yaw), yaw, TRUNK_ROLL * roll)
+        trunk = self._trunk(hip, hands, yaw, self._under_way(t))
+        hands[2] += swings[1, 2:]
         shoulders = shoulder_points(body, hip, trunk)
         frame = np.array([trunk.ahead, trunk.left, trunk.up])
         reached = np.einsum("axm,xim->aim", frame, hands - shoulders)
@@ -173,8 +180,8 @@ class Crawling:
         upper, fore = arm_directions_to_hands(trunk, reached, poles, body.arm)
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
 
-    def _pelvis(self, knees: Float, ahead: Float) -> tuple[Float, Float, Float]:
-        """Hip point [3, M], hip joints [3, 2, M] (m) and roll to the left [M] (rad) over knees."""
+    def _pelvis(self, knees: Float, ahead: Float) -> tuple[Float, Float]:
+        """Hip point [3, M] and hip joints [3, 2, M] (m) over knees."""
         body = self.person
         off = ahead - knees[0]
         heights = knees[2] + np.sqrt(body.leg**2 - off * off)
@@ -182,7 +189,7 @@ class Crawling:
         roll = np.arcsin(rise / (1 + rise**8) ** 0.125)
         hip = np.array([ahead, 0 * ahead, heights.mean(axis=0)])
         left = np.array([0 * ahead, np.cos(roll), -np.sin(roll)])
-        return hip, hip[:, None] + body.hip * SIDES * left[:, None], roll
+        return hip, hip[:, None] + body.hip * SIDES * left[:, None]
 
     @cached_property
     def _resting_hands(self) -> Float:
@@ -192,33 +199,60 @@ class Crawling:
         hands: Float = p[:, 4:8:3].copy()
         return hands
 
-    def _pitch(self, hip: Float, hands: Float, yaw: Float) -> Float:
-        """Pitch of the trunk [M] (rad) at which both arms reach the floor.
+    def _trunk(self, hip: Float, hands: Float, yaw: Float, under_way: Float) -> Axes:
+        """Axes of the trunk of which both shoulders are an arm's length from hands on the floor.
 
-        The middle between the shoulders is as high as at rest, softly no higher than either arm
-        lets it be.
+        Arms are as long as at rest, then nearly straight. Where the shoulders are ahead is taken
+        from the axes at rest, then from those that follow, which leaves less than a millimetre.
         """
-        length = self.person.trunk + self.person.shoulder
-        high = self.rest.hip[2] + length * self.rest.trunk.up[2]
-        height = high - self._sinking(hip, hands, yaw) + self._sinking_at_rest
-        pitch: Float = np.arccos((height - hip[2]) / length)
-        return pitch
-
-    @cached_property
-    def _sinking_at_rest(self) -> Float:
-        """Sinking [1] (m) at rest, where the shoulders are as high as they are."""
-        return self._sinking(self.rest.hip, self._resting_hands, np.zeros(1))
-
-    def _sinking(self, hip: Float, hands: Float, yaw: Float) -> Float:
-        """Distance [M] (m) by which the shoulders are lower so that arms reach the floor."""
         body = self.person
         length = body.trunk + body.shoulder
-        up = self.rest.trunk.up
-        high = self.rest.hip[2] + length * up[2]
-        ahead = hip[0] + length * up[0] - body.shoulder * SIDES * np.sin(yaw)
-        beside = hip[1] + body.shoulder * SIDES * np.cos(yaw) + length * up[0] * np.sin(yaw)
-        apart = (hands[0] - ahead) ** 2 + (hands[1] - beside) ** 2
-        reach = ARM * 2 * body.arm
-        limits = hands[2] + np.sqrt(np.maximum(reach**2 - apart, 0.0))
-        sinking: Float = np.log1p(np.exp(SOFTNESS * (high - limits)).sum(axis=0)) / SOFTNESS
-        return sinking
+        resting = shoulder_points(body, self.rest.hip, self.rest.trunk)
+        arm = ((resting - self._resting_hands) ** 2).sum(axis=0)
+        arm = arm + under_way * ((STRAIGHT * 2 * body.arm) ** 2 - arm)
+        trunk = self.rest.trunk
+        for _ in range(2):
+            across = (hands - shoulder_points(body, hip, trunk))[:2]
+            apart = across[0] ** 2 + across[1] ** 2
+            heights = hands[2] + np.sqrt(np.maximum(arm - apart, SHORTEST * arm))
+            roll = np.arcsin((heights[0] - heights[1]) / (2 * body.shoulder * np.cos(yaw)))
+            lean, aside = np.cos(roll), np.sin(yaw) * np.sin(roll)
+            rise = (heights.mean(axis=0) - hip[2]) / length
+            pitch = np.arccos(rise / np.hypot(lean, aside)) - np.arctan2(aside, lean)
+            trunk = axes(pitch, yaw, roll)
+        return trunk
+
+
+@dataclass(frozen=True)
+class Swings:
+    """Swings of one limb: nearly even ahead, up and down by minimum jerk."""
+
+    # starts: s; places before each, changes and lifts: m; all [K], in their order
+    starts: Float
+    places: Float
+    changes: Float
+    lifts: Float
+    length: float  # duration of each, s
+    ramp: float  # share of it in which the limb gets its speed, and likewise loses it
+
+    @property
+    def end(self) -> float:
+        """When the last one has ended, s."""
+        return float(self.starts[-1]) + self.length
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which a place or a height is not smooth."""
+        shares = 0.0, self.ramp, 0.5, 1 - self.ramp, 1.0
+        return tuple(t for share in shares for t in (self.starts + share * self.length).tolist())
+
+    def __call__(self, t: Float) -> Float:
+        """Places and heights [2, M] (m) at times t [M] (s)."""
+        swing = (np.searchsorted(self.starts, t, side="right") - 1).clip(0)
+        x = ((t - self.starts[swing]) / self.length).clip(0.0, 1.0)
+        up, down = minimum_jerk_integral(x / self.ramp), (x - 1) / self.ramp + 1
+        share = self.ramp / (1 - self.ramp) * (up - minimum_jerk_integral(down))
+        height = minimum_jerk(2 * x) - minimum_jerk(2 * x - 1)
+        return np.array(
+            [self.places[swing] + self.changes[swing] * share, self.lifts[swing] * height]
+        )

@@ -29,23 +29,25 @@ ON_FLOOR, PROPPED = "lying against the seat", "lying on the hands"
 
 @dataclass(frozen=True)
 class Prone:
-    """How people lie after a fall ahead: height of the knees in m, angles in rad."""
+    """How people lie after a fall ahead: height of the knees over the stature, angles in rad."""
 
-    knee_height: float = 0.10
-    thigh: float = radians(90)
+    knee_height: float = 0.05
+    thigh: float = radians(90)  # or in line with the shank, where that is less
     trunk: float = radians(88)
     # place of the hands ahead of and outside the shoulders, fractions of the stature
-    hands: tuple[float, float] = (0.12, 0.05)
+    hands: tuple[float, float] = (0.12, 0.07)
 
     def posture(self, person: Physique) -> dict[str, float]:
-        """Channels of `planted.posture` on the floor, hands beside the head."""
-        shank = acos((self.knee_height - person.ankle) / person.leg)
-        lying = posture(shank, self.thigh, self.trunk, 0.0, person.elbow, upright=0.0)
-        shoulders = person.leg * (sin(shank) + sin(self.thigh))
+        """Channels of `planted.posture` on the floor, hands beside the head, elbows on it."""
+        shank = acos((self.knee_height * person.stature - person.ankle) / person.leg)
+        thigh = min(self.thigh, shank)
+        lying = posture(shank, thigh, self.trunk, 0.0, person.elbow, upright=0.0)
+        shoulders = person.leg * (sin(shank) + sin(thigh))
         shoulders += (person.trunk + person.shoulder) * sin(self.trunk)
         lying["hands"] = 1.0
         lying["hands_ahead"] = shoulders + self.hands[0] * person.stature
         lying["hands_beside"] = person.shoulder + self.hands[1] * person.stature
+        lying["splayed"] = 1.0
         return lying
 
 
@@ -59,7 +61,7 @@ class OnFours(Prone):
 
     def posture(self, person: Physique) -> dict[str, float]:
         hands = {"hands_ahead": self.reach * person.stature, "hands_beside": person.shoulder}
-        return super().posture(person) | hands
+        return super().posture(person) | hands | {"splayed": 0.0}
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,7 @@ class FallForward:
             Step("trunk", change["trunk"], 0.10, 1.0, late=True),
             *steps_of_both_sides(SHOULDERS, self.arms, 0.05, 0.7),
             Step("hands", 1.0, 0.25, 0.65),
+            Step("splayed", change["splayed"], 0.30, 0.60),  # after a walk that the fall overlaps
         ]
         if self.heels:
             up, down = (time / self.duration for time in SWING)

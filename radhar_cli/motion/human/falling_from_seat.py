@@ -81,6 +81,7 @@ class FallFromSeat:
             steps += [
                 Step("hands", 1.0, 0.25, 0.65),
                 Step("hands_ahead", lying["hands_ahead"] - near, 0.8, 0.8),
+                Step("splayed", lying["splayed"], 0.25, 0.65),
             ]
         fall_start = begin + 0.75 * self.rising
         risen = RISEN.items() if self.rising else ()

@@ -18,6 +18,10 @@ from radhar_cli.motion.human.two_link import AHEAD, two_link
 from radhar_cli.numerics.arrays import Float
 
 ON_SIDE = "lying on the side"
+# Places of hands on the floor over the stature: how far each is off the middle between them, the
+# lower one towards the head; where those of who gets up are, ahead of and beside the ankles.
+APART = 0.09
+NEAR = 0.34, 0.13
 CHANNELS = (
     *("legs", "behind", "length", "pelvis", "trunk"),
     *("curl", "arms", "elbows", "hands", "still", "near"),
@@ -138,11 +142,10 @@ class FallingSideways:
         )
         flexion = (arms + idle_share * idle.shoulders, elbows + idle_share * idle.elbows)
         bent = fall.bent if fall.seat is None else fall.curled
-        lying_beside = body.leg * 2 * bent + fall.hands[1] * body.stature
-        beside = fall.side * (lying_beside + near * (0.22 * body.stature - lying_beside))
-        ahead = np.full(t.size, fall.hands[0] * body.stature)
-        hand = np.array([ahead, beside, np.full(t.size, HAND)])[:, None]
-        floor = np.broadcast_to(hand, (3, 2, t.size))
+        beyond = fall.side * (2 * bent * body.leg / body.stature + fall.hands[1]) + APART * SIDES
+        beside = body.stature * (beyond + near * (NEAR[1] * SIDES - beyond))
+        ahead = body.stature * (fall.hands[0] + near * (NEAR[0] - fall.hands[0]) + 0 * SIDES)
+        floor = np.array([ahead, beside, np.full((2, t.size), HAND)])
         shoulders = shoulder_points(body, hip, upper_body)
         off_floor = np.array([[0.0, 0.0], [-0.35 * fall.side] * 2, [-1.0, -1.0]])
         upper, fore = arm_directions_near_floor(

@@ -43,6 +43,23 @@ LYING_POSTURES: dict[str, Callable[[Physique], dict[str, float]]] = {
     PROPPED: Sitting().posture,
 }
 ON_BELLY = (PRONE, ON_FOURS)
+DRAWN_IN = 0.32  # share of getting up in which the hands of who lies on the belly come to the chest
+
+
+def hands_beside_chest(
+    person: Physique, lying: dict[str, float], place: tuple[float, float]
+) -> tuple[float, float]:
+    """Distances of hands ahead of the ankles and beside the middle, m, of who will push with them.
+
+    Args:
+        person: Who lies on the belly.
+        lying: Channels of `planted.posture` of that.
+        place: Place of the hands behind and outside the shoulders, over the stature.
+    """
+    shoulders = person.leg * (sin(lying["shank"]) + sin(lying["thigh"]))
+    shoulders += (person.trunk + person.shoulder) * sin(lying["trunk"])
+    behind, outside = (distance * person.stature for distance in place)
+    return shoulders - behind, person.shoulder + outside
 
 
 def _lying_posture(person: Physique, before: str) -> dict[str, float]:
@@ -60,9 +77,13 @@ class GetUp:
 
     duration: float = 3.0
     before: str = PRONE  # state in which the person lies
-    hands: float = 0.57  # where the hands push, ahead of the ankles, fraction of the stature
+    # where the hands push, fractions of the stature: of who is on hands and knees, ahead of the
+    # ankles; of who lies on the belly, behind and outside the shoulders; in the crouch that follows
+    hands: float = 0.57
+    beside_chest: tuple[float, float] = (0.14, 0.05)
+    crouched: float = 0.45
     on_knees: float = radians(84)  # pitch of the trunk on hands and knees
-    # shank, thigh, trunk: angles in the crouch that follows
+    # shank, thigh, trunk: angles in that crouch
     shank: float = radians(38)
     thigh: float = radians(-70)
     trunk: float = radians(50)
@@ -87,17 +108,21 @@ class GetUp:
         self, person: Physique, lying: dict[str, float], rest: dict[str, float]
     ) -> list[Step]:
         """Steps from lying on the belly, over hands and knees, to standing."""
-        push = self.hands * person.stature
+        ahead, beside = self.hands * person.stature, person.shoulder
+        if lying["splayed"]:
+            ahead, beside = hands_beside_chest(person, lying, self.beside_chest)
         return [
             Step("shank", self.shank - lying["shank"], 0.28, 0.34),
             Step("shank", rest["shank"] - self.shank, 0.56, 0.44),
-            Step("thigh", self.thigh - lying["thigh"], 0.05, 0.55),
+            Step("thigh", self.thigh - lying["thigh"], 0.10, 0.52),
             Step("thigh", rest["thigh"] - self.thigh, 0.55, 0.45),
-            Step("trunk", self.on_knees - lying["trunk"], 0.05, 0.30),
+            Step("trunk", self.on_knees - lying["trunk"], 0.10, 0.30),
             Step("trunk", self.trunk - self.on_knees, 0.34, 0.28),
             Step("trunk", rest["trunk"] - self.trunk, 0.56, 0.44),
-            Step("hands_ahead", push - lying["hands_ahead"], 0.0, 0.30),
-            Step("hands_beside", person.shoulder - lying["hands_beside"], 0.0, 0.25),
+            Step("hands_ahead", ahead - lying["hands_ahead"], 0.0, DRAWN_IN),
+            Step("hands_beside", beside - lying["hands_beside"], 0.0, DRAWN_IN),
+            Step("splayed", -lying["splayed"], 0.0, DRAWN_IN),
+            Step("hands_ahead", self.crouched * person.stature - ahead, 0.38, 0.30),
             Step("hands", -1.0, 0.48, 0.42),
         ]
 
@@ -126,7 +151,7 @@ class GetUp:
             *steps_of_both_sides(ELBOWS, rest["right_elbow"] - lying["right_elbow"], 0.3, 0.5),
         ]
         if lying["hands"]:
-            steps.append(Step("hands", -1.0, 0.05, 0.35))
+            steps.append(Step("hands", -1.0, 0.05, 0.50))
         return steps
 
 
@@ -162,9 +187,12 @@ class TryToGetUp:
             steps.append(Step(channel, angle, delay, up - delay))
             steps.append(Step(channel, -angle, up + self.dwell, 1 - up - self.dwell))
         if self.before == PRONE:
-            push = 0.40 * person.stature
-            steps.append(Step("hands_ahead", -push, 0.0, 0.25))
-            steps.append(Step("hands_ahead", push, up + self.dwell, 1 - up - self.dwell))
+            ahead, beside = hands_beside_chest(person, lying, GetUp.beside_chest)
+            drawn = {"hands_ahead": ahead, "hands_beside": beside, "splayed": 0.0}
+            for channel, place in drawn.items():
+                by = place - lying[channel]
+                steps.append(Step(channel, by, 0.0, DRAWN_IN))
+                steps.append(Step(channel, -by, 1 - DRAWN_IN, DRAWN_IN))
         course = Course.of(lying, scale_steps(steps, begin, self.duration))
         end = begin + self.duration
         phases = (Phase(begin, "getting up"), Phase(end, "lying"))

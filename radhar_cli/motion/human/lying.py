@@ -39,22 +39,22 @@ SHOULDERS = 5 / 18  # distance of that middle from the hip
 # Directions of thigh, shank, upper arm and forearm, which need not be unit vectors: ahead, outwards
 # and up of either side on the back and on the belly; ahead, to the left and up of the right and of
 # the left one on the left side.
-THIGHS = (0.18, 0.04, -1.0), ((0.75, 0.15, -0.7), (0.35, 0.0, -0.95)), (0.04, 0.06, -1.0)
-SHANKS = (-0.26, 0.04, -1.0), ((-0.45, 0.22, -0.85), (-0.17, 0.0, -1.0)), (-0.03, 0.06, -1.0)
-ARMS = (-0.12, 0.30, -1.0), ((0.75, 0.30, -0.6), (0.90, 0.0, 0.30)), (0.05, 0.85, 0.50)
-FOREARMS = (0.05, -0.05, -1.0), ((0.60, 0.60, 0.30), (0.85, 0.0, 0.55)), (0.10, -0.10, 1.0)
+THIGHS = (0.18, 0.04, -1.0), ((0.75, 0.06, -0.7), (0.35, 0.0, -0.95)), (0.04, 0.06, -1.0)
+SHANKS = (-0.26, 0.04, -1.0), ((-0.45, 0.03, -0.85), (-0.17, 0.0, -1.0)), (-0.03, 0.06, -1.0)
+ARMS = (-0.12, 0.30, -1.0), ((0.50, 0.05, -0.20), (1.07, 0.0, 0.19)), (-0.08, 0.45, 0.77)
+FOREARMS = (0.30, -0.10, -0.95), ((1.50, 0.95, 1.90), (1.78, 0.0, 1.20)), (-0.05, -0.50, 1.25)
 # Arms of whose hands are on the belly, who lies on the back.
 ARM_ON_BELLY, FOREARM_ON_BELLY = (-0.10, 0.35, -0.95), (0.50, -0.75, -0.50)
 # Where a knee that is drawn up, and an arm that reaches across, have thigh, shank, arm and forearm:
 # ahead, to the other side and up.
-DRAWN = (0.85, 0.1, -0.5), (-0.65, 0.0, -0.75)
+DRAWN = (0.85, 0.04, -0.5), (-0.65, 0.0, -0.75)
 REACH = (0.9, 0.45, 0.15), (0.7, 0.7, 0.2)
 # Heights above the surface below which knees, ankles, elbows and hands do not get, and toes.
 LOWEST = {"thigh": 0.035, "shank": 0.030, "arm": 0.026, "forearm": 0.024}
 HAND = 1.5  # length of a forearm with the hand over that of the forearm
 TOES, TOES_HEIGHT = 0.12, 0.02
 DROP = radians(35)  # by how much the feet of who lies hang from a right angle to the shank
-EDGE = 0.04  # rounds those bounds, over the length of the limb
+EDGE = {"thigh": 0.04, "shank": 0.04, "arm": 0.12, "forearm": 0.12}  # rounds those bounds, rad
 FIDGET = 0.5  # share of a standing person's turns of the trunk that who lies makes
 # z of the direction ahead of a chest at which its rising becomes that of the back, and how fast.
 TURNING, SHARPNESS = -0.5, 0.15
@@ -188,19 +188,20 @@ class Surface:
     arms: Float
 
 
-def _level(direction: Float, lowest: Float, share: Float) -> Float:
+def _level(direction: Float, lowest: Float, share: Float, edge: float = 0.04) -> Float:
     """Unit vectors [3, ..., M] that, as far as the share [M] says, point no lower than a bound.
 
     Args:
         direction: Directions.
         lowest: Their least z [..., M].
         share: 0 to 1.
+        edge: Rounds the bound, rad.
     """
     towards = unit(direction)
     z = towards[2]
     bound = np.arcsin(lowest / (1 + lowest**8) ** 0.125)  # which is above no leg's reach
     above = np.arcsin(np.clip(z, -1.0, 1.0)) - bound
-    up = share * 0.5 * (np.sqrt(above * above + EDGE**2) - above)
+    up = share * 0.5 * (np.sqrt(above * above + edge**2) - above)
     up *= 1 - np.maximum(z, 0.0) ** 8  # nothing turns over the vertical
     cosine = np.sqrt(np.maximum(1 - z * z, 1e-12))
     level = np.cos(up) - np.sin(up) * z / cosine
@@ -238,7 +239,8 @@ def body_pose(
         for name in names:
             lowest = surface.height + LOWEST[name] * person.stature - point[2]
             beyond = HAND if name == "forearm" else 1.0
-            direction = _level(in_room(frame, limbs[name]), lowest / (beyond * length), share)
+            limb = in_room(frame, limbs[name])
+            direction = _level(limb, lowest / (beyond * length), share, EDGE[name])
             point = point + length * direction
             points[name] = direction, point
     shank, ankles = points["shank"]
@@ -360,7 +362,7 @@ class TurnOver:
 
     rest: Rest = field(default_factory=Rest)
     by: float = pi / 2  # roll to the left, rad
-    duration: float = 2.5
+    duration: float = 5.0
     head: float = 0.0  # as of `Lie`
 
     @property
@@ -381,12 +383,12 @@ class TurnOver:
         leading = "right" if self.by > 0 else "left"
         size = min(1.0, abs(self.by) / (pi / 2))
         return [
-            Step("trunk", self.by, 0.12, 0.72),
-            Step("pelvis", self.by, 0.24, 0.76),
+            Step("trunk", self.by, 0.06, 0.84),
+            Step("pelvis", self.by, 0.14, 0.86),
             Step(f"drawn_{leading}", size, 0.0, 0.4),
-            Step(f"drawn_{leading}", -size, 0.6, 0.4),
-            Step(f"reach_{leading}", size, 0.0, 0.42),
-            Step(f"reach_{leading}", -size, 0.45, 0.5),
+            Step(f"drawn_{leading}", -size, 0.42, 0.45),
+            Step(f"reach_{leading}", size, 0.0, 0.5),
+            Step(f"reach_{leading}", -size, 0.5, 0.5),
         ]
 
 

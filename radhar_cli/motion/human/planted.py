@@ -9,7 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.motion.human.arms import arm_directions, arm_directions_near_floor
+from radhar_cli.motion.human.arms import (
+    ALONG_FLOOR,
+    UPWARDS,
+    arm_directions,
+    arm_directions_near_floor,
+)
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
@@ -47,8 +52,9 @@ def posture(
 
     Returns:
         {channel: value}; with "hands", how far the hands are on the floor, at "hands_ahead" and
-        "hands_beside" (m); "heels", how far the shanks of who lies on the knees are lifted (rad);
-        "feet", how far the feet have slid ahead (m).
+        "hands_beside" (m), and how far their elbows point outwards along it, "splayed";
+        "heels", how far the shanks of who lies on the knees are lifted (rad); "feet", how far the
+        feet have slid ahead (m).
     """
     return {
         "shank": shank,
@@ -63,6 +69,7 @@ def posture(
         "hands": 0.0,
         "hands_ahead": 0.0,
         "hands_beside": 0.0,
+        "splayed": 0.0,
         "heels": 0.0,
         "feet": 0.0,
     }
@@ -111,7 +118,7 @@ class Planted:
     def pose(self, t: Float, idle: IdleState) -> Pose:
         body = self.person
         shank, thigh, trunk, *channels, heels, feet = self.course(t)
-        *arms, standing, upright, share, far, beside = channels
+        *arms, standing, upright, share, far, beside, splayed = channels
         ankle = np.array([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankle, (3, 2, t.size))
         knee, hip = legs(body, shank, thigh, standing * idle.lean, standing * idle.legs_roll)
@@ -126,7 +133,22 @@ class Planted:
         tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
         shoulder = np.array(arms[:2]) + upright * idle.shoulders
         elbow = np.array(arms[2:]) + upright * idle.elbows
-        upper, fore = arms_of_posture(body, hip, tilted, (shoulder, elbow), share, far, beside)
+        if share.any():
+            elbows = UPWARDS
+            if splayed.any():
+                over, along = UPWARDS[:, :, None], ALONG_FLOOR[:, :, None]
+                elbows = over + splayed * (along - over)
+            upper, fore = arm_directions_near_floor(
+                body,
+                tilted,
+                shoulder_points(body, hip, tilted),
+                (shoulder, elbow),
+                _places_on_floor(far, beside),
+                share,
+                elbows,
+            )
+        else:
+            upper, fore = arm_directions(tilted, shoulder, elbow)
         return Pose(
             hip=hip,
             trunk=tilted,
@@ -181,7 +203,10 @@ def arms_of_posture(
     """
     if not share.any():
         return arm_directions(trunk, *flexion)
-    floor = np.array([far + 0 * SIDES, beside * SIDES, HAND + 0 * flexion[0]])
-    return arm_directions_near_floor(
-        person, trunk, shoulder_points(person, hip, trunk), flexion, floor, share
-    )
+    shoulders, floor = shoulder_points(person, hip, trunk), _places_on_floor(far, beside)
+    return arm_directions_near_floor(person, trunk, shoulders, flexion, floor, share)
+
+
+def _places_on_floor(far: Float, beside: Float) -> Float:
+    """Places of both hands on the floor [3, 2, M] (m), ahead and beside the middle [M] (m)."""
+    return np.array([far + 0 * SIDES, beside * SIDES, HAND + 0 * (far + SIDES)])

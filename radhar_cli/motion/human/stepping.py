@@ -4,7 +4,7 @@ The body goes to the new place by minimum jerk, the feet follow in turn; each st
 stance is a little later, the last two to where it ends.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import radians
 
@@ -24,6 +24,7 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import scale_steps
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, turned
 from radhar_cli.motion.human.two_link import two_link
+from radhar_cli.motion.segments import REFERENCE_STATURE
 from radhar_cli.numerics.arrays import Float
 
 RIGHT, LEFT = 0, 1
@@ -50,6 +51,12 @@ class StepTo:
     def __post_init__(self) -> None:
         if self.steps < 2:
             raise ValueError(f"a stance is reached within at least 2 steps, not {self.steps}")
+
+    def for_stature(self, stature: float) -> "StepTo":
+        """Return the steps of a stature (m): shorter ones of who is shorter than 1.75 m."""
+        scale, (ahead, left, turn) = min(stature / REFERENCE_STATURE, 1.0), self.place
+        place = Place(scale * ahead, scale * left, turn)
+        return replace(self, place=place, lift=scale * self.lift, drop=scale * self.drop)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Stepping":
         return Stepping(person, self, begin)

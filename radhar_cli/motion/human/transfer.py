@@ -57,9 +57,9 @@ from radhar_cli.numerics.arrays import Float
 FLESH = 0.047  # height of a seated hip above the bed, over the stature
 EDGE = -0.05  # place of the bed's edge ahead of the ankles of who sits on it, over the stature
 INWARDS = 0.06  # how far the hip goes away from it on lying down, over the stature
-SIT, STAND = 0.42, 0.40  # share of the duration in which people sit down on the bed, and stand up
+SIT, STAND = 0.32, 0.30  # share of the duration in which people sit down on the bed, and stand up
 OVERLAP = 0.05  # share of it that both have in common with lying down and sitting up
-ROLL = 2.0  # time in which who lies on the floor turns onto the belly before getting up, s
+ROLL = 4.0  # time in which who lies on the floor turns onto the belly before getting up, s
 LONG_AGO = -1e6  # when what a body has done before began, s
 IN_FRONT = 0.4  # how far arms go in front of the body on the way, over their direction
 SHARES = ("trunk", "pelvis", "legs", "arms", "legs_over", "arms_over")
@@ -251,7 +251,7 @@ class GoToBed:
 
     rest: Rest = field(default_factory=lambda: Rest(surface=0.25, bed=True))
     side: float = 1.0  # 1 where the pillow is to the left of who sits on the bed, -1 to the right
-    duration: float = 5.0
+    duration: float = 6.5
     rise: Rise = field(default_factory=Rise)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Transfer:
@@ -288,7 +288,7 @@ class LeaveBed:
 
     rest: Rest = field(default_factory=lambda: Rest(surface=0.25, bed=True))
     side: float = 1.0  # as of `GoToBed`
-    duration: float = 4.5
+    duration: float = 6.0
     rise: Rise = field(default_factory=Rise)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Transfer:
@@ -343,14 +343,14 @@ def _lying_down(person: Physique, rest: Rest, side: float) -> list[Step]:
     roll = wrap_angle(rest.roll - side * LEFT_SIDE)
     if abs(roll) > pi - 1e-6:  # over the back
         roll = -side * pi
-    first = 0.52 - 0.16 * max(abs(roll) / (pi / 2) - 1, 0.0)  # who rolls farther begins earlier
+    first = 0.42 - 0.22 * max(abs(roll) / (pi / 2) - 1, 0.0)  # who rolls farther begins earlier
     return [
         Step("trunk", 1.0, 0.0, 0.56),
         Step("pelvis", 1.0, 0.10, 0.50),
         Step("arms", 1.0, 0.05, 0.65),
         Step("legs", 1.0, 0.45, 0.45),
         Step("arms_over", 1.0, 0.10, 0.35),
-        Step("legs_over", 1.0, 0.55, 0.25),
+        Step("legs_over", 1.0, 0.48, 0.30),
         Step("x", -INWARDS * person.stature, 0.25, 0.55),
         Step("trunk_roll", roll, first, 0.94 - first),
         Step("pelvis_roll", roll, first + 0.06, 0.94 - first),
@@ -364,7 +364,7 @@ class Settle:
     fall: "Faller"  # the fall, or what else the person did on the floor before
     by: float = pi / 2  # roll to the left, rad, to the next of these four
     hands: float = 0.0  # as of `Rest`
-    duration: float = 2.5
+    duration: float = 5.0
 
     def rest(self, person: Physique) -> Rest:
         """How the person lies at the end."""
@@ -381,10 +381,12 @@ class Settle:
         pelvis_roll += 2 * pi * round((roll - pelvis_roll) / (2 * pi))
         steps = [
             *(Step(share, 1.0, 0.0, 0.5) for share in ("trunk", "pelvis")),
-            *(Step(share, 1.0, 0.0, 0.7) for share in ("legs", "arms")),
-            *(Step(share, 1.0, 0.0, 0.35) for share in ("legs_over", "arms_over")),
-            Step("trunk_roll", roll, 0.2, 0.7),
-            Step("pelvis_roll", pelvis_roll, 0.25, 0.75),
+            Step("legs", 1.0, 0.0, 0.55),
+            Step("arms", 1.0, 0.0, 0.6),
+            Step("legs_over", 1.0, 0.0, 0.35),
+            Step("arms_over", 1.0, 0.0, 0.2),
+            Step("trunk_roll", roll, 0.12, 0.82),
+            Step("pelvis_roll", pelvis_roll, 0.18, 0.82),
         ]
         end = begin + self.duration
         course = _course(held, scale_steps(steps, begin, self.duration))
@@ -486,8 +488,8 @@ class RiseFromRest:
             *(Step(share, -1.0, 0.5, 0.5) for share in ("trunk", "pelvis")),
             *(Step(share, -1.0, 0.3, 0.7) for share in ("legs", "arms")),
             *(Step(share, -1.0, 0.65, 0.35) for share in ("legs_over", "arms_over")),
-            Step("trunk_roll", -roll, 0.0, 0.75),
-            Step("pelvis_roll", -roll, 0.05, 0.75),
+            Step("trunk_roll", -roll, 0.0, 0.85),
+            Step("pelvis_roll", -roll, 0.05, 0.85),
         ]
         steps = scale_steps(steps, begin, self.turning)
         course = _course(held, steps, lying=True, rolls=(first, first))

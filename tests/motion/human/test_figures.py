@@ -6,6 +6,8 @@ from math import radians, sqrt
 import numpy as np
 import pytest
 
+from radhar_cli.assembly.motion import motion_of
+from radhar_cli.config import Config
 from radhar_cli.motion.human import boulic_thalmann as curves
 from radhar_cli.motion.human.falling import FallBackward, FallForward, OnFours, Sitting
 from radhar_cli.motion.human.falling_from_seat import FallFromSeat
@@ -24,6 +26,7 @@ from radhar_cli.motion.human.stepping import STUMBLES
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.scene import draw_scene
 
 DT = 1e-3
 
@@ -357,3 +360,14 @@ def test_movements_start_from_a_common_rest_pose() -> None:
         pose[1, [joint("right_ankle"), joint("left_ankle")]], [-person.hip, person.hip]
     )
     assert radians(2) < person.rest_lean < radians(3)
+
+
+@pytest.mark.parametrize("stature", [1.0, 1.4, 2.0])
+def test_steps_of_a_stumble_are_no_longer_than_legs_allow(stature: float) -> None:
+    """A child's leg that is asked to stretch over an adult's step straightens within a moment."""
+    stumbling = {"activities": ["stumbling"], "subject": {"height_m": stature}}
+    config = Config.model_validate(stumbling)
+    motion = motion_of(draw_scene(config, config.chosen_activities[0], 1).people[0])
+    p = motion.positions(np.arange(0, config.duration_s, DT))
+    acceleration = np.linalg.norm(np.diff(p, n=2, axis=2), axis=0).max() / DT**2
+    assert acceleration < 130

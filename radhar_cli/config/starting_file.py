@@ -211,15 +211,16 @@ activities: [{activities}]
 duration_s: {duration_s:g}
 motion: {{place: {{range_m: {{uniform: [{nearest:.2g}, {farthest:.2g}]}}}}}}
 body: {{scatterers: surfaces}}
-cloud: {{chain: {chain}}}  # {_describe_chain(chain)}
+cloud: {{chain: {chain}}}  # {_describe_chain(chain, board)}
 maps: [{maps}]
 """
 
 
-def _describe_chain(chain: Chain) -> str:
+def _describe_chain(chain: Chain, board: BoardHeader) -> str:
     """Say what the other chains are, for a comment."""
     if chain == "best":
-        return "as the data allow: the file has no detection that is simulated"
+        reasons = board.why_no_chain or ("the file has no detection that is simulated",)
+        return f"as the data allow: {reasons[0]}"
     return "as the firmware makes points; best: fewer, finer ones"
 
 

@@ -86,7 +86,7 @@ def _unknown_commands(radar: BoardRadar) -> Iterator[str]:
 def _window_warnings(config: Config, radar: ArrayRadar) -> Iterator[str]:
     """Say that a window that is longer than the chirps of a frame is no longer than these."""
     header = radar.header
-    frame_s = header.loops * len(header.order) * header.slot_s
+    frame_s = header.loops * header.loop_s
     window_s = config.processing.window_s if _gives_window(config) else None
     if window_s is not None and window_s > frame_s:
         yield (
@@ -158,8 +158,8 @@ def _describe_chain(chain: Chain, radar: BoardRadar) -> str:
         return f"cloud.chain: {chain}, the firmware whose commands radar.cfg has"
     if header.firmware is not None:
         return f"cloud.chain: best, as {radar.why_no_points(header.firmware)}"
-    if header.missing:
-        return f"cloud.chain: best, as {header.missing[0]}"
+    if header.why_no_chain:
+        return f"cloud.chain: best, as {header.why_no_chain[0]}"
     return "cloud.chain: best, as radar.cfg has no detection of a firmware that is simulated"
 
 

@@ -65,6 +65,15 @@ def test_chirps_follow_frames_loops_and_turns() -> None:
     np.testing.assert_allclose(MARS.pulses.times(np.arange(64)), t[..., 0].ravel(), atol=1e-15)
 
 
+def test_chirps_of_a_loop_may_start_at_any_times() -> None:
+    board = replace(MARS, chirp_starts=(0.0, 60e-6, 800e-6), burst_s=900e-6)
+    times = board.chirp_times()
+    assert times.shape == (2, 32, 3)
+    np.testing.assert_allclose(times[1, 3], 0.1 + 3 * 900e-6 + np.array(board.chirp_starts))
+    numbers = np.arange(times.size, dtype=float)
+    np.testing.assert_allclose(board.waveform.times(numbers), times.ravel(), rtol=0, atol=1e-15)
+
+
 def test_frames_without_idle_time_have_no_gaps() -> None:
     assert len(replace(MARS, period=32 * 3 * 57e-6).pulses) == 1
 

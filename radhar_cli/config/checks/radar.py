@@ -292,10 +292,10 @@ def _detection_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     if c.cloud.boundary_box and board.box is None:
         yield _boundary_problem(radar)
     if board.firmware is None and chain != "best":
-        missing = (*board.missing, "cfarCfg is missing")[0]
-        if chain in NEEDED_COMMANDS and not board.missing:
-            missing = f"{NEEDED_COMMANDS[chain]} are missing"
-        yield Problem("cloud.chain", chain, f"should be best: radar.cfg: {missing}")
+        reason = (*board.why_no_chain, "cfarCfg is missing")[0]
+        if chain in NEEDED_COMMANDS and not board.why_no_chain:
+            reason = f"{NEEDED_COMMANDS[chain]} are missing"
+        yield Problem("cloud.chain", chain, f"should be best: radar.cfg: {reason}")
     elif chain not in ("best", "board", board.firmware):
         right = f"should be {board.firmware} or best: radar.cfg has the commands of that firmware"
         yield Problem("cloud.chain", chain, right)

@@ -76,6 +76,8 @@ _FIRST = Family.SDK_1, Family.SDK_2
 _TRACKING = Family.SDK_3, Family.PEOPLE_3D
 _1443 = Device(_BOOST, _FIRST, heeds_limits=False, noise_figure_db=15.0)
 _1843 = Device(_BOOST, (*_TRACKING, Family.OBSTACLES))
+# Front ends without a processor: captures of theirs come with a .cfg of any of these demos.
+_FRONT_END = Device(_BOOST, (*_FIRST, Family.SDK_3))
 _1642 = Device(
     Array(((0, 0), (4, 0)), _ROW, _SAME, (28.0, 14.0)),
     # SDK 3: e2e.ti.com 1439888, the demo of SDK 3.6 on it
@@ -118,6 +120,7 @@ DEVICES: Mapping[str, Device] = MappingProxyType(
         **dict.fromkeys(("IWR1443BOOST", "AWR1443BOOST"), _1443),
         **dict.fromkeys(("IWR1642BOOST", "AWR1642BOOST"), _1642),
         **dict.fromkeys(("IWR1843BOOST", "AWR1843BOOST"), _1843),
+        **dict.fromkeys(("AWR1243BOOST", "AWR2243BOOST"), _FRONT_END),
         "IWR6843ISK": Device(_ISK, (*_TRACKING, Family.PEOPLE)),
         "IWR6843ISK-ODS": Device(_ODS, _TRACKING),
         "IWR6843AOP": Device(_AOP, _TRACKING),

@@ -24,7 +24,7 @@ CORRECTIONS = "compRangeBiasAndRxChanPhase"
 GEOMETRY = "antGeometry0", "antGeometry1", "antPhaseRot"
 APART = 0.1  # half wavelengths from which places differ
 MM = 1e-3
-TWINS = "AWR1443", "AWR1642", "AWR1843"  # of IWR boards
+TWINS = "AWR1443", "AWR1642", "AWR1843", "AWR1243", "AWR2243"  # of the elements of IWR boards
 ANTENNAS = 4  # most transmitters, and most receivers
 TURNED = np.radians(5)  # phase from which corrections are of other feeds
 
@@ -169,7 +169,7 @@ def compare_elements(elements: FileElements, array: Array, antennas: Antennas) -
 def fitting_devices(header: "BoardHeader") -> list[str]:
     """Name the devices whose elements, software and band are those of a .cfg.
 
-    Of boards that are the same for two names, IWR stands for both. A file that says nothing of
+    Of boards with the same elements IWR stands for all. A file that says nothing of
     elements fits any device that has its antennas.
     """
     return [

@@ -107,6 +107,9 @@ def test_a_started_config_has_the_likely_device(lines: str, device: str, tmp_pat
 @pytest.mark.parametrize(
     ("spelling", "device"),
     [
+        ("awr1243", "AWR1243BOOST"),
+        ("AWR2243_BOOST", "AWR2243BOOST"),
+        ("xWR2243", "AWR2243BOOST"),
         ("AWR1443BOOST", "AWR1443BOOST"),
         ("iwr1642boost", "IWR1642BOOST"),
         ("AWR1642", "IWR1642BOOST"),

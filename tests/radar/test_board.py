@@ -95,6 +95,10 @@ def test_every_device_has_a_sign_for_each_receiver(device: str) -> None:
 OF_BOARDS: dict[str, tuple[str, str, str, str, tuple[float, float]]] = {
     # TX and RX (left, up), signs of RX and of TX, half-power half-widths (azimuth, elevation)
     "IWR1443BOOST": ("0,0 2,1 4,0", "0,0 1,0 2,0 3,0", "++++", "+++", (28, 14)),
+    **dict.fromkeys(
+        ("AWR1243BOOST", "AWR2243BOOST"),
+        ("0,0 2,1 4,0", "0,0 1,0 2,0 3,0", "++++", "+++", (28, 14)),
+    ),
     "IWR1642BOOST": ("0,0 4,0", "0,0 1,0 2,0 3,0", "++++", "++", (28, 14)),
     "IWR1843BOOST": ("0,0 2,1 4,0", "0,0 1,0 2,0 3,0", "++++", "+++", (28, 14)),
     "IWR6843ISK": ("0,-1 2,0 4,-1", "0,0 1,0 2,0 3,0", "++++", "+++", (60, 15)),
@@ -109,7 +113,7 @@ OF_BOARDS: dict[str, tuple[str, str, str, str, tuple[float, float]]] = {
 @pytest.mark.parametrize("device", DEVICES)
 def test_elements_of_a_device_are_those_of_its_guide(device: str) -> None:
     """Places (left, up) in half wavelengths looking out, signs of the feeds, beam of an element."""
-    name = device.replace("AWR1", "IWR1")
+    name = device if device in OF_BOARDS else device.replace("AWR1", "IWR1")
     tx, rx, rx_signs, tx_signs, beam = OF_BOARDS[name]
     array = DEVICES[device].array
     for places, written in ((array.tx, tx), (array.rx, rx)):

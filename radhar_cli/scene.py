@@ -474,7 +474,8 @@ def _with_possible_overlap(config: Config, activity: Activity) -> Config:
     if key is None or config.motion.model != "human":
         return config
     sideways = (
-        activity.usual_slug == "walking_to_falling" and config.motion.falling.direction == "sideways"
+        activity.usual_slug == "walking_to_falling"
+        and config.motion.falling.direction == "sideways"
     )
     largest = 0.0 if sideways else MAX_OVERLAP * getattr(timing, key)
     capped = {"timing.overlap_s": min(timing.overlap_s, largest)}

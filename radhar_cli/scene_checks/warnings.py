@@ -32,7 +32,7 @@ from radhar_cli.scene_checks.drawing import CROWDED, describe_crowd, find_crowde
 from radhar_cli.scene_checks.flags import Flags, describe_flag, describe_flags
 from radhar_cli.scene_checks.unused_keys import unused_keys
 from radhar_cli.scene_checks.validity import check_scene
-from radhar_cli.scene_checks.visibility import chest_point, noise_alone
+from radhar_cli.scene_checks.visibility import chest_point, looks_away, noise_alone
 
 if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader
@@ -48,14 +48,15 @@ def config_warnings(config: Config) -> list[str]:
 
 def warnings_of_signal(config: Config) -> list[str]:
     """Say what aliases, and whether maps are noise alone, whatever keys have no effect."""
-    radar = config.radar
+    radar, noise = config.radar, noise_alone(config)
     return [
         *tone_warnings(config),
         *band_warnings(config),
         *(_unknown_commands(radar) if isinstance(radar, BoardRadar) else ()),
         *(_window_warnings(config, radar) if isinstance(radar, ArrayRadar) else ()),
         *(_header_warnings(config, radar) if isinstance(radar, BoardRadar) else ()),
-        *noise_alone(config),
+        *noise,
+        *(() if any("the beam" in line for line in noise) else looks_away(config)),
         *_folding_warnings(config),
         *(_angle_warnings(config, radar) if isinstance(radar, ArrayRadar) else ()),
         *_loose_tolerance(config),

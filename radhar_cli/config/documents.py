@@ -57,7 +57,7 @@ def read_document(path: Path) -> tuple[Document, Places]:
     Raises:
         ConfigError: the file cannot be read, is not YAML, or holds no mapping.
     """
-    if not path.exists() and (name := _preset_called(path.as_posix())):
+    if (name := _preset_called(path.as_posix())) and not path.exists():
         raise ConfigError(
             f"{path}: no such file; `radhar config init FILE --preset {name}` writes that config"
         )
@@ -81,11 +81,11 @@ def read_document(path: Path) -> tuple[Document, Places]:
 
 
 def _preset_called(path: str) -> str | None:
-    """Preset that a path names as documents do, by its name, or by the last part of it."""
+    """Preset that a path names as documents do, by its name, or by the last part of its name."""
     name = path.removeprefix("configs/").removesuffix(".yaml")
     if name in PRESETS:
         return name
-    return next((preset for preset in PRESETS if preset.rpartition("/")[2] == name), None)
+    return next((preset for preset in PRESETS if preset.rpartition("/")[2] == path), None)
 
 
 def _rename_keys(section: Any, prefix: str, places: Places) -> None:

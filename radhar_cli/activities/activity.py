@@ -292,11 +292,11 @@ def class_called(name: str, classes: Mapping[str, Activity]) -> Activity:
     Raises:
         ValueError: No such activity.
     """
-    found, word = activity_named(name, classes), plain_word(name)
-    is_of_twelve = found.slug in TWELVE and found.slug not in classes
-    if is_of_twelve and is_other_word(name, found.slug) and is_new_slug(word):
-        return replace(found, slug=word)
-    return found
+    activity, word = activity_named(name, classes), plain_word(name)
+    is_of_twelve = activity.slug in TWELVE and activity.slug not in classes
+    if is_of_twelve and is_other_word(name, activity.slug) and is_new_slug(word):
+        return replace(activity, slug=word)
+    return activity
 
 
 def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> Activity:

@@ -332,9 +332,9 @@ def meaning_of(name: str, known: Iterable[str]) -> str | None:
     """
     names = dict.fromkeys(known)
     meanings = meanings_of(name)
-    ours = (candidate for candidate in meanings if candidate in names)
-    others = (other for other in names if not set(meanings).isdisjoint(meanings_of(other)))
-    return next(ours, None) or next(others, None)
+    slugs = (candidate for candidate in meanings if candidate in names)
+    words = (word for word in names if not set(meanings).isdisjoint(meanings_of(word)))
+    return next(slugs, None) or next(words, None)
 
 
 def meanings_of(name: str) -> tuple[str, ...]:

@@ -547,11 +547,7 @@ def _problems_of(
         elif item["type"] == "missing" and _kinds_of_class(names, document) == []:
             right = "should have a `sequence` of movements, or `files` of motion"
             yield Problem(key.removesuffix(".sequence"), item["input"], right)
-        elif key == "split.by" and str(item["input"]).rstrip("s") in PERSONS:
-            yield Problem(
-                key, item["input"], "should be subject: split: {by: subject, subjects: 4}"
-            )
-        elif names[:1] == ["maps"] and (called := _name_of_map(item)):
+        elif called := _our_word(names, item):
             yield Problem(key, item["input"], called)
         else:
             message = _WORDING.get(item["type"], item["msg"])
@@ -581,9 +577,13 @@ def _problems_of(
             yield Problem(key, item["input"], _advice_on_number(kind, names, item, message))
 
 
-def _name_of_map(item: Any) -> str | None:
-    """Advice on a map by another name: range-doppler, RDM, spectrogram; None without any."""
+def _our_word(names: list[int | str], item: Any) -> str | None:
+    """Advice on a map by another name, such as RDM, or a split by persons; None without any."""
     plain = re.sub("[- ]", "_", str(item["input"]).lower())
+    if names == ["split", "by"] and plain.rstrip("s") in PERSONS:
+        return "should be subject: split: {by: subject, subjects: 4}"
+    if names[:1] != ["maps"]:
+        return None
     return ABSENT.get(plain) or (f"is called {plain}" if f"'{plain}'" in item["msg"] else None)
 
 

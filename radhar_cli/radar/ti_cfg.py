@@ -283,9 +283,9 @@ def make_frame_header(
     """
     loop = _chirps_of_loop(chirps, timing)
     of_chirps = _profiles_of(loop, profiles)
-    for one in of_chirps:
-        one.require_samples_within_ramp()
-    slots_s = [one.slot_s for one in of_chirps]
+    for profile in of_chirps:
+        profile.require_samples_within_ramp()
+    slots_s = [profile.slot_s for profile in of_chirps]
     busy_s = timing.loops * sum(slots_s)
     if busy_s > timing.period_ms * 1e-3 * ROUNDING:
         lengths = " and ".join(f"{slot_s * 1e6:g}" for slot_s in dict.fromkeys(slots_s))
@@ -296,7 +296,7 @@ def make_frame_header(
     masks = [chirp.mask for chirp in loop]
     bpm = None if pair is None else _places_of(pair, loop, timing)
     roles = [bpm.index(place) if bpm and place in bpm else None for place in range(len(masks))]
-    times = [(one.idle_us, one.ramp_end_us) for one in of_chirps]
+    times = [(profile.idle_us, profile.ramp_end_us) for profile in of_chirps]
     turns = count_turns(list(zip(masks, roles, times, strict=True)))
     is_even = len(set(times)) == 1
     return FrameHeader(
@@ -370,15 +370,15 @@ def _profiles_of(
                 f"{chirp.place} profileId = {chirp.profile}: should be one that is defined "
                 f"(profileCfg): {known}"
             )
-    found = [profiles[chirp.profile] for chirp in loop]
-    for chirp, profile in zip(loop, found, strict=True):
-        if profile.sweep != found[0].sweep:
+    of_chirps = [profiles[chirp.profile] for chirp in loop]
+    for chirp, profile in zip(loop, of_chirps, strict=True):
+        if profile.sweep != of_chirps[0].sweep:
             raise CaptureError(
                 f"{chirp.place} profileId = {chirp.profile}: should be {loop[0].profile}: a frame "
                 "has chirps of one profile, or of profiles that differ in idleTime, rampEndTime "
                 "and txOutPower alone; subFrameCfg has one each"
             )
-    return found
+    return of_chirps
 
 
 def _ramp_starts_of(profiles: Sequence[ChirpProfile]) -> tuple[float, ...]:

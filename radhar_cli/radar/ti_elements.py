@@ -185,8 +185,8 @@ def fitting_devices(header: "BoardHeader") -> list[str]:
 
 def _could_be(elements: FileElements, array: Array, antennas: Antennas) -> bool:
     """Whether elements may be an array's: of its places or, where they have none, of its feeds."""
-    told = replace(elements, phases=()) if elements.places else elements
-    difference = compare_elements(told, array, antennas)
+    elements = replace(elements, phases=()) if elements.places else elements
+    difference = compare_elements(elements, array, antennas)
     return not difference.commands or difference.is_calibration
 
 

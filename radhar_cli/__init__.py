@@ -83,7 +83,10 @@ def __getattr__(name: str) -> object:
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] != "torch":
             raise
-        raise ImportError(f"radhar.{name} needs PyTorch: pip install 'radhar[train]'") from None
+        from radhar_cli.errors import how_to_install
+
+        command = how_to_install("torch", "safetensors", "sklearn", "jinja2")
+        raise ImportError(f"radhar.{name} needs PyTorch: {command}") from None
 
 
 def __dir__() -> list[str]:

@@ -38,7 +38,7 @@ def program() -> "typer.Typer":
 
     app = typer.Typer(
         cls=Headings,
-        help="Labelled FMCW radar data sets for human activity recognition, from a YAML file.",
+        help="Labelled radar data sets for human activity recognition, from a YAML file.",
         epilog=STATUSES,
         no_args_is_help=True,
         pretty_exceptions_enable=False,

@@ -19,6 +19,31 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str, similar: float
     return f"did you mean {near[0]!r}?" if near else otherwise
 
 
+# {module: package that has it}, where these differ.
+PACKAGES = {"sklearn": "scikit-learn", "skimage": "scikit-image", "jinja2": "Jinja2"}
+
+
+def how_to_install(*modules: str) -> str:
+    """Command that installs the packages of modules, however radhar itself was installed."""
+    return f"pip install {' '.join(PACKAGES.get(module, module) for module in modules)}"
+
+
+def describe_schema(version: int, known: int, otherwise: str = "") -> str:
+    """Say what is wrong with the version of a file's layout, and what would be right.
+
+    Args:
+        version: the file's.
+        known: the one that this radhar reads and writes.
+        otherwise: what to do about a file of an earlier version.
+    """
+    if version > known:
+        return (
+            f"schema_version = {version}: is written by a newer radhar, this one reads {known}: "
+            "update radhar"
+        )
+    return f"schema_version = {version}: should be {known}{otherwise}"
+
+
 class RadharError(Exception):
     """Something is wrong with what the user gave: one clear message, no traceback."""
 

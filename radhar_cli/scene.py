@@ -470,11 +470,12 @@ def _draw_person(config: Config, number: int, person: PersonConfig, draw: Draw) 
 def _with_possible_overlap(config: Config, activity: Activity) -> Config:
     """Cut the overlap of S9 to S12's movements to what legs are long enough for."""
     timing: Any = config.timing
-    key = OVERLAPPED.get(activity.slug)
+    key = OVERLAPPED.get(activity.usual_slug)
     if key is None or config.motion.model != "human":
         return config
     sideways = (
-        activity.slug == "walking_to_falling" and config.motion.falling.direction == "sideways"
+        activity.usual_slug == "walking_to_falling"
+        and config.motion.falling.direction == "sideways"
     )
     largest = 0.0 if sideways else MAX_OVERLAP * getattr(timing, key)
     capped = {"timing.overlap_s": min(timing.overlap_s, largest)}

@@ -1,11 +1,17 @@
 """The activities: label, slug, class number and the movements of people each one consists of."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 from zlib import crc32
 
-from radhar_cli.activities.vocabulary import advice_on, meaning_of
+from radhar_cli.activities.vocabulary import (
+    advice_on,
+    is_other_word,
+    meaning_of,
+    meanings_of,
+    plain_word,
+)
 from radhar_cli.extensions import load_extensions
 
 if TYPE_CHECKING:
@@ -156,6 +162,11 @@ class Activity:
         return f"S{self.number}"
 
     @property
+    def usual_slug(self) -> str:
+        """Name of one of the twelve whatever it is called; of other classes the slug."""
+        return ACTIVITIES[self.number - 1].slug if self.number <= len(ACTIVITIES) else self.slug
+
+    @property
     def index(self) -> int:
         """Number that names the activity's random streams: 0 to 11 for the twelve.
 
@@ -165,6 +176,13 @@ class Activity:
         """
         is_movement = self.number > len(ACTIVITIES) and self.slug in MOVEMENTS
         return crc32(self.slug.encode()) if is_movement else self.number - 1
+
+    @property
+    def is_movement(self) -> bool:
+        """Whether the class is one movement, called so or by another word for it."""
+        if not self.movements or self.movements[0] not in meanings_of(self.slug):
+            return False
+        return {*self.movements} <= {self.movements[0], MOVEMENTS[self.movements[0]].like}
 
     @property
     def is_nobody(self) -> bool:
@@ -262,6 +280,23 @@ def is_new_slug(slug: str) -> bool:
     """Whether a user-defined class may have this name: not one of the twelve, fit for a folder."""
     is_reserved = slug in _BY_NAME or slug == DEFAULT
     return not is_reserved and slug.isascii() and slug.isidentifier() and slug == slug.lower()
+
+
+def class_called(name: str, classes: Mapping[str, Activity]) -> Activity:
+    """Find an activity as `activity_named`; one of the twelve has the name of another word for it.
+
+    Args:
+        name: as somebody wrote it.
+        classes: {slug: activity} of a config's own classes, which keep their names.
+
+    Raises:
+        ValueError: No such activity.
+    """
+    activity, word = activity_named(name, classes), plain_word(name)
+    is_of_twelve = activity.slug in TWELVE and activity.slug not in classes
+    if is_of_twelve and is_other_word(name, activity.slug) and is_new_slug(word):
+        return replace(activity, slug=word)
+    return activity
 
 
 def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> Activity:

@@ -8,6 +8,18 @@ from radhar_cli.errors import did_you_mean
 # of longer names one in six.
 SHORT, SIMILAR_SHORT, SIMILAR = 5, 0.75, 0.8
 
+FILLERS = frozenset(
+    {"a", "an", "the", "my", "his", "her", "their", "one", "person", "people", "human", "someone"}
+)
+_SEATS = "chair", "sofa", "couch", "stool", "bench", "seat", "armchair"
+_ONTO = tuple(f"{where}_{seat}" for where in ("on", "in", "onto", "into", "to") for seat in _SEATS)
+_OFF = tuple(f"{where}_{seat}" for where in ("from", "off", "out_of") for seat in _SEATS)
+_GROUND = tuple(
+    f"{where}_{ground}"
+    for where in ("on", "onto", "to", "from", "off")
+    for ground in ("floor", "ground", "carpet", "mat")
+)
+
 # {word: our names of the same meaning, of which the first that is known counts}; a config may say
 # the word instead. A movement of the word's own name comes before these.
 MEANINGS: dict[str, tuple[str, ...]] = {
@@ -22,6 +34,25 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("sit", "sit_down"), ("sitting_down",)),
     **dict.fromkeys(("seated", "sitting_still"), ("sitting",)),
     **dict.fromkeys(("kneel", "on_knees"), ("kneeling",)),
+    **dict.fromkeys(("kneel_down", "go_on_knees"), ("kneeling_down",)),
+    **dict.fromkeys(("get_on_all_fours", "getting_on_all_fours"), ("getting_on_fours",)),
+    **dict.fromkeys(("go_on_all_fours", "going_on_all_fours"), ("getting_on_fours",)),
+    **dict.fromkeys(
+        tuple(
+            f"{verb}_{off}"
+            for verb in ("get_up", "getting_up", "rise", "rising", "stand", "standing")
+            for off in _OFF
+        ),
+        ("standing_up",),
+    ),
+    **dict.fromkeys(
+        tuple(
+            f"{verb}_{off}"
+            for verb in ("fall", "falling", "fall_down", "falling_down")
+            for off in _OFF
+        ),
+        ("falling_off_seat",),
+    ),
     **dict.fromkeys(("crawl", "creeping"), ("crawling",)),
     **dict.fromkeys(("sleeping", "sleep", "lying_still", "laying", "resting"), ("lying",)),
     **dict.fromkeys(("lie_down", "going_to_bed", "go_to_bed", "laying_down"), ("lying_down",)),
@@ -29,7 +60,7 @@ MEANINGS: dict[str, tuple[str, ...]] = {
         ("get_out_of_bed", "leaving_bed", "getting_out_of_bed"), ("getting_up_from_bed",)
     ),
     **dict.fromkeys(("turn_over", "rolling_over", "rolling", "roll_over"), ("turning_over",)),
-    **dict.fromkeys(("stand_up", "rising", "getting_up_from_chair"), ("standing_up",)),
+    **dict.fromkeys(("stand_up", "rising"), ("standing_up",)),
     **dict.fromkeys(("stand_up_from_floor", "get_up", "rising_from_floor"), ("getting_up",)),
     **dict.fromkeys(("rotating", "twisting", "body_rotation"), ("body_rotating",)),
     **dict.fromkeys(("turn_around",), ("turning_around",)),
@@ -40,7 +71,13 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("jumping_jack", "star_jumps"), ("jumping_jacks",)),
     **dict.fromkeys(("run", "jogging", "jog", "sprinting", "sprint"), ("running",)),
     **dict.fromkeys(
-        ("running_in_place", "jog_in_place", "running_on_the_spot"), ("jogging_in_place",)
+        tuple(
+            f"{verb}_{where}"
+            for verb in ("run", "running", "jog", "jogging")
+            for where in ("in_place", "on_the_spot", "on_spot")
+            if (verb, where) != ("jogging", "in_place")
+        ),
+        ("jogging_in_place",),
     ),
     **dict.fromkeys(("raise_right_arm", "raising_right_hand"), ("raising_right_arm",)),
     **dict.fromkeys(("raise_left_arm", "raising_left_hand"), ("raising_left_arm",)),
@@ -76,7 +113,7 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("gehen",), ("walking",)),
     **dict.fromkeys(("rennen",), ("running",)),
     **dict.fromkeys(("sitzen",), ("sitting",)),
-    **dict.fromkeys(("fallen", "sturz", "collapse", "fainting"), ("falling",)),
+    **dict.fromkeys(("sturz", "collapse", "fainting"), ("falling",)),
     **dict.fromkeys(("springen",), ("jumping",)),
     **dict.fromkeys(("boxen",), ("punching",)),
     **dict.fromkeys(("trinken",), ("drinking",)),
@@ -100,6 +137,30 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("lunge_toward_left_side",), ("left_side_lunge",)),
     **dict.fromkeys(("lunge_toward_right_side",), ("right_side_lunge",)),
     **dict.fromkeys(("waving_hand_left", "waving_hand_right", "single_hand_waving"), ("waving",)),
+}
+# {our name: what may stand behind or before a word for it, and changes nothing}.
+USUAL: dict[str, tuple[str, ...]] = {
+    "sitting_down": _ONTO,
+    "sitting": (*_ONTO, "still", "quietly"),
+    "standing_up": (*_OFF, "from_sitting"),
+    "stationary": ("still", "quietly"),
+    "walking": ("around", "about", "in_room", "indoors", "normally", "straight", "free", "regular"),
+    "running": ("around", "straight"),
+    "crawling": (*_GROUND, "on_hands_and_knees", "on_all_fours", "army", "baby"),
+    "falling": (*_GROUND, "accidental", "sudden", "over"),
+    "getting_up": (*_GROUND, "from_lying"),
+    "grabbing": _GROUND,
+    "lying": (*_GROUND, "on_bed", "in_bed", "still", "flat"),
+    "lying_down": ("on_bed", "in_bed", "onto_bed", "to_bed"),
+    "kneeling": (*_GROUND, "on_knees"),
+    "kneeling_down": (*_GROUND, "on_knees"),
+    "limping": ("leg", "gait"),
+    "punching": ("in_air",),
+    "waving": ("hello", "goodbye"),
+    "drinking": ("standing", "from_bottle", "from_glass", "from_cup"),
+    "squatting": ("exercise",),
+    "jumping": ("exercise", "up_and_down"),
+    "jumping_jacks": ("exercise",),
 }
 # {word: our names that come near it}: suggested, but not taken for the same.
 NEARBY: dict[str, tuple[str, ...]] = {
@@ -128,7 +189,7 @@ NEARBY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(
         ("walking_slow", "slow_walking", "fast_walking", "brisk_walking", "march"), ("walking",)
     ),
-    **dict.fromkeys(("fall_from_chair", "falling_from_chair"), ("falling_off_seat",)),
+    **dict.fromkeys(("fallen",), ("falling", "lying")),  # to fall in German, to lie in English
     **dict.fromkeys(
         ("fall_forward", "fall_backward", "falling_backwards", "fall_sideways", "slip", "slipping"),
         ("falling",),
@@ -261,7 +322,7 @@ def advice_on(name: str, known: Iterable[str], otherwise: str) -> str:
         known: our names that would do.
         otherwise: what is returned where nothing is meant.
     """
-    names, word = list(known), _plain(name)
+    names, word = list(known), plain_word(name)
     meant = meaning_of(name, names)
     if meant is not None:
         return f"did you mean {meant!r}?"
@@ -278,18 +339,41 @@ def advice_on(name: str, known: Iterable[str], otherwise: str) -> str:
 
 
 def meaning_of(name: str, known: Iterable[str]) -> str | None:
-    """Find the known name that means the same, or differs in case, spaces and hyphens alone."""
-    word, names = _plain(name), set(known)
-    return next(
-        (candidate for candidate in (word, *MEANINGS.get(word, ())) if candidate in names), None
+    """Find the known name that means the same, or differs in case, spaces and hyphens alone.
+
+    Our own names come before other words of the same meaning.
+    """
+    names = dict.fromkeys(known)
+    meanings = meanings_of(name)
+    slugs = (candidate for candidate in meanings if candidate in names)
+    words = (word for word in names if not set(meanings).isdisjoint(meanings_of(word)))
+    return next(slugs, None) or next(words, None)
+
+
+def meanings_of(name: str) -> tuple[str, ...]:
+    """Names that a word may stand for: itself, and ours of the same meaning.
+
+    Articles and people do not matter, nor does a place or a manner that a movement has anyway:
+    `sit_down_on_a_chair` is `sit_down`, `army_crawling` is `crawling`.
+    """
+    word = plain_word(name)
+    short = "_".join(part for part in word.split("_") if part not in FILLERS)
+    direct = (word, *MEANINGS.get(word, ()), short, *MEANINGS.get(short, ()))
+    usual = (
+        slug
+        for slug, phrases in USUAL.items()
+        for phrase in phrases
+        for rest in (short.removesuffix(f"_{phrase}"), short.removeprefix(f"{phrase}_"))
+        if rest != short and slug in (rest, *MEANINGS.get(rest, ()))
     )
+    return tuple(dict.fromkeys((*direct, *usual)))
 
 
 def is_other_word(name: str, slug: str) -> bool:
     """Whether a name is another word for a slug, not the slug in another way of writing it."""
-    return _plain(name) != slug and slug in MEANINGS.get(_plain(name), ())
+    return plain_word(name) != slug and slug in meanings_of(name)
 
 
-def _plain(name: str) -> str:
+def plain_word(name: str) -> str:
     """Name in lower case with underscores for spaces, hyphens and slashes."""
     return name.strip().lower().translate(_SEPARATORS)

@@ -72,7 +72,7 @@ def _stand_still(person: Person) -> Motion:
 def _paper_body(person: Person) -> PaperBody:
     subject, motion, timing = person.subject, person.motion, person.timing
     return PaperBody(
-        activity=person.activity.slug,
+        activity=person.activity.usual_slug,
         height=subject.height_m,
         weight=subject.weight_kg,
         start=person.place,

@@ -109,9 +109,9 @@ def human_motion(person: Person) -> HumanMotion:
 
 def _plan(person: Person, physique: Physique) -> _Plan:
     """Plan what a person does, and when."""
-    slug = person.activity.slug
-    if slug in person.config.classes:
+    if person.activity.slug in person.config.classes:
         return _plan_sequence(person, physique)
+    slug = person.activity.usual_slug
     if slug in STEPS:
         return _plan_transition(person)
     if slug in RISING:
@@ -123,7 +123,7 @@ def _plan(person: Person, physique: Physique) -> _Plan:
 
 def _plan_bout(person: Person) -> _Plan:
     """Plan what lasts; what repeats and is under way at 0 s has its phase then."""
-    timing, motion, slug = person.timing, person.motion, person.activity.slug
+    timing, motion, slug = person.timing, person.motion, person.activity.usual_slug
     bout = bout_of(person)
     if slug == "stationary":
         return _add_shuffles(person, _Plan((Stand(0.0),), onset=bout_onset(person)), 0.0)
@@ -145,7 +145,7 @@ def _plan_bout(person: Person) -> _Plan:
 
 def _plan_transition(person: Person) -> _Plan:
     """Plan picking up, sitting down or standing up, with the steps before and after."""
-    timing, slug = person.timing, person.activity.slug
+    timing, slug = person.timing, person.activity.usual_slug
     duration, start = timing.seat_duration_s, timing.seat_start_s
     if slug == "grabbing":
         duration, start = timing.grab_duration_s, timing.grab_start_s
@@ -179,7 +179,7 @@ def _plan_stop(person: Person, physique: Physique) -> _Plan:
     """Plan a walk, and sitting down or falling after it."""
     timing = person.timing
     duration = timing.sit_duration_s
-    if person.activity.slug == "walking_to_falling":
+    if person.activity.usual_slug == "walking_to_falling":
         duration = timing.fall_duration_s
     begin, repertoire = 0.0, DrawnRepertoire(person, duration)
     walk, second = repertoire.activity(person.activity.number)
@@ -198,7 +198,7 @@ def _add_steps(person: Person, movements: tuple[Movement, ...]) -> tuple[Movemen
     if not length:
         return movements
     steps: list[tuple[Movement, ...]] = []
-    for ahead in STEPS[person.activity.slug]:
+    for ahead in STEPS[person.activity.usual_slug]:
         direction = 1 if rng.random() < (ahead or 0.0) else -1
         sideways = np.clip(rng.normal(), -2, 2)
         place = Place(direction * length, float(SHUFFLE_SIZES.left * sideways))
@@ -308,7 +308,7 @@ def _fidgets(person: Person) -> Iterable[Fidget]:
 
 def _settling_fidgets(person: Person, plan: _Plan) -> Iterable[Fidget]:
     """Small movements around the end of S4 to S6."""
-    motion, slug = person.motion, person.activity.slug
+    motion, slug = person.motion, person.activity.usual_slug
     if slug not in STEPS:
         return
     begin, movements = plan.begin, plan.movements

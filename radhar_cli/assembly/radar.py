@@ -63,6 +63,7 @@ def board_of(radar: ArrayRadar[float], seconds: float = 0.0) -> Board:
         is_real=header.sampling is Sampling.REAL,
         keeps_half=header.sampling is not Sampling.COMPLEX,
         averaged=header.averaged,
+        chirp_starts=header.chirp_starts_s,
         burst_s=header.loop_s if header.has_bursts else None,
         delay=header.delay_s,
         subframe=header.subframe,

@@ -14,7 +14,7 @@ from radhar_cli import __version__
 from radhar_cli.capture.point_frames import NO_TRACK, TARGET_COLUMNS, PointFrame
 from radhar_cli.capture.recording import KIND_OF_POINTS, Label, SourceNote, is_of_kind
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
-from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
+from radhar_cli.errors import CaptureError, FolderError, UnfinishedError, describe_schema
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.files.untrusted import Closing
@@ -295,9 +295,7 @@ class PointRecording(Closing):
             )
         version = self._file.whole_number("schema_version")
         if version != SCHEMA_VERSION:
-            raise FolderError(
-                f"{self.path}: schema_version = {version}: should be {SCHEMA_VERSION}"
-            )
+            raise FolderError(f"{self.path}: {describe_schema(version, SCHEMA_VERSION)}")
         try:
             return PointRecordingInfo.model_validate(self._file.json("recording"))
         except ValidationError as error:

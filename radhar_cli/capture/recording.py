@@ -26,7 +26,7 @@ from radhar_cli.capture.content import (
 from radhar_cli.capture.findings import CLIPPED, LOST, Damage, checked
 from radhar_cli.capture.source import Parts
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
-from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
+from radhar_cli.errors import CaptureError, FolderError, UnfinishedError, describe_schema
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.files.untrusted import Closing
@@ -327,7 +327,7 @@ class Recording(Closing):
                 )
             version = self._file.whole_number("schema_version")
             if version != SCHEMA_VERSION:
-                raise FolderError(f"{path}: schema_version = {version}: should be {SCHEMA_VERSION}")
+                raise FolderError(f"{path}: {describe_schema(version, SCHEMA_VERSION)}")
             self.info = info = _info(self._file.json("recording"), path)
             self.samples = self._file.samples(info.content.dataset)
             where, number = self.samples.where, self.samples.number

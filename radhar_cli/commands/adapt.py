@@ -42,7 +42,7 @@ def adapt(
     overwrite: StartOver = False,
     device: Device = "auto",
 ) -> None:
-    """Adapt a trained network to another radar's images, without labels.
+    """Adapt a trained network to another radar's unlabelled images.
 
     RUN stays as it is. In the copy, batch-norm statistics are recomputed on the images; with
     --epochs, all layers but the last are also trained on them.

@@ -85,7 +85,7 @@ def audit(
     """
     from radhar_cli.commands.learning_options import needs
 
-    needs("train", ("sklearn",))
+    needs("sklearn")
     from radhar_cli.audit.audit import QUICK, QUICK_SAMPLES
     from radhar_cli.audit.audit import audit as audit_data
     from radhar_cli.audit.card import add_to_card

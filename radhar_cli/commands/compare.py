@@ -42,7 +42,7 @@ def compare(
     """
     from radhar_cli.commands.learning_options import needs, refuse_output_inside_data
 
-    needs("train", ("sklearn",))
+    needs("sklearn")
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.report_folder import NUMBERS

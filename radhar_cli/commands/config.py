@@ -52,7 +52,7 @@ def init(
             "--preset",
             metavar="NAME",
             help="Write a config that radhar comes with, such as quickstart, human/room or "
-            "train/paper; a wrong name lists them all.",
+            "train/paper; `list` lists them.",
         ),
     ] = None,
 ) -> None:
@@ -70,12 +70,21 @@ def init(
       radhar config init --radar list
     """
     from radhar_cli.config.documents import name_of_written
-    from radhar_cli.config.starting_file import MINIMAL, as_commented_yaml, of_board, of_preset
+    from radhar_cli.config.starting_file import (
+        MINIMAL,
+        as_commented_yaml,
+        of_board,
+        of_preset,
+        starting_notes,
+    )
     from radhar_cli.errors import FolderError, RadharError
     from radhar_cli.files.replacing import write_text
 
     if radar == "list":
         _list_radars()
+        return
+    if preset == "list":
+        _list_presets()
         return
     if out.exists() or out.is_symlink() or not out.parent.is_dir():
         why = "exists already" if out.parent.is_dir() else "there is no such folder"
@@ -83,10 +92,13 @@ def init(
     if (radar is not None) + train + minimal + (preset is not None) > 1:
         raise RadharError("--radar, --train, --minimal and --preset: should be only one of them")
     if radar is not None:
-        write_text(out, of_board(radar, out.parent))
+        text = of_board(radar, out.parent)
+        write_text(out, text)
         report(file=out)
         device = "; radar.device should be the one that runs it"
         tell(f"{out}: the radar of {radar}{device * (name_of_written(radar) is None)}")
+        for note in starting_notes(text) if name_of_written(radar) is None else ():
+            tell(f"  {note}")
         tell(f"  then        radhar simulate {out} --activity punching -o OUT")
         return
     if preset is not None:
@@ -112,6 +124,18 @@ def _list_radars() -> None:
     report(radars=radars)
     width = max(map(len, radars))
     for name, description in radars.items():
+        tell(f"{name:{width}}  {description}")
+
+
+def _list_presets() -> None:
+    """Print the configs that radhar comes with, one a line."""
+    from radhar_cli.config.documents import PRESETS
+    from radhar_cli.config.starting_file import describe_preset
+
+    presets = {name: describe_preset(name) for name in PRESETS}
+    report(presets=presets)
+    width = max(map(len, presets))
+    for name, description in presets.items():
         tell(f"{name:{width}}  {description}")
 
 

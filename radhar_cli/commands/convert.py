@@ -27,7 +27,7 @@ def convert(
       radhar convert datasets/boards -o shared/mars --to mars
 
     Labels and splits are included; with images also a data card and the random numbers of each
-    scene. The folder appears when it is complete. Parquet needs `pip install 'radhar[formats]'`.
+    scene. The folder appears when it is complete. Parquet needs `pip install pyarrow`.
     """
     from radhar_cli.commands.learning_options import needs
     from radhar_cli.commands.terminal import BarProgress
@@ -39,7 +39,7 @@ def convert(
         hint = did_you_mean(to, FORMATS, f"should be one of {', '.join(FORMATS)}")
         raise RadharError(f"--to {to}: is not a format; {hint}")
     if to == "parquet":
-        needs("formats", ("pyarrow",))
+        needs("pyarrow")
     with BarProgress() as progress:
         samples = write(dataset, out, to, progress)
     report(folder=out, samples=samples, format=to)

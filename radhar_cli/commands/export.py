@@ -24,7 +24,7 @@ def export(
     from radhar_cli.commands.learning_options import needs, needs_torch
 
     needs_torch()
-    needs("onnx", ("onnx", "onnxscript", "onnxruntime"))
+    needs("onnx", "onnxscript", "onnxruntime")
     from radhar_cli.learning.onnx_export import TOLERANCE, export
 
     refuse_to_replace(out, overwrite, "model.onnx")

@@ -6,7 +6,7 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-from radhar_cli.errors import FolderError, MachineError
+from radhar_cli.errors import FolderError, MachineError, how_to_install
 
 Run: TypeAlias = Annotated[
     Path, typer.Argument(help="Folder of a training run, or its .safetensors file.")
@@ -43,14 +43,13 @@ def needs_torch() -> None:
     Raises:
         MachineError: one is not.
     """
-    needs("train", ("torch", "safetensors", "sklearn", "jinja2"))
+    needs("torch", "safetensors", "sklearn", "jinja2")
 
 
-def needs(extra: str, modules: Sequence[str]) -> None:
-    """Check that the modules of an extra are installed.
+def needs(*modules: str) -> None:
+    """Check that modules of an extra are installed.
 
     Args:
-        extra: name of the extra, for the advice in the message: `pip install 'radhar[extra]'`.
         modules: names to import.
 
     Raises:
@@ -58,12 +57,12 @@ def needs(extra: str, modules: Sequence[str]) -> None:
     """
     from importlib.util import find_spec
 
-    for module in modules:
-        if find_spec(module) is None:
-            raise MachineError(
-                f"this command needs {module}, which is not installed: "
-                f"pip install 'radhar[{extra}]'"
-            )
+    missing = [module for module in modules if find_spec(module) is None]
+    if missing:
+        raise MachineError(
+            f"this command needs {', '.join(missing)}, which "
+            f"{'is' if len(missing) == 1 else 'are'} not installed: {how_to_install(*missing)}"
+        )
 
 
 def split_runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:

@@ -28,7 +28,7 @@ def motion(
     overwrite: Replace = False,
     set_: Overrides = None,
 ) -> None:
-    """Write the motion of a scene as a BVH file, for Blender and others.
+    """Write the motion of a scene as a BVH file, as Blender reads it.
 
     The y axis points up, lengths are in cm, and joints have Mixamo's names.
 

@@ -85,7 +85,7 @@ def _write_recordings(simulation: "Simulation", out: Path) -> list[Path]:
     for end, (board, frames) in simulation.all_subframes.items():
         cube = frames["cube"]  # [frame, loop, virtual, sample]
         beat = cube.reshape(-1, *cube.shape[2:]).transpose(1, 2, 0)
-        delays = [k * board.slot for k, _ in board.pairs]
+        delays = board.delays[[k for k, _ in board.pairs]].tolist()
         paths.append(out / RECORDING.format(end))
         note = radar | ({"subframe": board.subframe} if board.subframe else {})
         pulses = SimulatedPulses(board.pulses, delays, board.bpm)

@@ -120,7 +120,7 @@ def simulate(
       radhar simulate configs/quickstart.yaml --activity walking --seed 7 -o out/walk
     """
     if html:
-        needs("view", ("plotly",))
+        needs("plotly")
 
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.config.reading import load_radars

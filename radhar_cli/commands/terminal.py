@@ -209,15 +209,15 @@ def _tell_stages(products: Mapping[str, str], shares: Mapping[str, float]) -> No
     """
     from radhar_cli.dataset.estimate import STAGES
 
-    small = []
+    small = 0
     for stage in shares or products:
         share, does = shares.get(stage, 0.0), STAGES.get(stage) or products[stage]
         if shares and share < SMALL:
-            small.append(stage)
+            small += 1
             continue
         tell(f"stage       {f'{share:3.0f} %  ' if shares else ''}{stage}: {does}")
     if small:
-        tell(f"stage        <1 %  {', '.join(small)}")
+        tell(f"stage        <1 %  {counted(small, 'stage')} more")
 
 
 def _tell_cost(build_plan: "BuildPlan") -> None:

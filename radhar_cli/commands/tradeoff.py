@@ -40,7 +40,7 @@ def tradeoff(
             min=2,
             max=100,
             help="Also train networks on data of each setting that saves time, with so many seeds "
-            "(needs radhar[train]).",
+            "(needs PyTorch).",
         ),
     ] = None,
     set_: Overrides = None,
@@ -57,7 +57,7 @@ def tradeoff(
     """
     from radhar_cli.commands.learning_options import needs, needs_torch
 
-    needs("tradeoff", ["skimage"])
+    needs("skimage")
     if accuracy is not None:
         needs_torch()
     from radhar_cli.dataset.folder import refuse_file

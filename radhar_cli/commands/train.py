@@ -75,7 +75,7 @@ def train(
 
     needs_torch()
     if tensorboard:
-        needs("tensorboard", ("tensorboard",))
+        needs("tensorboard")
     from radhar_cli.commands.terminal import TrainingView
     from radhar_cli.config.reading import Override, load_section
     from radhar_cli.learning import run_files, training

@@ -38,7 +38,7 @@ def view(
 
       radhar view datasets/quickstart --sample walking/3
     """
-    needs("view", ("plotly",))
+    needs("plotly")
 
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.reading import open_dataset

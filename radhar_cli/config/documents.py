@@ -44,7 +44,6 @@ OTHER_NAMES = {
     "split.val": "split.validation",
     **{earlier: key for key, earlier in EARLIER_KEYS.items()},
 }
-_SHIPPED_PATHS = {f"configs/{name}.yaml": name for name in PRESETS}  # as documents name them
 MAX_CHAIN = 8  # files in a chain of bases
 ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole
 
@@ -58,8 +57,7 @@ def read_document(path: Path) -> tuple[Document, Places]:
     Raises:
         ConfigError: the file cannot be read, is not YAML, or holds no mapping.
     """
-    if path.as_posix() in _SHIPPED_PATHS and not path.exists():
-        name = _SHIPPED_PATHS[path.as_posix()]
+    if (name := _preset_called(path.as_posix())) and not path.exists():
         raise ConfigError(
             f"{path}: no such file; `radhar config init FILE --preset {name}` writes that config"
         )
@@ -80,6 +78,14 @@ def read_document(path: Path) -> tuple[Document, Places]:
             where = places.get(f"{key}.cfg", str(path))
             value["cfg"] = cfg_text(value["cfg"], path.parent, where)
     return document, places
+
+
+def _preset_called(path: str) -> str | None:
+    """Preset that a path names as documents do, by its name, or by the last part of its name."""
+    name = path.removeprefix("configs/").removesuffix(".yaml")
+    if name in PRESETS:
+        return name
+    return next((preset for preset in PRESETS if preset.rpartition("/")[2] == path), None)
 
 
 def _rename_keys(section: Any, prefix: str, places: Places) -> None:

@@ -47,7 +47,12 @@ from radhar_cli.config.several_radars import (
     problems_of_radars,
     radar_names,
 )
-from radhar_cli.config.units import key_in_our_unit, unit_of, value_with_unit
+from radhar_cli.config.units import (
+    key_in_our_unit,
+    number_in_another_unit,
+    unit_of,
+    value_with_unit,
+)
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import escaped
@@ -68,7 +73,11 @@ MAX_MISTAKES = 20
 MAX_VALUE, MAX_ADVICE = 200, 500  # characters of value and advice in a message
 
 _CHANNELS = "is not there: channels come with radar.cfg or radar.frame (docs/guide/boards.md)"
-_PEOPLE = "is not there: `people` has others in a scene (docs/guide/scenes.md)"
+_PEOPLE = (
+    "is not there: `people` has others in a scene (docs/guide/scenes.md); several persons of a "
+    "data set are split: {by: subject, subjects: 4}"
+)
+_SUBJECTS = "is called subjects: split: {by: subject, subjects: 4}"
 _UNMEASURED = (
     *("squat", "reach_deg", "free_arm", "kneel_s", "look_deg", "recline_from"),
     *("step_asymmetry", "speed_ripple", "speed_ripple_asymmetry"),
@@ -107,10 +116,12 @@ MISPLACED = {
     **dict.fromkeys(
         ("radar.frame.prf_hz", "radar.frame.chirp_s", "radar.frame.adc_rate_hz"), _BESIDE_FRAME
     ),
+    **dict.fromkeys(("split.persons", "split.people", "split.participants"), _SUBJECTS),
     "radar.profile_step_m": "is (to - from)/profile_samples of profile_m: [from, to]",
     "radar.array.half_wavelength_m": "is a key of radar, beside array: radar.half_wavelength_m",
 }
 
+PERSONS = "person", "people", "participant", "user", "volunteer"  # other words for subjects
 _MISSING = object()  # the value of a key that is not there
 MOVED_KEYS = {earlier: key for key, earlier in EARLIER_KEYS.items()}
 
@@ -537,7 +548,7 @@ def _problems_of(
         elif item["type"] == "missing" and _kinds_of_class(names, document) == []:
             right = "should have a `sequence` of movements, or `files` of motion"
             yield Problem(key.removesuffix(".sequence"), item["input"], right)
-        elif names[:1] == ["maps"] and (called := _name_of_map(item)):
+        elif called := _our_word(names, item):
             yield Problem(key, item["input"], called)
         else:
             message = _WORDING.get(item["type"], item["msg"])
@@ -567,9 +578,13 @@ def _problems_of(
             yield Problem(key, item["input"], _advice_on_number(kind, names, item, message))
 
 
-def _name_of_map(item: Any) -> str | None:
-    """Advice on a map by another name: range-doppler, RDM, spectrogram; None without any."""
+def _our_word(names: list[int | str], item: Any) -> str | None:
+    """Advice on a map by another name, such as RDM, or a split by persons; None without any."""
     plain = re.sub("[- ]", "_", str(item["input"]).lower())
+    if names == ["split", "by"] and plain.rstrip("s") in PERSONS:
+        return "should be subject: split: {by: subject, subjects: 4}"
+    if names[:1] != ["maps"]:
+        return None
     return ABSENT.get(plain) or (f"is called {plain}" if f"'{plain}'" in item["msg"] else None)
 
 
@@ -631,10 +646,10 @@ def _unknown(
     beside: tuple[str, ...],
 ) -> str:
     """Advice on an unknown key; `beside` are names that may stand there and are no fields."""
-    if issubclass(kind, Config) and (absent := ABSENT.get(str(names[-1]))):
-        return absent
     if misplaced := MISPLACED.get(".".join(map(str, names))):
         return misplaced
+    if issubclass(kind, Config) and (absent := ABSENT.get(str(names[-1]))):
+        return absent
     of_person = names[2:] if names[:1] == ["people"] else names
     if moved := MOVED_KEYS.get(".".join(map(str, of_person))):
         return f"is now {moved}"
@@ -661,14 +676,14 @@ def _unknown(
             f"is not a key of {'.'.join(map(str, names[:-1]))}: {names[-1]} stands at the top level"
         )
     known = [*(name for one in places for name in one.model_fields), *beside]
+    paths = [path for listed in _paths_of_groups(places[0]).values() for path in listed]
+    if in_our_unit := key_in_our_unit(str(names[-1]), value, [*known, *paths]):
+        return f"is an unknown key; {in_our_unit}"
     if deeper := _keys_of_groups(str(names[-1]), places[0]):
         return f"is an unknown key; did you mean {' or '.join(map(repr, deeper))}?"
     with_unit = [key for key in known if unit_of(key) and key.rpartition("_")[0] == names[-1]]
     if with_unit:
         return f"is an unknown key; did you mean {with_unit[0]!r}?"
-    in_our_unit = key_in_our_unit(str(names[-1]), value, known)
-    if in_our_unit is not None:
-        return f"is an unknown key; {in_our_unit}"
     return "is an unknown key; " + did_you_mean(
         str(names[-1]), known, f"known here: {', '.join(known)}"
     )
@@ -695,15 +710,20 @@ def _section_around(
 
 def _keys_of_groups(name: str, section: type[BaseModel]) -> list[str]:
     """Find the keys most like a name in the groups of a section, as "walking.speed_mps"."""
-    leaves: dict[str, list[str]] = {}
-    for group, field in section.model_fields.items():
-        for kind in sections(field):
-            for leaf in kind.model_fields:
-                leaves.setdefault(leaf, []).append(f"{group}.{leaf}")
+    leaves = _paths_of_groups(section)
     if difflib.get_close_matches(name, section.model_fields, n=1, cutoff=0.6):
         return []
     near = difflib.get_close_matches(name, leaves, n=1, cutoff=0.75)
     return leaves[near[0]] if near else []
+
+
+def _paths_of_groups(section: type[BaseModel]) -> dict[str, list[str]]:
+    """{last name: dotted keys that end with it} of the groups of a section."""
+    paths: dict[str, list[str]] = {}
+    for group, field in section.model_fields.items():
+        for leaf in dict.fromkeys(leaf for kind in sections(field) for leaf in kind.model_fields):
+            paths.setdefault(leaf, []).append(f"{group}.{leaf}")
+    return paths
 
 
 def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
@@ -759,11 +779,28 @@ def _value_and_advice(problem: Problem) -> str:
     if value is _MISSING:
         return f": {_short(problem.right, MAX_ADVICE)}"
     shown_value = _short(json.dumps(value, default=_plain))
-    right = problem.right
+    right = problem.right + _advice_on_unit(problem)
     if problem.key.partition(".")[0] in ("radar", RADARS_KEY, "preset", "device"):
         name_advice = advice_on_radars(value)
         right = f"{right.partition('; known here')[0]}; {name_advice}" if name_advice else right
     return f" = {shown_value}: {_short(right, MAX_ADVICE)}"
+
+
+def _advice_on_unit(problem: Problem) -> str:
+    """Say what a number beyond its range would be in our unit, where another unit explains it."""
+    reach = re.match(r"should be from (\S+) to (\S+)", problem.right)
+    value = problem.value
+    if isinstance(value, dict) and len(value) == 1:  # a distribution
+        (value,) = value.values()
+    numbers = value if isinstance(value, (list, tuple)) else [value]
+    if reach is None or not numbers or not isinstance(numbers[0], (int, float)):
+        return ""
+    try:
+        low, high = float(reach[1]), float(reach[2].rstrip(",;"))
+    except ValueError:
+        return ""
+    meant = number_in_another_unit(problem.key, float(numbers[0]), low, high)
+    return "" if meant is None else f"; {meant}"
 
 
 def _short(text: str, length: int = MAX_VALUE) -> str:

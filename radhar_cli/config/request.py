@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache, cached_property, partial
-from itertools import count
+from itertools import count, zip_longest
 from typing import Annotated, Any, ClassVar, Literal, Self, TypeAlias
 
 from pydantic import BaseModel, Field, ValidationInfo, field_validator
@@ -18,9 +18,11 @@ from radhar_cli.activities.activity import (
     TWELVE,
     Activity,
     activity_named,
+    class_called,
+    is_new_slug,
 )
 from radhar_cli.activities.links import links_between
-from radhar_cli.activities.vocabulary import is_other_word
+from radhar_cli.activities.vocabulary import is_other_word, plain_word
 from radhar_cli.config.acting import BOARD
 from radhar_cli.config.annotations import (
     GIVEN,
@@ -269,12 +271,31 @@ class Request(Section):
         for number, person in enumerate(self.people, 1):
             with suppress(ValueError):  # of names that are unknown, which checks report
                 pairs += zip(person.names, self.activities_of(number), strict=True)
-        words |= {word: a.slug for word, a in pairs if is_other_word(word, a.slug)}
         if self.activities != "all":
-            object.__setattr__(self, "activities", tuple(a.slug for a in chosen))
-            for activity in chosen:
+            named = [self._class_called(*pair) for pair in pairs[: len(chosen)]]
+            object.__setattr__(self, "activities", tuple(a.slug for a in named))
+            for activity in named:
                 object.__setattr__(self, "classes", self.with_class_of(activity).classes)
+            pairs = [
+                pair for pair, a in zip_longest(pairs, named) if a is None or a.slug == pair[1].slug
+            ]
+        words |= {word: a.slug for word, a in pairs if is_other_word(word, a.slug)}
         self._other_words = words
+
+    def _class_called(self, word: str, activity: Activity) -> Activity:
+        """The class of an activity, called by the word that somebody used for our movement.
+
+        Under `motion.model: human` movements beside the twelve are entered in `classes`.
+        """
+        slug, name = activity.slug, plain_word(word)
+        is_ours = slug in MOVEMENTS and slug not in {*self.classes, *TWELVE}
+        if activity.is_nobody or not (is_ours and is_other_word(word, slug) and is_new_slug(name)):
+            return activity
+        if self.motion.model != "human":
+            return activity  # refused elsewhere
+        classes = {**self.classes, name: movement_class(slug)}
+        object.__setattr__(self, "classes", classes)
+        return class_activities(classes)[name]
 
     def with_class_of(self, activity: Activity) -> Self:
         """Config whose `classes` have that of an activity which is a movement.
@@ -410,7 +431,7 @@ class Request(Section):
         if self.activities == "all":
             twelve = {} if self.motion.model == "file" else {a.slug: a for a in ACTIVITIES}
             return (*sorted((twelve | classes).values(), key=lambda a: a.number),)
-        chosen = [activity_named(slug, classes) for slug in self.activities]
+        chosen = [class_called(slug, classes) for slug in self.activities]
         numbers = count(1 + max(a.number for a in (*ACTIVITIES, *classes.values())))
         return tuple(a if a.motion is None else replace(a, number=next(numbers)) for a in chosen)
 

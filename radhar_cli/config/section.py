@@ -178,7 +178,8 @@ def for_activity(value: Any, activity: Activity) -> Any:
     """Return the number that holds for one activity; None where it has none and no default."""
     if isinstance(value, PerActivity):
         numbers = value.per_activity
-        return numbers.get(activity.slug, numbers.get(DEFAULT))
+        names = activity.slug, *activity.movements[:1] * activity.is_movement, DEFAULT
+        return next((numbers[name] for name in names if name in numbers), None)
     return value
 
 

@@ -29,7 +29,8 @@ from radhar_cli.config.identity import yaml_text
 from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.section import Section
 from radhar_cli.config.yaml_reader import parse_yaml
-from radhar_cli.errors import ConfigError
+from radhar_cli.errors import ConfigError, did_you_mean
+from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.detection import Chain
 from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
 from radhar_cli.radar.ti_elements import fitting_devices
@@ -203,23 +204,50 @@ def of_board(cfg: str, folder: Path) -> str:
         activities = "walking, walking_to_falling, sitting_down, standing_up, punching"
         duration_s = 5.0
     antennas = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
+    notes = "".join(f"# {note}\n" for note in _notes_on_points(board, device, chain))
     return f"""# {antennas}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
 # ranges to {range_end:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
-radar: {{device: {device}, cfg: {json.dumps(path)}{position}}}
+{notes}radar: {{device: {device}, cfg: {json.dumps(path)}{position}}}
 samples_per_class: 20
 activities: [{activities}]
 duration_s: {duration_s:g}
 motion: {{place: {{range_m: {{uniform: [{nearest:.2g}, {farthest:.2g}]}}}}}}
 body: {{scatterers: surfaces}}
-cloud: {{chain: {chain}}}  # {_describe_chain(chain)}
+cloud: {{chain: {chain}}}  # {_describe_chain(chain, board)}
 maps: [{maps}]
 """
 
 
-def _describe_chain(chain: Chain) -> str:
+def _notes_on_points(board: BoardHeader, device: str, chain: Chain) -> Iterator[str]:
+    """Say what people wonder at in the points of a board: that they are few, or all at a height."""
+    if chain in ("sdk1", "sdk3") and any(board.detection.grouping):
+        clouds = f"{device.lower()}_clouds"
+        others = f" or --radar {clouds}" * (name_of_radar(clouds) is not None)
+        yield (
+            "peak grouping is on (cfarCfg or peakGrouping): expect 1 to 3 points a person; "
+            f"cloud.chain: best{others} has more"
+        )
+    array = DEVICES[device].array
+    if max(board.order) < len(array.tx) and max(board.receivers) < len(array.rx):
+        heights = {array.tx[t][1] + array.rx[r][1] for t, r in board.antennas}
+        if len(heights) == 1:
+            yield "the elements that the file uses lie in one row: points have no heights (z = 0)"
+
+
+def starting_notes(text: str) -> list[str]:
+    """Return the comments in front of a short config of a board."""
+    return [line.removeprefix("# ") for line in takewhile(_is_comment, text.splitlines())]
+
+
+def _is_comment(line: str) -> bool:
+    return line.startswith("#")
+
+
+def _describe_chain(chain: Chain, board: BoardHeader) -> str:
     """Say what the other chains are, for a comment."""
     if chain == "best":
-        return "as the data allow: the file has no detection that is simulated"
+        reasons = board.why_no_chain or ("the file has no detection that is simulated",)
+        return f"as the data allow: {reasons[0]}"
     return "as the firmware makes points; best: fewer, finer ones"
 
 
@@ -227,6 +255,12 @@ def describe_written(name: str) -> str:
     """Return the first line of the config of a radar whose frames stand in it (WRITTEN_RADARS)."""
     text = PRESETS[f"boards/{name}"].read_text(encoding="utf-8")
     return text.partition("\n")[0].removeprefix("# ").rstrip(".")
+
+
+def describe_preset(name: str) -> str:
+    """Return the first line of comment of a config that comes with radhar; "" without any."""
+    lines = PRESETS[name].read_text(encoding="utf-8").splitlines()
+    return next((line.removeprefix("# ").rstrip(".") for line in lines if _is_comment(line)), "")
 
 
 def of_preset(name: str) -> str:
@@ -243,9 +277,9 @@ def of_preset(name: str) -> str:
     """
     short = name.removeprefix("configs/").removesuffix(".yaml")
     if short not in PRESETS:
-        raise ConfigError(
-            f"--preset {json.dumps(name)[:120]}: should be one of {', '.join(PRESETS)}"
-        )
+        listed = "radhar config init --preset list shows them"
+        hint = did_you_mean(short, PRESETS, f"should be one of {len(PRESETS)}; {listed}")
+        raise ConfigError(f"--preset {json.dumps(name)[:120]}: {hint}")
     path = PRESETS[short]
     text = path.read_text(encoding="utf-8")
     as_written, _ = parse_yaml(text, str(path))

@@ -71,7 +71,7 @@ def key_in_our_unit(name: str, value: object, known: Iterable[str]) -> str | Non
     Args:
         name: last name of the unknown key.
         value: value under it, which is converted if it is a number.
-        known: names that could be meant.
+        known: names that could be meant, dotted or not.
 
     Returns:
         The advice, or None where no known name is meant.
@@ -79,7 +79,7 @@ def key_in_our_unit(name: str, value: object, known: Iterable[str]) -> str | Non
     stem, _, last = name.rpartition("_")
     for key in known:
         unit = unit_of(f".{key}")
-        if not stem or unit is None or key.rpartition("_")[0] != stem:
+        if not stem or unit is None or key.rpartition(".")[2].rpartition("_")[0] != stem:
             continue
         factor = factor_of(last, unit)
         if factor is None:
@@ -88,6 +88,42 @@ def key_in_our_unit(name: str, value: object, known: Iterable[str]) -> str | Non
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             return f"should be {key}: {_number_text(value * factor)}, a number in {our_unit}"
         return f"should be {key}, {_number_text(factor)} times the value, in {our_unit}"
+    return None
+
+
+# {unit: other spellings in which people give numbers that lie beyond the range of a key}.
+_USUAL: dict[str, tuple[str, ...]] = {
+    "hz": ("GHz", "MHz", "kHz"),
+    "s": ("ms", "us", "ns", "min"),
+    "m": ("cm", "mm", "km"),
+    "mps": ("km/h",),
+    "deg": ("rad",),
+    "kg": ("g",),
+}
+
+
+def number_in_another_unit(key: str, number: float, low: float, high: float) -> str | None:
+    """Say what a number beyond its range is if another unit was meant, as "175 cm is 1.75".
+
+    Args:
+        key: dotted key.
+        number: the number under it.
+        low: least number that is right.
+        high: largest number that is right.
+
+    Returns:
+        The words, or None where no other unit brings the number into its range.
+    """
+    unit = unit_of(key)
+    if unit is None or low <= number <= high:
+        return None
+    others = _USUAL.get(unit, ())
+    if unit == "hz" and not key.endswith("carrier_hz"):
+        others = ("MHz", "kHz", "GHz")
+    for other in others:
+        factor = factor_of(other, unit)
+        if factor is not None and low <= number * factor <= high:
+            return f"{number:g} {other} is {_number_text(number * factor)}"
     return None
 
 

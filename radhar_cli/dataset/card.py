@@ -287,7 +287,7 @@ def _limits(data: Dataset) -> list[str]:
     config, notes = data.config, [str(warning["message"]) for warning in data.warnings]
     if isinstance(config, MeasuredConfig):
         return [*notes, "config.yaml names files and persons as the recordings' manifest does"]
-    stands = any(activity.slug == "stationary" for activity in config.chosen_activities)
+    stands = any("stationary" in activity.movements for activity in config.chosen_activities)
     if config.has_noise and config.processing.clutter in ("difference", "highpass"):
         notes.append(_NOISE_TELLS.format("`stationary`" if stands else "who hardly moves"))
     return [*notes, _SIMULATED]

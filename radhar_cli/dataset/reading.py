@@ -19,7 +19,7 @@ from radhar_cli.dataset.radar_folders import (
     refuse_several_radars,
 )
 from radhar_cli.dataset.untrusted_hdf5 import Column, NumberColumn, UntrustedFile
-from radhar_cli.errors import ConfigError, FolderError, did_you_mean
+from radhar_cli.errors import ConfigError, FolderError, describe_schema, did_you_mean
 from radhar_cli.extensions import any_name
 from radhar_cli.files.untrusted import Closing
 from radhar_cli.numerics.arrays import Float, Index, Levels
@@ -83,9 +83,12 @@ class Dataset(Closing):
             return  # what else it lacks is said of it
         version = self.file.whole_number("schema_version")
         if version != layout.SCHEMA_VERSION:
+            cure = (
+                ", in which labels are 0 to C - 1; `radhar generate` of its config.yaml makes it "
+                "anew"
+            )
             raise FolderError(
-                f"{self.path}: schema_version = {version}: should be {layout.SCHEMA_VERSION}, in "
-                "which labels are 0 to C - 1; `radhar generate` of its config.yaml makes it anew"
+                f"{self.path}: {describe_schema(version, layout.SCHEMA_VERSION, cure)}"
             )
 
     def _check(self) -> None:

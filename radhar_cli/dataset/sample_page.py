@@ -38,7 +38,9 @@ def choose_rows(data: Dataset, samples: Sequence[str]) -> list[int]:
     Raises:
         FolderError: there is no such sample, or more than MOST are named.
     """
-    classes = sorted(Rows.of(data.config).classes(), key=lambda part: part[0].slug == "stationary")
+    classes = sorted(
+        Rows.of(data.config).classes(), key=lambda part: part[0].movements == ("stationary",)
+    )
     if len(samples) > MOST:
         raise FolderError(f"--sample: {len(samples)} samples; a page holds {MOST} at most")
     if not samples:

@@ -14,7 +14,7 @@ from time import monotonic
 from typing import Any, TypeVar
 
 from radhar_cli.activities.activity import Activity, know_activities, own_activities
-from radhar_cli.errors import MachineError, UnfinishedError
+from radhar_cli.errors import MachineError, UnfinishedError, how_to_install
 from radhar_cli.extensions import know_products, own_products
 from radhar_cli.processes import interrupts
 from radhar_cli.processes.time_limit import time_limit
@@ -207,7 +207,7 @@ def on_cluster(address: str, jobs: int) -> Iterator[int]:
         import dask
         from distributed import Client
     except ImportError:
-        raise MachineError("--cluster: needs dask; `pip install 'radhar[cluster]'`") from None
+        raise MachineError(f"--cluster: needs dask; {how_to_install('distributed')}") from None
     # They log tracebacks of lost connections.
     for name in ("distributed", "distributed.client", "tornado", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -250,7 +250,7 @@ class FrameNodes(NamedTuple):
     def of(cls, board: Board, count: int) -> "FrameNodes":
         """Choose so many instants, or those of all loops where these are as few."""
         instants, loops = nodes(count - 1, board.loops), np.arange(float(board.loops))
-        later = np.array([k for k, _ in board.pairs]) * (board.slot / board.loop)
+        later = board.delays[[k for k, _ in board.pairs]] / board.loop
         if instants.size == loops.size:
             later *= 0
         else:

@@ -1,6 +1,6 @@
 """Train and evaluate classifiers of maps.
 
-The only package that imports PyTorch; `pip install 'radhar[train]'` installs it.
+The only package that imports PyTorch; the extra `train` installs it.
 
     settings        the YAML file of `radhar train`; choices: the networks and tasks it may name
     images/         labelled images or sequences of dataset.h5, or of class folders

@@ -1,4 +1,4 @@
-"""Libraries that are used where they are installed: `pip install 'radhar[fast]'`."""
+"""Libraries that are used where they are installed: `pip install numba pyfftw`."""
 
 import sys
 from collections.abc import Callable

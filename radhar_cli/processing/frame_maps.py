@@ -107,7 +107,8 @@ def separate_transmitters(x: Complex, board: Board) -> Complex:
     """
     if board.bpm is None:
         return x
-    turns = (board.bpm[1] - board.bpm[0]) / len(board.order)
+    apart = board.delays[board.bpm[1]] - board.delays[board.bpm[0]]
+    turns = apart / board.loop
     turned = np.exp(-2j * np.pi * turns * np.fft.fftfreq(board.n_doppler))[:, None, None]
     total = x[..., board.sums, :]
     difference = x[..., board.differences, :] * turned.astype(x.dtype)
@@ -120,7 +121,7 @@ def separate_transmitters(x: Complex, board: Board) -> Complex:
 def without_turns(x: Complex, board: Board) -> Complex:
     """Compensate spectra [.., Doppler, virtual, range] for the transmitters' taking turns.
 
-    A chirp that comes k/n_TX of a loop later has turned by 2 pi d k/(N_D n_TX) in Doppler bin d.
+    A chirp that comes a share s of a loop later has turned by 2 pi d s/N_D in Doppler bin d.
     """
     d = np.fft.fftfreq(board.n_doppler)[:, None]
     turned = np.exp(-2j * np.pi * d * board.turns)[..., None]

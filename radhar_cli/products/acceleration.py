@@ -4,6 +4,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.number import support
 from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.echo.compiled import MIN_TERMS
+from radhar_cli.errors import how_to_install
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.accelerators import installed
 from radhar_cli.processing.map_kind import kind_of
@@ -33,7 +34,7 @@ def describe_acceleration(config: Config) -> str | None:
     saved = "a sixth" if has_fsst else "a tenth"
     if has_sums and config.body.scatterers != "points":
         saved = "half"
-    return f"numba is not installed: pip install 'radhar[fast]' saves {saved} of a sample's time"
+    return f"numba is not installed: {how_to_install('numba')} saves {saved} of a sample's time"
 
 
 def _has_compiled_sums(config: Config) -> bool:

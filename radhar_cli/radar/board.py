@@ -75,10 +75,13 @@ _BOOST = Array(((0, 0), (2, 1), (4, 0)), _ROW, _SAME, (28.0, 14.0))
 _FIRST = Family.SDK_1, Family.SDK_2
 _TRACKING = Family.SDK_3, Family.PEOPLE_3D
 _1443 = Device(_BOOST, _FIRST, heeds_limits=False, noise_figure_db=15.0)
-_1843 = Device(_BOOST, _TRACKING)
+_1843 = Device(_BOOST, (*_TRACKING, Family.OBSTACLES))
+# Front ends without a processor: captures of theirs come with a .cfg of any of these demos.
+_FRONT_END = Device(_BOOST, (*_FIRST, Family.SDK_3))
 _1642 = Device(
     Array(((0, 0), (4, 0)), _ROW, _SAME, (28.0, 14.0)),
-    (*_FIRST, Family.SDK_3, Family.PEOPLE),  # e2e.ti.com 1439888: the demo of SDK 3.6 on it
+    # SDK 3: e2e.ti.com 1439888, the demo of SDK 3.6 on it
+    (*_FIRST, Family.SDK_3, Family.PEOPLE, Family.OBSTACLES),
 )
 _ISK = Array(((0, -1), (2, 0), (4, -1)), _ROW, _SAME, (60.0, 15.0))
 _ODS = Array(
@@ -117,6 +120,7 @@ DEVICES: Mapping[str, Device] = MappingProxyType(
         **dict.fromkeys(("IWR1443BOOST", "AWR1443BOOST"), _1443),
         **dict.fromkeys(("IWR1642BOOST", "AWR1642BOOST"), _1642),
         **dict.fromkeys(("IWR1843BOOST", "AWR1843BOOST"), _1843),
+        **dict.fromkeys(("AWR1243BOOST", "AWR2243BOOST"), _FRONT_END),
         "IWR6843ISK": Device(_ISK, (*_TRACKING, Family.PEOPLE)),
         "IWR6843ISK-ODS": Device(_ODS, _TRACKING),
         "IWR6843AOP": Device(_AOP, _TRACKING),
@@ -225,6 +229,8 @@ class Board:
         is_real: Whether samples are real.
         keeps_half: Whether range bins are those of half the band, as the other half has images.
         averaged: Number of chirps in a row of which one sample is the mean.
+        chirp_starts: Times from the first chirp of a loop to each of its chirps, s; () where they
+            follow each other after a slot.
         burst_s: Time from loop to loop, s; None where loops follow without a pause.
         delay: Time from the start of a frame to its first chirp, s.
         subframe: Number of the subframe that these are the chirps of.
@@ -256,6 +262,7 @@ class Board:
     is_real: bool = False
     keeps_half: bool = False
     averaged: int = 1
+    chirp_starts: tuple[float, ...] = ()
     burst_s: float | None = None
     delay: float = 0.0
     subframe: int = 0
@@ -370,15 +377,24 @@ class Board:
         return rows, (self.places @ roll_matrix(self.roll))[:, axis]
 
     @cached_property
+    def delays(self) -> Float:
+        """Times (s) from the first chirp of a loop to each of its chirps [place in the loop]."""
+        if self.chirp_starts:
+            return np.array(self.chirp_starts)
+        delays: Float = np.arange(len(self.order)) * self.slot
+        return delays
+
+    @cached_property
     def turns(self) -> Float:
         """Delay of the virtual elements [V] within a loop, in loops.
 
-        Of two transmitters that send together both have that of the earlier block.
+        Of two transmitters that send together both have that of the block of their sum.
         """
         places = list(range(len(self.order)))
         if self.bpm is not None:
             places[self.bpm[1]] = self.bpm[0]
-        return np.array([places[k] for k, _ in self.pairs]) / len(self.order)
+        turns: Float = self.delays[[places[k] for k, _ in self.pairs]] / self.loop
+        return turns
 
     @cached_property
     def sums(self) -> Index:
@@ -427,7 +443,7 @@ class Board:
         begin = np.arange(self.frames)[frames, None, None] * self.period + self.delay
         loop, k = np.arange(self.loops)[:, None], np.arange(len(self.order))
         if self.burst_s is not None:
-            times: Float = begin + loop * self.burst_s + k * self.slot
+            times: Float = begin + loop * self.burst_s + self.delays
             return times
         return begin + (loop * len(self.order) + k) * self.slot
 
@@ -529,5 +545,5 @@ class BoardWaveform(Waveform):
         begin = frame * self.board.period + self.board.delay
         if self.board.burst_s is not None:
             loop, k = np.divmod(chirp, len(self.board.order))
-            return begin + loop * self.board.burst_s + k * self.board.slot
+            return begin + loop * self.board.burst_s + self.board.delays[k.astype(np.intp)]
         return begin + chirp * self.board.slot

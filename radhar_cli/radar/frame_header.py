@@ -44,6 +44,12 @@ class ChirpProfile:
     place: str = field(default="", compare=False)
 
     @property
+    def sweep(self) -> tuple[float, ...]:
+        """What of the profile decides a sampled sweep, whenever and however strong it is sent."""
+        ramp = self.start_ghz, self.slope_mhz_per_us, self.adc_start_us
+        return (*ramp, self.samples, self.rate_ksps)
+
+    @property
     def slope_hz(self) -> float:
         """Slope of the ramp, Hz per second."""
         return self.slope_mhz_per_us * 1e12
@@ -95,6 +101,8 @@ class FrameHeader:
         bpm: Places in the loop of the chirps that have the sum and the difference of two
             transmitters; None where transmitters take turns.
         averaged: Number of chirps in a row of which one sample is the mean.
+        chirp_starts_s: Times from the first ramp of a loop to each of its ramps, s; () where chirps
+            follow each other after a slot.
         subframe: Number of the subframe that these are the chirps of, from 0 on.
         subframes: Number of subframes of a frame.
         delay_s: Time from the start of a frame to that of the subframe, s.
@@ -111,6 +119,7 @@ class FrameHeader:
     adc_bits: int = field(default=16, kw_only=True)
     bpm: tuple[int, int] | None = field(default=None, kw_only=True)
     averaged: int = field(default=1, kw_only=True)
+    chirp_starts_s: tuple[float, ...] = field(default=(), kw_only=True)
     subframe: int = field(default=0, kw_only=True)
     subframes: int = field(default=1, kw_only=True)
     delay_s: float = field(default=0.0, kw_only=True)
@@ -190,8 +199,11 @@ class FrameHeader:
 
     @property
     def has_bursts(self) -> bool:
-        """Whether there is time between the last chirp of a loop and the next loop."""
-        return abs(self.loop_s - len(self.masks) * self.slot_s) > 1e-9 * self.loop_s
+        """Whether chirps of a loop, or loops, do not follow each other after a slot each."""
+        return (
+            bool(self.chirp_starts_s)
+            or abs(self.loop_s - len(self.masks) * self.slot_s) > 1e-9 * self.loop_s
+        )
 
     @property
     def bins(self) -> int:

@@ -74,10 +74,16 @@ class TwoPassCfar:
     second_pass: bool
 
     def fits_bins(self, bins: int) -> bool:
-        """Whether both sides along range lie within so many bins."""
-        first, last = self.skip_range[0], bins - self.skip_range[1]
+        """Whether both sides along range lie between the ends of so many bins."""
+        return bins - sum(self.skip_range) > 2 * (self.window[0] + self.guard[0])
+
+    def mirrors_within(self, bins: int) -> bool:
+        """Whether what stands for the far side at the last of so many bins lies in the map.
+
+        The firmware takes bins that are `skip_range[1]` nearer.
+        """
         reach = self.window[0] + self.guard[0]
-        return last - first > 2 * reach and last - reach >= self.skip_range[1]
+        return bins - self.skip_range[1] - reach >= self.skip_range[1]
 
     def fits_angles(self, angles: int) -> bool:
         """Whether both sides along angle lie within so many angles, where there is that pass."""

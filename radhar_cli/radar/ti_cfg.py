@@ -5,7 +5,7 @@ ADC starts later than the ramp: carrier = start frequency + slope times that. Ma
 that repeat within a loop are further loops, as the firmware counts them (`mmwdemo_rfparser.c`).
 """
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import accumulate
@@ -14,10 +14,20 @@ from math import inf
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.detection import Detection, Firmware
-from radhar_cli.radar.frame_header import ROUNDING, ChirpProfile, FrameHeader, RoomBox, Sampling
+from radhar_cli.radar.frame_header import (
+    ROUNDING,
+    ChirpProfile,
+    FrameHeader,
+    RoomBox,
+    Sampling,
+    transmitters_of,
+)
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
 from radhar_cli.radar.ti_commands import (
+    CHIRP_VARIATIONS,
     COUNT,
+    PROFILE_ID,
+    THIRD_TILT,
     CfgLine,
     Effect,
     describe_missing,
@@ -28,6 +38,8 @@ from radhar_cli.radar.ti_detection import read_detection
 from radhar_cli.radar.ti_elements import (
     CORRECTIONS,
     FileElements,
+    correct_feeds,
+    read_geometry,
     read_rows_and_columns,
 )
 from radhar_cli.radar.ti_family import Family
@@ -35,8 +47,8 @@ from radhar_cli.radar.ti_l_sdk import read_l_sdk
 from radhar_cli.radar.ti_people import (
     is_short_fine_motion,
     last_lines,
-    missing_commands,
     read_people,
+    reasons_against,
 )
 
 MAX_CFG = 2**16  # characters
@@ -129,11 +141,12 @@ class BoardHeader(FrameHeader):
         detection: Detection of its points.
         has_cfar: Whether a line sets the CFAR of an out-of-box demo.
         people: Detection of people tracking or counting; None for neither.
-        missing: Commands that the chain of the family needs and the file lacks, with lines that
-            would do.
+        why_no_chain: Reasons why the chain of the family does not run, such as commands that the
+            file lacks, with lines that would do.
         pose: Place and direction by sensorPosition; None without that line.
         box: Box of the room by boundaryBox, or by SceneryParam; None without either.
-        grid: Elements by rows and columns (antGeometryCfg, antGeometryTX and antGeometryRx).
+        grid: Elements as people tracking has them (antGeometry0, antGeometry1, antPhaseRot), or by
+            rows and columns (antGeometryCfg, antGeometryTX and antGeometryRx).
         unknown: Commands that radhar does not know.
         not_simulated: Commands that switch on what is not simulated.
     """
@@ -142,7 +155,7 @@ class BoardHeader(FrameHeader):
     detection: Detection
     has_cfar: bool
     people: PeopleTracking | PeopleCounting | None
-    missing: tuple[str, ...]
+    why_no_chain: tuple[str, ...]
     pose: BoardPose | None
     box: RoomBox | None
     grid: FileElements
@@ -166,19 +179,9 @@ class BoardHeader(FrameHeader):
 
         A chain of the firmware takes all feeds for equal where the file has no factors.
         """
-        if isinstance(self.people, PeopleTracking):
-            places = tuple(zip((-x for x in self.people.right), self.people.up, strict=True))
-            rotation = self.people.rotation
-            corrections = self.people.coefficients or (1,) * len(rotation)
-            has_both = len(set(corrections)) > 1
-            names = ("antPhaseRot",) if len(set(rotation)) > 1 or not has_both else ()
-            return FileElements(
-                places=places,
-                of_places=("antGeometry0", "antGeometry1"),
-                phases=tuple(p * c for p, c in zip(rotation, corrections, strict=True)),
-                of_phases=(*names, *(CORRECTIONS,) * has_both),
-            )
         corrections = self.detection.coefficients
+        if self.grid.phases:
+            return correct_feeds(self.grid, corrections)
         if not corrections and self.firmware is not None:
             corrections = (1,) * len(self.antennas)
         return replace(self.grid, phases=corrections, of_phases=(CORRECTIONS,))
@@ -212,7 +215,8 @@ def parse_ti_cfg(
     family = lines.family
     detection = read_detection(lines.lines, channels, bins, header.subframe)
     line_of = last_lines(lines.lines, header.subframe)
-    missing = missing_commands(line_of, family)
+    others = {line.name: line for line in lines.with_effect(Effect.WARNING)}
+    why_no_chain = reasons_against(line_of, family, others, bins)
     return BoardHeader(
         **vars(header),
         family=family,
@@ -221,11 +225,12 @@ def parse_ti_cfg(
             line.name == "cfarCfg" and "thresholdScale" in line.numbers
             for line in lines.with_effect(Effect.POINTS)
         ),
-        people=None if missing else read_people(line_of, family, channels, bins),
-        missing=missing,
+        people=None if why_no_chain else read_people(line_of, family, channels, bins),
+        why_no_chain=why_no_chain,
         pose=_read_pose(lines.with_effect(Effect.POSE)),
         box=_read_box(lines.with_effect(Effect.BOX)),
-        grid=read_rows_and_columns(
+        grid=read_geometry(line_of, channels)
+        or read_rows_and_columns(
             {line.name: line for line in lines.with_effect(Effect.ELEMENTS)},
             header.antennas,
             family,
@@ -277,30 +282,35 @@ def make_frame_header(
         CaptureError: The statements do not fit together; names the first and what would be right.
     """
     loop = _chirps_of_loop(chirps, timing)
-    profile = _single_profile(loop, profiles)
-    profile.require_samples_within_ramp()
-    busy_s = timing.loops * len(loop) * profile.slot_s
+    of_chirps = _profiles_of(loop, profiles)
+    for profile in of_chirps:
+        profile.require_samples_within_ramp()
+    slots_s = [profile.slot_s for profile in of_chirps]
+    busy_s = timing.loops * sum(slots_s)
     if busy_s > timing.period_ms * 1e-3 * ROUNDING:
+        lengths = " and ".join(f"{slot_s * 1e6:g}" for slot_s in dict.fromkeys(slots_s))
         raise CaptureError(
             f"{timing.place} {timing.period_name} = {timing.period_ms:g}: should be at least "
-            f"{busy_s * 1e3:.6g} ms, {timing.loops} loops of {len(loop)} chirps of "
-            f"{profile.slot_s * 1e6:g} us"
+            f"{busy_s * 1e3:.6g} ms, {timing.loops} loops of {len(loop)} chirps of {lengths} us"
         )
     masks = [chirp.mask for chirp in loop]
     bpm = None if pair is None else _places_of(pair, loop, timing)
     roles = [bpm.index(place) if bpm and place in bpm else None for place in range(len(masks))]
-    turns = count_turns(list(zip(masks, roles, strict=True)))
+    times = [(profile.idle_us, profile.ramp_end_us) for profile in of_chirps]
+    turns = count_turns(list(zip(masks, roles, times, strict=True)))
+    is_even = len(set(times)) == 1
     return FrameHeader(
-        profile=profile,
+        profile=replace(of_chirps[0], backoff_db=_backoff_of(loop, of_chirps)),
         masks=tuple(masks[:turns]),
         loops=timing.loops * len(masks) // turns,
         frames=timing.frames,
         period_s=timing.period_ms * 1e-3,
         receivers=tuple(n for n in range(4) if receiver_mask >> n & 1),
         sampling=sampling,
-        loop_s=turns * profile.slot_s,
+        loop_s=turns * slots_s[0] if is_even else sum(slots_s[:turns]),
         adc_bits=adc_bits,
         bpm=bpm,
+        chirp_starts_s=() if is_even else _ramp_starts_of(of_chirps[:turns]),
     )
 
 
@@ -349,10 +359,10 @@ def _places_of(pair: ChirpPair, loop: Sequence[ChirpRange], timing: FrameTiming)
     return first, second
 
 
-def _single_profile(
+def _profiles_of(
     loop: Sequence[ChirpRange], profiles: Mapping[int, ChirpProfile]
-) -> ChirpProfile:
-    """Return the profile of all chirps of a loop; profiles that are equal are one."""
+) -> list[ChirpProfile]:
+    """Return the profile of each chirp of a loop, whose sampled sweeps are equal."""
     for chirp in loop:
         if chirp.profile not in profiles:
             known = ", ".join(map(str, sorted(profiles)))
@@ -360,14 +370,38 @@ def _single_profile(
                 f"{chirp.place} profileId = {chirp.profile}: should be one that is defined "
                 f"(profileCfg): {known}"
             )
-    profile = profiles[loop[0].profile]
-    for chirp in loop:
-        if profiles[chirp.profile] != profile:
+    of_chirps = [profiles[chirp.profile] for chirp in loop]
+    for chirp, profile in zip(loop, of_chirps, strict=True):
+        if profile.sweep != of_chirps[0].sweep:
             raise CaptureError(
                 f"{chirp.place} profileId = {chirp.profile}: should be {loop[0].profile}: a frame "
-                "has chirps of one profile, or of equal ones; subFrameCfg has one each"
+                "has chirps of one profile, or of profiles that differ in idleTime, rampEndTime "
+                "and txOutPower alone; subFrameCfg has one each"
             )
-    return profile
+    return of_chirps
+
+
+def _ramp_starts_of(profiles: Sequence[ChirpProfile]) -> tuple[float, ...]:
+    """Times (s) from the first ramp of a loop to each of its ramps."""
+    ends = accumulate(profile.slot_s for profile in profiles)
+    starts = [end - profile.ramp_end_us * 1e-6 for end, profile in zip(ends, profiles, strict=True)]
+    return tuple(start - starts[0] for start in starts)
+
+
+def _backoff_of(loop: Sequence[ChirpRange], profiles: Sequence[ChirpProfile]) -> tuple[float, ...]:
+    """Return by how much the power of each transmitter is lower in the chirps that it sends."""
+    if len({profile.backoff_db for profile in profiles}) == 1:
+        return profiles[0].backoff_db
+    lower_db = dict[int, float]()
+    for chirp, profile in zip(loop, profiles, strict=True):
+        for transmitter in transmitters_of(chirp.mask):
+            decibels = profile.backoff_db[transmitter] if profile.backoff_db else 0.0
+            if lower_db.setdefault(transmitter, decibels) != decibels:
+                raise CaptureError(
+                    f"{chirp.place} profileId = {chirp.profile}: should have the txOutPower of the "
+                    f"other chirps of its transmitter, {lower_db[transmitter]:g} dB"
+                )
+    return tuple(lower_db.get(transmitter, 0.0) for transmitter in range(MOST_ANTENNAS))
 
 
 class _Lines:
@@ -393,6 +427,10 @@ class _Lines:
             raise CaptureError(f"{self.where}: {describe_missing(name, example)}")
         return lines
 
+    def drop(self, lines: Collection[CfgLine]) -> None:
+        """Leave out lines that do not matter."""
+        self.lines = tuple(line for line in self.lines if line not in lines)
+
     def require_none(self, effect: Effect) -> None:
         """Raise CaptureError for the first line that is refused by its command or its numbers."""
         for line in self.with_effect(effect):
@@ -412,13 +450,17 @@ def _read_subframes(lines: _Lines, device: str | None) -> list[FrameHeader]:
     profiles = lines.require("profileCfg", "profileCfg 0 77 10 6 48 0 0 70 1 128 3200 0 0 30")
     chirps = lines.require("chirpCfg", "chirpCfg 0 0 0 0 0 0 0 1")
     timings = _read_timings(lines)
+    used = _chirps_in_use(chirps, timings)
+    for line in used:
+        _require_plain(line)
+    lines.drop(_unused_profiles(profiles, used))
     for line in lines.with_effect(Effect.SIGNAL):
         _ = line.numbers  # lines that do not hold must be right, too
     adc_numbers = adc.numbers
     bits = 12 + 2 * int(adc_numbers["numADCBits"])
     headers = [
         make_frame_header(
-            dict(map(_read_profile, profiles)),
+            dict(map(_read_profile, lines.of_name("profileCfg"))),
             [_read_chirp(line) for line in chirps],
             timing,
             int(receivers.numbers["rxChannelEn"]),
@@ -430,6 +472,43 @@ def _read_subframes(lines: _Lines, device: str | None) -> list[FrameHeader]:
     ]
     _require_stated_samples(headers[0], lines)
     return _place_subframes(headers)
+
+
+def _chirps_in_use(chirps: Sequence[CfgLine], timings: Sequence[FrameTiming]) -> list[CfgLine]:
+    """Return the lines chirpCfg of the chirps that frames send, of which the last counts."""
+    line_of = {
+        index: line
+        for line in chirps
+        for index in range(
+            int(line.numbers["startIdx"]), min(int(line.numbers["endIdx"]), MAX_CHIRPS - 1) + 1
+        )
+    }
+    sent = {
+        index
+        for timing in timings
+        for index in range(timing.first, min(timing.last, MAX_CHIRPS) + 1)
+    }
+    return list(dict.fromkeys(line for index, line in line_of.items() if index in sent))
+
+
+def _require_plain(line: CfgLine) -> None:
+    """Raise CaptureError for a chirp that is sent, and differs from its profile or is silent."""
+    numbers = line.numbers
+    for name in CHIRP_VARIATIONS:
+        if numbers[name]:
+            right = "0 (chirps that differ from their profile are not read)"
+            raise line.refusal(name, numbers[name], right)
+    if not numbers["txEnable"]:
+        raise line.refusal("txEnable", 0, "a mask of transmitters: the frame sends this chirp")
+
+
+def _unused_profiles(profiles: Sequence[CfgLine], chirps: Sequence[CfgLine]) -> list[CfgLine]:
+    """Return the lines profileCfg that chirps do not name; none where they name a missing one."""
+    number_of = {line: PROFILE_ID.parse((*line.words, "")[0], line.place) for line in profiles}
+    named = {line.numbers["profileId"] for line in chirps}
+    if not named <= set(number_of.values()):
+        return []
+    return [line for line, number in number_of.items() if number not in named]
 
 
 def _require_stated_samples(header: FrameHeader, lines: _Lines) -> None:
@@ -631,14 +710,13 @@ def _require_known_pair(header: FrameHeader, line: CfgLine) -> None:
     """Raise CaptureError for a loop that no firmware decodes."""
     masks, bpm = header.masks, header.bpm
     assert bpm is not None
-    between = [mask for place, mask in enumerate(masks) if place not in bpm]
-    is_known = len(masks) == 2 or (len(masks) == 3 and set(bpm) == {0, 2})
-    if not is_known or any(mask & masks[bpm[0]] for mask in between):
+    alone = [mask for place, mask in enumerate(masks) if place not in bpm]
+    if len(alone) > 1 or any(mask & masks[bpm[0]] for mask in alone):
         raise line.refusal(
             "chirp0Idx chirp1Idx",
             f"{line.numbers['chirp0Idx']:g} {line.numbers['chirp1Idx']:g}",
-            "the two chirps of a loop, or the first and the last of three with another "
-            "transmitter between them",
+            "the two chirps of a loop, or two of three, the other of which has another "
+            f"transmitter: chirpCfg txEnable = {' '.join(map(str, masks))}",
         )
 
 
@@ -651,6 +729,8 @@ def _name_if_not_simulated(line: CfgLine) -> str | None:
         return command.name if line.numbers["txPhaseShifter"] else None
     if command.name == "adcCfg":  # samples are not rounded
         return command.name if line.numbers["numADCBits"] != 2 else None
+    if command.name == "sensorPosition":
+        return f"sensorPosition {THIRD_TILT}" if line.numbers.get(THIRD_TILT) else None
     if command.name == "fineMotionCfg":
         return command.name if is_short_fine_motion(line) else None
     if command.name == "cfarCfg" and command.family is Family.MCU_PLUS:

@@ -297,6 +297,8 @@ def find_family(lines: Sequence[CfgLine]) -> Family:
         return Family.MCU_PLUS
     if "dynamicRACfarCfg" in counts and "dynamicRangeAngleCfg" in counts:
         return Family.PEOPLE_3D
+    if counts.get("cfarCfg") == 14 or (counts.get("cfarCfg") == 13 and "dbscanCfg" in counts):
+        return Family.OBSTACLES
     if "doaCfg" in counts or counts.get("cfarCfg") in (12, 13):
         return Family.PEOPLE
     by_count = {7: Family.SDK_1, 8: Family.SDK_2, 9: Family.SDK_3}
@@ -328,6 +330,8 @@ def _places(antenna: str, count: int, more: str = "") -> tuple[Argument, ...]:
 
 
 _MIMO_PATTERNS = (0, 1, 4)
+CHIRP_VARIATIONS = "startFreqVar", "freqSlopeVar", "idleTimeVar", "adcStartTimeVar"
+PROFILE_ID = _wholes("profileId")[0]
 SUBFRAME = Argument("subFrameIdx", -1, 3, True, "-1 for all subframes")
 _SIGNAL = (
     Command(
@@ -363,7 +367,7 @@ _SIGNAL = (
         "profileCfg",
         Effect.SIGNAL,
         (
-            *_wholes("profileId"),
+            PROFILE_ID,
             _positive("startFreq", "GHz"),
             Argument("idleTime", 0, 1e6, meaning="us"),
             Argument("adcStartTime", 0, 1e6, meaning="us"),
@@ -382,11 +386,8 @@ _SIGNAL = (
         Effect.SIGNAL,
         (
             *_wholes("startIdx", "endIdx", "profileId"),
-            *(
-                Argument(name, 0, 0, meaning="chirps that differ are not read")
-                for name in ("startFreqVar", "freqSlopeVar", "idleTimeVar", "adcStartTimeVar")
-            ),
-            Argument("txEnable", 1, COUNT, True, "a mask of transmitters"),
+            *(Argument(name, meaning="0 of chirps in use") for name in CHIRP_VARIATIONS),
+            Argument("txEnable", 0, COUNT, True, "a mask of transmitters, not 0 of chirps in use"),
         ),
     ),
     Command(
@@ -550,6 +551,26 @@ _CFAR_OF_TRACKING = (
     *_flags("enSecondPass"),
     *_optional("dynamicFlag"),
 )
+_CFAR_OF_OCCUPANTS = (  # with a window of its own up to rangeRefIndex
+    *_CFAR_OF_TRACKING[:6],
+    *_wholes("searchWinSizeNear", high=CELLS),
+    *_CFAR_OF_TRACKING[6:8],
+    *_wholes("guardSizeNear", high=CELLS),
+    *_CFAR_OF_TRACKING[8:12],
+    *_wholes("rangeRefIndex", high=CELLS),
+)
+_CFAR_OF_OBSTACLES = (
+    Argument("detectMethod", 1, 2, True),
+    *_wholes("leftSkipBin", "closeInRangeBin", high=CELLS),
+    *_wholes("searchWinSizeRange", "guardSizeRange", high=CELLS),
+    *_wholes("searchWinSizeSpreading", "guardSizeSpreading", high=CELLS),
+    Argument("rangeThresh", meaning="tenths"),
+    Argument("fftSpreadingThresh", meaning="1e-5"),
+    *_wholes("noiseCalcType", high=2),
+    *_wholes("localPeakEnable", "peakAngleDiffThresh"),
+    Argument("maxRangeForDetection", meaning="tenths of a m"),
+    *_optional("secondPeakThresh"),
+)
 _CFAR_OF_L_SDK = tuple(
     Argument(name)
     for name in (
@@ -572,6 +593,7 @@ _POINTS = (
         "cfarCfg", Effect.POINTS, (*_CFAR, *_flags("peakGroupingEn")), Family.SDK_3, Subframe.ALWAYS
     ),
     Command("cfarCfg", Effect.POINTS, _CFAR_OF_PEOPLE, Family.PEOPLE),
+    Command("cfarCfg", Effect.WARNING, _CFAR_OF_OBSTACLES, Family.OBSTACLES),
     Command("cfarCfg", Effect.WARNING, _CFAR_OF_L_SDK, Family.L_SDK),
     Command("cfarCfg", Effect.POINTS, _CFAR_OF_MCU_PLUS, Family.MCU_PLUS, Subframe.ALWAYS),
     Command(
@@ -635,6 +657,13 @@ _PEOPLE_TRACKING = (
     *(
         Command(name, Effect.POINTS, _CFAR_OF_TRACKING, Family.PEOPLE_3D, Subframe.ALWAYS)
         for name in ("dynamicRACfarCfg", "staticRACfarCfg")
+    ),
+    Command(
+        "dynamicRACfarCfg",
+        Effect.WARNING,
+        _CFAR_OF_OCCUPANTS,
+        Family.PEOPLE_3D,
+        Subframe.ALWAYS,
     ),
     Command(
         "dynamicRangeAngleCfg",
@@ -734,6 +763,7 @@ _DOA = Command(
     ),
     Family.PEOPLE,
 )
+THIRD_TILT = "thirdTilt"  # of sensorPosition of in-cabin demos
 _POSE = (
     Command(
         "sensorPosition",
@@ -745,18 +775,22 @@ _POSE = (
         ),
         Family.PEOPLE_3D,
     ),
-    Command(
-        "sensorPosition",
-        Effect.POSE,
-        (
-            *(
-                Argument(name, -1000, 1000, meaning="m")
-                for name in ("xOffset", "yOffset", "zOffset")
+    *(
+        Command(
+            "sensorPosition",
+            Effect.POSE,
+            (
+                *(
+                    Argument(name, -1000, 1000, meaning="m")
+                    for name in ("xOffset", "yOffset", "zOffset")
+                ),
+                Argument("azimuthTilt", -360, 360, meaning="degree to the right"),
+                Argument("elevationTilt", -360, 360, meaning="degree down"),
+                Argument(THIRD_TILT, -360, 360, meaning="degree", is_optional=True),
             ),
-            Argument("azimuthTilt", -360, 360, meaning="degree to the right"),
-            Argument("elevationTilt", -360, 360, meaning="degree down"),
-        ),
-        Family.L_SDK,
+            family,
+        )
+        for family in (Family.PEOPLE_3D, Family.L_SDK)
     ),
 )
 _BOX = (
@@ -838,6 +872,7 @@ _SILENT = {
         POWER_MEASUREMENT,
     ),
     Family.L_SDK: ("antGeometryBoard",),
+    Family.OBSTACLES: ("dbscanCfg",),
     Family.PEOPLE: (
         *("GatingParam", "StateParam", "AllocationParam", "VariationParam"),
         *("AccelerationParam", "PointCloudEn"),

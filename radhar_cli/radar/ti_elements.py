@@ -5,7 +5,7 @@ than a common shift, a common sign, or rows that are counted downwards, its angl
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 Antennas: TypeAlias = Sequence[tuple[int, int]]  # (transmitter, receiver) of each virtual element
 
 CORRECTIONS = "compRangeBiasAndRxChanPhase"
+GEOMETRY = "antGeometry0", "antGeometry1", "antPhaseRot"
 APART = 0.1  # half wavelengths from which places differ
 MM = 1e-3
-TWINS = "AWR1443", "AWR1642", "AWR1843"  # of IWR boards
+TWINS = "AWR1443", "AWR1642", "AWR1843", "AWR1243", "AWR2243"  # of the elements of IWR boards
 ANTENNAS = 4  # most transmitters, and most receivers
 TURNED = np.radians(5)  # phase from which corrections are of other feeds
 
@@ -103,6 +104,43 @@ def read_rows_and_columns(
     )
 
 
+def read_geometry(lines: Mapping[str, CfgLine], channels: int) -> FileElements | None:
+    """Read the places and signs of the virtual elements, as the lines of people tracking have them.
+
+    Args:
+        lines: Last line of each command.
+        channels: Number of virtual channels.
+
+    Returns:
+        The elements; None without a number of each channel in all three lines.
+
+    Raises:
+        CaptureError: A line cannot be read.
+    """
+    numbers = [_numbers_of(name, lines) for name in GEOMETRY]
+    if any(len(of_line) != channels for of_line in numbers):
+        return None
+    right, up, signs = (of_line.tolist() for of_line in numbers)
+    return FileElements(
+        places=tuple(zip((-x for x in right), up, strict=True)),
+        of_places=GEOMETRY[:2],
+        phases=tuple(map(complex, signs)),
+        of_phases=GEOMETRY[2:],
+    )
+
+
+def correct_feeds(elements: FileElements, corrections: Sequence[complex]) -> FileElements:
+    """Multiply the factors of feeds by those of another line; () for none."""
+    has_both = len(set(corrections)) > 1
+    names = elements.of_phases if len(set(elements.phases)) > 1 or not has_both else ()
+    factors = corrections or (1,) * len(elements.phases)
+    return replace(
+        elements,
+        phases=tuple(p * c for p, c in zip(elements.phases, factors, strict=True)),
+        of_phases=(*names, *(CORRECTIONS,) * has_both),
+    )
+
+
 def _numbers_of(name: str, lines: Mapping[str, CfgLine]) -> Float:
     """Numbers of a command; none where the file lacks it."""
     numbers = lines[name].numbers if name in lines else {}
@@ -131,7 +169,7 @@ def compare_elements(elements: FileElements, array: Array, antennas: Antennas) -
 def fitting_devices(header: "BoardHeader") -> list[str]:
     """Name the devices whose elements, software and band are those of a .cfg.
 
-    Of boards that are the same for two names, IWR stands for both. A file that says nothing of
+    Of boards with the same elements IWR stands for all. A file that says nothing of
     elements fits any device that has its antennas.
     """
     return [
@@ -141,8 +179,15 @@ def fitting_devices(header: "BoardHeader") -> list[str]:
         and header.family in (Family.ANY, *device.families)
         and low_ghz(name) <= header.start_hz / 1e9 < low_ghz(name) + 10
         and _has_antennas(device.array, header.antennas)
-        and not compare_elements(header.elements, device.array, header.antennas).commands
+        and _could_be(header.elements, device.array, header.antennas)
     ]
+
+
+def _could_be(elements: FileElements, array: Array, antennas: Antennas) -> bool:
+    """Whether elements may be an array's: of its places or, where they have none, of its feeds."""
+    elements = replace(elements, phases=()) if elements.places else elements
+    difference = compare_elements(elements, array, antennas)
+    return not difference.commands or difference.is_calibration
 
 
 def low_ghz(device: str) -> float:

@@ -15,3 +15,4 @@ class Family(Enum):
     L_SDK = "MMWAVE-L-SDK"
     PEOPLE = "people counting"
     PEOPLE_3D = "3D people tracking"
+    OBSTACLES = "obstacle detection"

@@ -35,6 +35,7 @@ NEEDED: Mapping[Family, Mapping[str, str]] = {
         "cfarCfg": "cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0",
         "doaCfg": "doaCfg 600 1875 30 1",
     },
+    Family.OBSTACLES: {"cfarCfg": "cfarCfg 1 4 12 4 2 8 2 350 30 2 0 5 50 0.5"},
 }
 
 
@@ -43,20 +44,56 @@ def last_lines(lines: Iterable[CfgLine], subframe: int = 0) -> Lines:
     return {line.name: line for line in lines_of_detection(lines, subframe)}
 
 
-def missing_commands(line_of: Lines, family: Family) -> tuple[str, ...]:
-    """Commands that the chain of a family needs and lacks, each with a line that would do.
+def reasons_against(line_of: Lines, family: Family, others: Lines, bins: int) -> tuple[str, ...]:
+    """Say why the chain of a family does not run: commands that it lacks, or has otherwise.
 
     Args:
         line_of: Line of each command that sets the detection; other families' do not count.
         family: Software that the file is for.
+        others: Line of each command that has an effect which is not simulated.
+        bins: Number of range bins.
+
+    Returns:
+        A line for each reason, a missing command with a line that would do; () if it runs.
+
+    Raises:
+        CaptureError: A line of the detection cannot be read.
     """
     names = {
         name for name, line in line_of.items() if line.command and line.command.family is family
     }
-    return tuple(
-        describe_missing(name, example)
+    reasons = tuple(
+        f"{name} of {len(others[name].words)} numbers is not simulated"
+        if name in others
+        else describe_missing(name, example)
         for name, example in NEEDED.get(family, {}).items()
         if name not in names
+    )
+    if reasons or family not in NEEDED:
+        return reasons
+    return tuple(
+        _describe_mirror(line, cfar, bins)
+        for line, cfar in _range_cfars(line_of, family)
+        if not cfar.mirrors_within(bins)
+    )
+
+
+def _range_cfars(line_of: Lines, family: Family) -> list[tuple[CfgLine, TwoPassCfar]]:
+    """Lines of the CFARs of a chain, and these."""
+    if family is Family.PEOPLE:
+        return [(line_of["cfarCfg"], _read_counting_cfar(line_of["cfarCfg"]))]
+    static = _read_static(line_of)
+    moving = [(line_of["dynamicRACfarCfg"], _read_cfar(line_of["dynamicRACfarCfg"]))]
+    return moving + ([] if static is None else [(line_of["staticRACfarCfg"], static.cfar)])
+
+
+def _describe_mirror(line: CfgLine, cfar: TwoPassCfar, bins: int) -> str:
+    """Say that a CFAR reads beyond its map at the last bins."""
+    window, guard, end = cfar.window[0], cfar.guard[0], cfar.skip_range[1]
+    return (
+        f"{line.name} leaves out so many of {bins} range bins that the firmware reads beside its "
+        f"map: {bins} - {end} - {window} (window) - {guard} (guard) = "
+        f"{bins - end - window - guard}, less than {end}"
     )
 
 
@@ -120,16 +157,7 @@ def read_people_counting(line_of: Lines, channels: int, bins: int) -> PeopleCoun
     Arguments and errors are those of `read_people_tracking`.
     """
     line, search = line_of["cfarCfg"], line_of["doaCfg"].numbers
-    numbers = line.numbers
-    cfar = TwoPassCfar(
-        skip_range=_pair(line, "cfarDiscardRangeLeft", "cfarDiscardRangeRight"),
-        skip_angle=_pair(line, "cfarDiscardAngleLeft", "cfarDiscardAngleRight"),
-        window=_pair(line, "refWinSize0", "refWinSize1"),
-        guard=_pair(line, "guardWinSize0", "guardWinSize1"),
-        threshold=(numbers["rangeThre"] / 10, numbers["azimuthThre"] / 10),
-        sidelobe=None,
-        second_pass=True,
-    )
+    cfar = _read_counting_cfar(line)
     settings = PeopleCounting(
         half_view_deg=search["estAngleRange"] / 10,
         step_deg=search["estAngleResolution"] / 1000,
@@ -139,6 +167,20 @@ def read_people_counting(line_of: Lines, channels: int, bins: int) -> PeopleCoun
     )
     _require_cfar_within(cfar, line, ("refWinSize0", "refWinSize1"), bins, settings.angles_deg.size)
     return settings
+
+
+def _read_counting_cfar(line: CfgLine) -> TwoPassCfar:
+    """Read a line cfarCfg of people counting."""
+    numbers = line.numbers
+    return TwoPassCfar(
+        skip_range=_pair(line, "cfarDiscardRangeLeft", "cfarDiscardRangeRight"),
+        skip_angle=_pair(line, "cfarDiscardAngleLeft", "cfarDiscardAngleRight"),
+        window=_pair(line, "refWinSize0", "refWinSize1"),
+        guard=_pair(line, "guardWinSize0", "guardWinSize1"),
+        threshold=(numbers["rangeThre"] / 10, numbers["azimuthThre"] / 10),
+        sidelobe=None,
+        second_pass=True,
+    )
 
 
 def _read_elements(line: CfgLine, channels: int) -> tuple[float, ...]:
@@ -279,8 +321,16 @@ def _require_cfar_within(
         angles: Number of angles.
     """
     if not cfar.fits_bins(bins):
-        right = f"less: both windows, guards and ends that are left out do not fit {bins} bins"
+        ends, sides = cfar.skip_range, f"2 ({cfar.window[0]} + {cfar.guard[0]})"
+        right = (
+            f"less: windows and guards on both sides, {sides} bins, do not fit between the ends "
+            f"that are left out, {bins} - {ends[0]} - {ends[1]} = {bins - sum(ends)} bins"
+        )
         raise line.refusal(names[0], cfar.window[0], right)
     if sum(cfar.skip_angle) >= angles or not cfar.fits_angles(angles):
-        right = f"less: both windows, guards and ends that are left out do not fit {angles} angles"
+        ends, sides = cfar.skip_angle, f"2 ({cfar.window[1]} + {cfar.guard[1]})"
+        right = (
+            f"less: windows and guards on both sides, {sides}, or the ends that are left out, "
+            f"{ends[0]} + {ends[1]}, do not fit {angles} angles"
+        )
         raise line.refusal(names[1], cfar.window[1], right)

@@ -42,6 +42,7 @@ LEAST_CELL_SNR_DB = -6.0
 HANN = 2 / 3  # (sum g)^2/sum g^2 of Hann's window, per sample
 TINY = 1e-300  # below which a factor counts as 0
 HIDES_DB = 3.0  # what a wall or beam takes at least to be named
+AWAY_DB = 20.0  # loss of the beam, both ways, from which it looks away from people
 CHEST_M = 1.0  # height of the chest of somebody of usual stature, roughly, m
 
 
@@ -82,6 +83,22 @@ def noise_alone(config: Config) -> list[str]:
     return [
         f"{both_ways}at {noise} maps show noise alone: {best} gains at most {gain:.0f} dB over it "
         f"({', '.join(keys[:-1])}{' or ' if keys[1:] else ''}{keys[-1]})"
+    ]
+
+
+def looks_away(config: Config) -> list[str]:
+    """Say that the beam looks away from where people begin, by the middle of all draws."""
+    lost_db = [
+        _losses_db(nominal_scene(config, activity))["the beam"]
+        for activity in config.chosen_activities
+        if not activity.is_nobody
+    ]
+    if not lost_db or min(lost_db) < AWAY_DB:
+        return []
+    keys = (_BOARD_KEYS if isinstance(config.radar, ArrayRadar) else _KEYS)["the beam"]
+    return [
+        f"the beam looks away from people: it takes {min(lost_db):.0f} dB of their echo, both ways "
+        f"({' or '.join(keys)})"
     ]
 
 

@@ -32,7 +32,7 @@ from radhar_cli.scene_checks.drawing import CROWDED, describe_crowd, find_crowde
 from radhar_cli.scene_checks.flags import Flags, describe_flag, describe_flags
 from radhar_cli.scene_checks.unused_keys import unused_keys
 from radhar_cli.scene_checks.validity import check_scene
-from radhar_cli.scene_checks.visibility import chest_point, noise_alone
+from radhar_cli.scene_checks.visibility import chest_point, looks_away, noise_alone
 
 if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader
@@ -48,14 +48,15 @@ def config_warnings(config: Config) -> list[str]:
 
 def warnings_of_signal(config: Config) -> list[str]:
     """Say what aliases, and whether maps are noise alone, whatever keys have no effect."""
-    radar = config.radar
+    radar, noise = config.radar, noise_alone(config)
     return [
         *tone_warnings(config),
         *band_warnings(config),
         *(_unknown_commands(radar) if isinstance(radar, BoardRadar) else ()),
         *(_window_warnings(config, radar) if isinstance(radar, ArrayRadar) else ()),
         *(_header_warnings(config, radar) if isinstance(radar, BoardRadar) else ()),
-        *noise_alone(config),
+        *noise,
+        *(() if any("the beam" in line for line in noise) else looks_away(config)),
         *_folding_warnings(config),
         *(_angle_warnings(config, radar) if isinstance(radar, ArrayRadar) else ()),
         *_loose_tolerance(config),
@@ -86,7 +87,7 @@ def _unknown_commands(radar: BoardRadar) -> Iterator[str]:
 def _window_warnings(config: Config, radar: ArrayRadar) -> Iterator[str]:
     """Say that a window that is longer than the chirps of a frame is no longer than these."""
     header = radar.header
-    frame_s = header.loops * len(header.order) * header.slot_s
+    frame_s = header.loops * header.loop_s
     window_s = config.processing.window_s if _gives_window(config) else None
     if window_s is not None and window_s > frame_s:
         yield (
@@ -158,8 +159,8 @@ def _describe_chain(chain: Chain, radar: BoardRadar) -> str:
         return f"cloud.chain: {chain}, the firmware whose commands radar.cfg has"
     if header.firmware is not None:
         return f"cloud.chain: best, as {radar.why_no_points(header.firmware)}"
-    if header.missing:
-        return f"cloud.chain: best, as {header.missing[0]}"
+    if header.why_no_chain:
+        return f"cloud.chain: best, as {header.why_no_chain[0]}"
     return "cloud.chain: best, as radar.cfg has no detection of a firmware that is simulated"
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS
-from radhar_cli.activities.vocabulary import FROM_FILES, advice_on
+from radhar_cli.activities.vocabulary import FROM_FILES, USUAL, advice_on, meaning_of
 
 KNOWN = sorted({activity.slug for activity in ACTIVITIES} | set(MOVEMENTS) | {"nobody"})
 NONE = "no such word"
@@ -80,3 +80,46 @@ def test_movements_that_no_model_makes(word: str) -> None:
 @pytest.mark.parametrize("word", ANY_LETTERS.split())
 def test_other_words_are_not_answered_by_their_letters(word: str) -> None:
     assert advice_on(word, KNOWN, NONE) == NONE
+
+
+WITH_PLACES = {
+    "sitting_down": "sit_down_on_chair sit_down_on_a_chair sit_on_the_sofa",
+    "sitting": "sitting_on_chair sitting_on_a_bench person_sitting",
+    "standing_up": "stand_up_from_chair get_up_from_sofa rise_from_the_seat",
+    "getting_up": "get_up_from_floor getting_up_off_the_ground",
+    "falling": "fall_on_the_floor falling_to_ground fall_over accidental_fall",
+    "falling_off_seat": "fall_off_chair falling_from_a_stool",
+    "crawling": "army_crawling crawl_on_floor crawling_on_all_fours baby_crawling",
+    "lying": "lying_on_the_floor lie_on_bed lying_in_bed",
+    "lying_down": "lie_down_on_bed lay_down_in_bed",
+    "walking": "walking_around a_person_walking walk_normally free_walking",
+    "grabbing": "picking_up_from_floor pick_up_an_object",
+    "kneeling_down": "kneel_down kneel_down_on_the_floor",
+    "jogging_in_place": "run_in_place jogging_on_the_spot",
+}
+OTHERWISE = "sitting_on_floor_up walk_on_chair fall_asleep fallen standing_on_head crawl_up"
+
+
+@pytest.mark.parametrize(
+    ("word", "slug"),
+    [(word, slug) for slug, words in WITH_PLACES.items() for word in words.split()],
+)
+def test_places_and_manners_that_a_movement_has_anyway_do_not_matter(word: str, slug: str) -> None:
+    assert meaning_of(word, KNOWN) == slug
+
+
+@pytest.mark.parametrize("word", OTHERWISE.split())
+def test_places_and_manners_of_other_movements_do(word: str) -> None:
+    assert meaning_of(word, KNOWN) is None
+
+
+def test_every_usual_place_or_manner_leads_to_its_movement_alone() -> None:
+    for slug, phrases in USUAL.items():
+        for phrase in phrases:
+            assert meaning_of(f"{slug}_{phrase}", KNOWN) == slug
+
+
+@pytest.mark.parametrize(("name", "known"), [("grabbing", "picking_up"), ("pick_up", "grab")])
+def test_words_of_one_meaning_match_whichever_is_known(name: str, known: str) -> None:
+    assert meaning_of(name, ["walk", known]) == known
+    assert meaning_of(name, ["walk"]) is None

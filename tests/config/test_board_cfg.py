@@ -107,6 +107,9 @@ def test_a_started_config_has_the_likely_device(lines: str, device: str, tmp_pat
 @pytest.mark.parametrize(
     ("spelling", "device"),
     [
+        ("awr1243", "AWR1243BOOST"),
+        ("AWR2243_BOOST", "AWR2243BOOST"),
+        ("xWR2243", "AWR2243BOOST"),
         ("AWR1443BOOST", "AWR1443BOOST"),
         ("iwr1642boost", "IWR1642BOOST"),
         ("AWR1642", "IWR1642BOOST"),
@@ -123,7 +126,7 @@ def test_a_device_has_the_names_that_one_guesses(spelling: str, device: str | No
     assert radar_of(board(WITHOUT_CFAR, device="xWR1443")).device == "IWR1443BOOST"
 
 
-@pytest.mark.parametrize("device", ["IWR6843", "AWR2243BOOST", "BGT60TR13C"])
+@pytest.mark.parametrize("device", ["IWR6843", "AWR2544EVM", "BGT60TR13C"])
 def test_a_board_that_is_not_known_leads_to_places_of_antennas(device: str) -> None:
     with pytest.raises(
         ValueError, match=r"should be one of IWR1443BOOST, .*; or leave it out, and"

@@ -256,6 +256,14 @@ def test_a_walker_who_comes_closer_is_on_the_positive_side() -> None:
             "{frame: {chirps: 64}, array: {tx: [[0, 0]], rx: [[0, 0], [0.0062, 0]]}}",
             "should be half wavelengths: all elements lie within 0.0062 of one, and see no",
         ),
+        *(
+            (f"{{frame: {{chirps: 64}}, array: {array}}}", f"should be places apart: {count}")
+            for array, count in (
+                ("{rx: [[0, 0], [0, 0]]}", "all 2 elements lie at one place"),
+                ("{tx: [[0, 0], [0, 0]], rx: [[1, 0]]}", "all 2 elements lie at one place"),
+                ("{rx: [[0, 0], [1, 0], [1, 0]]}", "two receivers lie at one place"),
+            )
+        ),
         ("{carrier_hz: 24e9}", "FMCW radar with radar.frame, such as 'frame: {chirps: 64}'"),
     ],
 )

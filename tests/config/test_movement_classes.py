@@ -3,14 +3,18 @@
 import json
 from typing import Any
 
+import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from radhar_cli.activities.activity import ACTIVITIES
+from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.checks.doubts import word_warnings
+from radhar_cli.config.classes import movement_class
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.errors import ConfigError
-from radhar_cli.scene import Scene, draw_scene, scene_numbers
+from radhar_cli.scene import Scene, draw_scene, nominal_scene, scene_numbers
 from radhar_cli.single_scene.request import activity_of
 
 
@@ -70,29 +74,76 @@ def test_ones_own_class_of_that_name_comes_first() -> None:
     assert config.classes["falling"].sequence == ("falling", "getting_up")
 
 
-def test_other_words_are_resolved_and_said_once() -> None:
+def test_other_words_within_sequences_and_of_other_people_are_said_once() -> None:
     config = Config(
-        activities=["picking_up", "Walking"],
         classes={
             "spar": {
                 "sequence": ["kick", {"optional": ["boxing", "jump"]}],
                 "durations_s": [1, 1, 1],
             }
         },
+        activities=["spar", "Walking"],
         people=[{"activity": {"choice": ["fall", "standing"]}}],
-        samples_per_class={"per_activity": {"picking_up": 7, "default": 2}},
     )
     assert config.classes["spar"].written == ("kicking", "punching", "jumping")
-    assert config.activities == ("grabbing", "walking")
-    assert config.samples_per_class.per_activity == {"grabbing": 7, "default": 2}
     (line,) = word_warnings(config)
-    for words in ("picking_up is taken for grabbing", "boxing is taken for punching"):
+    for words in ("boxing is taken for punching", "fall is taken for falling", "standing is taken"):
         assert words in line
-    for words in ("fall is taken for falling", "standing is taken for stationary"):
-        assert words in line
-    assert "a class called picking_up would be classes: {picking_up: " in line
     assert "Walking" not in line
     assert word_warnings(_read_again(config)) == []
+
+
+WORDS = {
+    "picking_up": "grabbing",
+    "Jumps": "jumping",
+    "army crawling": "crawling",
+    "walk": "walking",
+}
+
+
+def test_a_class_has_the_name_that_somebody_gives_it() -> None:
+    """Of another word for a movement, without a warning, with the numbers of either name."""
+    config = Config(
+        activities=[*WORDS],
+        samples_per_class={"per_activity": {"picking_up": 7, "crawling": 3, "default": 2}},
+    )
+    names = tuple(word.lower().replace(" ", "_") for word in WORDS)
+    assert config.activities == names
+    assert tuple(activity.slug for activity in config.chosen_activities) == names
+    for activity, movement in zip(config.chosen_activities, WORDS.values(), strict=True):
+        assert activity.movements == (movement,)
+        if activity.number > len(ACTIVITIES):
+            assert config.classes[activity.slug] == movement_class(movement)
+    assert [*map(config.samples_of, config.chosen_activities)] == [7, 2, 3, 2]
+    assert word_warnings(config) == []
+    assert _read_again(config) == config
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_a_class_by_another_word_moves_as_the_movement_does(word: str) -> None:
+    paths = []
+    for name in (word, WORDS[word]):
+        config = Config(activities=[name], duration_s=3)
+        (person,) = nominal_scene(config, config.chosen_activities[0]).people
+        paths.append(motion_of(person).positions(np.linspace(0, 3, 31)))
+    np.testing.assert_allclose(*paths, atol=0.02)
+
+
+@pytest.mark.parametrize("model", ["human", "paper"])
+def test_one_of_the_twelve_by_another_word_has_the_same_scenes(model: str) -> None:
+    scenes = [
+        _scene(Config(activities=["kicking", name], motion={"model": model}), name, 1)
+        for name in ("walk", "walking")
+    ]
+    assert [scene.activity.slug for scene in scenes] == ["walk", "walking"]
+    assert scene_numbers(scenes[0]) == scene_numbers(scenes[1])
+    assert scenes[0].activity.label == "S8"
+
+
+def test_a_word_for_a_class_of_files_stays_that_class() -> None:
+    config = Config(classes={"walking": ["a.bvh"]}, activities=["walk", "S1"])
+    assert config.activities == ("walking", "stationary")
+    assert word_warnings(config)[0].startswith("walk is taken for walking")
 
 
 @pytest.mark.parametrize(

@@ -148,26 +148,74 @@ def test_a_preset_is_named_as_documents_name_its_file() -> None:
     assert of_preset("configs/human/older.yaml") == of_preset("human/older") == text
 
 
-@pytest.mark.parametrize("name", ["human/rom", "../configs/smoke", "/etc/passwd", "", "human"])
-def test_an_unknown_preset_is_a_line_that_names_the_known_ones(tmp_path: Path, name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [
+        ("human/rom", "did you mean 'human/room'?"),
+        ("quikstart", "did you mean 'quickstart'?"),
+        ("/etc/passwd", "should be one of"),
+        ("", "should be one of"),
+    ],
+)
+def test_an_unknown_preset_is_a_line_that_says_what_is_meant_or_lists_them(
+    tmp_path: Path, name: str, advice: str
+) -> None:
     done = radhar("config", "init", tmp_path / "mine.yaml", "--preset", name)
     assert done.returncode == 2
     (line,) = done.stderr.splitlines()
-    assert f'--preset "{name}": should be one of boards/a121, boards/ancortek2400ad' in line
-    assert all(name in line for name in PRESETS)
+    assert f'--preset "{name}": {advice}' in line
     assert not (tmp_path / "mine.yaml").exists()
+
+
+def test_presets_are_listed_with_what_they_are() -> None:
+    lines = ok("config", "init", "--preset", "list").stdout.splitlines()
+    assert [line.split()[0] for line in lines] == [*PRESETS]
+    assert all(len(line.split()) > 3 for line in lines)
 
 
 def test_who_has_no_clone_is_told_of_the_preset(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    for name in ("configs/human/room.yaml", "configs/room.yaml", "room.yaml"):
+    presets = {
+        "configs/human/room.yaml": "human/room",
+        "human/room": "human/room",
+        "room": "human/room",
+        "quickstart": "quickstart",
+        "quickstart.yaml": "quickstart",
+        "configs/room.yaml": None,
+        "room.yaml": None,
+    }
+    for name, preset in presets.items():
         error = radhar("generate", name, "-o", "set").stderr
         assert f"{name}: no such file" in error
-        assert ("`radhar config init FILE --preset human/room` writes" in error) == (
-            name == "configs/human/room.yaml"
-        )
+        hint = f"`radhar config init FILE --preset {preset}` writes"
+        assert (hint in error) is (preset is not None)
+
+
+@pytest.mark.parametrize(
+    ("cfarCfg", "transmitters", "notes"),
+    [
+        ("15 1", 7, ["peak grouping is on"]),
+        ("15 0", 7, []),
+        ("15 0", 5, ["the elements that the file uses lie in one row"]),
+        ("15 1", 1, ["peak grouping is on", "the elements that the file uses lie in one row"]),
+    ],
+)
+def test_a_started_config_says_what_its_points_will_lack(
+    tmp_path: Path, cfarCfg: str, transmitters: int, notes: list[str]
+) -> None:
+    on = [n for n in range(3) if transmitters >> n & 1]
+    lines = [f"channelCfg 15 {transmitters} 0", "adcCfg 2 1"]
+    lines += ["profileCfg 0 77 12 7 40 0 0 80 1 128 4500 0 0 30"]
+    lines += [f"chirpCfg {k} {k} 0 0 0 0 0 {1 << n}" for k, n in enumerate(on)]
+    lines += [f"frameCfg 0 {len(on) - 1} 64 0 50 1 0", f"cfarCfg -1 0 2 8 4 3 0 {cfarCfg}"]
+    (tmp_path / "board.cfg").write_text("% Platform:xWR18xx\n" + "\n".join(lines))
+    out = tmp_path / "mine.yaml"
+    said = ok("config", "init", out, "--radar", tmp_path / "board.cfg").stdout
+    known = "peak grouping is on", "the elements that the file uses lie in one row"
+    assert [note for note in known if note in said] == notes
+    assert [note for note in known if f"# {note}" in out.read_text()] == notes
 
 
 @pytest.mark.parametrize("name", ["bgt60tr13c", "Position2Go", "tinyrad24g", "fmcw24_1x4"])

@@ -87,3 +87,46 @@ def test_a_text_in_the_place_of_a_number_is_told_the_range(tmp_path) -> None:
     tolerance = message(tmp_path, "engine.tolerance_db=-8O")
     assert "should be a valid number, from -400 to -6" in tolerance
     assert ", from 1000 to 1e+12 Hz" in message(tmp_path, "radar.bandwidth_hz=wide")
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("radar.carrier_hz=24", "should be from 1e+06 to 1e+13 Hz; 24 GHz is 24e9"),
+        ("radar.bandwidth_hz=250", "; 250 MHz is 250e6"),
+        ("subject.height_m=175", "should be from 0.1 to 10 m; 175 cm is 1.75"),
+        ("subject.height_m=1750", "; 1750 mm is 1.75"),
+        ("subject.height_m={uniform: [160, 190]}", "; 160 cm is 1.6"),
+        ("duration_s=6000", "; 6000 ms is 6"),
+    ],
+)
+def test_a_number_beyond_its_range_is_told_in_the_unit_that_was_meant(
+    override: str, words: str, tmp_path
+) -> None:
+    assert words in message(tmp_path, override)
+
+
+@pytest.mark.parametrize("override", ["subject.height_m=11000", "radar.carrier_hz=-24"])
+def test_a_number_that_no_unit_explains_is_not_explained(override: str, tmp_path) -> None:
+    said = message(tmp_path, override)
+    assert "should be" in said
+    assert ";" not in said
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("carrier_ghz=24", "is an unknown key; should be radar.carrier_hz: 24e9, a number in Hz"),
+        ("prf_khz=3.5", "should be radar.prf_hz: 3500, a number in Hz"),
+        ("height_cm=175", "should be subject.height_m: 1.75, a number in m"),
+        ("carrier=24e9", "did you mean 'radar.carrier_hz'?"),
+        ("split.by=persons", "should be subject: split: {by: subject, subjects: 4}"),
+        ("split.persons=4", "is called subjects: split: {by: subject, subjects: 4}"),
+    ],
+)
+def test_a_key_of_a_section_is_named_once_with_its_path(
+    override: str, words: str, tmp_path
+) -> None:
+    said = message(tmp_path, override)
+    assert said.endswith(words)
+    assert " or " not in said.replace("radar.carrier_hz'?", "")

@@ -1,6 +1,7 @@
 """Maps of frames: peaks, levels and noise as formulas have them."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,7 +9,14 @@ from helpers.boards import MARS, channels, cube_of
 
 from radhar_cli.echo.board_cube import exact_cube, fast_cube
 from radhar_cli.processing.best_points import best_points
-from radhar_cli.processing.frame_maps import FrameMaps, doppler_angle, range_angle, range_doppler
+from radhar_cli.processing.frame_maps import (
+    FrameMaps,
+    doppler_angle,
+    doppler_spectrum,
+    range_angle,
+    range_doppler,
+    without_turns,
+)
 from radhar_cli.processing.points import board_points
 from radhar_cli.radar.board import DEVICES, longest_rows
 from radhar_cli.radar.detection import CASO, Cfar, Detection
@@ -143,3 +151,24 @@ def test_a_steady_echo_reads_its_power_over_doppler_and_angle() -> None:
     row, azimuth, level = _peak(doppler_angle(cube, MARS, False, 0))
     assert (row, azimuth) == (15, 0)
     assert level == pytest.approx(20 * np.log10(3), abs=3e-3)
+
+
+UNEVEN = {"burst_s": 900e-6, "chirp_starts": (0.0, 60e-6, 800e-6)}
+BURSTS = {"burst_s": 900e-6}  # of chirps that follow each other, as boards of xWRL send them
+
+
+@pytest.mark.parametrize("pauses", [UNEVEN, BURSTS])
+@pytest.mark.parametrize("bpm", [None, (0, 1), (1, 2), (2, 0)])
+def test_pauses_within_a_loop_do_not_turn_what_moves(
+    pauses: dict[str, Any], bpm: tuple[int, int] | None
+) -> None:
+    """Ahead all elements have one phase, whenever their chirps come and whoever sends together."""
+    board = replace(MARS, bpm=bpm, **pauses)
+    speed = 12 * board.doppler_step()
+    cube, board = cube_of((2.5, 0.0, 0.0), (-speed, 0, 0), board, snr_db=None)
+    spectrum = np.fft.fft(cube, board.n_fft, axis=-1)
+    separate = without_turns(doppler_spectrum(spectrum, board, np.ones(board.loops)), board)[0]
+    near = round(2.5 / board.range_step)
+    peak = separate[12, :, near]
+    np.testing.assert_allclose(np.abs(peak), np.abs(peak).mean(), rtol=0.05)
+    assert np.abs(np.angle(peak / peak.mean())).max() < 0.1

@@ -65,6 +65,15 @@ def test_chirps_follow_frames_loops_and_turns() -> None:
     np.testing.assert_allclose(MARS.pulses.times(np.arange(64)), t[..., 0].ravel(), atol=1e-15)
 
 
+def test_chirps_of_a_loop_may_start_at_any_times() -> None:
+    board = replace(MARS, chirp_starts=(0.0, 60e-6, 800e-6), burst_s=900e-6)
+    times = board.chirp_times()
+    assert times.shape == (2, 32, 3)
+    np.testing.assert_allclose(times[1, 3], 0.1 + 3 * 900e-6 + np.array(board.chirp_starts))
+    numbers = np.arange(times.size, dtype=float)
+    np.testing.assert_allclose(board.waveform.times(numbers), times.ravel(), rtol=0, atol=1e-15)
+
+
 def test_frames_without_idle_time_have_no_gaps() -> None:
     assert len(replace(MARS, period=32 * 3 * 57e-6).pulses) == 1
 
@@ -86,6 +95,10 @@ def test_every_device_has_a_sign_for_each_receiver(device: str) -> None:
 OF_BOARDS: dict[str, tuple[str, str, str, str, tuple[float, float]]] = {
     # TX and RX (left, up), signs of RX and of TX, half-power half-widths (azimuth, elevation)
     "IWR1443BOOST": ("0,0 2,1 4,0", "0,0 1,0 2,0 3,0", "++++", "+++", (28, 14)),
+    **dict.fromkeys(
+        ("AWR1243BOOST", "AWR2243BOOST"),
+        ("0,0 2,1 4,0", "0,0 1,0 2,0 3,0", "++++", "+++", (28, 14)),
+    ),
     "IWR1642BOOST": ("0,0 4,0", "0,0 1,0 2,0 3,0", "++++", "++", (28, 14)),
     "IWR1843BOOST": ("0,0 2,1 4,0", "0,0 1,0 2,0 3,0", "++++", "+++", (28, 14)),
     "IWR6843ISK": ("0,-1 2,0 4,-1", "0,0 1,0 2,0 3,0", "++++", "+++", (60, 15)),
@@ -100,7 +113,7 @@ OF_BOARDS: dict[str, tuple[str, str, str, str, tuple[float, float]]] = {
 @pytest.mark.parametrize("device", DEVICES)
 def test_elements_of_a_device_are_those_of_its_guide(device: str) -> None:
     """Places (left, up) in half wavelengths looking out, signs of the feeds, beam of an element."""
-    name = device.replace("AWR1", "IWR1")
+    name = device if device in OF_BOARDS else device.replace("AWR1", "IWR1")
     tx, rx, rx_signs, tx_signs, beam = OF_BOARDS[name]
     array = DEVICES[device].array
     for places, written in ((array.tx, tx), (array.rx, rx)):

@@ -99,7 +99,7 @@ def test_commands_that_a_chain_of_people_needs_may_be_missing(
 ) -> None:
     header = parse_ti_cfg(cfg)
     assert (header.people, header.firmware) == (None, firmware)
-    assert [words.split()[0] for words in header.missing] == [missing]
+    assert [words.split()[0] for words in header.why_no_chain] == [missing]
 
 
 def test_frameCfg_counts_in_mode_1_whatever_stands_beside_it() -> None:
@@ -142,6 +142,14 @@ def test_a_pose_is_height_and_angles_to_the_right_and_down() -> None:
     header = parse_ti_cfg(f"{CFG}sensorPosition 2.5 10 15\n")
     assert header.pose == BoardPose((0.0, 0.0, 2.5), -10.0, 15.0)
     assert (header.unknown, header.not_simulated) == ((), ())
+
+
+@pytest.mark.parametrize("third", ["", " 0", " 15"])
+def test_a_pose_may_have_a_place_and_a_third_angle(third: str) -> None:
+    for text in (XWRL, ISK_CFG):
+        header = parse_ti_cfg(f"{text}sensorPosition 0.5 1 1.2 30 10{third}\n")
+        assert header.pose == BoardPose((1.0, -0.5, 1.2), -30.0, 10.0)
+        assert header.not_simulated == ("sensorPosition thirdTilt",) * (third == " 15")
 
 
 def test_fewer_bits_than_16_are_named() -> None:
@@ -217,7 +225,7 @@ WRONG = [
     (
         "cfarCfg 0 2 8 4 3 0 1130",
         "cfarCfg 0 2 8",
-        "10: cfarCfg has 3 numbers: should be 7, 8, 9, 12 or 13: cfarCfg proc",
+        "10: cfarCfg has 3 numbers: should be 7, 8, 9, 12, 13 or 14: cfarCfg proc",
     ),
     (
         "cfarCfg 0 2 8 4 3 0 1130",
@@ -270,7 +278,64 @@ def test_equal_profiles_are_one() -> None:
     twice = twice.replace("chirpCfg 1 1 0", "chirpCfg 1 1 1")
     assert parse_ti_cfg(twice) == parse_ti_cfg(CFG)
     with pytest.raises(CaptureError, match="chirpCfg profileId = 1: should be 0: a frame"):
-        parse_ti_cfg(twice.replace("profileCfg 1 77 17", "profileCfg 1 77 18"))
+        parse_ti_cfg(twice.replace("profileCfg 1 77 17", "profileCfg 1 77.1 17"))
+
+
+def with_second_profile(numbers: str) -> str:
+    """A file whose second and third chirps have another profile, of other first numbers."""
+    (profile,) = (line for line in CFG.splitlines() if line.startswith("profileCfg"))
+    other = profile.replace("profileCfg 0 77 17 7 40 0", f"profileCfg 1 {numbers}")
+    text = CFG.replace(profile, f"{profile}\n{other}")
+    return text.replace("chirpCfg 1 1 0", "chirpCfg 1 1 1").replace(
+        "chirpCfg 2 2 0", "chirpCfg 2 2 1"
+    )
+
+
+@pytest.mark.parametrize(
+    ("numbers", "starts_us", "loop_us"),
+    [
+        ("77 500 7 40 0", (0, 540, 1080), 57 + 2 * 540),  # pauses before the later chirps
+        ("77 17 7 60 0", (0, 57, 134), 57 + 2 * 77),  # and behind the ramps
+        ("77 37 7 20 0", (), None),  # which ends before the samples do
+    ],
+)
+def test_profiles_may_differ_in_the_time_that_they_take(
+    numbers: str, starts_us: tuple[float, ...], loop_us: float | None
+) -> None:
+    if loop_us is None:
+        with pytest.raises(CaptureError, match="6: profileCfg numAdcSamples = 80: should be at m"):
+            parse_ti_cfg(with_second_profile(numbers), "board.cfg")
+        return
+    header = parse_ti_cfg(with_second_profile(numbers))
+    assert header.chirp_starts_s == pytest.approx([1e-6 * start for start in starts_us])
+    assert header.loop_s == pytest.approx(loop_us * 1e-6)
+    assert (header.order, header.loops) == (MARS.order, MARS.loops)
+    assert header.has_bursts
+
+
+def test_each_transmitter_has_the_power_of_its_own_profile() -> None:
+    header = parse_ti_cfg(with_second_profile("77 17 7 40 394758"))
+    assert header.profile.backoff_db == (0, 6, 6, 0)
+    assert header.chirp_starts_s == ()
+    both = with_second_profile("77 17 7 40 394758").replace("0 0 0 0 2\n", "0 0 0 0 1\n")
+    with pytest.raises(CaptureError, match="should have the txOutPower of the other chirps"):
+        parse_ti_cfg(both.replace("0 0 0 0 4\n", "0 0 0 0 1\n"))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "chirpCfg 3 3 0 0 0 0 0 0",  # no transmitter
+        "chirpCfg 3 9 0 0.5 1 2 3 7",  # changed in every way, of all transmitters
+        "chirpCfg 3 3 9 0 0 0 0 1",  # of a profile that is not there
+        "profileCfg 3 0 0 0 0 0 0 0 0 0 0 0 0 0",
+        "chirpCfg 3 3 3 0 0 0 0 1\nprofileCfg 3 77 7 7 9 0 0 -10 1 999 1 0 0 30",
+    ],
+)
+def test_chirps_and_profiles_that_no_frame_sends_do_not_matter(line: str) -> None:
+    assert parse_ti_cfg(f"{CFG}{line}\n") == parse_ti_cfg(CFG)
+    with pytest.raises(CaptureError, match="chirpCfg txEnable = 0: should be a mask of trans"):
+        parse_ti_cfg(f"{CFG}chirpCfg 1 1 0 0 0 0 0 0\n")
 
 
 def test_masks_that_repeat_are_further_loops() -> None:
@@ -315,11 +380,11 @@ def test_two_transmitters_may_send_together() -> None:
     [
         ("bpmCfg -1 1 0 2", "bpmCfg -1 0 0 2", "6: chirpCfg txEnable = 5: should be one transmit"),
         ("2 2 0 0 0 0 0 5", "2 2 0 0 0 0 0 3", "chirp0Idx chirp1Idx = 0 2: should be two chirps"),
-        ("1 1 0 0 0 0 0 2", "1 1 0 0 0 0 0 1", "= 0 2: should be the two chirps of a loop, or the"),
+        ("1 1 0 0 0 0 0 2", "1 1 0 0 0 0 0 1", "= 0 2: should be the two chirps of a loop, or two"),
         (
             "chirpCfg 2 2 0 0 0 0 0 5\nframeCfg 0 2",
             "chirpCfg 2 2 0 0 0 0 0 5\nchirpCfg 3 3 0 0 0 0 0 2\nframeCfg 0 3",
-            "= 0 2: should be the two chirps of a loop, or the first and the last of three",
+            "= 0 2: should be the two chirps of a loop, or two of three, the other of which has",
         ),
     ],
 )
@@ -327,6 +392,66 @@ def test_other_mixtures_of_bpm_are_refused(old: str, new: str, message: str) -> 
     with pytest.raises(CaptureError) as caught:
         parse_ti_cfg(PAIR.replace(old, new), "board.cfg")
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("masks", "pair", "order"),
+    [
+        ((3, 3, 4), (0, 1), (0, 1, 2)),
+        ((4, 3, 3), (1, 2), (2, 0, 1)),
+        ((3, 4, 3), (2, 0), (1, 2, 0)),
+        ((6, 6, 1), (1, 0), (2, 1, 0)),
+    ],
+)
+def test_two_transmitters_may_send_together_anywhere_in_the_loop(
+    masks: tuple[int, ...], pair: tuple[int, int], order: tuple[int, ...]
+) -> None:
+    text = PAIR.replace("bpmCfg -1 1 0 2", f"bpmCfg -1 1 {pair[0]} {pair[1]}")
+    for place, mask in enumerate(masks):
+        text = text.replace(
+            f"chirpCfg {place} {place} 0 0 0 0 0 {(5, 2, 5)[place]}",
+            f"chirpCfg {place} {place} 0 0 0 0 0 {mask}",
+        )
+    header = parse_ti_cfg(text)
+    assert (header.masks, header.bpm, header.order, header.loops) == (masks, pair, order, 48)
+
+
+OBSTACLES = CFG.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg 1 4 12 4 2 8 2 350 30 2 0 5 20")
+
+
+@pytest.mark.parametrize("more", [" 0.5", "\ndbscanCfg 4 4 13 20 3 256"])
+def test_detection_of_obstacles_is_said_not_to_be_simulated(more: str) -> None:
+    header = parse_ti_cfg(OBSTACLES.replace("2 0 5 20", f"2 0 5 20{more}"))
+    count = 13 + more.count(".")
+    assert (header.family, header.not_simulated) == (Family.OBSTACLES, ("cfarCfg",))
+    assert (header.firmware, header.unknown) == (None, ())
+    assert header.why_no_chain == (f"cfarCfg of {count} numbers is not simulated",)
+
+
+def test_detection_of_occupants_is_said_not_to_be_simulated() -> None:
+    """Of a file with near windows of its own, of which the elements are read all the same."""
+    text = ISK_CFG.replace("2 2 8 12 4 8 4.00 8.00 0.40 1 1\n", "2 2 8 8 4 6 4 1 8 6 0.4 1 15\n")
+    header = parse_ti_cfg(text)
+    assert (header.firmware, header.not_simulated) == (None, ("dynamicRACfarCfg",))
+    assert header.why_no_chain == ("dynamicRACfarCfg of 16 numbers is not simulated",)
+    assert header.elements == parse_ti_cfg(ISK_CFG).elements
+
+
+def test_a_window_that_does_not_fit_is_refused_with_its_arithmetic() -> None:
+    text = ISK_CFG.replace("-1 4 4 2 2 8 12 4 8", "-1 40 40 2 2 20 12 5 8")
+    with pytest.raises(CaptureError, match=r"2 \(20 \+ 5\) bins.* 128 - 40 - 40 = 48 bins$"):
+        parse_ti_cfg(text)
+
+
+def test_of_windows_that_are_mirrored_beside_the_map_another_chain_finds_the_points() -> None:
+    """As files that come with the boards have them."""
+    header = parse_ti_cfg(ISK_CFG.replace("-1 4 4 2 2 8 12 4 8", "-1 2 78 2 2 4 12 4 8"))
+    assert (header.firmware, header.people) == (None, None)
+    (reason,) = header.why_no_chain
+    assert reason.startswith("dynamicRACfarCfg leaves out so many of 128 range bins")
+    assert reason.endswith("128 - 78 - 4 (window) - 4 (guard) = 42, less than 78")
+    at_most = parse_ti_cfg(ISK_CFG.replace("-1 4 4 2 2 8 12 4 8", "-1 2 60 2 2 4 12 4 8"))
+    assert (at_most.firmware, at_most.why_no_chain) == ("people_tracking", ())
 
 
 def test_frame_of_the_mcu_plus_sdk_repeats_the_number_of_samples() -> None:

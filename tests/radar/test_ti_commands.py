@@ -30,6 +30,10 @@ BASES = {
     Family.L_SDK: LOW_POWER,
     Family.PEOPLE: OLD_PEOPLE,
     Family.PEOPLE_3D: ISK_CFG,
+    Family.OBSTACLES: CFG.replace(
+        "cfarCfg 0 2 8 4 3 0 1130",
+        "cfarCfg 1 4 12 4 2 8 2 350 30 2 0 5 50 0.5\ndbscanCfg 4 4 13 20 3 256",
+    ),
 }
 TWELVE = "1 2 3 4 5 6 7 8 9 10 11 12"
 CALIBRATION = " 1 0" * 12
@@ -53,7 +57,7 @@ class Row(NamedTuple):
 
 
 EVERY = tuple(BASES)
-S1, S3, MCU, L, OLD, P3 = BASES
+S1, S3, MCU, L, OLD, P3, OD = BASES
 OF_FRAMES = (S1, S3, MCU, OLD, P3)
 SIM, SAID, SILENT = Effect.SIMULATED, Effect.SAID, Effect.SILENT
 ONE = "should be one transmitter a chirp"
@@ -128,6 +132,8 @@ ROWS = [
     Row("cfarCfg 6 4 4 0 0 8 8 4 4 50 62 0", SIM, (OLD,)),
     Row("cfarCfg 2 8 4 3 0 12.0 0 0.5 0 1 1 1", SAID, (L,)),
     Row("cfarCfg 2 8 4 3 0 12.0 0", "has 7 numbers: should be 12: cfarCfg averageMode", (L,)),
+    Row("cfarCfg 3 4 12 4 2 8 2 350 30 2 0 5 20", "detectMethod = 3: should be 1 or 2", (OD,)),
+    Row("dbscanCfg 4 4 13 20 3 256", SILENT, (OD,)),
     Row("peakGrouping 1 1 1 1 60", SIM, (S1,)),
     Row("multiObjBeamForming -1 1 0.25", SIM, (S1, S3)),
     Row("clutterRemoval -1 0", SIM, (S1, S3)),
@@ -170,7 +176,8 @@ ROWS = [
     Row("antPhaseRot 1 1 1 1 1 1 1 1 1 1 1 -1", SIM, (P3,)),
     Row("antPhaseRot 1 1 1 1 1 1 1 1 1 1 1 2", "antenna12 = 2: should be a number from", (P3,)),
     Row("sensorPosition 1.5 -10 15", SIM, (P3, S3, MCU)),
-    Row("sensorPosition 0.5 0 1.5 -10 15", SIM, (L,)),
+    Row("sensorPosition 0.5 0 1.5 -10 15", SIM, (L, P3)),
+    Row("sensorPosition 0.5 0 1.5 -10 15 0", SIM, (L, P3)),
     Row("boundaryBox -2 2 0.5 6 0 3", SIM, (P3, S3)),
     Row("SceneryParam -3 3 0.5 6", SIM, (OLD,)),
     Row("doaCfg 500 1875 30 0", SIM, (OLD,)),

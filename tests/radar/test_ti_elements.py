@@ -13,13 +13,14 @@ from radhar_cli.scene_checks.warnings import config_warnings
 
 BUILT_IN = {radar.name: radar for radar in read_radars()}
 ROW_AND_ONE_ABOVE = {"IWR6843ISK", "IWR1843BOOST", "AWR1843BOOST"}
+OR_FRONT_END = ROW_AND_ONE_ABOVE | {"AWR1243BOOST", "AWR2243BOOST"}
 # Devices on which nothing is said of the elements; on the others something is, or they are refused.
 FITTING = {
-    "iwr6843isk": ROW_AND_ONE_ABOVE,
-    "iwr6843isk_clouds": ROW_AND_ONE_ABOVE,
+    "iwr6843isk": OR_FRONT_END,
+    "iwr6843isk_clouds": OR_FRONT_END,
     "iwr6843isk_people": ROW_AND_ONE_ABOVE,
-    "iwr1843boost": ROW_AND_ONE_ABOVE,
-    "iwr1843boost_clouds": ROW_AND_ONE_ABOVE,
+    "iwr1843boost": OR_FRONT_END,
+    "iwr1843boost_clouds": OR_FRONT_END,
     "iwr1843boost_people": ROW_AND_ONE_ABOVE,
     "iwr6843isk-ods_clouds": {"IWR6843ISK-ODS"},
     "iwr6843isk-ods_people": {"IWR6843ISK-ODS"},

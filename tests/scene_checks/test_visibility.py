@@ -125,3 +125,19 @@ def test_where_it_is_said_the_image_is_that_of_noise() -> None:
     noise = image(-250)
     assert np.corrcoef(noise, image(limit))[0, 1] > 0.99
     assert np.corrcoef(noise, image(limit + 30))[0, 1] < 0.97
+
+
+@pytest.mark.parametrize("snr_db", [None, 60.0])
+def test_a_beam_that_looks_away_from_people_is_said(snr_db: float | None) -> None:
+    """Whatever the noise, in a line that names what it takes and the key."""
+
+    def said(pan_deg: float) -> list[str]:
+        radar = {"carrier_hz": 24e9, "beam": {"pan_deg": pan_deg, "most_db": 28.5}}
+        noise = {} if snr_db is not None else {"receiver": {"noise_figure_db": None}}
+        config = Config(radar=radar, snr_db=snr_db, maps=["stft"], duration_s=2, **noise)
+        return [line for line in config_warnings(config) if "the beam" in line]
+
+    (line,) = said(180.0)
+    assert line.startswith("the beam looks away from people: it takes 57 dB of their echo")
+    assert line.endswith("(radar.beam)")
+    assert said(0.0) == said(20.0) == []

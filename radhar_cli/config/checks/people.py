@@ -86,7 +86,8 @@ def unknown_activities(c: Request) -> Iterator[Problem]:
     """Names under `per_activity` that are neither an activity nor a user-defined class."""
     classes = c.own_activities
     activities = (*ACTIVITIES, *classes.values(), *own_activities())
-    names = {DEFAULT, *MOVEMENTS, *(activity.slug for activity in activities)}
+    chosen = {activity.slug for activity in c.chosen_activities}
+    names = {DEFAULT, *MOVEMENTS, *chosen, *(activity.slug for activity in activities)}
     keys = ["samples_per_class"]
     of_people = [f"people.{n}." for n in range(len(c.people))]
     of_movement = [key for key in annotations(Request) if key.startswith(("motion.", "timing."))]

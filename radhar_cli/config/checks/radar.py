@@ -251,11 +251,19 @@ def _place_problems(radar: FramesRadar) -> Iterator[Problem]:
 
 
 def _unit_problems(radar: ArrayRadar) -> Iterator[Problem]:
-    """Find places of an array that are written in another unit than they are read in."""
+    """Find places of an array that are one, or in another unit than they are read in."""
     sides = [*zip(*radar.virtual_places, strict=True)]  # of all elements, to the left and upwards
     extent = max((max(side) - min(side) for side in sides), default=0.0)
     array = radar.elements
-    if array is not None and 0 < extent < CLOSEST:
+    if array is None:
+        return
+    used = [array.rx[r] for r in radar.header.receivers if r < len(array.rx)]
+    if len({*used}) < len(used) or (extent == 0 and len(radar.virtual_places) > 1):
+        count = len(radar.virtual_places)
+        nouns = f"all {count} elements" if extent == 0 else "two receivers"
+        right = f"should be places apart: {nouns} lie at one place, and see no direction between"
+        yield Problem("radar.array", {"tx": array.tx, "rx": array.rx}, right)
+    elif 0 < extent < CLOSEST:
         unit = "radar.half_wavelength_m: 1 makes the unit of places a metre, 0.001 a millimetre"
         right = (
             f"should be half wavelengths: all elements lie within {extent:.2g} of one, and see no "
@@ -292,10 +300,10 @@ def _detection_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     if c.cloud.boundary_box and board.box is None:
         yield _boundary_problem(radar)
     if board.firmware is None and chain != "best":
-        missing = (*board.missing, "cfarCfg is missing")[0]
-        if chain in NEEDED_COMMANDS and not board.missing:
-            missing = f"{NEEDED_COMMANDS[chain]} are missing"
-        yield Problem("cloud.chain", chain, f"should be best: radar.cfg: {missing}")
+        reason = (*board.why_no_chain, "cfarCfg is missing")[0]
+        if chain in NEEDED_COMMANDS and not board.why_no_chain:
+            reason = f"{NEEDED_COMMANDS[chain]} are missing"
+        yield Problem("cloud.chain", chain, f"should be best: radar.cfg: {reason}")
     elif chain not in ("best", "board", board.firmware):
         right = f"should be {board.firmware} or best: radar.cfg has the commands of that firmware"
         yield Problem("cloud.chain", chain, right)

@@ -1,6 +1,6 @@
 """Walls, rooms and noise that do not fit together."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -137,7 +137,7 @@ def room_problems(c: Request) -> Iterator[Problem]:
             right = "should be inside room.box_m, or have a wall: to see through"
             yield Problem(f"radar.{name}", list(antenna), right)
         elif not all(inside[1:] if before else inside):
-            right = "should be inside room.box_m, or before its front"
+            right = _describe_inside(places, within, radar.named)
             yield Problem(f"radar.{name}", list(antenna), right)
     for key, name, ends_of_box in (("x", "range_m", box.x), ("y", "cross_range_m", box.y)):
         low, high = support(ends_of_box[0])[0], support(ends_of_box[1])[1]
@@ -145,6 +145,22 @@ def room_problems(c: Request) -> Iterator[Problem]:
             if any(most <= low or least >= high for least, most in ends):
                 right = f"should be inside room.box_m.{key}, {low:g} to {high:g} m"
                 yield Problem(where, value, right)
+
+
+def _describe_inside(
+    places: Sequence[tuple[float, float]], within: Sequence[tuple[float, float]], named: str
+) -> str:
+    """Say what of an antenna's place is not inside the box, or before its front, in numbers."""
+    outside = " and ".join(
+        f"{axis} is {b:g}, not between {low:g} and {high:g}"
+        for axis, (a, b), (low, high) in zip("xyz", places, within, strict=True)
+        if not (low < a and b < high)
+    )
+    front = within[0][0]
+    cure = ""
+    if places[0][1] == front:
+        cure = f"; the box begins there: box_m.x: [{front - 0.1:g}, ...], or x = {front + 0.1:g}"
+    return f"should be inside room.box_m, or before its front, x = {front:g}: {outside}{cure}"
 
 
 def tone_problems(c: Request) -> Iterator[Problem]:

@@ -7,7 +7,7 @@ from typing import Any
 from torch import nn
 from torch.library import Library
 
-from radhar_cli.errors import ModelError, did_you_mean
+from radhar_cli.errors import ModelError, did_you_mean, how_to_install
 from radhar_cli.learning.choices import NETWORKS, sequences_of
 
 _OPERATORS: Any = Library("torchvision", "FRAGMENT")  # type: ignore[no-untyped-call]  # forgets what it defines when it is let go
@@ -33,7 +33,7 @@ def build_zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module
     except ImportError as error:
         raise ModelError(
             f"model {name!r}: is neither {' nor '.join(of_images)}, and timm, which has others, is "
-            f"not installed ({error}): pip install 'radhar[zoo]'"
+            f"not installed ({error}): {how_to_install('timm')}"
         ) from None
     except RuntimeError as error:
         raise ModelError(

@@ -53,9 +53,9 @@ def direct_products(config: Config) -> Iterator[Product]:
     yield Product("echo", ("direct", "scene"), compute, does)
     does = "slow-time signal without noise"
     yield Product("slow_time", ("echo", "direct"), make_noiseless_signal, does, is_array=True)
-    needs, does = ("echo", "direct", "canceller", "receiver"), "receiver, then canceller"
+    needs, does = ("echo", "direct", "canceller", "impairments"), "receiver, then canceller"
     yield Product("signal", needs, receive_measured_echo, does, is_array=True)
-    needs = ("paths", "waveform", "canceller", "receiver")
+    needs = ("paths", "waveform", "canceller", "impairments")
     profiles = partial(compute_profiles, width=config.image.size_px[1])
     does = "range profiles at the pulses that the range-time map shows"
     yield Product("range_profiles", needs, profiles, does, is_array=True)

@@ -35,7 +35,7 @@ class BeatSignals(NamedTuple):
 
 def exact_products(config: Config) -> Iterator[Product]:
     """Rows of the exact engine."""
-    of_paths = ("paths", "waveform", "canceller", "receiver")
+    of_paths = ("paths", "waveform", "canceller", "impairments")
     width, moves = config.image.size_px[1], config.engine.motion_in_chirp
     yield power_product(
         config,

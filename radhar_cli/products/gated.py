@@ -64,7 +64,7 @@ def gated_direct_products(config: Config) -> Iterator[Product]:
     compute = partial(compute_echo, tolerance=tolerance)
     does = "samples and their measured error, of the gate's bins"
     yield Product("gated_echo", ("gated", "scene"), compute, does)
-    needs = ("gated_echo", "gated", "canceller", "receiver")
+    needs = ("gated_echo", "gated", "canceller", "impairments")
     does = "receiver, then canceller, of the gate's bins"
     yield Product("range_signals", needs, receive_measured_echo, does, is_array=True)
 

@@ -26,7 +26,7 @@ def impulse_products(config: Config) -> Iterator[Product]:
         PowerSource(("paths", "waveform"), power_at_pulses),
         PowerSource(("snr_paths", "waveform"), power_at_pulses),
     )
-    needs, does = ("profiles", "waveform", "canceller", "receiver"), "receiver, then canceller"
+    needs, does = ("profiles", "waveform", "canceller", "impairments"), "receiver, then canceller"
     yield Product("range_signals", needs, receive_profiles, does, is_array=True)
     choose = partial(choose_columns, width=config.image.size_px[1])
     does = "those that the map shows"

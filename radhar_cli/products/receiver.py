@@ -9,6 +9,7 @@ from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.processing.canceller import Canceller
 from radhar_cli.products.noise import noise_products
 from radhar_cli.products.plan import Product
+from radhar_cli.products.static_returns import add_static_returns
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import WhiteNoise
@@ -19,6 +20,9 @@ def receiver_products(config: Config) -> Iterator[Product]:
     """Rows of the canceller, the noise and the other impairments of one receive channel."""
     does = _describe_canceller(config.processing)
     yield Product("canceller", ("scene", "waveform"), make_canceller, does)
+    needs: tuple[str, ...] = ("receiver", "canceller", "scene", "waveform", "antennas", "wall")
+    does = "of the receiver; what stands still, where it is not taken out"
+    yield Product("impairments", needs, add_static_returns, does)
     if not config.has_noise:
         yield Product("receiver", (), make_ideal_receiver, "nothing: no noise")
         return

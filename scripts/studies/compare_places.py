@@ -49,12 +49,8 @@ def main() -> None:
     for column, name in enumerate(QUANTITIES):
         tests = [ks_2samp(tables[a][:, column], tables[b][:, column]) for a, b in pairs]
         differ = sum(test.pvalue * len(pairs) < 0.05 for test in tests)
-        largest, worst = max(
-            (test.statistic, pair) for test, pair in zip(tests, pairs, strict=True)
-        )
-        print(
-            f"{name}: {differ} of {len(pairs)} differ, at most {largest:.2f} ({' and '.join(worst)})"
-        )
+        at_most, pair = max((test.statistic, pair) for test, pair in zip(tests, pairs, strict=True))
+        print(f"{name}: {differ} of {len(pairs)} differ, at most {at_most:.2f}:", *pair)
     for slug, table in tables.items():
         print(f"{slug}: {table[:, 0].mean():.2f} +- {table[:, 0].std():.2f} m at a random instant")
 

@@ -1,4 +1,4 @@
-"""Antenna leakage and the wall's echo: MTI removes both; raw echoes have them, and maps without it."""
+"""Antenna leakage and the wall's echo: MTI removes both; raw echoes have them."""
 
 from math import dist, pi
 from typing import NamedTuple

@@ -17,7 +17,6 @@ from radhar_cli.echo.impulse import profiles_of, steady_profile
 from radhar_cli.echo.static_returns import StaticReturn, leakage, near_face_distance, wall_echo
 from radhar_cli.errors import SceneError
 from radhar_cli.numerics.arrays import Complex, Float
-from radhar_cli.processing.canceller import Canceller
 from radhar_cli.processing.look import Look
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.layers import Layers
@@ -48,24 +47,20 @@ class StaticReturns(Impairment):
 
 def add_static_returns(
     receiver: tuple[Impairment, ...],
-    canceller: Canceller,
     scene: Scene,
     waveform: Waveform,
     antennas: Antennas,
     wall: Wall | None,
 ) -> tuple[Impairment, ...]:
-    """Add to a receiver what stands still, unless the canceller leaves nothing of it.
+    """Add what stands still to the impairments of a receiver.
 
     Args:
         receiver: impairments of the receiver.
-        canceller: canceller of static echoes.
         scene: the scene.
         waveform: chirps or pulses.
         antennas: antennas, which leak.
         wall: wall, which echoes by itself, or None.
     """
-    if canceller.removes_static:
-        return receiver
     return (*receiver, make_static_returns(scene, waveform, antennas, wall))
 
 

@@ -78,12 +78,12 @@ def make_static_returns(
     Raises:
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
     """
-    leaked, reflected = leakage(antennas), None
-    faces = echoes_of_faces(antennas, echo_ways_of(scene), wall, waveform.fc).paths
     if wall is not None:
         _refuse_near_face(scene, antennas, wall)
-        reflected = wall_echo(antennas, wall, waveform)
-    layers = None if wall is None or wall.layers is None else wall.layers
+    leaked = leakage(antennas)
+    reflected = None if wall is None else wall_echo(antennas, wall, waveform)
+    faces = echoes_of_faces(antennas, echo_ways_of(scene), wall, waveform.fc).paths
+    layers = None if wall is None else wall.layers
     if isinstance(waveform, Impulse):
         profile = steady_profile(*leaked, waveform) + profiles_of(faces, waveform)
         if reflected is not None:

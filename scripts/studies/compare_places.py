@@ -16,6 +16,7 @@ from shared import ROOT
 
 from radhar_cli.assembly.motion import moving
 from radhar_cli.config import load_config
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 
 POINTS = 61  # instants of a recording
@@ -31,7 +32,8 @@ def main() -> None:
     parser.add_argument("--config", type=Path, default=ROOT / "configs/quickstart.yaml")
     parser.add_argument("--count", type=int, default=300)
     asked = parser.parse_args()
-    config, rng, tables, redrawn = load_config(asked.config), np.random.default_rng(5), {}, 0
+    config, rng = load_config(asked.config), np.random.default_rng(5)
+    tables, redrawn = dict[str, Float](), 0
     for activity in config.chosen_activities:
         rows = []
         for index in range(asked.count):

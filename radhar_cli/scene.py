@@ -59,6 +59,7 @@ PERSONAL, UNSTEADY = (
 # Redrawing a scene outside the model changes what the person does, not the radar or the person.
 REDRAWN = ("motion.", "timing.", "classes.", "stream.")
 FALL = "motion.falling.direction"
+INSTANT, PLACE_RANGE = "motion.place.instant", "motion.place.range_m"
 # What a walk may overlap, by at most MAX_OVERLAP of its duration, as low down no legs are long
 # enough for a step; falls to the side not at all, as their feet are not planted.
 OVERLAPPED = {
@@ -132,8 +133,15 @@ class SeededDraw:
     radar: str | None = None
 
     def number(self, key: str, number: Number) -> float:
-        """Draw the number of a dotted key, by its quantile function."""
-        return quantile(number, self._share(key))
+        """Draw the number of a dotted key, by its quantile function.
+
+        That of INSTANT rises with the range of the place. If far places were passed anywhere on a
+        course, those who walk would be spread over more ranges than those who do not.
+        """
+        share = self._share(key)
+        if key == INSTANT:
+            share = (share + self._share(PLACE_RANGE)) / 2
+        return quantile(number, share)
 
     def index(self, key: str, count: int) -> int:
         """Draw one of `count` things, from 0 on."""

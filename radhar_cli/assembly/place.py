@@ -3,6 +3,8 @@
 Who stays in place is there. A course is laid through the place at one of the instants at which all
 of it stays within the zone that radar, wall and room leave. It is chosen among those, not by trying
 again: whether a scene is possible would depend on what people do, and where they are would tell it.
+As `motion.place.instant` is drawn, far places are at the far ends of courses: ranges at any instant
+then vary about as much as places do, whoever walks.
 """
 
 from dataclasses import dataclass
@@ -133,7 +135,9 @@ def start_of(person: Person, motion: Motion) -> tuple[float, float]:
         starts_of_instants[1] = y
     zones = [zone_of(scene, (x, y)) for scene in person.scene.of_each_radar]
     miss = np.max([zone.miss(joints, torso, starts_of_instants) for zone in zones], axis=0)
-    possible = np.flatnonzero(miss <= max(0.0, miss.min()))
-    chosen = possible[min(int(person.motion.place.instant * possible.size), possible.size - 1)]
+    by_range = np.argsort(-starts_of_instants[0], kind="stable")  # the nearest instant first
+    possible = np.flatnonzero((miss <= max(0.0, miss.min()))[by_range])
+    wanted = person.motion.place.instant * (INSTANTS - 1)
+    chosen = by_range[possible[np.abs(possible - wanted).argmin()]]
     ahead, left = starts_of_instants[:, chosen]
     return float(ahead), float(left)

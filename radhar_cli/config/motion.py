@@ -522,7 +522,9 @@ class PlaceConfig(Section, Generic[B]):
     )
     """Cross-range at which people are, positive to the left."""
     instant: Annotated[B, ByActivity(within(0, 1))] = default_draw(uniform(0.0, 1.0))
-    """Which of the possible instants it is: 0 the earliest, 1 the latest."""
+    """Share of the recording in which people who walk are nearer than their place: 0 has it at the
+    near end of the course, 1 at the far end, as far as the whole course is possible. A law of it is
+    drawn by the mean of its own rank and that of `range_m`: who is far is so at a far end."""
 
 
 class MotionConfig(Section, Generic[B]):

@@ -79,7 +79,7 @@ class ProcessingConfig(Section):
 
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
     """Clutter canceller: difference is s[m + 1] - s[m], the paper's MTI; mean takes out that of the
-    recording; highpass is the filter below."""
+    recording; highpass is the filter below; none leaves leakage, walls and faces of the room."""
     highpass: Annotated[HighpassConfig, ActsIf("processing.clutter", "highpass")] = defaults_of(
         HighpassConfig
     )
@@ -136,6 +136,13 @@ class ProcessingConfig(Section):
                 "or [from, to], ranges with from <= to; 1e7 at most"
             )
         return value
+
+    @property
+    def leaves_static(self) -> bool:
+        """Whether the canceller leaves something of what stands still."""
+        return self.clutter == "none" or (
+            self.clutter == "highpass" and not self.highpass.remove_mean
+        )
 
     def window_pulses(self, duration: float, prf: float, f0: float) -> int:
         """Length of the STFT's window in pulses.

@@ -198,7 +198,8 @@ class _AntennaPair(AnyRadar[N], Generic[N]):
     antenna_gain_dbi: Annotated[N, DECIBEL, within(-150, 150, "dBi")] = default_draw(6.0)
     """Gain of each antenna at its boresight."""
     antenna_isolation_db: Annotated[N, DECIBEL] = default_draw(10.0)
-    """Isolation between transmitter and receiver; only a raw echo shows the leakage."""
+    """Isolation between transmitter and receiver; raw recordings have the leakage, and maps where
+    `processing.clutter` leaves what stands still."""
     beam: BeamConfig[N] | None = None
     """Beam of both antennas; null radiates evenly."""
 

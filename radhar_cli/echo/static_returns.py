@@ -1,4 +1,4 @@
-"""Antenna leakage and the wall's echo: MTI removes both, so only a raw echo has them."""
+"""Antenna leakage and the wall's echo: MTI removes both; raw echoes have them."""
 
 from math import dist, pi
 from typing import NamedTuple

@@ -18,6 +18,7 @@ from radhar_cli.products.fallback import EchoAccuracy, Tolerance
 from radhar_cli.products.knot_rate import KnotRate
 from radhar_cli.products.looks import look_at_profiles
 from radhar_cli.products.plan import Product
+from radhar_cli.products.receiver import name_of_impairments
 from radhar_cli.products.signal import receive_echo, signal_of_look
 from radhar_cli.products.signal_power import (
     PowerSource,
@@ -53,9 +54,12 @@ def direct_products(config: Config) -> Iterator[Product]:
     yield Product("echo", ("direct", "scene"), compute, does)
     does = "slow-time signal without noise"
     yield Product("slow_time", ("echo", "direct"), make_noiseless_signal, does, is_array=True)
-    needs, does = ("echo", "direct", "canceller", "receiver"), "receiver, then canceller"
+    needs, does = (
+        ("echo", "direct", "canceller", name_of_impairments(config)),
+        "receiver, then canceller",
+    )
     yield Product("signal", needs, receive_measured_echo, does, is_array=True)
-    needs = ("paths", "waveform", "canceller", "receiver")
+    needs = ("paths", "waveform", "canceller", name_of_impairments(config))
     profiles = partial(compute_profiles, width=config.image.size_px[1])
     does = "range profiles at the pulses that the range-time map shows"
     yield Product("range_profiles", needs, profiles, does, is_array=True)

@@ -14,6 +14,7 @@ from radhar_cli.processing.look import Look, RangeBins, RangeSum
 from radhar_cli.processing.signal import Signal
 from radhar_cli.products.looks import look_at_profiles, taps_before_range
 from radhar_cli.products.plan import Product
+from radhar_cli.products.receiver import name_of_impairments
 from radhar_cli.products.signal import signal_of_look
 from radhar_cli.products.signal_power import PowerSource, power_at_pulses, power_product
 from radhar_cli.radar.waveform import Waveform
@@ -35,7 +36,7 @@ class BeatSignals(NamedTuple):
 
 def exact_products(config: Config) -> Iterator[Product]:
     """Rows of the exact engine."""
-    of_paths = ("paths", "waveform", "canceller", "receiver")
+    of_paths = ("paths", "waveform", "canceller", name_of_impairments(config))
     width, moves = config.image.size_px[1], config.engine.motion_in_chirp
     yield power_product(
         config,

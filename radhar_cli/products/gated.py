@@ -19,6 +19,7 @@ from radhar_cli.processing.track import Track
 from radhar_cli.products.direct import compute_echo, receive_measured_echo
 from radhar_cli.products.fallback import Tolerance
 from radhar_cli.products.plan import Product
+from radhar_cli.products.receiver import name_of_impairments
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 
@@ -64,7 +65,7 @@ def gated_direct_products(config: Config) -> Iterator[Product]:
     compute = partial(compute_echo, tolerance=tolerance)
     does = "samples and their measured error, of the gate's bins"
     yield Product("gated_echo", ("gated", "scene"), compute, does)
-    needs = ("gated_echo", "gated", "canceller", "receiver")
+    needs = ("gated_echo", "gated", "canceller", name_of_impairments(config))
     does = "receiver, then canceller, of the gate's bins"
     yield Product("range_signals", needs, receive_measured_echo, does, is_array=True)
 

@@ -11,6 +11,7 @@ from radhar_cli.processing.canceller import Canceller
 from radhar_cli.processing.look import Look, ProfileSamples
 from radhar_cli.processing.signal import Signal
 from radhar_cli.products.plan import Product
+from radhar_cli.products.receiver import name_of_impairments
 from radhar_cli.products.signal import choose_columns, receive_echo, sum_over_range
 from radhar_cli.products.signal_power import PowerSource, power_at_pulses, power_product
 from radhar_cli.radar.impulse import Impulse
@@ -26,7 +27,10 @@ def impulse_products(config: Config) -> Iterator[Product]:
         PowerSource(("paths", "waveform"), power_at_pulses),
         PowerSource(("snr_paths", "waveform"), power_at_pulses),
     )
-    needs, does = ("profiles", "waveform", "canceller", "receiver"), "receiver, then canceller"
+    needs, does = (
+        ("profiles", "waveform", "canceller", name_of_impairments(config)),
+        "receiver, then canceller",
+    )
     yield Product("range_signals", needs, receive_profiles, does, is_array=True)
     choose = partial(choose_columns, width=config.image.size_px[1])
     does = "those that the map shows"

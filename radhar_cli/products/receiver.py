@@ -9,6 +9,7 @@ from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.processing.canceller import Canceller
 from radhar_cli.products.noise import noise_products
 from radhar_cli.products.plan import Product
+from radhar_cli.products.static_returns import add_static_returns
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import WhiteNoise
@@ -19,6 +20,10 @@ def receiver_products(config: Config) -> Iterator[Product]:
     """Rows of the canceller, the noise and the other impairments of one receive channel."""
     does = _describe_canceller(config.processing)
     yield Product("canceller", ("scene", "waveform"), make_canceller, does)
+    if config.processing.leaves_static:
+        needs: tuple[str, ...] = ("receiver", "scene", "waveform", "antennas", "wall")
+        does = "of the receiver, and what stands still"
+        yield Product("impairments", needs, add_static_returns, does)
     if not config.has_noise:
         yield Product("receiver", (), make_ideal_receiver, "nothing: no noise")
         return
@@ -26,6 +31,11 @@ def receiver_products(config: Config) -> Iterator[Product]:
     yield from noise_products(config, "channel")
     needs = ("scene", "noise", "waveform")
     yield Product("receiver", needs, make_receiver, "noise, interference")
+
+
+def name_of_impairments(config: Config) -> str:
+    """Name of the product with all that is added to the echo of one channel."""
+    return "impairments" if config.processing.leaves_static else "receiver"
 
 
 def make_canceller(scene: Scene, waveform: Waveform) -> Canceller:

@@ -581,7 +581,7 @@ def test_people_keep_clear_of_the_radar_and_face_it_half_of_the_time(wall: objec
     for activity in config.chosen_activities:
         found = check_scene(nominal_scene(config, activity))
         assert found.flags & ~Flags.ALIASING == 0, activity.slug
-        assert found.closest.distance > 1, activity.slug
+        assert found.closest.distance > 0.9, activity.slug  # of any joint; of the torso 1
         angles = [draw_scene(config, activity, n).config.motion.angle_deg for n in range(40)]
         towards = [angle for angle in angles if 150 <= angle <= 210]
         assert all(abs(angle) <= 30 for angle in angles if angle not in towards)

@@ -1,5 +1,6 @@
 """Where people are: at their place at one instant, on a course that the scene leaves room for."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,13 +10,15 @@ from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.assembly.motion import moving
 from radhar_cli.assembly.place import NEAREST_M, distance_ahead, zone_of
 from radhar_cli.assembly.radar import antennas_of
-from radhar_cli.config import Config
+from radhar_cli.config import Config, load_config
 from radhar_cli.scene import draw_scene, scene_numbers
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.scene_checks.validity import check_scene
 
 SLUGS = [activity.slug for activity in ACTIVITIES]
 MOVING = SLUGS[7:]
+KEYS = "range_m", "instant"
+QUICKSTART = Path(__file__).parents[2] / "configs" / "quickstart.yaml"
 ROOM = {
     "radar": {"tx_m": [0.2, -0.02, 1.5], "rx_m": [0.2, 0.02, 1.5]},
     "motion": {"place": {"range_m": {"uniform": [2, 8]}}, "walking": {"speed_mps": 0.7}},
@@ -63,17 +66,50 @@ def test_walkers_keep_clear_of_the_radar() -> None:
             assert distance_ahead(torso, antennas_of(scene)).min() > NEAREST_M - 0.05
 
 
-def test_the_instant_goes_from_the_earliest_to_the_latest() -> None:
-    """Who walks away from the radar is there first, or last."""
-    config = {"motion": {"angle_deg": 0, "place": {"range_m": 5, "cross_range_m": 0}}}
+@pytest.mark.parametrize("heading", [0, 180])
+def test_the_instant_goes_from_the_near_to_the_far_end(heading: int) -> None:
+    """Who walks away from the radar is there first, or last; who approaches, last or first."""
+    config = {"motion": {"angle_deg": heading, "place": {"range_m": 9, "cross_range_m": 0}}}
     t, walking = np.linspace(0, 6, 601), activity_named("walking")
     instants = []
-    for instant in (0.0, 0.5, 1.0):
+    for instant in (0.0, 0.5, 1.0) if heading == 0 else (1.0, 0.5, 0.0):
         config["motion"]["place"]["instant"] = instant
         x = moving(draw_scene(Config.model_validate(config), walking, 0).people[0]).torso(t)[0, 0]
-        instants.append(float(t[np.abs(x - 5).argmin()]))
-    assert instants[0] < 0.1
+        instants.append(float(t[np.abs(x - 9).argmin()]))
+    assert instants[0] < (0.1 if heading == 0 else 0.3)  # who is about to walk sways
     assert instants[0] + 0.5 < instants[1] < instants[2] - 0.5
+
+
+def test_who_walks_is_where_others_are_at_a_random_instant() -> None:
+    """Before, walkers were 1.5 m farther away, at a distance of 0.3 (Kolmogorov-Smirnov)."""
+    config, t = load_config(QUICKSTART), np.linspace(0, 6, 31)
+    ranges = {}
+    for slug in ("punching", "walking", "sitting_to_walking", "walking_to_falling"):
+        people = [draw_scene(config, activity_named(slug), index).people[0] for index in range(150)]
+        ranges[slug] = np.sort(
+            [np.hypot(*moving(one).torso(t)[:2, 0]) for one in people], axis=None
+        )
+    at = np.linspace(0, 20, 401)
+    shares = {slug: np.searchsorted(r, at) / r.size for slug, r in ranges.items()}
+    for slug, share in shares.items():
+        assert np.abs(share - shares["punching"]).max() < 0.16, slug
+        assert abs(ranges[slug].mean() - ranges["punching"].mean()) < 0.5, slug
+
+
+def test_the_instant_follows_the_range_and_chance_alike() -> None:
+    """A scene that is written holds the number, and needs no law to be simulated again."""
+    config = Config()
+    drawn = np.array(
+        [
+            [scene_numbers(draw_scene(config, one, index))[f"motion.place.{key}"] for key in KEYS]
+            for one in map(activity_named, ("walking", "punching"))
+            for index in range(100)
+        ]
+    )
+    assert 0.5 < np.corrcoef(drawn.T)[0, 1] < 0.85
+    assert drawn[:, 1].min() > 0
+    assert drawn[:, 1].max() < 1
+    assert abs(drawn[:, 1].mean() - 0.5) < 0.06
 
 
 def test_a_start_that_is_given_is_where_people_are_at_first() -> None:

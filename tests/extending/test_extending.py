@@ -54,7 +54,7 @@ from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.single_scene.raw_echo import RAW_ECHO
 
 C = 299_792_458.0
-RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500}
+RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500, "antenna_isolation_db": 300}
 CONFIG = Config.model_validate(
     {
         "radar": RADAR,

@@ -92,7 +92,12 @@ RADIAL = {
 
 @pytest.mark.usefixtures("only_the_torso")
 def test_range_axis_shows_the_distance_at_the_column_time():
-    radar = FAST | {"tx_m": [0.4, 0, 1.2], "rx_m": [0.4, 0, 1.2], "bandwidth_hz": 2e9}
+    radar = FAST | {
+        "tx_m": [0.4, 0, 1.2],
+        "rx_m": [0.4, 0, 1.2],
+        "bandwidth_hz": 2e9,
+        "antenna_isolation_db": 300,
+    }
     recording = record(radar, ("rtm",), processing={"range_fft_length": 2000}, **RADIAL)
     rtm = recording["rtm"]
     ridge = rtm.rows.values[rtm.power.argmax(axis=0)]
@@ -106,7 +111,7 @@ def test_range_axis_shows_the_distance_at_the_column_time():
 @pytest.mark.parametrize("with_mti", [True, False])
 def test_time_axis_is_the_centre_of_the_frames(name, with_mti):
     """A walker who passes abeam: the Doppler crosses zero there, and the map within a column."""
-    radar = FAST | {"tx_m": [0, 0, 1.2], "rx_m": [0, 0, 1.2]}
+    radar = FAST | {"tx_m": [0, 0, 1.2], "rx_m": [0, 0, 1.2], "antenna_isolation_db": 300}
     motion = {
         "model": "paper",
         "range_m": 2.0,

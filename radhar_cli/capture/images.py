@@ -238,7 +238,7 @@ def _name_arrays(shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> _ArrayNam
             f"np.concatenate([a['{x[0]}'], a['{x[1]}']]), label=np.concatenate([a['{y[0]}'], "
             f"a['{y[1]}']]))\"` joins them"
         )
-    found = {
+    names = {
         kind: _name_of(spelt, [*known, *(f"{name}_train" for name in known)])
         for kind, known in (("images", IMAGES), ("label", LABELS), ("person", PERSONS))
     }
@@ -248,15 +248,15 @@ def _name_arrays(shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> _ArrayNam
         for name, (shape, kind) in shapes.items()
         if (len(shape) == 3 or (len(shape) == 4 and shape[3] in (1, 3))) and kind in "ub"
     ]
-    if found["images"] is not None and spelt[found["images"]] in pictures:
-        pictures = [spelt[found["images"]]]
-    if len(pictures) != 1 or found["label"] is None:
+    if names["images"] is not None and spelt[names["images"]] in pictures:
+        pictures = [spelt[names["images"]]]
+    if len(pictures) != 1 or names["label"] is None:
         raise ValueError(
             "should hold one array of images [N, H, W], uint8 or bool (named masks or images if "
             f"there are others), and label (or {', '.join(LABELS[1:])}); it has "
             f"{', '.join(f'{name} {list(shape)}' for name, (shape, _) in shapes.items())}"
         )
-    label, person = (spelt.get(found[kind] or "") for kind in ("label", "person"))
+    label, person = (spelt.get(names[kind] or "") for kind in ("label", "person"))
     assert label is not None
     return _ArrayNames(pictures[0], label, person, spelt.get(classes or ""))
 

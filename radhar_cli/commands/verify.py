@@ -126,21 +126,21 @@ def _leak_in_words(out: Path) -> str:
         count = f"{len(leaks)} of {len(stored.lines)} lines tell the class beyond chance"
         return f"audited: {count}; see {audit_folder(out)}"
     with open_dataset(out) as data:
-        found, samples = most_telling_number(data), len(data)
+        telling, samples = most_telling_number(data), len(data)
         laws = laws_by_class(data.config) if isinstance(data.config, Config) else []
-    told = [*laws]
-    if found is not None and found.number is not None:
-        key, share, chance = found.number
+    lines = [*laws]
+    if telling is not None and telling.number is not None:
+        key, share, chance = telling.number
         name = key if " " not in key else "when it begins or ends"
-        told.append(
+        lines.append(
             f"{name} alone tells the class in {100 * share:.0f} % (chance {100 * chance:.0f})"
         )
-    if told:
-        return f"{'; '.join(told)}: {command}"
+    if lines:
+        return f"{'; '.join(lines)}: {command}"
     none = ""
-    if found is not None and found.is_enough:
+    if telling is not None and telling.is_enough:
         none = "no scene number alone was seen to tell the class in more than "
-        none += f"{100 * found.limit:.0f} %; "
-    elif found is not None:
+        none += f"{100 * telling.limit:.0f} %; "
+    elif telling is not None:
         none = f"{samples} samples are too few to tell whether a scene number tells the class; "
     return f"{none}{command} says what else does, such as margins and noise of images"

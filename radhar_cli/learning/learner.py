@@ -139,8 +139,8 @@ class Learner:
         """Score [N] of a network, in evaluation mode, for each input of (levels, targets)."""
         network = network.to(self.device)
         with torch.no_grad():
-            found = [self.measure(network, *batch)[1].cpu().numpy() for batch in batches]
-        return np.concatenate(found).astype(float)
+            scores = [self.measure(network, *batch)[1].cpu().numpy() for batch in batches]
+        return np.concatenate(scores).astype(float)
 
     def validate(self, batches: Iterable[tuple[Tensor, Tensor]]) -> Totals:
         """Loss and score of the kept network for (levels, targets) in batches."""

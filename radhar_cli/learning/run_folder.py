@@ -255,14 +255,14 @@ def read_trained_on(folder: Path) -> TrainedOn:
         return TrainedOn(frozenset(), frozenset(), frozenset())
     try:
         rows = csv.DictReader(io.StringIO(_text(path), newline=""))
-        seen = {(row["pixels"], row["scene"], row.get("part") or "train") for row in rows}
-        learned = [row for row in seen if row[2] == "train"]
+        fingerprints = {(row["pixels"], row["scene"], row.get("part") or "train") for row in rows}
+        learned = [row for row in fingerprints if row[2] == "train"]
         if not learned:
             raise ValueError("names no image")
         return TrainedOn(
             frozenset(pixels for pixels, _, _ in learned),
             frozenset(scene for _, scene, _ in learned if scene),
-            frozenset(pixels for pixels, _, part in seen if part == "val"),
+            frozenset(pixels for pixels, _, part in fingerprints if part == "val"),
         )
     except (KeyError, ValueError, csv.Error) as error:
         raise RunError(f"{path}: is damaged ({error})") from None

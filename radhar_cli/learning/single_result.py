@@ -116,13 +116,13 @@ def evaluate_run(
     """
     images, rows, metadata = eval_set.images, eval_set.rows, run.metadata
     progress.stage(page.title, len(rows), 0, "image" if images.is_pictures else "sequence")
-    seen = count_seen(run, images, rows)
+    counts = count_seen(run, images, rows)
     predictions = predict(run.model, metadata, images, rows, device, options.batch, progress)
     features = partial(last_features, run.model, metadata, images, device=device)
     groups = metadata.task.groups(images, rows)
     numbers = metadata.task.report(Evaluation(page, predictions, groups, options, features))
     return numbers | {
-        **seen,
+        **counts,
         "split": eval_set.split,
         "map": images.map,
         "snr_db": images.snr_db,
@@ -138,14 +138,14 @@ def count_seen(run: Run, images: ImageSet, rows: Index) -> dict[str, Any]:
         `chose_the_epoch`: images of its validation.
     """
     folder = run.folder if run.folder.is_dir() else run.folder.parent
-    seen = read_trained_on(folder)
-    digests = scan(images, rows).digests if seen.pixels else ()
+    trained_on = read_trained_on(folder)
+    digests = scan(images, rows).digests if trained_on.pixels else ()
     column = images.samples.scene
     evaluated_scenes = () if column is None else column[rows]
     return {
         "seen_in_training": {
-            "images": sum(p in seen.pixels for p in digests),
-            "scenes": sum(scene in seen.scenes for scene in evaluated_scenes),
+            "images": sum(p in trained_on.pixels for p in digests),
+            "scenes": sum(scene in trained_on.scenes for scene in evaluated_scenes),
         },
-        "chose_the_epoch": sum(p in seen.validation for p in digests),
+        "chose_the_epoch": sum(p in trained_on.validation for p in digests),
     }

@@ -50,19 +50,28 @@ class AuditLine:
 
     @property
     def is_leak(self) -> bool:
-        """Whether the class is told, beyond chance."""
+        """Whether the class is told, beyond chance: by p and by the interval, which it takes both.
+
+        p alone is too small where groups are few, as forests are not fitted anew to each
+        permutation; the interval alone knows nothing of the number of lines.
+        """
         result = self.result
-        return result is not None and self.p < SIGNIFICANT and result.low > result.chance
+        if result is None or result.is_confounded:
+            return False
+        return self.p < SIGNIFICANT and result.low > result.chance
 
     @property
     def verdict(self) -> str:
         """What it means, in words."""
         if self.result is None:
             return "not tested: too few persons, recordings or samples of each class"
+        if self.result.is_confounded:
+            return "cannot be told: each person or recording has one class, and few have each"
         if self.result.high < self.result.chance:
             return "at chance: every class has each value as often"
         if not self.is_leak:
-            return "at chance"
+            beyond = (self.result.high - self.result.chance) / (1 - self.result.chance)
+            return "at chance" if beyond < SOME else "at chance, of too few samples to tell"
         share, chance = self.result.share, self.result.chance
         beyond = (share - chance) / (1 - chance)
         words = "gives the class away"
@@ -104,8 +113,8 @@ class Audit:
 
     @property
     def sentences(self) -> list[str]:
-        """What is wrong beside the lines: duplicates, persons in several splits, cues."""
-        return [*self.overlaps.sentences, *self.data.on_cue]
+        """What is wrong beside the lines: laws by class, duplicates, split persons, cues."""
+        return [*self.data.laws, *self.overlaps.sentences, *self.data.on_cue]
 
     def lines_above(self, share: float, parts: Sequence[EvidencePart]) -> list[AuditLine]:
         """Lines of some parts, from which the class is told more often than that.
@@ -154,7 +163,9 @@ def audit(
     scan = scan_pictures(data, rows, progress)
     if scan is not None:
         features = list(_read_pictures(data, rows, scan.far_bands(rows), progress))
-        evidence += picture_evidence(features, data.is_simulated, data.is_relative)
+        is_relative = data.is_relative
+        size, label = scan.size, data.label[rows]
+        evidence += picture_evidence(features, label, size, data.is_simulated, is_relative)
     recording = np.arange(rows.size)
     if data.recording is not None:
         recording = numbered([data.recording[row] for row in rows])
@@ -217,6 +228,7 @@ class PictureScan:
     rows: Index  # [M] rows of the data set
     digests: list[str]  # [M]
     thumbnails: Levels  # [M, SIDE, SIDE]
+    size: tuple[int, int]  # (H, W) of the first
     contrast: Float  # [M, SIDE] how far something stands out in each band of rows
 
     def far_bands(self, rows: Index) -> list[int]:
@@ -242,7 +254,9 @@ def scan_pictures(data: AuditedSet, rows: Index, progress: Progress) -> PictureS
         thumbnails.append(thumbnail_of(levels))
         contrast.append(band_contrast(levels))
         progress.advance(1)
-    return PictureScan(looked_at, digests, np.stack(thumbnails), np.stack(contrast))
+    height, width = data.images.pixels.read(int(looked_at[0])).shape[:2]
+    shrunk, stands_out = np.stack(thumbnails), np.stack(contrast)
+    return PictureScan(looked_at, digests, shrunk, (height, width), stands_out)
 
 
 def _read_pictures(
@@ -283,7 +297,9 @@ def _guess(
             rows = np.flatnonzero(np.isfinite(piece.values).all(axis=1))
         group = groups[1] if piece.tells_who else groups[0]
         name = f"{piece.part} {piece.name}"
-        results.append(class_share(piece.values[rows], label[rows], group[rows], effort, name))
+        ranks = None if piece.ranks is None else piece.ranks[rows]
+        values, truth = piece.values[rows], label[rows]
+        results.append(class_share(values, truth, group[rows], effort, name, ranks))
         progress.advance(1)
     tested = [number for number, result in enumerate(results) if result is not None]
     p = np.full(len(results), np.nan)

@@ -16,6 +16,7 @@ from radhar_cli.dataset.layout import CARD
 
 BEGIN, END = "<!-- radhar audit -->", "<!-- end of radhar audit -->"
 BEFORE = "## Known biases and limits"
+TOO_FEW = "too few samples to tell"
 MAX_CARD = 2**22  # bytes
 
 
@@ -68,9 +69,13 @@ def audit_section(stored: StoredAudit) -> str:
         rows = ["| from | right, % (95 %) | chance, % | instead |", "| --- | --- | --- | --- |"]
         rows += [_row(line) for line in told_lines]
         parts.append("\n".join(rows))
-    chance = sum(line.verdict == "at chance" for line in stored.lines)
+    verdicts = [line.verdict for line in stored.lines]
+    chance, few = (
+        sum(begin in verdict for verdict in verdicts) for begin in ("at chance", TOO_FEW)
+    )
     others = "of the others " if told_lines else ""
-    parts.append(f"At chance: {chance} {others}of {len(stored.lines)} lines.")
+    unsure = f", {few} with too few samples to tell" if few else ""
+    parts.append(f"At chance: {chance} {others}of {len(stored.lines)} lines{unsure}.")
     if stored.sentences:
         parts.append("\n".join(f"- {sentence}" for sentence in stored.sentences))
     parts.append(f"![how often the class is told, beside chance]({AUDIT}/{AUDIT_FIGURE})")

@@ -12,6 +12,7 @@ from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.scene_fields import ONSET
 from radhar_cli.numerics.arrays import Float, Index
 
+SOME = 0.2  # what is told beyond chance, over what chance leaves, that should be seen
 BINS = 12  # of equally many samples
 BEYOND = 4.0  # standard deviations of chance above which a share is none, of some fifty numbers
 
@@ -24,18 +25,29 @@ class NumberShare(NamedTuple):
     chance: float
 
 
-def most_telling_number(data: Dataset) -> NumberShare | None:
+class TellingNumber(NamedTuple):
+    """The scene number that tells the class best, and what could have been seen."""
+
+    number: NumberShare | None  # None where none tells the class beyond chance
+    limit: float  # share beyond which a number of all samples would have been found
+    is_enough: bool  # whether there are samples enough to see that a number tells some of the class
+
+
+def most_telling_number(data: Dataset) -> TellingNumber | None:
     """Find the scene number, none of the movement's, that tells the class best and beyond chance.
 
     Each half of the samples is guessed by the most frequent class of the same twelfth of the
     numbers in the other half.
 
     Returns:
-        The number; None where none tells the class, or there are no scene numbers.
+        The number, if any; None of recordings, which have no scene numbers.
     """
     if not isinstance(data.config, Config):
         return None
     label, best = data.label.astype(np.intp), None
+    chance = 1 / np.unique(label).size
+    limit = _limit(chance, label.size)
+    is_enough = limit - chance < SOME * (1 - chance)
     for key, values in audited_numbers(data).items():
         if key == ONSET.key:  # follows from how long a movement takes; `radhar audit` lists it
             continue
@@ -43,10 +55,15 @@ def most_telling_number(data: Dataset) -> NumberShare | None:
         if not varies(values) or np.unique(label[known]).size < 2:
             continue
         share, chance = binned_share(values[known], label[known])
-        limit = chance + BEYOND * sqrt(SHARED * chance * (1 - chance) / np.count_nonzero(known))
-        if share > limit and (best is None or share - chance > best.share - best.chance):
+        is_told = share > _limit(chance, int(np.count_nonzero(known)))
+        if is_told and (best is None or share - chance > best.share - best.chance):
             best = NumberShare(key, share, chance)
-    return best
+    return TellingNumber(best, limit, is_enough)
+
+
+def _limit(chance: float, samples: int) -> float:
+    """Share above which so many samples are told better than by chance."""
+    return chance + BEYOND * sqrt(SHARED * chance * (1 - chance) / samples)
 
 
 def binned_share(values: Float, label: Index) -> tuple[float, float]:

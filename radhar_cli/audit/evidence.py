@@ -31,6 +31,7 @@ class Evidence:
         leaves_out_missing: whether samples without a value are left out, as of numbers that a
             movement does not have; else that one is missing may tell the class.
         tells_who: whether it tells who it is, so that samples instead of persons are held out.
+        ranks: [N, D/2] of places of images, by which those with marks are chosen (`marks`).
     """
 
     part: EvidencePart
@@ -41,3 +42,4 @@ class Evidence:
     may_be_movement: bool = False
     leaves_out_missing: bool = False
     tells_who: bool = False
+    ranks: Float | None = None

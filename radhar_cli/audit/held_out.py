@@ -22,15 +22,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.learning.metrics import wilson
+from radhar_cli.audit.marks import marked_places
+from radhar_cli.learning.intervals import share_interval
 from radhar_cli.numerics.arrays import Bool, Float, Index
 from radhar_cli.numerics.randomness import TRAINING, stream
 
 # Times the variance of independent tests: folds share the samples that their forests learn from.
 # So much was measured for logistic regression (tests/two_sample); forests need less.
 SHARED = 1.7
-BOOTSTRAPS = 400
-BLOCK = 100  # of them, drawn at once
+MARKS = 32  # places, the surest of those that are marked
+FEW_OF_A_CLASS = 20  # persons or recordings of one class each, of which few say little
 LEAF = 3  # samples of a leaf, where classes have enough
 
 
@@ -64,10 +65,18 @@ class ClassShare(NamedTuple):
     classes: int
     samples: int
     groups: int  # persons, recordings or samples that were held out whole
+    # Whether each person or recording has several samples of one class, and few have each class:
+    # what tells them apart tells their classes, in those held out, too, now and then.
+    is_confounded: bool
 
 
 def class_share(
-    features: Float, label: Index, group: Index, effort: Effort, name: str
+    features: Float,
+    label: Index,
+    group: Index,
+    effort: Effort,
+    name: str,
+    ranks: Float | None = None,
 ) -> ClassShare | None:
     """Measure how often the class is told from features alone.
 
@@ -78,6 +87,8 @@ def class_share(
             together.
         effort: size of the forest, number of folds and permutations, seed.
         name: name of the features, of which random streams are named.
+        ranks: [N, D/2] of places of images (`marks`), by which the marked ones are chosen: features
+            are differences of all places, then levels. None takes all features.
 
     Returns:
         The share; None where fewer than two classes have two groups each.
@@ -88,10 +99,12 @@ def class_share(
     classes, truth = np.unique(label[rows], return_inverse=True)
     groups = np.unique(group[rows], return_inverse=True)[1]
     seed = int(stream(effort.seed, TRAINING, name=f"audit {name}").integers(2**31))
-    predicted = _predict_held_out(_scaled(features[rows]), truth, groups, effort, seed)
+    predicted = _predict_held_out(
+        _scaled(features[rows]), None if ranks is None else ranks[rows], truth, groups, effort, seed
+    )
     correct = predicted == truth
     share = _mean_over_classes(correct, truth)
-    low, high = _interval(correct, truth, groups, seed)
+    low, high = share_interval(correct.astype(float), groups, truth, SHARED, seed)
     counts = np.bincount(truth)
     return ClassShare(
         share=share,
@@ -104,7 +117,16 @@ def class_share(
         classes=classes.size,
         samples=rows.size,
         groups=int(groups.max()) + 1,
+        is_confounded=_is_confounded(truth, groups),
     )
+
+
+def _is_confounded(truth: Index, groups: Index) -> bool:
+    """Whether groups of several samples have one class each, and few have each class."""
+    pairs = np.unique(np.stack([truth, groups]), axis=1)
+    count = int(groups.max()) + 1
+    is_pure = pairs.shape[1] == count
+    return is_pure and count < truth.size and int(np.bincount(pairs[0]).min()) < FEW_OF_A_CLASS
 
 
 def _rows_of_classes_with_groups(label: Index, group: Index) -> Index:
@@ -136,9 +158,17 @@ def _scaled(features: Float) -> Float:
 
 
 def _predict_held_out(
-    features: Float, truth: Index, groups: Index, effort: Effort, seed: int
+    features: Float,
+    ranks: Float | None,
+    truth: Index,
+    groups: Index,
+    effort: Effort,
+    seed: int,
 ) -> Index:
-    """Predict the class [N] of each sample by a forest that learned from other groups."""
+    """Predict the class [N] of each sample by a forest that learned from other groups.
+
+    Of places with ranks it learns from those alone that are marked in the samples it learns from.
+    """
     from sklearn.ensemble import RandomForestClassifier
     from sklearn.model_selection import StratifiedGroupKFold, StratifiedKFold
 
@@ -165,41 +195,21 @@ def _predict_held_out(
         if np.unique(truth[learned]).size < 2:
             predicted[held_out] = truth[learned][0]
             continue
-        forest.fit(features[learned], truth[learned])
-        predicted[held_out] = forest.predict(features[held_out])
+        columns = np.arange(features.shape[1])
+        if ranks is not None:
+            marked = marked_places(ranks[learned], truth[learned])[:MARKS]
+            columns = np.concatenate([marked, marked + ranks.shape[1]])
+        if not columns.size:
+            predicted[held_out] = truth[learned][0]
+            continue
+        forest.fit(features[np.ix_(learned, columns)], truth[learned])
+        predicted[held_out] = forest.predict(features[np.ix_(held_out, columns)])
     return predicted
 
 
 def _mean_over_classes(correct: Bool, truth: Index) -> float:
     """Mean over the classes of the share of their samples that is correct."""
     return float(np.mean(np.bincount(truth, correct) / np.bincount(truth)))
-
-
-def _interval(correct: Bool, truth: Index, groups: Index, seed: int) -> tuple[float, float]:
-    """Interval (low, high) of 95 % of the mean share over classes.
-
-    It is Wilson's for as many independent samples as would vary like the share does where groups
-    are drawn anew (bootstrap), over SHARED.
-    """
-    share = _mean_over_classes(correct, truth)
-    cells = groups * (truth.max() + 1) + truth
-    shape = (groups.max() + 1, truth.max() + 1)
-    rights, counts = (
-        np.bincount(cells, weights, shape[0] * shape[1]).reshape(shape)
-        for weights in (correct.astype(float), np.ones(truth.size))
-    )
-    rng, shares = stream(seed, TRAINING, name="bootstrap"), list[Float]()
-    for _ in range(BOOTSTRAPS // BLOCK):
-        weights = rng.multinomial(shape[0], np.full(shape[0], 1 / shape[0]), BLOCK)
-        drawn = weights @ counts
-        of_class = np.where(drawn > 0, weights @ rights / np.maximum(drawn, 1), np.nan)
-        shares.append(np.nanmean(of_class, axis=1))
-    variance = SHARED * float(np.var(np.concatenate(shares)))
-    independent = truth.size / SHARED
-    if variance > 0:
-        independent = min(independent, share * (1 - share) / variance)
-    independent = max(1.0, independent)
-    return wilson(share * independent, independent)
 
 
 def _p_value(predicted: Index, truth: Index, groups: Index, count: int, seed: int) -> float:

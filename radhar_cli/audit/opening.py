@@ -22,6 +22,7 @@ from radhar_cli.audit.recordings import (
     window_evidence,
 )
 from radhar_cli.audit.scene_numbers import onsets_on_cue, scene_evidence
+from radhar_cli.config.class_laws import laws_by_class
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
@@ -48,6 +49,7 @@ class AuditedSet:
         recording: [N] recording that the sample was cut from; None where nobody says.
         scene: [N] fingerprint of person and motion; None where nobody says.
         on_cue: sentences on onsets that do not vary.
+        laws: sentences on numbers whose laws differ by class.
         has_clouds: whether the dataset.h5 holds point clouds.
         is_simulated: whether a config can be changed.
         is_relative: whether levels are known to be relative to the largest power of each image.
@@ -64,6 +66,7 @@ class AuditedSet:
     recording: Sequence[object] | None = None
     scene: Sequence[object] | None = None
     on_cue: tuple[str, ...] = ()
+    laws: tuple[str, ...] = ()
     has_clouds: bool = False
     is_simulated: bool = False
     is_relative: bool = False
@@ -165,6 +168,7 @@ def _open_h5(path: Path, map_name: str | None) -> AuditedSet:
             recording=recording,
             scene=scene,
             on_cue=tuple(_sentences_on_cue(data, samples.label)),
+            laws=tuple(laws_by_class(config)) if isinstance(config, Config) else (),
             has_clouds=has_clouds(data),
             is_simulated=isinstance(config, Config),
             is_relative=isinstance(config, Config)

@@ -16,6 +16,7 @@ from PIL import Image
 from scipy.ndimage import binary_dilation, median_filter, uniform_filter
 
 from radhar_cli.audit.evidence import Evidence, EvidencePart
+from radhar_cli.audit.marks import MarkFeatures, mark_evidence, mark_features
 from radhar_cli.numerics.arrays import Bool, Float, Index, Levels
 
 SIDE = 32  # rows and columns of a thumbnail, and bands of rows of an image
@@ -36,6 +37,7 @@ BINS = np.linspace(-2.5, 2.5, 9)  # of the noise's levels, in its standard devia
 class PictureFeatures:
     """Features of one image."""
 
+    outer: Float  # [2 x BANDS] mean levels of the first and last rows
     first: Float  # [BANDS] mean levels of the first columns
     last: Float  # [BANDS] and of the last
     far: Float  # [FAR x TIMES] mean levels of the rows that bodies reach least
@@ -43,6 +45,7 @@ class PictureFeatures:
     size: Float  # bytes compressed, bytes of the file, height and width
     noise_level: Float
     noise_texture: Float
+    marks: MarkFeatures
 
 
 def thumbnail_of(levels: Levels) -> Levels:
@@ -93,13 +96,15 @@ def picture_features(levels: Levels, bands: list[int], file: Path | None) -> Pic
         file: image file that it was read from; None of an image in a dataset.h5.
     """
     height, width = levels.shape
-    edge = max(1, width // EDGE)
+    edge, border = max(1, width // EDGE), max(1, height // EDGE)
+    rows = (levels[:border], levels[-border:])
     shares = [np.mean(levels == extreme) for extreme in (0, 255)]
     quantiles = np.quantile(levels, [0.1, 0.25, 0.5, 0.75, 0.9])
     file_bytes = np.nan if file is None else file.stat().st_size
     size = [len(zlib.compress(levels.tobytes(), 6)), file_bytes, height, width]
     is_noise = select_noise(levels, bands)
     return PictureFeatures(
+        outer=np.concatenate([_shrink(side, (1, BANDS))[0].astype(float) for side in rows]),
         first=_shrink(levels[:, :edge], (BANDS, 1))[:, 0].astype(float),
         last=_shrink(levels[:, -edge:], (BANDS, 1))[:, 0].astype(float),
         far=_shrink(levels, (SIDE, TIMES))[bands].astype(float).ravel(),
@@ -107,6 +112,7 @@ def picture_features(levels: Levels, bands: list[int], file: Path | None) -> Pic
         size=np.array(size, float),
         noise_level=_noise_level(levels[is_noise].astype(float)),
         noise_texture=_noise_texture(levels, is_noise),
+        marks=mark_features(levels),
     )
 
 
@@ -160,32 +166,43 @@ def _correlation(values: Float, is_noise: Bool, axis: int, lag: int) -> float:
 
 
 def picture_evidence(
-    features: list[PictureFeatures], is_simulated: bool, is_relative: bool
+    features: list[PictureFeatures],
+    label: Index,
+    size: tuple[int, int],
+    is_simulated: bool,
+    is_relative: bool,
 ) -> list[Evidence]:
     """Evidence of margins and noise of images.
 
     Args:
         features: features of each image [N].
+        label: [N] class of each.
+        size: (H, W) of the first of them.
         is_simulated: whether there is a config, in which numbers can be drawn otherwise.
         is_relative: whether levels are known to be relative to the largest power of each image.
     """
-    first, last, far, level, size, noise, texture = (
+    outer, first, last, far, level, file_size, noise, texture = (
         np.stack([getattr(image, name) for image in features])
-        for name in ("first", "last", "far", "level", "size", "noise_level", "noise_texture")
+        for name in (
+            *("outer", "first", "last", "far", "level", "size"),
+            *("noise_level", "noise_texture"),
+        )
     )
     cures = _SIMULATED_CURES if is_simulated else _MEASURED_CURES
     strength = f"{_RELATIVE if is_relative else ''}{cures['strength']}"
     margins = [
         _margin("first columns", first, cures["onset"]),
         _margin("last columns", last, cures["onset"]),
+        _margin("first and last rows", outer, strength),
         Evidence(EvidencePart.MARGINS, "rows far from bodies", far, cure=strength),
         _margin("levels: mean, spread", level, strength),
-        _margin("size: compressed, file, pixels", size, cures["size"]),
+        _margin("size: compressed, file, pixels", file_size, cures["size"]),
     ]
     everything = np.concatenate([evidence.values for evidence in margins], axis=1)
     return [
         *margins,
         _margin("all margins together", everything, "as above"),
+        mark_evidence([image.marks for image in features], label, size),
         Evidence(EvidencePart.NOISE, "noise: its level", noise, cure=strength),
         Evidence(
             EvidencePart.NOISE,

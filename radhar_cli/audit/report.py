@@ -23,8 +23,8 @@ from radhar_cli.files.plain_json import plain
 from radhar_cli.learning.report_folder import csv_text
 
 COLUMNS = (
-    *("part", "name", "key", "share", "low_95", "high_95", "chance", "p", "classes", "samples"),
-    *("groups", "verdict", "instead"),
+    *("part", "name", "key", "share", "low_95", "high_95", "chance", "p_uncalibrated", "tells"),
+    *("classes", "samples", "groups", "verdict", "instead"),
 )
 
 
@@ -71,15 +71,17 @@ def _line_numbers(line: AuditLine) -> dict[str, Any]:
     """Plain numbers of a line."""
     result = line.result
     numbers: dict[str, Any] = dict.fromkeys(
-        ("share", "low", "high", "chance", "p", "accuracy", "majority", "classes", "samples")
+        ("share", "low", "high", "chance", "accuracy", "majority", "classes", "samples")
     )
     if result is not None:
-        numbers |= result._asdict() | {"p": line.p}
+        numbers |= result._asdict() | {"p_uncalibrated": line.p}
+        del numbers["p"], numbers["is_confounded"]
     return {
         "part": str(line.evidence.part),
         "name": _printable(line.evidence.name),
         "key": line.evidence.key,
         **numbers,
+        "tells": line.is_leak,
         "verdict": line.verdict,
         "cure": _printable(line.cure),
         "may_be_movement": line.evidence.may_be_movement,
@@ -105,11 +107,11 @@ def audit_table(audit: Audit) -> str:
     rows = []
     for line in audit.lines:
         result, evidence = line.result, line.evidence
-        numbers: Sequence[object] = ("",) * 8
+        numbers: Sequence[object] = ("",) * 9
         if result is not None:
             shares = (result.share, result.low, result.high, result.chance, line.p)
             counts = (result.classes, result.samples, result.groups)
-            numbers = (*(f"{share:.6g}" for share in shares), *counts)
+            numbers = (*(f"{share:.6g}" for share in shares), line.is_leak, *counts)
         rows.append((evidence.part, evidence.name, evidence.key, *numbers, line.verdict, line.cure))
     return csv_text(COLUMNS, rows)
 

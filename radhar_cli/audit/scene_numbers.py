@@ -1,45 +1,18 @@
-"""Numbers of simulated scenes that are not the movement, out of the annotations of the config.
+"""Numbers of simulated scenes that are not the movement (`config.class_laws`), as evidence."""
 
-A number belongs to the movement if its key says which movements use it (`People`, `Paper`): speeds,
-rates, sizes, durations. Everything else is where, when, who, and through what: the place, the
-heading, the body, the SNR, walls and rooms, other people. When a movement begins or ends is no part
-of it either, though its keys name movements: those are the keys of `timing` that name an instant.
-"""
-
-import re
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from radhar_cli.audit.evidence import Evidence, EvidencePart
-from radhar_cli.config.annotations import Paper, People, annotations
+from radhar_cli.config.class_laws import is_instant, is_of_movement
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.scene_fields import ERROR, ONSET
 from radhar_cli.numerics.arrays import Float, Index
 
-# Names of keys of `timing` that say when, not how long; and when the movement began of each sample.
-INSTANT = re.compile(r"timing\.(\w+_(start|begin|stop)_s|onset)$|movement_onset_s$")
 ON_CUE_S = 0.25  # standard deviation of an onset below which it is the same in all samples
 FEW_VALUES = 6  # that are written as a choice
-
-
-def is_instant(key: str) -> bool:
-    """Whether a dotted key says when something begins or ends."""
-    return INSTANT.match(key) is not None
-
-
-def is_of_movement(key: str) -> bool:
-    """Whether the number of a dotted key is a part of the class's movement.
-
-    Numbers of other people in the scene (`people.0.motion...`) are none.
-    """
-    if key.startswith("people.") or is_instant(key):
-        return False
-    if key.startswith("classes."):  # durations of parts, or which file is followed
-        return True
-    about = annotations(Config).get(key, ())
-    return any(isinstance(mark, People | Paper) and mark.names for mark in about)
 
 
 def audited_numbers(data: Dataset) -> dict[str, Float]:

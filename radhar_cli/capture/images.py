@@ -1,11 +1,16 @@
-"""Existing images as samples: a tree of class folders, or an .npz of images or masks.
+"""Existing images as samples: a tree of class folders, a table of files, or an .npz.
 
-An .npz has one array of images [N, H, W] (uint8 or bool; masks of 0 and 1 become 0 and 255),
-`label` [N], indices into `classes` or texts, and optionally `person` [N].
+A table (CSV with commas, semicolons or tabs, or a YAML list) has a row for each image file, with
+its label and optionally who it is. An .npz has one array of images [N, H, W] (uint8 or bool; masks
+of 0 and 1 become 0 and 255), `label` [N], indices into `classes` or texts, and optionally `person`
+[N]. Columns and arrays may have any of the names in use for them.
 """
 
+import csv
 import hashlib
+import io
 import zipfile
+from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
@@ -15,12 +20,21 @@ from numpy.typing import NDArray
 
 from radhar_cli.capture.array_files import check_npz
 from radhar_cli.capture.parser_errors import parser_errors_as_capture_errors
-from radhar_cli.dataset.image_file import SUFFIXES, image_size, read_gray
+from radhar_cli.config.yaml_reader import parse_yaml
+from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_gray
 from radhar_cli.errors import CaptureError
-from radhar_cli.files.untrusted import refuse_outside, regular_size
+from radhar_cli.files.untrusted import refuse_outside, regular_size, text_of
 from radhar_cli.numerics.arrays import Levels
 
 MAX_NPZ = 2**29  # bytes of its images, which are held
+MAX_TABLE = 2**22  # bytes
+TABLES = {".csv", ".tsv", ".txt", ".yaml", ".yml"}
+# Names in use for columns of tables and arrays of an .npz; those that come first are taken.
+FILES = ("file", "filename", "file_name", "filepath", "path", "image", "img", "picture", "name")
+LABELS = ("label", "labels", "class", "class_name", "activity", "category", "target", "y")
+PERSONS = ("person", "persons", "subject", "subjects", "participant", "subject_id", "person_id")
+IMAGES = ("masks", "images", "x", "data")
+CLASSES = ("classes", "class_names", "target_names")
 
 
 class ImageListing(NamedTuple):
@@ -32,8 +46,14 @@ class ImageListing(NamedTuple):
 
 
 def are_images(path: Path) -> bool:
-    """Whether a path is a tree of images, or an .npz."""
-    return path.is_dir() or path.suffix.lower() == ".npz"
+    """Whether a path is a tree of images, an .npz, or a table whose rows name image files."""
+    if path.is_dir() or path.suffix.lower() == ".npz":
+        return True
+    if path.suffix.lower() not in TABLES or not path.is_file():
+        return False
+    rows = _read_rows(path)
+    file = _name_of(rows[0], FILES) if rows else None
+    return file is not None and _image_file(path.parent, str(rows[0][file])) is not None
 
 
 def is_image(file: str) -> bool:
@@ -43,10 +63,10 @@ def is_image(file: str) -> bool:
 
 
 def list_images(path: Path, packed: bool) -> ImageListing:
-    """List the images of a tree of class folders, or of an .npz.
+    """List the images of a tree of class folders, of a table, or of an .npz.
 
     Args:
-        path: the tree, or the .npz.
+        path: the tree, the table, or the .npz.
         packed: whether each byte holds eight columns as bits.
 
     Raises:
@@ -54,6 +74,8 @@ def list_images(path: Path, packed: bool) -> ImageListing:
     """
     if path.is_dir():
         return _list_tree(path)
+    if path.suffix.lower() in TABLES:
+        return _list_table(path)
     with parser_errors_as_capture_errors(str(path)):
         regular_size(path)
     images, label, person = _load_npz(path, packed, path.stat().st_mtime_ns)
@@ -86,6 +108,76 @@ def _list_tree(path: Path) -> ImageListing:
     return ImageListing(parts, {path.name: total.hexdigest()}, image_size(files[0]))
 
 
+def _read_rows(path: Path) -> list[dict[str, Any]]:
+    """Rows of a table, {name of its column in lower case: cell}; none of what is no table."""
+    text = text_of(path, MAX_TABLE, CaptureError).removeprefix("\ufeff")
+    if path.suffix.lower() in (".yaml", ".yml"):
+        rows = parse_yaml(text, str(path))[0]
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+            return []
+    else:
+        heading = text.partition("\n")[0]
+        separator = max(",;\t|", key=heading.count)
+        try:
+            rows = [*csv.DictReader(io.StringIO(text, newline=""), delimiter=separator)]
+        except csv.Error as error:
+            raise CaptureError(f"{path}: is not CSV ({error})") from None
+    return [
+        {str(name).strip().lower(): cell for name, cell in row.items() if name is not None}
+        for row in rows
+    ]
+
+
+def _name_of(names: Collection[str], known: Sequence[str]) -> str | None:
+    """The first of some known names that is among names."""
+    return next((name for name in known if name in names), None)
+
+
+def _image_file(folder: Path, cell: str) -> str | None:
+    """File of a cell from a folder on, whose ending may be left out; None of what is no image."""
+    file = cell.strip().replace("\\", "/")
+    if PurePosixPath(file).suffix.lower() in SUFFIXES:
+        return file
+    return next((file + end for end in sorted(SUFFIXES) if (folder / (file + end)).is_file()), None)
+
+
+def _list_table(path: Path) -> ImageListing:
+    """List the image files that a table names, with their labels and persons."""
+    rows, total, parts = _read_rows(path), hashlib.sha256(), dict[str, dict[str, Any]]()
+    file_name, label_name, person_name = (
+        _name_of(rows[0], known) for known in (FILES, LABELS, PERSONS)
+    )
+    if label_name is None:
+        raise CaptureError(
+            f"{path}: has the columns {', '.join(rows[0])}; one should be label, the class of each "
+            "image"
+        )
+    assert file_name is not None  # by which it is known to be a table of images
+    for number, row in enumerate(rows, 2):
+        where = f"{path}: row {number}"
+        cells = [str(row.get(name) or "").strip() for name in (file_name, label_name)]
+        if not all(cells):
+            raise CaptureError(f"{where}: {label_name if cells[0] else file_name} is missing")
+        file, label = _image_file(path.parent, cells[0]), cells[1]
+        if not label[0].isalpha():
+            raise CaptureError(
+                f"{where}: {label_name} = {label!r}: should be the name of a class, which begins "
+                "with a letter"
+            )
+        place = path.parent / (file or cells[0])
+        refuse_outside(place, path.parent)
+        if file is None or not place.is_file():
+            raise CaptureError(f"{where}: {file_name} = {cells[0]!r}: is no image file there")
+        if file in parts:
+            raise CaptureError(f"{where}: {file_name} = {cells[0]!r}: stands there twice")
+        with place.open("rb") as data:
+            total.update(hashlib.file_digest(data, "sha256").digest())
+        person = str(row.get(person_name) or "").strip() if person_name else ""
+        parts[file] = {"file": file, "label": label, "person": person or None}
+    first = path.parent / next(iter(parts))
+    return ImageListing([*parts.values()], {path.name: total.hexdigest()}, image_size(first))
+
+
 @lru_cache(maxsize=2)
 def _load_npz(
     path: Path, packed: bool, changed: int
@@ -94,33 +186,98 @@ def _load_npz(
     del changed
     with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
         shapes = check_npz(archive)
-        wide = [name for name, (shape, kind) in shapes.items() if len(shape) == 3 and kind in "ub"]
-        wide = [name for name in wide if name in ("masks", "images")] or wide
-        if len(wide) != 1 or "label" not in shapes:
-            raise ValueError(
-                "should hold one array of images [N, H, W], uint8 or bool (named masks or images "
-                "if there are others), and label"
-            )
-        if int(np.prod(shapes[wide[0]][0], dtype=object)) > MAX_NPZ:
+        names = _name_arrays(shapes)
+        if int(np.prod(shapes[names.images][0], dtype=object)) > MAX_NPZ:
             raise ValueError(f"holds more than {MAX_NPZ} bytes of images")
         with np.load(path, allow_pickle=False) as arrays:
-            values, label = arrays[wide[0]], _as_text(arrays["label"].ravel())
-            classes = _as_text(arrays["classes"].ravel()) if "classes" in shapes else None
-            person = _as_text(arrays["person"].ravel()) if "person" in shapes else None
+            values, label = _levels(arrays[names.images]), _as_text(arrays[names.label].ravel())
+            classes, person = (
+                None if name is None else _as_text(arrays[name].ravel())
+                for name in (names.classes, names.person)
+            )
         if values.dtype not in (np.uint8, np.bool_):
-            raise ValueError(f"{wide[0]} is of {values.dtype}; should be uint8 or bool")
+            raise ValueError(f"{names.images} is of {values.dtype}; should be uint8 or bool")
         images = np.unpackbits(values.view(np.uint8), axis=2) if packed else values.view(np.uint8)
         if images.max(initial=0) <= 1:
             images = images * np.uint8(255)
         if label.dtype.kind in "iu":
             if classes is None or not ((label >= 0) & (label < classes.size)).all():
-                raise ValueError("label should be indices into classes, or texts")
+                raise ValueError(_describe_numbers(names.label, label))
             label = classes[label]
         if label.dtype.kind != "U" or len(label) != len(images):
             raise ValueError(f"label should name the class of each of {len(images)} images")
         if person is not None and len(person) != len(images):
             raise ValueError(f"person should name the person in each of {len(images)} images")
     return images, label, person
+
+
+class _ArrayNames(NamedTuple):
+    """Names of the arrays of an .npz."""
+
+    images: str
+    label: str
+    person: str | None
+    classes: str | None
+
+
+def _name_arrays(shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> _ArrayNames:
+    """Find the arrays of images, labels, persons and classes by their names.
+
+    Args:
+        shapes: {name: shape and kind of its numbers}.
+
+    Raises:
+        ValueError: images or labels are not there, or in several parts.
+    """
+    spelt = {name.lower(): name for name in shapes}
+    if {"x_train", "x_test"} <= spelt.keys():
+        x, y = ([spelt.get(f"{of}_{part}", of) for part in ("train", "test")] for of in "xy")
+        raise ValueError(
+            f"has {', '.join(x)}: should be one array, as split of the config cuts it; `python -c "
+            "\"import numpy as np; a = np.load('FILE.npz'); np.savez('joined.npz', images="
+            f"np.concatenate([a['{x[0]}'], a['{x[1]}']]), label=np.concatenate([a['{y[0]}'], "
+            f"a['{y[1]}']]))\"` joins them"
+        )
+    names = {
+        kind: _name_of(spelt, [*known, *(f"{name}_train" for name in known)])
+        for kind, known in (("images", IMAGES), ("label", LABELS), ("person", PERSONS))
+    }
+    classes = _name_of(spelt, CLASSES)
+    pictures = [
+        name
+        for name, (shape, kind) in shapes.items()
+        if (len(shape) == 3 or (len(shape) == 4 and shape[3] in (1, 3))) and kind in "ub"
+    ]
+    if names["images"] is not None and spelt[names["images"]] in pictures:
+        pictures = [spelt[names["images"]]]
+    if len(pictures) != 1 or names["label"] is None:
+        raise ValueError(
+            "should hold one array of images [N, H, W], uint8 or bool (named masks or images if "
+            f"there are others), and label (or {', '.join(LABELS[1:])}); it has "
+            f"{', '.join(f'{name} {list(shape)}' for name, (shape, _) in shapes.items())}"
+        )
+    label, person = (spelt.get(names[kind] or "") for kind in ("label", "person"))
+    assert label is not None
+    return _ArrayNames(pictures[0], label, person, spelt.get(classes or ""))
+
+
+def _levels(values: NDArray[Any]) -> NDArray[Any]:
+    """Images [N, H, W] of arrays [N, H, W], [N, H, W, 1] or [N, H, W, 3], as of image files."""
+    if values.ndim == 3:
+        return values
+    if values.shape[3] == 1:
+        return values[..., 0]
+    return np.stack([luminance(image) for image in values])
+
+
+def _describe_numbers(name: str, label: NDArray[Any]) -> str:
+    """Say what numbers without names of classes need, with a command that adds them."""
+    names = ", ".join(f"'class_{number}'" for number in range(min(int(label.max()) + 1, 12)))
+    return (
+        f"{name} has the numbers {label.min()} to {label.max()}; should be indices into classes, "
+        "or texts; `python -c \"import numpy as np; np.savez('named.npz', **np.load('FILE.npz'), "
+        f'classes=[{names}])"` adds names, which are yours'
+    )
 
 
 def _as_text(values: NDArray[Any]) -> NDArray[Any]:

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from radhar_cli.commands.learning_options import Classes, Device, Resize, Split, TrainedMap
+from radhar_cli.commands.learning_options import Classes, Device, Resize, TrainedMap
 from radhar_cli.commands.options import ReplaceResults
 from radhar_cli.commands.tell import report, tell
 from radhar_cli.errors import FolderError
@@ -24,7 +24,13 @@ def evaluate(
         Path | None,
         typer.Option("-o", "--out", help="Folder of the report. The default is RUN/eval."),
     ] = None,
-    split: Split = "val",
+    split: Annotated[
+        str | None,
+        typer.Option(
+            help="Split to use: train, val (or validation), test or all. The default is test where "
+            "the data has it, else val."
+        ),
+    ] = None,
     map_: TrainedMap = None,
     tsne: Annotated[
         bool,
@@ -76,7 +82,7 @@ def evaluate(
 
     runs, data = split_runs_and_data(paths)
     options = EvalOptions(
-        split=check_split_name(split),
+        split=None if split is None else check_split_name(split),
         map=map_,
         tsne=tsne,
         in_place_vs_moving=in_place_vs_moving,

@@ -35,7 +35,7 @@ def predict(
 
     Example:
 
-      radhar predict runs/quickstart datasets/quickstart/png/stft/val/walking/00011.png
+      radhar predict runs/quickstart datasets/quickstart/png/stft/test/walking/00011.png
 
       radhar predict runs/joints datasets/boards -o joints.npz
 

@@ -158,6 +158,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
         config: that of the data set.
         jobs: number of processes; None for as many as pay.
     """
+    from radhar_cli.config.class_laws import laws_by_class
     from radhar_cli.config.data_set import MeasuredConfig
     from radhar_cli.dataset.estimate import CHECK_SHARE, DRY_RUN_S, AtLeast, Estimate, plan_build
     from radhar_cli.dataset.layout import Rows
@@ -175,6 +176,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     with BarProgress() as bars:
         build_plan = plan_build(config, jobs, bars, DRY_RUN_S)
     cost, warnings = build_plan.cost, split_warnings(config, split_rows(config))
+    warnings += laws_by_class(config)
     warnings += [warning["message"] for warning in build_plan.warnings]
     report(
         stages=[product.name for product in products],

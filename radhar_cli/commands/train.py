@@ -106,6 +106,9 @@ def train(
     )
     if outcome.resumed == len(outcome.history):
         tell(f"{out} is complete: {outcome.resumed} epochs; nothing to do")
-    tell(f"best epoch {best.epoch}: validation {outcome.score} {100 * best.val_accuracy:.2f} %")
+    tell(
+        f"best epoch {best.epoch}: validation {outcome.score} {100 * best.val_accuracy:.2f} % "
+        f"{outcome.interval}, by which it was chosen: `radhar eval` tells of a test part"
+    )
     for name in (run_files.BEST, run_files.CURVES, run_files.METRICS):
         tell(f"  {out / name}")

@@ -114,6 +114,8 @@ def _is_sound(out: Path, samples: int, motion: Path | None) -> bool:
 def _leak_in_words(out: Path) -> str:
     """Say what tells the classes besides the movement, in a line, and which command says more."""
     from radhar_cli.audit.cheap import most_telling_number
+    from radhar_cli.config.class_laws import laws_by_class
+    from radhar_cli.config.data_set import Config
     from radhar_cli.dataset.audited import audit_folder, read_audit
     from radhar_cli.dataset.reading import open_dataset
 
@@ -124,11 +126,21 @@ def _leak_in_words(out: Path) -> str:
         count = f"{len(leaks)} of {len(stored.lines)} lines tell the class beyond chance"
         return f"audited: {count}; see {audit_folder(out)}"
     with open_dataset(out) as data:
-        number = most_telling_number(data)
-        simulated = data.config.recordings is None
-    if number is None:
-        none = "no scene number alone tells the class; " if simulated else ""
-        return f"{none}{command} says what else does, such as margins and noise of images"
-    share, chance = 100 * number.share, 100 * number.chance
-    key = number.key if " " not in number.key else "when it begins or ends"
-    return f"{key} alone tells the class in {share:.0f} % (chance {chance:.0f}): {command}"
+        telling, samples = most_telling_number(data), len(data)
+        laws = laws_by_class(data.config) if isinstance(data.config, Config) else []
+    lines = [*laws]
+    if telling is not None and telling.number is not None:
+        key, share, chance = telling.number
+        name = key if " " not in key else "when it begins or ends"
+        lines.append(
+            f"{name} alone tells the class in {100 * share:.0f} % (chance {100 * chance:.0f})"
+        )
+    if lines:
+        return f"{'; '.join(lines)}: {command}"
+    none = ""
+    if telling is not None and telling.is_enough:
+        none = "no scene number alone was seen to tell the class in more than "
+        none += f"{100 * telling.limit:.0f} %; "
+    elif telling is not None:
+        none = f"{samples} samples are too few to tell whether a scene number tells the class; "
+    return f"{none}{command} says what else does, such as margins and noise of images"

@@ -72,7 +72,7 @@ subject:
 snr_db: {choice: [30, 20, 10]}
 maps: [rtm, stft]                         # range-time map, Doppler-time map
 image: {size_px: 128, dynamic_range_db: 50}
-split: {train: 0.8, validation: 0.2}
+split: {train: 0.7, validation: 0.15, test: 0.15}
 """
 
 
@@ -215,6 +215,7 @@ motion: {{place: {{range_m: {{uniform: [{nearest:.2g}, {farthest:.2g}]}}}}}}
 body: {{scatterers: surfaces}}
 cloud: {{chain: {chain}}}  # {_describe_chain(chain, board)}
 maps: [{maps}]
+split: {{train: 0.7, validation: 0.15, test: 0.15}}
 """
 
 

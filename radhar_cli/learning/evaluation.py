@@ -13,7 +13,7 @@ from torch import nn
 
 from radhar_cli.dataset.radar_folders import describe_missing
 from radhar_cli.dataset.reading import open_dataset
-from radhar_cli.dataset.split import TRAIN
+from radhar_cli.dataset.split import TEST, TRAIN
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Reader, batches_in_order
 from radhar_cli.learning.images.colours import recolour
@@ -118,9 +118,17 @@ def open_training_images(metadata: RunMetadata, path: Path) -> ImageSet:
     return replace(images, samples=replace(images.samples, split=split))
 
 
-def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:
-    """Rows of a split, and its name; all rows, and "all", where images come without a split."""
-    split = "all" if images.samples.split is None else split
+def rows_of(images: ImageSet, split: str | None) -> tuple[Index, str]:
+    """Rows of a split, and its name; all rows, and "all", where images come without a split.
+
+    Args:
+        images: the set.
+        split: train, val, test or all; None is test where there are such images, else val.
+    """
+    if images.samples.split is None:
+        split = "all"
+    elif split is None:
+        split = "test" if (images.samples.split == TEST).any() else "val"
     return images.rows(split), split
 
 

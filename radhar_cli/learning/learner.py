@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 from torch.optim.swa_utils import AveragedModel, update_bn
@@ -13,6 +14,7 @@ from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.optimiser import check_state, optimiser_for
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tasks.task import Task
+from radhar_cli.numerics.arrays import Float
 
 
 @dataclass
@@ -132,6 +134,13 @@ class Learner:
         """
         normalise, device = self.normalise, self.device
         update_bn((normalise(levels.to(device)) for levels, _ in batches), self.kept_network)
+
+    def scores(self, network: nn.Module, batches: Iterable[tuple[Tensor, Tensor]]) -> Float:
+        """Score [N] of a network, in evaluation mode, for each input of (levels, targets)."""
+        network = network.to(self.device)
+        with torch.no_grad():
+            scores = [self.measure(network, *batch)[1].cpu().numpy() for batch in batches]
+        return np.concatenate(scores).astype(float)
 
     def validate(self, batches: Iterable[tuple[Tensor, Tensor]]) -> Totals:
         """Loss and score of the kept network for (levels, targets) in batches."""

@@ -1,31 +1,16 @@
-"""How good predictions are: intervals, confusion, precision and recall, calibration."""
+"""How good predictions are: confusion, precision and recall, calibration."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 
+from radhar_cli.learning.intervals import Groups, numbers_of_share
 from radhar_cli.numerics.arrays import Float, Index
 
 CALIBRATION_BINS = 15
-
-
 NEAR_M = 0.15  # joints that are nearer to the true ones count as right
-
-
-def wilson(correct: float, count: float) -> tuple[float, float]:
-    """Wilson's interval (low, high) of 95 % of the share correct/count; (0, 1) where count is 0."""
-    if count == 0:
-        return 0.0, 1.0
-    z2 = NormalDist().inv_cdf(0.975) ** 2
-    share = correct / count
-    middle = share + z2 / (2 * count)
-    half = math.sqrt(z2 * (share * (1 - share) + z2 / (4 * count)) / count)
-    low, high = ((middle + side) / (1 + z2 / count) for side in (-half, half))
-    return max(0.0, low), min(1.0, high)
 
 
 @dataclass(frozen=True)
@@ -63,13 +48,16 @@ def calibration_error(truth: Index, probabilities: Float) -> float:
     return calibration(truth, probabilities).error
 
 
-def summarise(truth: Index, probabilities: Float, classes: Sequence[str]) -> dict[str, Any]:
+def summarise(
+    truth: Index, probabilities: Float, classes: Sequence[str], groups: Groups
+) -> dict[str, Any]:
     """Numbers of report.json: accuracy, macro F1, calibration, numbers by class, confusion matrix.
 
     Args:
         truth: [N] numbers of the true classes.
         probabilities: [N, classes].
         classes: names of the classes.
+        groups: persons, recordings or samples, over which the interval is.
 
     Returns:
         Plain numbers by their keys in report.json. `confusion` is counts [true class,
@@ -88,7 +76,7 @@ def summarise(truth: Index, probabilities: Float, classes: Sequence[str]) -> dic
         "images": int(truth.size),
         "right": correct,
         "accuracy": correct / truth.size,
-        "accuracy_95": list(wilson(correct, truth.size)),
+        **numbers_of_share("accuracy", (predicted == truth).astype(float), groups),
         "macro_f1": float(f1[occurs].mean()),
         "calibration_error": calibration_error(truth, probabilities),
         "classes": {

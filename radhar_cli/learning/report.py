@@ -4,6 +4,7 @@ import json
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import torch
 from radhar_cli.code_identity.build_version import build_version
 from radhar_cli.dataset.audited import read_audit
 from radhar_cli.dataset.layout import DATASET
+from radhar_cli.dataset.split import TEST
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.class_shares import ShareBar, class_shares_png
 from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
@@ -103,8 +105,9 @@ def _begin_report(
         },
         title=f"{', '.join(runs)} on {', '.join(data)}",
         about=(
-            f"radhar eval {build_version()}, split {options.split}; on {device.type}, "
-            f"threads: {threads}, float32. Intervals are Wilson's, 95 %."
+            f"radhar eval {build_version()}; on {device.type}, threads: {threads}, float32. "
+            "Intervals of 95 % are Wilson's, of as many samples as vary like whole persons or "
+            "recordings drawn anew where these are known, else of single samples."
         ),
     )
 
@@ -153,11 +156,13 @@ class _Evaluation:
         self.report.add_score(task.main_number, run.name, data, numbers[task.main_number])
         self.say(f"  {data}, {eval_set.split}: {task.summarise(numbers)}")
         if isinstance(task, Classifier):
-            interval = numbers["accuracy_95"]
+            interval = numbers["accuracy_95"] or (nan, nan)
             point = Point(data, eval_set.images.snr_db, numbers["accuracy"], *interval)
             self.accuracies.setdefault(run.name, []).append(point)
         for warning in task.evaluation_warnings(eval_set.images, data):
             self.say(f"  {warning}")
+        if numbers["chose_the_epoch"]:
+            self.say(f"  {_chosen_by(run, eval_set, numbers)}")
         trained_on = numbers["seen_in_training"]
         if any(trained_on.values()):
             self.say(
@@ -171,6 +176,21 @@ class _Evaluation:
         images, row = eval_set.images, int(eval_set.rows[0])
         speeds = measure_speed(run.folder, images, row, self.device, self.options.batch)
         self.report.numbers["runs"][run.name]["speed"] = speeds
+
+
+def _chosen_by(run: Run, eval_set: EvalSet, numbers: Mapping[str, Any]) -> str:
+    """Sentence that these images chose the epoch, and what to do for an accuracy of others."""
+    count, epochs = numbers["chose_the_epoch"], len(run.history)
+    part = eval_set.split if count == numbers["images"] else f"{count} of these images"
+    best = f"the best of {epochs} epochs" if epochs else "the best epoch"
+    split = eval_set.images.samples.split
+    has_test = eval_set.split != "test" and split is not None and (split == TEST).any()
+    cure = (
+        "--split test scores images that did not"
+        if has_test
+        else ("a test part (`split.test` of the config) would tell how good it is on others")
+    )
+    return f"{part} chose the epoch, {best}, so that this is optimistic; {cure}"
 
 
 def _list_networks(report: Report) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import torch
 from pydantic import Field, ValidationError, field_validator, model_validator
@@ -230,27 +230,40 @@ def _first_problem(error: ValidationError) -> str:
     return f"{'.'.join(map(str, item['loc']))}: {item['msg']}"
 
 
-def write_trained_on(folder: Path, images: Sequence[tuple[str, str, str]]) -> None:
-    """Write (name, fingerprint, scene's fingerprint) of every image that a run learns from."""
-    text = csv_text(("image", "pixels", "scene"), images)
+class TrainedOn(NamedTuple):
+    """Fingerprints of what a run has seen; empty where the run does not say."""
+
+    pixels: frozenset[str]  # of the images that it learned from
+    scenes: frozenset[str]  # of the person and motion behind these
+    validation: frozenset[str]  # of the images that chose its epoch
+
+
+def write_trained_on(folder: Path, images: Sequence[tuple[str, str, str, str]]) -> None:
+    """Write (name, fingerprint, scene's fingerprint, part) of every image that a run sees."""
+    text = csv_text(("image", "pixels", "scene", "part"), images)
     write_whole(folder, folder / TRAINED_ON, text.encode("utf-8", "surrogateescape"))
 
 
-def read_trained_on(folder: Path) -> tuple[set[str], set[str]]:
-    """Fingerprints of the (images, scenes) that a run learned from; empty sets without the file.
+def read_trained_on(folder: Path) -> TrainedOn:
+    """Fingerprints of the images that a run has seen; empty sets without the file.
 
     Raises:
         RunError: the file is damaged.
     """
     path = folder / TRAINED_ON
     if not path.exists():
-        return set(), set()
+        return TrainedOn(frozenset(), frozenset(), frozenset())
     try:
         rows = csv.DictReader(io.StringIO(_text(path), newline=""))
-        pairs = {(row["pixels"], row["scene"]) for row in rows}
-        if not pairs:
+        fingerprints = {(row["pixels"], row["scene"], row.get("part") or "train") for row in rows}
+        learned = [row for row in fingerprints if row[2] == "train"]
+        if not learned:
             raise ValueError("names no image")
-        return {pixels for pixels, _ in pairs}, {scene for _, scene in pairs if scene}
+        return TrainedOn(
+            frozenset(pixels for pixels, _, _ in learned),
+            frozenset(scene for _, scene, _ in learned if scene),
+            frozenset(pixels for pixels, _, part in fingerprints if part == "val"),
+        )
     except (KeyError, ValueError, csv.Error) as error:
         raise RunError(f"{path}: is damaged ({error})") from None
 

@@ -1,8 +1,9 @@
 """metrics.json and curves.png of a finished run."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import torch
 
@@ -13,11 +14,22 @@ from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
 
 
 def write_run_summary(
-    folder: Path, metadata: RunMetadata, history: Sequence[Epoch], device: torch.device
+    folder: Path,
+    metadata: RunMetadata,
+    history: Sequence[Epoch],
+    validation: Mapping[str, Any],
+    device: torch.device,
 ) -> None:
-    """Write metrics.json and curves.png of a finished run."""
+    """Write metrics.json and curves.png of a finished run.
+
+    Args:
+        folder: folder of the run.
+        metadata: description of the run.
+        history: all epochs.
+        validation: score of the best epoch and its interval, by their keys.
+        device: where it learned.
+    """
     best = best_epoch(history)
-    count = int(metadata.data["val"])
     series = {folder.name or str(folder): history}
     task = metadata.task
     cost = metadata.cost
@@ -25,7 +37,8 @@ def write_run_summary(
         "model": metadata.model,
         "best_epoch": best.epoch,
         "score": task.score_name,
-        **task.validation_numbers(best.val_accuracy, count),
+        **validation,
+        "epoch_chosen_by": "val",
         "val_loss": best.val_loss,
         "epochs": len(history),
         "parameters": cost.parameters,

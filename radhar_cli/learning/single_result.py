@@ -116,12 +116,13 @@ def evaluate_run(
     """
     images, rows, metadata = eval_set.images, eval_set.rows, run.metadata
     progress.stage(page.title, len(rows), 0, "image" if images.is_pictures else "sequence")
-    trained_on = count_trained_on(run, images, rows)
+    counts = count_seen(run, images, rows)
     predictions = predict(run.model, metadata, images, rows, device, options.batch, progress)
     features = partial(last_features, run.model, metadata, images, device=device)
-    numbers = metadata.task.report(Evaluation(page, predictions, options, features))
+    groups = metadata.task.groups(images, rows)
+    numbers = metadata.task.report(Evaluation(page, predictions, groups, options, features))
     return numbers | {
-        "seen_in_training": trained_on,
+        **counts,
         "split": eval_set.split,
         "map": images.map,
         "snr_db": images.snr_db,
@@ -129,14 +130,22 @@ def evaluate_run(
     }
 
 
-def count_trained_on(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
-    """Numbers of the evaluated images, and of the scenes behind them, that were trained on."""
+def count_seen(run: Run, images: ImageSet, rows: Index) -> dict[str, Any]:
+    """Numbers of the evaluated images that a run has seen, by their keys in report.json.
+
+    Returns:
+        Under `seen_in_training` images that it learned from, and scenes behind them;
+        `chose_the_epoch`: images of its validation.
+    """
     folder = run.folder if run.folder.is_dir() else run.folder.parent
-    pixels, scenes = read_trained_on(folder)
-    digests = scan(images, rows).digests if pixels else ()
+    trained_on = read_trained_on(folder)
+    digests = scan(images, rows).digests if trained_on.pixels else ()
     column = images.samples.scene
     evaluated_scenes = () if column is None else column[rows]
     return {
-        "images": sum(p in pixels for p in digests),
-        "scenes": sum(scene in scenes for scene in evaluated_scenes),
+        "seen_in_training": {
+            "images": sum(p in trained_on.pixels for p in digests),
+            "scenes": sum(scene in trained_on.scenes for scene in evaluated_scenes),
+        },
+        "chose_the_epoch": sum(p in trained_on.validation for p in digests),
     }

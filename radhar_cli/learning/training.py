@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import torch
 
@@ -19,6 +19,7 @@ from radhar_cli.learning.batches import Reader, batches_in_order, epoch_batches,
 from radhar_cli.learning.images.colours import recolour
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import sampling_weights
+from radhar_cli.learning.intervals import interval_in_words
 from radhar_cli.learning.learner import Learner, Totals
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.optimiser import learning_rate_of_step
@@ -75,6 +76,7 @@ class Outcome:
     history: list[Epoch]
     resumed: int  # epochs that were finished before
     score: str  # name of what its accuracies are
+    interval: str  # of 95 % of the best one, in words
 
     @property
     def best(self) -> Epoch:
@@ -206,9 +208,12 @@ class _Training:
         if curves is not None:
             curves.close()
         run.write_history(self.folder, self.history)
+        numbers = self._validation_numbers(reader)
         if resumed < config.epochs or not (self.folder / run_files.METRICS).exists():
-            write_run_summary(self.folder, self.metadata, self.history, device)
-        return Outcome(self.folder, self.history, resumed, learner.task.score_name)
+            write_run_summary(self.folder, self.metadata, self.history, numbers, device)
+        ends, over = numbers[f"{learner.task.score_key}_95"], numbers["interval_over"]
+        interval = interval_in_words(ends, over)
+        return Outcome(self.folder, self.history, resumed, learner.task.score_name, interval)
 
     def _reader(self) -> Reader:
         """Reader of the images and their targets, which augments those of training."""
@@ -245,6 +250,16 @@ class _Training:
         )
         self._save_epoch()
 
+    def _validation_numbers(self, reader: Reader) -> dict[str, Any]:
+        """Score of the network that is kept and its interval, by their keys in metrics.json."""
+        network, task = run.load_best(self.folder)[1], self.learner.task
+        scores = self.learner.scores(network, reader(self._validation_batches()))
+        return task.validation_numbers(scores, task.groups(self.images, self.images.rows("val")))
+
+    def _validation_batches(self) -> list[Index]:
+        """Rows of the validation images, batch by batch."""
+        return batches_in_order(self.images.rows("val"), self.config.images_a_step)
+
     def _epoch_rows(self, epoch: int) -> Index:
         """Rows of the training images of an epoch, in the order in which they are shown."""
         rows, config = self.images.rows("train"), self.config
@@ -269,8 +284,7 @@ class _Training:
 
     def _validate(self, reader: Reader, epoch: int) -> Totals:
         """Loss and score of the validation images."""
-        rows = self.images.rows("val")
-        totals = self.learner.validate(reader(batches_in_order(rows, self.config.images_a_step)))
+        totals = self.learner.validate(reader(self._validation_batches()))
         self._require_finite(totals.loss_sum, f"validation of epoch {epoch + 1}")
         return totals
 

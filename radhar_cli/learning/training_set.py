@@ -79,7 +79,7 @@ def describe_run(
     images: ImageSet,
     precision: torch.dtype,
     starting_point: StartingPoint | None,
-) -> tuple[RunMetadata, list[tuple[str, str, str]]]:
+) -> tuple[RunMetadata, list[tuple[str, str, str, str]]]:
     """Describe a run before its first epoch; every image is read once.
 
     Args:
@@ -89,7 +89,7 @@ def describe_run(
         starting_point: earlier run, whose normalisation is taken; None takes that of the images.
 
     Returns:
-        Metadata of the run; and (name, fingerprint, scene's fingerprint) of its training images.
+        Metadata of the run; and (name, fingerprint, scene's fingerprint, part) of its images.
     """
     rows, validation_rows = images.rows("train"), images.rows("val")
     training_scan, validation_scan = scan(images, rows), scan(images, validation_rows)
@@ -121,7 +121,8 @@ def describe_run(
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},
     )
     scenes = ("",) * len(images) if images.samples.scene is None else images.samples.scene
-    row_digests = zip(rows.tolist(), training_scan.digests, strict=True)
+    parts = np.repeat(["train", "val"], [rows.size, validation_rows.size])
     return metadata, [
-        (images.samples.name[row], pixels, scenes[row]) for row, pixels in row_digests
+        (images.samples.name[row], pixels, scenes[row], str(part))
+        for row, pixels, part in zip(all_rows.tolist(), digests, parts, strict=True)
     ]

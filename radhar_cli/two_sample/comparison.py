@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 from scipy.stats import ks_2samp, wasserstein_distance
 
-from radhar_cli.learning.metrics import wilson
+from radhar_cli.learning.intervals import wilson
 from radhar_cli.numerics.arrays import Bool, Float, Index
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.processes.progress import Progress

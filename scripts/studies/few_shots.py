@@ -31,7 +31,7 @@ from radhar_cli.learning.adaptation import adapt as adapt_run
 from radhar_cli.learning.evaluation import open_training_images, predict_classes
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined
-from radhar_cli.learning.metrics import wilson
+from radhar_cli.learning.intervals import wilson
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, load_best
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.single_result import EvalSet, open_eval_set, open_run

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from radhar_cli.learning.metrics import wilson
+from radhar_cli.learning.intervals import wilson
 
 ROOT = Path(__file__).resolve().parents[2]
 

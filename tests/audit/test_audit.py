@@ -10,10 +10,11 @@ from helpers.listener import Listener
 from helpers.small import SMALL, small_config
 from PIL import Image
 
-from radhar_cli.audit.audit import audit
+from radhar_cli.audit.audit import AuditLine, audit
 from radhar_cli.audit.card import END, with_section
 from radhar_cli.audit.cheap import binned_share
-from radhar_cli.audit.held_out import Effort
+from radhar_cli.audit.evidence import Evidence, EvidencePart
+from radhar_cli.audit.held_out import Effort, class_share
 from radhar_cli.dataset.audited import read_audit
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError
@@ -254,7 +255,7 @@ def test_what_is_written(data, tmp_path):
     with open_dataset(data) as opened:
         assert stored["classes"] == list(opened.classes)
     header, first, *_ = (tmp_path / "out/audit.csv").read_text().splitlines()
-    assert header.startswith("part,name,key,share,low_95,high_95,chance,p,")
+    assert header.startswith("part,name,key,share,low_95,high_95,chance,p_uncalibrated,tells,")
     assert first.startswith("numbers,")
     with Image.open(tmp_path / "out/audit.png") as picture:
         assert picture.width > 600
@@ -361,3 +362,50 @@ def test_binned_shares():
     assert binned_share(rng.random(120), label)[0] == pytest.approx(1 / 3, abs=0.15)
     assert binned_share(label + rng.random(120), label)[0] > 0.9
     assert binned_share(np.array([1.0]), np.array([0])) == (0.0, 1.0)
+
+
+LAWS = {
+    "place": "motion: {place: {range_m: {per_activity: {default: {uniform: [2, 4]}, walking: 6}}}}",
+    "range": "motion: {range_m: {per_activity: {default: {uniform: [2, 4]}, walking: 6}}}",
+    "onset": "timing: {onset: {per_activity: {default: {uniform: [0, 1]}, punching: 0.2}}}",
+    "alike": "motion: {range_m: {per_activity: {default: 3, walking: 3}}}",
+    "speed": "motion: {walking: {speed_mps: {per_activity: {default: 1.2, walking: 0.8}}}}",
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_law_that_differs_by_class_is_told_from_the_config(tmp_path, name):
+    """Three samples a class say nothing by statistics; verify and audit agree."""
+    text = f"""
+activities: [walking, punching]
+samples_per_class: 3
+duration_s: 1
+radar: {{carrier_hz: 24e9, prf_hz: 1000}}
+maps: [stft]
+image: {{size_px: 16}}
+{LAWS[name]}
+"""
+    (tmp_path / "c.yaml").write_text(text)
+    dry = ok("generate", tmp_path / "c.yaml", "-o", tmp_path / "data", "--dry-run", "--jobs", "1")
+    ok("generate", tmp_path / "c.yaml", "-o", tmp_path / "data", "--jobs", "1")
+    said = ok("verify", tmp_path / "data", "--samples", "0").stdout
+    found = ok("audit", tmp_path / "data", "--quick", "-o", tmp_path / "audit").stdout
+    is_law = name not in ("alike", "speed")
+    for text in (dry.stdout + dry.stderr, said, found):
+        assert ("is drawn by another law for some classes" in text) == is_law
+    assert "no scene number alone" not in said
+    if not is_law:
+        assert "6 samples are too few to tell" in said
+        assert "too few samples to tell" in found or "not tested" in found
+
+
+def test_persons_of_one_class_each_are_said_not_to_tell():
+    """What tells twenty persons apart tells their classes, of those held out, too, by chance."""
+    rng = np.random.default_rng(0)
+    group = np.repeat(np.arange(20), 3)
+    values = 3 * rng.normal(size=(20, 3))[group] + rng.normal(size=(60, 3))
+    evidence = Evidence(EvidencePart.NUMBERS, "x", values)
+    for label, is_told in ((group % 4, False), (np.arange(60) % 3, True)):
+        result = class_share(values, label, group, FAST, "x")
+        verdict = AuditLine(evidence, result, result.p).verdict
+        assert verdict.startswith("cannot be told") != is_told

@@ -47,7 +47,9 @@ def test_cells_of_a_body_are_no_noise():
 def test_images_of_any_size(size):
     levels = levels_of(np.random.default_rng(2).normal(90, 20, size))
     found = picture_features(levels, ALL[:FAR], None)
-    for vector in vars(found).values():
+    vectors = {**vars(found), **found.marks._asdict()}
+    del vectors["marks"]
+    for vector in vectors.values():
         assert vector.ndim == 1
 
 

@@ -1,6 +1,9 @@
 """Images that exist already become a data set of the same contract."""
 
 import json
+import shlex
+import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -10,7 +13,7 @@ from helpers.command_line import radhar
 from PIL import Image
 
 from radhar_cli.capture import images
-from radhar_cli.capture.images import list_images
+from radhar_cli.capture.images import are_images, list_images
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import CaptureError
 
@@ -145,3 +148,137 @@ def test_masks_are_taken_by_name_and_bytes_are_text(tmp_path: Path) -> None:
     )
     part = list_images(tmp_path / "x.npz", packed=False).parts[0]
     assert (part["label"], part["person"]) == ("falling", "p1")
+
+
+def save_pictures(folder: Path, end: str = ".png") -> list[str]:
+    """Write the masks as pictures of 0 and 200; return their names."""
+    folder.mkdir(parents=True, exist_ok=True)
+    names = [f"{n:02d}{end}" for n in range(12)]
+    for name, one in zip(names, masks(), strict=True):
+        Image.fromarray(one * np.uint8(200)).save(folder / name)
+    return names
+
+
+TABLES = {
+    "labels.csv": ("file,label,person", "{name},{label},{person}", ""),
+    "excel.csv": ("\ufeffFilename;Subject;Class", "{name};{person};{label}", ""),
+    "tabs.tsv": ("image\tactivity\tsubject_id", "{name}\t{label}\t{person}", ""),
+    "deep.txt": ("path,class_name,participant,date", "a/b/{name},{label},{person},2024", "a/b"),
+    "windows.csv": ("file,label,person", "a\\{name},{label},{person}", "a"),
+    "stems.csv": ("name,target,person", "{stem},{label},{person}", ""),
+    "list.yaml": ("", "- {{file: {name}, label: {label}, person: {person}}}", ""),
+}
+
+
+@pytest.mark.parametrize("end", [".png", ".jpg"])
+@pytest.mark.parametrize("table", TABLES)
+def test_pictures_of_a_table_are_read_with_their_persons(
+    tmp_path: Path, table: str, end: str
+) -> None:
+    heading, row, place = TABLES[table]
+    names = save_pictures(tmp_path / place, end)
+    lines = [
+        row.format(name=name, stem=name[:2], label=CLASSES[n % 3], person=f"P{n % 4}")
+        for n, name in enumerate(names)
+    ]
+    (tmp_path / table).write_text("\n".join(filter(None, [heading, *lines])) + "\n")
+    assert are_images(tmp_path / table)
+    found = list_images(tmp_path / table, packed=False)
+    assert [part["label"] for part in found.parts] == [CLASSES[n % 3] for n in range(12)]
+    assert [part["person"] for part in found.parts] == [f"P{n % 4}" for n in range(12)]
+    assert found.size == (16, 24)
+    for part, one in zip(found.parts, masks(), strict=True):
+        levels = images.read_image(tmp_path, part["file"], found.size, packed=False)
+        assert np.abs(levels - one * 200.0).mean() < (1e-9 if end == ".png" else 20)
+
+
+def test_a_table_of_pictures_becomes_a_data_set_split_by_person(config: Path) -> None:
+    names = save_pictures(config.parent / "images")
+    rows = [f"images/{name},{CLASSES[n % 3]},P{n // 3}" for n, name in enumerate(names)]
+    (config.parent / "labels.csv").write_text("\n".join(["file,label,person", *rows]))
+    more = ["--set", "split={by: subject, subjects: 4, train: 0.5, validation: 0.5}"]
+    out = generated(config, config.parent / "labels.csv", *more)
+    with open_dataset(out) as data:
+        part = data.scene["part"][:].astype(int)
+        assert np.array_equal(data.maps["stft"][:], masks()[part] * 200)
+        persons = [data.config.recordings.parts[n].person for n in part]
+        train = {p for p, split in zip(persons, data.split, strict=True) if split == 0}
+        assert len(train) == 2
+        assert all((p in train) == (s == 0) for p, s in zip(persons, data.split, strict=True))
+        assert data.config.recordings.sha256.keys() == {"labels.csv"}
+
+
+WRONG_TABLES = [
+    ("file,person\n00.png,1\n", "one should be label"),
+    ("file,label\n00.png,walking\nno.png,walking\n", "row 3: file = 'no.png': is no image file"),
+    ("file,label\n00.png,walking\n00.png,falling\n", "row 3: file = '00.png': stands there twice"),
+    ("file,label\n00.png,walking\n01.png,\n", "row 3: label is missing"),
+    ("file,label\n00.png,walking\n../x.png,falling\n", "x.png: is a link to"),
+    ("file,label\n00.png,7\n01.png,8\n", "label = '7'"),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), WRONG_TABLES)
+def test_wrong_tables_are_refused_in_one_line(config: Path, text: str, expected: str) -> None:
+    folder = config.parent / "pictures"
+    save_pictures(folder)
+    (folder / "labels.csv").write_text(text)
+    command = ("generate", config, "--recordings", folder / "labels.csv", "-o", folder / "set")
+    done = radhar(*command)
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert expected in line
+
+
+LABELS = np.array([CLASSES[n % 3] for n in range(12)])
+NAMED = [
+    {"images": masks(), "labels": LABELS, "subject": np.arange(12) % 4},
+    {"x": masks(), "y": LABELS, "subjects": np.arange(12) % 4},
+    {"x_train": masks(), "y_train": LABELS, "person": np.arange(12) % 4},
+    {"X": masks()[..., None], "Y": LABELS, "person": np.arange(12) % 4},
+    {"images": np.repeat(masks()[..., None], 3, 3), "labels": LABELS, "person": np.arange(12) % 4},
+    {
+        "data": masks(),
+        "target": np.arange(12) % 3,
+        "target_names": np.array(CLASSES),
+        "person": np.arange(12) % 4,
+    },
+]
+
+
+@pytest.mark.parametrize("arrays", NAMED, ids=lambda arrays: " ".join(arrays))
+def test_arrays_have_the_names_in_use(tmp_path: Path, arrays: dict[str, np.ndarray]) -> None:
+    np.savez(tmp_path / "x.npz", **arrays)  # type: ignore[arg-type]
+    found = list_images(tmp_path / "x.npz", packed=False)
+    assert [part["label"] for part in found.parts] == LABELS.tolist()
+    assert [part["person"] for part in found.parts] == [str(n % 4) for n in range(12)]
+    for n, one in enumerate(masks()):
+        levels = images.read_image(tmp_path, f"x.npz/{n}", (16, 24), packed=False)
+        assert np.array_equal(levels, one * 255)
+
+
+def test_numbers_without_names_are_refused_with_a_command_that_adds_them(tmp_path: Path) -> None:
+    """The command makes a file that is read."""
+    np.savez(tmp_path / "FILE.npz", x_train=masks(), y_train=np.arange(12) % 3)
+    with pytest.raises(CaptureError, match="y_train has the numbers 0 to 2") as caught:
+        list_images(tmp_path / "FILE.npz", packed=False)
+    run_command_of(str(caught.value), tmp_path)
+    labels = [part["label"] for part in list_images(tmp_path / "named.npz", packed=False).parts]
+    assert labels == [f"class_{n % 3}" for n in range(12)]
+
+
+def test_two_parts_are_joined_by_the_command_that_is_said(tmp_path: Path) -> None:
+    x = masks()
+    arrays = {"x_train": x[:8], "y_train": LABELS[:8], "x_test": x[8:], "y_test": LABELS[8:]}
+    np.savez(tmp_path / "FILE.npz", **arrays)  # type: ignore[arg-type]
+    with pytest.raises(CaptureError, match="has x_train, x_test: should be one array") as caught:
+        list_images(tmp_path / "FILE.npz", packed=False)
+    run_command_of(str(caught.value), tmp_path)
+    labels = [part["label"] for part in list_images(tmp_path / "joined.npz", packed=False).parts]
+    assert labels == LABELS.tolist()
+
+
+def run_command_of(message: str, folder: Path) -> None:
+    """Run the command between backquotes of a message, by this Python."""
+    words = shlex.split(message.split("`")[1])
+    subprocess.run([sys.executable, *words[1:]], cwd=folder, check=True)

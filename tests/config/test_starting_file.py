@@ -95,8 +95,9 @@ def test_a_known_radar_is_simulated(tmp_path: Path, name: str) -> None:
 def test_a_data_set_of_a_known_radar_is_built(tmp_path: Path, name: str) -> None:
     """Its frames hold people's points."""
     ok("config", "init", tmp_path / "mine.yaml", "--radar", name)
-    tiny = ("samples_per_class=1", "activities=[punching]", "duration_s=0.5", "split.train=1")
-    changes = [word for one in (*tiny, "split.validation=0") for word in ("--set", one)]
+    tiny = ("samples_per_class=1", "activities=[punching]", "duration_s=0.5")
+    parts = "split={train: 1, validation: 0, test: 0}"
+    changes = [word for one in (*tiny, parts) for word in ("--set", one)]
     ok("generate", tmp_path / "mine.yaml", "-o", tmp_path / "data", *changes)
     with open_dataset(tmp_path / "data") as data:
         assert len(data.products["points"][0]) > 3

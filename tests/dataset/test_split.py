@@ -2,16 +2,18 @@
 
 from fractions import Fraction
 from math import floor
+from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers.command_line import ok
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.config import Config
+from radhar_cli.config import Config, load_config, load_radars
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.dataset.split import TEST, TRAIN, VALIDATION, split_rows, split_warnings
+from radhar_cli.dataset.split import TEST, TRAIN, VALIDATION, persons, split_rows, split_warnings
 from radhar_cli.scene import subject_of
 
 
@@ -152,3 +154,30 @@ def test_an_empty_split_is_warned_of():
 )
 def test_samples_of_classes_in_words(counts, said):
     assert Rows(tuple(ACTIVITIES[: len(counts)]), counts).counts_text == said
+
+
+SHIPPED = [
+    path
+    for path in sorted((Path(__file__).parents[2] / "configs").rglob("*.yaml"))
+    if path.parent.name not in ("train", "paper")  # the paper has two parts
+]
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_a_shipped_config_has_a_part_that_chooses_no_epoch(path):
+    """Of every class, and of four persons or more where persons are split."""
+    for name, config in load_radars(path).items():
+        split, label = split_rows(config), Rows.of(config).label
+        assert set(label[split == TEST]) == set(label), name
+        assert set(label[split == VALIDATION]) == set(label)
+        assert np.mean(split == TRAIN) >= 0.5
+        person = persons(config)
+        assert person is None or len(set(person[split == TEST])) >= 4
+
+
+@pytest.mark.parametrize(
+    "option", [("--minimal",), ("--radar", "iwr1443boost"), ("--radar", "p440")]
+)
+def test_so_has_a_config_that_is_written_to_start_from(tmp_path, option):
+    ok("config", "init", tmp_path / "mine.yaml", *option)
+    assert (split_rows(load_config(tmp_path / "mine.yaml")) == TEST).any()

@@ -69,7 +69,8 @@ def test_report_of_a_good_run(learned, tmp_path):
     out = tmp_path / "report"
     report.write(out)
     stored = json.loads((out / "report.json").read_text())
-    assert stored["split"] == "val"
+    assert stored["split"] is None
+    assert only(report)["split"] == "val"
     page = (out / "report.html").read_text()
     assert "://" not in page
     sources = re.findall(r'src="([^"]{0,30})', page)
@@ -117,6 +118,36 @@ def test_evaluation_on_training_images_is_warned_of(learned):
     assert any("24 of these 24 images" in line for line in listener.messages)
     report, _ = evaluated(learned, split="all")
     assert only(report)["seen_in_training"]["images"] == 24
+
+
+def test_the_part_that_chose_the_epoch_is_said_to_have(learned, tmp_path):
+    """Of val alone, of all, and of a copy under another name; not of a test part."""
+    report, listener = evaluated(learned)
+    assert only(report)["chose_the_epoch"] == 9
+    (line,) = [line for line in listener.messages if "chose the epoch" in line]
+    assert line.strip().startswith("val chose the epoch")
+    assert "split.test" in line
+    report.write(tmp_path / "report")
+    assert "val chose the epoch" in (tmp_path / "report/report.html").read_text()
+    shutil.copytree(learned[1] / "val", tmp_path / "copy")
+    shutil.copytree(learned[1] / "val", tmp_path / "mixed/test")
+    shutil.copytree(split_tree(tmp_path / "fresh", 1, 2, seed=9) / "val", tmp_path / "new/test")
+    for data, count in (("copy", 9), ("mixed", 9), ("new", 0)):
+        report, listener = evaluated(learned, tmp_path / data)
+        assert only(report)["chose_the_epoch"] == count
+        assert any("chose the epoch" in line for line in listener.messages) == (count > 0)
+
+
+def test_a_test_part_is_scored_where_there_is_one(learned, tmp_path):
+    shutil.copytree(learned[1], tmp_path / "tree")
+    other = split_tree(tmp_path / "other", train=1, val=2, seed=5)
+    shutil.copytree(other / "val", tmp_path / "tree/test")
+    report, listener = evaluated(learned, tmp_path / "tree")
+    numbers = only(report)
+    assert (numbers["split"], numbers["images"], numbers["chose_the_epoch"]) == ("test", 6, 0)
+    report, listener = evaluated(learned, tmp_path / "tree", split="val")
+    assert only(report)["chose_the_epoch"] == 9
+    assert any("--split test" in line for line in listener.messages)
 
 
 def test_several_data_sets_give_robustness(learned, tmp_path):

@@ -14,7 +14,7 @@ from learning.patterns import CLASSES, tree
 from radhar_cli.learning.evaluation import open_for_model, open_training_images, predict_classes
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.sample_table import objects
-from radhar_cli.learning.metrics import wilson
+from radhar_cli.learning.intervals import wilson
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.single_result import EvalSet
 

@@ -2,25 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.stats import binomtest
 
 from radhar_cli.learning import metrics
-
-
-@given(count=st.integers(1, 5000), share=st.floats(0, 1))
-@settings(max_examples=50, deadline=None)
-def test_wilson_is_that_of_scipy(count, share):
-    right = round(share * count)
-    low, high = metrics.wilson(right, count)
-    known = binomtest(right, count).proportion_ci(0.95, method="wilson")
-    assert (low, high) == pytest.approx((known.low, known.high), abs=1e-9)
-    assert 0 <= low <= right / count <= high <= 1
-
-
-def test_wilson_of_no_images_is_the_whole_interval():
-    assert metrics.wilson(0, 0) == (0.0, 1.0)
+from radhar_cli.learning.intervals import Groups, wilson
 
 
 def test_calibration_error_by_hand():
@@ -42,11 +26,12 @@ def test_summary_of_a_planted_confusion():
     """Everything of class 1 is taken for class 2; class 3 does not occur."""
     truth = np.array([0, 0, 1, 1, 1, 2, 2])
     predicted = np.array([0, 0, 2, 2, 2, 2, 2])
-    numbers = metrics.summarise(truth, np.eye(4)[predicted], ["a", "b", "c", "d"])
+    groups = Groups(np.arange(7), "sample")
+    numbers = metrics.summarise(truth, np.eye(4)[predicted], ["a", "b", "c", "d"], groups)
     assert numbers["confusion"] == [[2, 0, 0, 0], [0, 0, 3, 0], [0, 0, 2, 0], [0, 0, 0, 0]]
     assert (numbers["images"], numbers["right"]) == (7, 4)
     assert numbers["accuracy"] == pytest.approx(4 / 7)
-    assert numbers["accuracy_95"] == pytest.approx(list(metrics.wilson(4, 7)))
+    assert numbers["accuracy_95"] == pytest.approx(list(wilson(4, 7)))
     assert numbers["macro_f1"] == pytest.approx((1 + 0 + 4 / 7) / 3)
     assert list(numbers["classes"]) == ["a", "b", "c"]
     assert numbers["classes"]["b"] == {"precision": 0.0, "recall": 0.0, "f1": 0.0, "images": 3}

@@ -31,6 +31,7 @@ from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
+from radhar_cli.learning.intervals import wilson
 from radhar_cli.learning.learner import Learner, Totals
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.optimiser import optimiser_for
@@ -77,8 +78,13 @@ def test_files_of_a_run(run_dir, data):
     assert metrics["data"]["path"] == str(data)
     assert (run_dir / run_files.CURVES).read_bytes().startswith(b"\x89PNG")
     lines = (run_dir / run_files.TRAINED_ON).read_text().splitlines()
-    assert len(lines) == 13
+    assert len(lines) == 1 + 12 + 6
     assert lines[1].startswith("kicking/000,")
+    assert [line.rpartition(",")[2] for line in lines[1:]] == ["train"] * 12 + ["val"] * 6
+    right = round(6 * best.val_accuracy)
+    assert metrics["val_accuracy_95"] == pytest.approx(list(wilson(right, 6)))
+    assert metrics["interval_over"] == {"kind": "sample", "count": 6}
+    assert metrics["epoch_chosen_by"] == "val"
 
 
 def test_normalisation_is_of_the_training_images_alone(run_dir, data):

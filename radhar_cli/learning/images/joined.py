@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -47,7 +48,7 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
 
 
 def _join_samples(sets: Sequence[ImageSet], classes: tuple[str, ...], source: Index) -> SampleTable:
-    """Table of the samples of several sets, one after the other; persons are not compared.
+    """Table of the samples of several sets, one after the other; persons go by their names.
 
     Args:
         sets: sets of images.
@@ -68,6 +69,15 @@ def _join_samples(sets: Sequence[ImageSet], classes: tuple[str, ...], source: In
         source=source,
         split=np.concatenate(splits),
         scene=np.concatenate(scenes),
+        person=_join_columns([table.person for table in tables]),
+        recording=np.concatenate(
+            [
+                objects(f"{number}: {name}" for name in table.name)
+                if table.recording is None
+                else table.recording
+                for number, table in enumerate(tables)
+            ]
+        ),
         activities=np.concatenate([images.activities for images in sets])
         if has_several_people
         else None,
@@ -76,7 +86,7 @@ def _join_samples(sets: Sequence[ImageSet], classes: tuple[str, ...], source: In
     )
 
 
-def _join_columns(columns: Sequence[Index | None]) -> Index | None:
+def _join_columns(columns: Sequence[Any]) -> Any:
     """Columns of several tables one after the other; None where one lacks it."""
     known = [column for column in columns if column is not None]
     return np.concatenate(known) if len(known) == len(columns) else None

@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.learning.intervals import Groups
 from radhar_cli.numerics.arrays import Index, Levels
 
 Objects: TypeAlias = NDArray[np.object_]
@@ -40,6 +41,25 @@ class SampleTable:
     def first_columns(self) -> Index:
         """First column of each row in its recording [N]; 0 of those that are no windows."""
         return np.zeros(len(self), np.intp) if self.first_column is None else self.first_column
+
+    def groups(self, rows: Index, by_person: bool = True) -> Groups:
+        """Persons, recordings or scenes of some rows, whichever is known first; else the rows.
+
+        Args:
+            rows: rows [N] of the table.
+            by_person: whether other persons could have been seen; not where who it is is learned.
+        """
+        columns = {"recording": self.recording, "scene": self.scene}
+        if by_person and self.person is not None:
+            is_named = (self.person != self.recordings)[rows].any()
+            columns = {"person" if is_named else "recording": self.person}
+        for kind, column in columns.items():
+            if column is None or (column[rows] == "").any():
+                continue
+            number = np.unique(column[rows].astype(str), return_inverse=True)[1]
+            if number.max() + 1 < rows.size:
+                return Groups(number, kind)
+        return Groups(np.arange(rows.size), "sample")
 
     def take(self, rows: Index) -> "SampleTable":
         """Take rows in the order given; a row may come twice."""

@@ -13,7 +13,7 @@ from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.batches import Targets
 from radhar_cli.learning.images.classes import keep_known_classes, refuse_mistyped
 from radhar_cli.learning.images.image_set import ImageSet
-from radhar_cli.learning.metrics import wilson
+from radhar_cli.learning.intervals import interval_in_words
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.learning.tasks.task import Evaluation, Names, Task
@@ -87,11 +87,6 @@ class Classifier(Categories):
         """Probabilities [B, classes] of logits."""
         return outputs.softmax(1)
 
-    def validation_numbers(self, score: float, count: int) -> dict[str, Any]:
-        """Accuracy of validation, and its interval of 95 %."""
-        interval = wilson(round(score * count), count)
-        return {self.score_key: score, f"{self.score_key}_95": interval}
-
     def check_options(self, run: str, options: EvalOptions, known: Names) -> None:
         """Refuse the paper's two groups of classes that are in neither."""
         activity_names = {activity.slug for activity in ACTIVITIES}
@@ -110,11 +105,10 @@ class Classifier(Categories):
 
     def summarise(self, numbers: Mapping[str, Any]) -> str:
         """Accuracy with its interval, macro F1 and calibration error, in words."""
-        low, high = numbers["accuracy_95"]
+        interval = interval_in_words(numbers["accuracy_95"], numbers["interval_over"])
         return (
-            f"{100 * numbers['accuracy']:.2f} % ({100 * low:.2f} to {100 * high:.2f} %) of "
-            f"{numbers['images']}, macro F1 {numbers['macro_f1']:.4f}, calibration error "
-            f"{numbers['calibration_error']:.4f}"
+            f"{100 * numbers['accuracy']:.2f} % {interval} of {numbers['images']}, macro F1 "
+            f"{numbers['macro_f1']:.4f}, calibration error {numbers['calibration_error']:.4f}"
         )
 
 

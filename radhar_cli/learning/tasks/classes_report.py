@@ -40,7 +40,8 @@ def report_classes(evaluation: Evaluation, label_smoothing: float) -> dict[str, 
     """
     predictions, options = ClassPredictions(**vars(evaluation.predictions)), evaluation.options
     names, title = predictions.names, evaluation.page.title
-    numbers = metrics.summarise(predictions.truth, predictions.probabilities, names)
+    truth, probabilities = predictions.truth, predictions.probabilities
+    numbers = metrics.summarise(truth, probabilities, names, evaluation.groups)
     figures = _ClassFigures(evaluation.page, predictions)
     caption = f"Confusion matrix of {title}: counts, and shares of the true class."
     accuracy = f"{title}: {100 * numbers['accuracy']:.2f} % of {predictions.rows.size}"

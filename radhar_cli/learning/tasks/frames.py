@@ -11,8 +11,10 @@ from torch.nn.functional import cross_entropy
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Targets
 from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.intervals import Groups, interval_in_words
 from radhar_cli.learning.models.outputs import Outputs, OutputShape
 from radhar_cli.learning.tasks.task import Evaluation, Names, Task
+from radhar_cli.numerics.arrays import Index
 
 
 class FrameLabels(Task):
@@ -56,6 +58,11 @@ class FrameLabels(Task):
         assert images.samples.frame_labels is not None
         return images.samples.frame_labels.astype(np.int64)
 
+    def groups(self, images: ImageSet, rows: Index) -> Groups:
+        """Persons or recordings of some rows, else the streams, whose frames are alike."""
+        groups = super().groups(images, rows)
+        return replace(groups, kind="stream") if groups.kind == "sample" else groups
+
     def outputs(self, known: Names) -> Outputs:
         """Logits of every column."""
         return Outputs(len(self.names(known)), OutputShape.FRAMES)
@@ -91,8 +98,10 @@ class FrameLabels(Task):
 
     def summarise(self, numbers: Mapping[str, Any]) -> str:
         """Accuracy of frames, F1 of segments and edit score, in words."""
+        interval = interval_in_words(numbers["frame_accuracy_95"], numbers["interval_over"])
         f1 = ", ".join(f"{100 * numbers[f'segment_f1_{k}']:.1f}" for k in (10, 25, 50))
         return (
-            f"{100 * numbers['frame_accuracy']:.2f} % of {numbers['frames']} frames, segment F1 at "
-            f"IoU 0.10, 0.25, 0.50: {f1} %, edit score {100 * numbers['edit_score']:.1f} %"
+            f"{100 * numbers['frame_accuracy']:.2f} % {interval} of {numbers['frames']} frames, "
+            f"segment F1 at IoU 0.10, 0.25, 0.50: {f1} %, edit score "
+            f"{100 * numbers['edit_score']:.1f} %"
         )

@@ -13,6 +13,7 @@ from sklearn.metrics import confusion_matrix
 from radhar_cli.figures.evaluation import confusion_png
 from radhar_cli.figures.page import png_bytes
 from radhar_cli.figures.stream_page import AT_REST, LabelledMap, draw_labelled_maps
+from radhar_cli.learning.intervals import Groups, numbers_of_share
 from radhar_cli.learning.report_files import ResultPage
 from radhar_cli.learning.segment_metrics import LabelSpan, edit_score, f1_of_segments, spans_of
 from radhar_cli.learning.tasks.predictions import Predictions
@@ -44,7 +45,12 @@ def report_frames(evaluation: Evaluation) -> dict[str, Any]:
     true, predicted = (
         np.concatenate([getattr(s, end) for s in streams]) for end in ("true", "predicted")
     )
+    # Windows of a stream are together, so that each has the number of its first one.
+    group = np.concatenate(
+        [np.full(s.true.size, evaluation.groups.number[s.rows[0]]) for s in streams]
+    )
     is_known = true >= 0
+    groups = Groups(group[is_known], evaluation.groups.kind)
     true, predicted = true[is_known], predicted[is_known]
     numbers = np.arange(len(names))
     counts = confusion_matrix(true, predicted, labels=numbers)
@@ -64,6 +70,7 @@ def report_frames(evaluation: Evaluation) -> dict[str, Any]:
         "streams": len(streams),
         "frames": int(true.size),
         "frame_accuracy": accuracy,
+        **numbers_of_share("frame_accuracy", (true == predicted).astype(float), groups),
         "frame_macro_f1": float(np.mean(occurring)) if occurring else 0.0,
         **{f"segment_f1_{k}": f1_of_segments(pairs, k / 100) for k in IOUS},
         "edit_score": float(np.mean([edit_score(*pair) for pair in pairs])),

@@ -10,6 +10,7 @@ from torch.nn.functional import binary_cross_entropy_with_logits
 
 from radhar_cli.learning.batches import Targets
 from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.intervals import interval_in_words
 from radhar_cli.learning.tasks.categories import Categories
 from radhar_cli.learning.tasks.task import Evaluation, Names
 from radhar_cli.numerics.arrays import Index
@@ -66,9 +67,10 @@ class Labels(Categories):
 
     def summarise(self, numbers: Mapping[str, Any]) -> str:
         """Mean average precision, and the share with all labels right, in words."""
+        interval = interval_in_words(numbers["exact_match_95"], numbers["interval_over"])
         return (
             f"mean average precision {100 * numbers['mean_average_precision']:.2f} %, all labels "
-            f"right in {100 * numbers['exact_match']:.2f} % of {numbers['images']}"
+            f"right in {100 * numbers['exact_match']:.2f} % {interval} of {numbers['images']}"
         )
 
     def evaluation_warnings(self, images: ImageSet, name: str) -> list[str]:

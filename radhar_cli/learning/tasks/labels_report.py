@@ -8,6 +8,7 @@ import numpy as np
 from sklearn.metrics import average_precision_score
 
 from radhar_cli.figures.evaluation import bars_png
+from radhar_cli.learning.intervals import numbers_of_share
 from radhar_cli.learning.tasks.predictions import Predictions
 from radhar_cli.learning.tasks.task import Evaluation
 from radhar_cli.numerics.arrays import Bool
@@ -58,6 +59,7 @@ def report_labels(evaluation: Evaluation) -> dict[str, Any]:
         "images": int(rows.size),
         "mean_average_precision": float(np.mean(informative or precision)),
         "exact_match": float(is_exact.mean()),
+        **numbers_of_share("exact_match", is_exact.astype(float), evaluation.groups),
         "classes": {
             r.name: {"images": r.images, "average_precision": r.average_precision} for r in results
         },

@@ -13,6 +13,7 @@ from radhar_cli.dataset.split import TEST, TRAIN, VALIDATION
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.sample_table import Objects, SampleTable
+from radhar_cli.learning.intervals import Groups, interval_in_words
 from radhar_cli.learning.tasks.categories import Classifier
 from radhar_cli.learning.tasks.predictions import ClassPredictions
 from radhar_cli.learning.tasks.task import Evaluation
@@ -67,6 +68,10 @@ class Persons(Classifier):
                 )
         super().check_training(images, path)
 
+    def groups(self, images: ImageSet, rows: Index) -> Groups:
+        """Recordings of some rows: other persons are none of the classes."""
+        return images.samples.groups(rows, by_person=False)
+
     def report(self, evaluation: Evaluation) -> dict[str, Any]:
         """Numbers of a classifier, and how often the person is among the likeliest."""
         numbers = super().report(evaluation)
@@ -81,15 +86,15 @@ class Persons(Classifier):
 
     def summarise(self, numbers: Mapping[str, Any]) -> str:
         """Rank-1 accuracy with its interval beside chance, and the higher ranks, in words."""
-        low, high = numbers["accuracy_95"]
+        interval = interval_in_words(numbers["accuracy_95"], numbers["interval_over"])
         higher = "".join(
             f", rank-{rank} {100 * share:.1f} %"
             for rank, share in numbers["rank"].items()
             if rank != "1"
         )
         return (
-            f"rank-1 {100 * numbers['accuracy']:.2f} % ({100 * low:.2f} to {100 * high:.2f} %) of "
-            f"{numbers['images']}, chance {100 * numbers['chance']:.1f} %{higher}"
+            f"rank-1 {100 * numbers['accuracy']:.2f} % {interval} of {numbers['images']}, chance "
+            f"{100 * numbers['chance']:.1f} %{higher}"
         )
 
 
@@ -115,8 +120,8 @@ def _persons_of(images: ImageSet) -> list[str]:
         FolderError: the set does not say who is seen.
     """
     person, recording = images.samples.person, images.samples.recording
-    if person is None:
-        several = len(set(images.samples.source.tolist())) > 1
+    several = len(set(images.samples.source.tolist())) > 1
+    if person is None or several:
         cure = (
             "persons of several data sets are not compared; should be one data set"
             if several

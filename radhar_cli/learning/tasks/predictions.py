@@ -43,7 +43,7 @@ class ClassPredictions(Predictions):
 class EvalOptions:
     """Options of `radhar eval`."""
 
-    split: str = "val"  # train, val, test or all
+    split: str | None = None  # train, val, test or all; None is test where there is one, else val
     map: str | None = None  # of a data set; None is the one of the training
     tsne: bool = False  # draw t-SNE of maps and features
     in_place_vs_moving: bool = False  # confusion matrix of the paper's two groups

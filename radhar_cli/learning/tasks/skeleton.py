@@ -1,6 +1,7 @@
 """Where the joints of a person are in every frame of a sequence (`target: skeleton`)."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from torch import Tensor
@@ -8,9 +9,11 @@ from torch import Tensor
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Targets
 from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.intervals import Groups, ends_in_words
 from radhar_cli.learning.metrics import NEAR_M
 from radhar_cli.learning.models.outputs import Outputs, OutputShape
 from radhar_cli.learning.tasks.task import Evaluation, Names, Task
+from radhar_cli.numerics.arrays import Index
 
 
 class Skeleton(Task):
@@ -49,6 +52,11 @@ class Skeleton(Task):
             raise FolderError("target = skeleton: needs true joints, which measured data lack")
         return known.joints
 
+    def groups(self, images: ImageSet, rows: Index) -> Groups:
+        """Persons or recordings of some rows, else the sequences, whose frames are alike."""
+        groups = super().groups(images, rows)
+        return replace(groups, kind="sequence") if groups.kind == "sample" else groups
+
     def outputs(self, known: Names) -> Outputs:
         """Three coordinates a joint, in every frame."""
         return Outputs(3 * len(self.names(known)), OutputShape.PLACES)
@@ -86,8 +94,9 @@ class Skeleton(Task):
     def summarise(self, numbers: Mapping[str, Any]) -> str:
         """Errors of the coordinates and of the joints, in words."""
         in_place = numbers["mpjpe_of_the_mean_pose_in_place_cm"]
+        interval = ends_in_words(numbers["mpjpe_cm_95"], "cm", numbers["interval_over"])
         return (
             f"mean absolute error {numbers['mean_absolute_error_cm']:.2f} cm, MPJPE "
-            f"{numbers['mpjpe_cm']:.2f} cm (the mean pose in its place {in_place:.2f} cm), "
-            f"{numbers['frames']} frames"
+            f"{numbers['mpjpe_cm']:.2f} cm {interval}, the mean pose in its place "
+            f"{in_place:.2f} cm, {numbers['frames']} frames"
         )

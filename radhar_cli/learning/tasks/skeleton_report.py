@@ -7,6 +7,7 @@ import numpy as np
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.evaluation import bars_png
 from radhar_cli.figures.skeletons import skeletons_png
+from radhar_cli.learning.intervals import Groups, numbers_of_mean, numbers_of_share
 from radhar_cli.learning.metrics import NEAR_M
 from radhar_cli.learning.report_files import ResultPage
 from radhar_cli.learning.tasks.predictions import Predictions
@@ -40,6 +41,8 @@ def report_skeletons(evaluation: Evaluation) -> dict[str, Any]:
         raise FolderError(f"{predictions.images.where}: has no frame with a true skeleton")
     deviation, joints = (predictions.values - true)[is_known], true[is_known]  # [frame, joint, 3]
     distance = np.linalg.norm(deviation, axis=2)  # [frame, joint]
+    group = np.repeat(evaluation.groups.number, is_known.sum(1))  # [frame]
+    groups = Groups(group, evaluation.groups.kind)
     by_joint = 100 * distance.mean(0)
     by_axis = 100 * np.abs(deviation).mean(0)  # [joint, 3]
     header = ("joint", *(f"{axis}_cm" for axis in AXES), "mpjpe_cm")
@@ -55,7 +58,9 @@ def report_skeletons(evaluation: Evaluation) -> dict[str, Any]:
         "mean_absolute_error_cm": float(100 * np.abs(deviation).mean()),
         "mpjpe_cm": float(by_joint.mean()),
         "mpjpe_of_the_mean_pose_in_place_cm": _mean_pose_error_cm(joints),
+        **numbers_of_mean("mpjpe_cm", 100 * distance.mean(1), groups),
         "within_15_cm": float((distance < NEAR_M).mean()),
+        **numbers_of_share("within_15_cm", (distance < NEAR_M).mean(1), groups),
         "joints": {
             name: {"mpjpe_cm": error, **dict(zip(header[1:4], axes, strict=True))}
             for name, axes, error in errors

@@ -10,6 +10,7 @@ from torch import Tensor
 from radhar_cli.learning.batches import Targets
 from radhar_cli.learning.choices import TASKS, load_place
 from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.intervals import Groups, numbers_of_share
 from radhar_cli.learning.models.outputs import Outputs
 from radhar_cli.learning.report_files import ResultPage
 from radhar_cli.learning.run_files import RunError
@@ -36,6 +37,7 @@ class Evaluation:
 
     page: ResultPage  # receives figures and tables
     predictions: Predictions
+    groups: Groups  # of the rows of the predictions
     options: EvalOptions
     features: Callable[[Index], Float]  # input [n, F] of the network's last layer, of n rows
 
@@ -134,9 +136,19 @@ class Task(ABC):
 
     # Results.
 
-    def validation_numbers(self, score: float, count: int) -> dict[str, Any]:
-        """Score of `count` validation images by its keys in metrics.json."""
-        return {self.score_key: score}
+    def groups(self, images: ImageSet, rows: Index) -> Groups:
+        """Persons, recordings or samples of some rows, over which scores vary."""
+        return images.samples.groups(rows)
+
+    def validation_numbers(self, scores: Float, groups: Groups) -> dict[str, Any]:
+        """Mean score of the validation images and its interval, by their keys in metrics.json.
+
+        Args:
+            scores: [N] score of each image, 0 to 1.
+            groups: of these images.
+        """
+        score = {self.score_key: float(scores.mean())}
+        return score | numbers_of_share(self.score_key, scores, groups)
 
     def check_options(self, run: str, options: EvalOptions, known: Names) -> None:
         """Refuse figures of `radhar eval` that cannot be drawn of such a network.

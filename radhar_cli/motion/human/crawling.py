@@ -152,8 +152,11 @@ class Crawling:
                 rows.append((start, place, target - place, LIFTS[limb in HANDS] * height))
                 place = target
             rows = rows or [(self.begin, 0.0, 0.0, 0.0)]
-            columns = np.array(rows).T * np.array([[1.0], [1.0], [1.0], [body.stature]])
-            swings[limb] = Swings(*columns, share * period, RAMPS[limb in HANDS])
+            scale = np.array([[1.0], [1.0], [1.0], [body.stature]])
+            starts, places, changes, lifts = np.array(rows).T * scale
+            swings[limb] = Swings(
+                starts, places, changes, lifts, share * period, RAMPS[limb in HANDS]
+            )
         return swings
 
     def pose(self, t: Float, idle: IdleState) -> Pose:

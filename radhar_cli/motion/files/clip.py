@@ -155,27 +155,25 @@ def make_clip(
     leg = _leg_in_units(frames.positions, has_hip_joints)
     unit_m, unit_remarks = _find_unit(leg, unit, file.unit, file.where)
     stature = stature_of_leg(leg * unit_m)
-    units = stature / unit_m
     first, last, apart = find_poses_apart(frames.positions, frames.rate, unit_m)
     frames = frames.cut(first, last)
     p, exchanged = undo_side_swaps(frames.positions) if has_hip_joints else (frames.positions, 0)
     remarks += describe_side_swaps(exchanged)
-    p, is_away = bridge_jumps(p, frames.rate, stature / units)
+    p, is_away = bridge_jumps(p, frames.rate, unit_m)
     remarks += (*unit_remarks, *apart, *describe_jumps(is_away, frames.rate))
-    jumps = find_jumps(file, p, frames.rate, stature / units, first)
+    jumps = find_jumps(file, p, frames.rate, unit_m, first)
     if up is None:
-        up, doubt = _find_up_axis(file, blends, p, frames.rate, units)
+        up, doubt = _find_up_axis(file, blends, p, frames.rate, stature / unit_m)
         remarks += (doubt,) if doubt else ()
     if isinstance(file, Keypoints):
-        remarks += _look_for_pictures(file, p, units, up, unit)
+        remarks += _look_for_pictures(file, p, stature / unit_m, up, unit)
     p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)
-    p = _smooth(p, frames.rate, low_pass) / units
+    p = _smooth(p, frames.rate, low_pass) * (unit_m / stature)
     if travel == "feet":
         p += travel_by_feet(p[:, _ANKLES], frames.rate)[:, None]
     p[..., 2] += ANKLE_HEIGHT - p[:, _ANKLES, 2].min()
     mirrored = _is_mirrored(p)
-    if mirrored:
-        p[..., 1] *= -1
+    p[..., 1] *= -1 if mirrored else 1
     return Clip(
         file.where,
         p,

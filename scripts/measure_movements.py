@@ -232,7 +232,7 @@ FAST = {
     **dict.fromkeys(GAITS, (5.5, 10.0, "ankle 2.9 to 3.2 times the walking speed (CMU)")),
     **dict.fromkeys(RUNNING, (12.0, 40.0, ESTIMATE)),
     "tripping": (7.0, 12.0, ESTIMATE),
-    "stumbling": (5.0, 12.0, ESTIMATE),
+    "stumbling": (5.0, 13.0, ESTIMATE),
     "jumping": (3.5, 12.0, "0.36 s in the air are 1.8 m/s of the trunk at take-off"),
     "jumping_jacks": (6.5, 10.0, ESTIMATE),
     **{
@@ -262,10 +262,10 @@ def bounds() -> Iterator[Bound]:
     yield from MEASURED
 
 
-SWING = "60 to 65 measured (Perry, Gait Analysis, from memory), and 5 to both sides"
+SWING = "60 to 65 measured (Perry, Gait Analysis, from memory), and 7 to both sides"
 MEASURED = (
-    Bound("walking", "ankle, m/s", 3.3, 4.6, "CMU: 2.9 to 3.2 times 1.2 m/s, a stride's jitter"),
-    *(Bound(way, "knee, degrees", 55, 70, SWING) for way in GAITS),
+    Bound("walking", "ankle, m/s", 3.3, 4.8, "CMU: 2.9 to 3.2 times 1.2 m/s, a stride's jitter"),
+    *(Bound(way, "knee, degrees", 53, 72, SWING) for way in GAITS),
     Bound("stationary", "knee at first, degrees", -1, 8, "0 to 5 of who stands (from memory)"),
     Bound("punching", "hand, m/s", 2.2, 7.0, "lay people 2.8 to 5.2 (CMU, DeepMimic)"),
     Bound("kicking", "ankle, m/s", 5.0, 14.0, "8.1 (DeepMimic), athletes 8 to 14 (from memory)"),

@@ -34,12 +34,12 @@ ROUNDING = (
 INTERFERENCE = 4.0  # power of sidelobes of several scatterers over that of the strongest's
 FINE = 16  # steps of a bin in which sidelobes are tabulated
 LOBE = 4  # resolution cells on each side in which an echo is taken out
-LEFT = 0.1  # least power of a cell after others are taken out, over that before
+MEAN = 2e-5  # least power about Doppler 0 over the largest: means of what changes range are as much
+LEFT = 0.01  # least power of a cell after others are taken out, over that before
 ANGLES = 256  # length of the azimuth FFT that places targets
 BESIDE = 0.1  # least power of a further target of a cell over its strongest
 BEYOND = 1.5  # least power of a further target over the sidelobes of the row
 TINY = np.finfo(float).tiny
-SKIRT = 0.01  # least power of a cell within the main lobe of a stronger echo, beyond its neighbour
 SHARED = 0.5  # least power of the strongest target of a cell over that in its neighbours
 OFFSETS = np.linspace(-0.9, 0.6, 16)  # of echoes beside bin 0 from their bin, away from 0, bins
 INTERVALS = np.array([-1, 0, 1])
@@ -135,14 +135,19 @@ class Spread:
     has_mean: bool = True
 
     @property
+    def width(self) -> int:
+        """Bins of a resolution cell, half as many as from the main lobe's middle to its end."""
+        return -(-self.bins // len(self.window))
+
+    @property
     def reach(self) -> int:
         """Bins on each side over which an echo is taken out."""
-        return min(LOBE * -(-self.bins // len(self.window)), (self.bins - 1) // 2)
+        return min(LOBE * self.width, (self.bins - 1) // 2)
 
     def bins_of_echo(self, middle: int) -> Index:
         """Bins [K] over which an echo is taken out: those about its own, and about 0 its mean's."""
         apart = np.arange(-self.reach, self.reach + 1)
-        bins = middle + apart if self.has_mean else np.append(middle + apart, INTERVALS)
+        bins = middle + apart if self.has_mean else np.append(middle + apart, apart)
         return np.unique(bins % self.bins)
 
     def lobe(self, place: float | Float, bins: Index) -> Complex:
@@ -185,9 +190,7 @@ class Spread:
         lags = np.arange(self.bins // 2 + 1)
         largest = power[np.maximum(FINE * lags - FINE // 2, 0)] / power[FINE // 2]
         largest *= INTERFERENCE
-        width = -(-self.bins // len(self.window))
-        largest[: width + 1] = 0.0
-        largest[width + 1 : 2 * width + 1] = SKIRT
+        largest[: 2 * self.width + 1] = 0.0
         largest[0] = 1.0
         return largest[: int(np.flatnonzero(largest > ROUNDING)[-1]) + 1]
 
@@ -227,17 +230,25 @@ class Finder:
 
     def find_points(self, x: Complex) -> Float:
         """Points [n, 8] of a frame's spectrum [Doppler, virtual, range], strongest cell first."""
+        from scipy.ndimage import maximum_filter  # slow to import
+
         square = x.real.astype(float) ** 2 + x.imag.astype(float) ** 2
         power = square.mean(axis=1).T  # [range, Doppler]
         noise = self._estimate_noise(power)
-        least = self.threshold * noise[:, None]
+        least = np.repeat(self.threshold * noise[:, None], power.shape[1], axis=1)
+        if not self.slow.has_mean:
+            about_zero = np.arange(-self.slow.width, self.slow.width + 1)
+            least[:, about_zero] = np.maximum(least[:, about_zero], MEAN * power.max())
         hit = (power > least) & (power >= self._spread_sidelobes(power))
         if not self.slow.has_mean:
             # Means of what moves are a lobe about Doppler 0, in whose middle nothing else is left.
             hit[:, 0] = False
         rows = list[tuple[float, ...]]()
         if hit.any():
-            least = np.maximum(least, LEFT * power)
+            # Where an echo ends, little of it is left however well it was taken out.
+            size = 2 * self.fast.width + 1, 2 * self.slow.width + 1
+            beside = maximum_filter(power, size, mode=("nearest", "wrap"))
+            least = np.maximum(least, LEFT * beside)
             rest, left = x.transpose(2, 0, 1).copy(), np.where(hit, power, 0.0)
             while left.any():
                 cell = divmod(int(left.argmax()), self.board.n_doppler)

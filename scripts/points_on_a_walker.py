@@ -1,11 +1,10 @@
 """Count the points of `cloud.chain: best` on and off a walker, before every radar with an array.
 
-python scripts/studies/points_on_a_walker.py [--seeds 2] [--radar NAME ...] [--noise NAME ...]
+python scripts/points_on_a_walker.py [--radar NAME ...] [--noise NAME ...] [--seed 1]
 
 A person walks to each radar of `radhar config init --radar list` that has an array and frames, for
-a second about 2, 4 and 6 m. Cells are points a frame within 0.3 m of a bone of the skeleton, and
-all others; the last column has points of noise alone per cell over `cloud.pfa`. The noise is that
-of the radar, none, or an SNR of a raw sample of 20, 60 or 120 dB.
+a second about 2, 4 and 6 m. Cells are points a frame within 0.3 m of a bone of the skeleton + all
+others. The noise is that of the radar, none, or an SNR of a raw sample of 20, 60 or 120 dB.
 """
 
 import argparse
@@ -18,10 +17,9 @@ from draw_radars import load_radar
 from radhar_cli.config.documents import RADARS, WRITTEN_RADARS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.motion.skeleton import PARENTS
-from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.points import Cloud
 from radhar_cli.products.run import record
-from radhar_cli.radar.board import Board
 from radhar_cli.scene import Scene, draw_scene
 
 NEAR_M, SPEED_MPS, SECONDS = 0.3, 1.2, 1.0
@@ -68,20 +66,20 @@ def walk(name: str, range_m: float, seed: int, noise: str) -> Scene:
     return draw_scene(config, config.chosen_activities[0], 0)
 
 
-def frames_of_walk(
+def clouds_of_walk(
     name: str, range_m: float, seed: int, noises: list[str]
-) -> Iterator[tuple[str, Scene, Complex, Board, Float]]:
-    """Simulate a walker once, and yield the cube of each noise.
+) -> Iterator[tuple[Cloud, Float]]:
+    """Simulate a walker once, and yield the cloud of each noise.
 
     Yields:
-        Noise, scene, cube, board, and joints [frame, joint, 3] in the radar's axes, m.
+        Cloud, and joints [frame, joint, 3] in the radar's axes, m.
     """
     made: dict[str, Any] = {}
     for noise in noises:
         scene = walk(name, range_m, seed, noise)
-        results = record(scene, ["echo", "cube", "board", "skeleton"], **made)
+        results = record(scene, ["echo", "cloud", "skeleton"], **made)
         made = {"echo": results["echo"]}
-        yield noise, scene, results["cube"], results["board"], results["skeleton"][:, 0]
+        yield results["cloud"], results["skeleton"][:, 0]
 
 
 def distance_to_bones(points: Float, joints: Float) -> Float:
@@ -108,6 +106,20 @@ def count_points(cloud: Cloud, joints: Float) -> tuple[float, float]:
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=1, help="walkers a cell")
+    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--radar", nargs="+", default=radars_with_clouds())
     parser.add_argument("--noise", nargs="+", choices=NOISES, default=["default"])
+    given = parser.parse_args()
+    heads = [f"{noise}, {r:g} m" for r in RANGES_M for noise in given.noise]
+    print(f"| radar | {' | '.join(heads)} |\n| --- {'| --- ' * len(heads)}|")
+    for name in given.radar:
+        cells = []
+        for range_m in RANGES_M:
+            for cloud, joints in clouds_of_walk(name, range_m, given.seed, given.noise):
+                near, far = count_points(cloud, joints)
+                cells.append(f"{near:.1f} + {far:.1f}")
+        print(f"| `{name}` | {' | '.join(cells)} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -71,8 +71,8 @@ def best_points(
     finder = Finder(
         board=board,
         angles=Angles.of(board),
-        fast=Spread(hann(board.samples), board.n_fft, 1),
-        slow=Spread(
+        fast=EchoSpread(hann(board.samples), board.n_fft, 1),
+        slow=EchoSpread(
             hann(board.loops), board.n_doppler, -1, has_mean=not remove_mean or board.loops == 1
         ),
         threshold=float(gammainccinv(board.channels, pfa)) / board.channels,
@@ -119,7 +119,7 @@ class Angles:
 
 
 @dataclass(frozen=True)
-class Spread:
+class EchoSpread:
     """How a windowed Fourier transform spreads a steady echo over its bins.
 
     Attributes:
@@ -192,7 +192,8 @@ class Spread:
         largest *= INTERFERENCE
         largest[: 2 * self.width + 1] = 0.0
         largest[0] = 1.0
-        return largest[: int(np.flatnonzero(largest > ROUNDING)[-1]) + 1]
+        sidelobes: Float = largest[: int(np.flatnonzero(largest > ROUNDING)[-1]) + 1]
+        return sidelobes
 
     def spread(self, power: Float, axis: int) -> Float:
         """Spread the power of cells over their sidelobes along an axis; the largest counts."""
@@ -203,7 +204,8 @@ class Spread:
             for to, source in ((slice(lag, None), slice(-lag)), (slice(lag), slice(-lag, None))):
                 np.maximum(after[to], scaled[source], out=after[to])
                 np.maximum(after[source], scaled[to], out=after[source])
-        return np.moveaxis(after, 0, axis)
+        spread: Float = np.moveaxis(after, 0, axis)
+        return spread
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -222,8 +224,8 @@ class Finder:
 
     board: Board
     angles: Angles
-    fast: Spread
-    slow: Spread
+    fast: EchoSpread
+    slow: EchoSpread
     threshold: float
     step: float
     bias: float
@@ -305,14 +307,18 @@ class Finder:
         fast, slow = self.fast.reach, self.slow.reach
         ranges = np.arange(max(k - fast, 0), min(k + fast + 1, len(rest)))
         patch = rest[ranges[0] : ranges[-1] + 1, (d + np.arange(-slow, slow + 1)) % count]
-        at, doppler = k - int(ranges[0]), (d + count // 2) % count - count // 2
-        off_range = _offset(_mean_levels(patch[:, slow]), at)
-        off_doppler = self.slow.offset(patch[at], doppler)
-        rows = self._points_of_cell(patch, (at, slow), (k, doppler), off_doppler, noise, snr_db)
+        middle_row, doppler = k - int(ranges[0]), (d + count // 2) % count - count // 2
+        off_range = _offset(_mean_levels(patch[:, slow]), middle_row)
+        off_doppler = self.slow.offset(patch[middle_row], doppler)
+        rows = self._points_of_cell(
+            patch, (middle_row, slow), (k, doppler), off_doppler, noise, snr_db
+        )
         bins = self.slow.bins_of_echo(d)
         over_ranges = self.fast.lobe(k + off_range, ranges)
         over_doppler = self.slow.lobe(doppler + off_doppler, bins)
-        lobe = np.outer(over_ranges, over_doppler) / (over_ranges[at] * over_doppler[bins == d])
+        lobe = np.outer(over_ranges, over_doppler) / (
+            over_ranges[middle_row] * over_doppler[bins == d]
+        )
         around = np.ix_(ranges, bins)
         after = rest[around] - (lobe[..., None] * rest[cell]).astype(rest.dtype)
         rest[around] = after
@@ -340,32 +346,39 @@ class Finder:
             noise: Mean noise power of the cell.
             snr_db: SNR of the cell, dB.
         """
-        (at, here), (k, doppler), row = middle, cell, self.angles.row
+        (middle_row, column), (k, doppler), row = middle, cell, self.angles.row
         turn = np.exp(
             -2j * np.pi * (doppler + off_doppler) / self.board.n_doppler * self.board.turns
         )
         targets = CellTargets.of(
-            patch[at, here] * turn, self.board, self.angles, LEAST_SNR * noise / len(row)
+            patch[middle_row, column] * turn, self.board, self.angles, LEAST_SNR * noise / len(row)
         )
-        first, before = max(at - 1, 0), max(here - 1, 0)
-        near, at, here = patch[first : at + 2, before : here + 2, row], at - first, here - before
+        first, before = max(middle_row - 1, 0), max(column - 1, 0)
+        near, middle_row, column = (
+            patch[first : middle_row + 2, before : column + 2, row],
+            middle_row - first,
+            column - before,
+        )
         places = self.board.places[row, 0] - self.board.places[row[0], 0]
-        turned = (doppler + np.arange(near.shape[1]) - here) / self.board.n_doppler
+        turned = (doppler + np.arange(near.shape[1]) - column) / self.board.n_doppler
         turned = turned[:, None] * self.board.turns[row]
         weights = np.exp(-2j * np.pi * (places * targets.turns[:, None, None] + turned)) / len(row)
         beams = np.abs((near * weights[:, None]).sum(axis=-1)) ** 2  # [target, range, Doppler]
-        strongest = beams[:, at, here].argmax()
-        rows = []
+        strongest = beams[:, middle_row, column].argmax()
+        rows = list[tuple[float, ...]]()
         for j, (power, aside, up) in enumerate(zip(beams, targets.left, targets.up, strict=True)):
-            is_beside = power[at, here] < (SHARED if j == strongest else 1) * power.max()
+            is_beside = power[middle_row, column] < (SHARED if j == strongest else 1) * power.max()
             if is_beside or aside * aside + up * up > 1:
                 continue
             level = np.log(np.maximum(power, TINY))
-            r = max((k + _offset(level[:, here], at)) * self.board.range_step - self.bias, 0.0)
-            speed = (doppler + _offset(level[at], here)) * self.step
+            r = max(
+                (k + _offset(level[:, column], middle_row)) * self.board.range_step - self.bias,
+                0.0,
+            )
+            speed = (doppler + _offset(level[middle_row], column)) * self.step
             ahead = r * np.sqrt(1 - aside * aside - up * up)
             place = ahead, r * aside, r * up
-            rows.append((*place, speed, power[at, here], snr_db, k, doppler))
+            rows.append((*place, speed, power[middle_row, column], snr_db, k, doppler))
         return rows
 
 

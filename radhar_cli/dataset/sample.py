@@ -19,6 +19,7 @@ from radhar_cli.dataset.layout import (
     TIME,
     column_axis,
 )
+from radhar_cli.echo.accuracy import error_as_stored
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError
 from radhar_cli.numerics.arrays import Complex, Float, Levels
@@ -122,12 +123,13 @@ def store(recording: Results, scene: Scene, config: Config) -> StoredSample:
         names = label_names(config)
         labels = {n: label_columns(scene, motion, image, names) for n, image in images.items()}
     accuracy: EchoAccuracy | None = recording.products.get("accuracy")
-    slow_time = None
-    if scene.config.output.slow_time:
-        slow_time = _storable(recording["signal"].x[0, 0], scene.name)
     fell_back, error_db = isinstance(accuracy, Fallback), nan
     if isinstance(accuracy, Accuracy) and isfinite(accuracy.error_db):
         error_db = accuracy.error_db
+    slow_time = None
+    if scene.config.output.slow_time:
+        slow_time = _storable(recording["signal"].x[0, 0], scene.name)
+        error_db = error_as_stored(error_db)
     scale = level_scale_of(scene.config)
     products = {
         name: storable_array(recording[product], name, scale)

@@ -31,6 +31,7 @@ PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.1, 0.05
 # Cubic Hermite cells err by the fourth power of their width: -48 dB at 4 a fast-time sample.
 TABLE_DB = -48.0
 SINGLE_DB = -115.0  # error of the recurrence in float32
+STORED_SINGLE_DB = -144.5  # largest rounding of values that are stored in float32: 2^-24 of each
 CUBIC_DB = -146.0  # of cubic phases over 20 pulses or fewer: for tolerances down to -120 dB
 # Settings aim below the tolerance, and are taken if the stated error is below it by SPARE.
 MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 6.0, 30.0, -220.0
@@ -84,6 +85,11 @@ def target_error_db(tolerance_db: float) -> float:
 def first_aim(tolerance_db: float) -> float:
     """Error (dB) for which settings are first chosen, below a tolerance (dB)."""
     return max(target_error_db(tolerance_db) - MARGIN_DB, MIN_AIM_DB)
+
+
+def error_as_stored(error_db: float) -> float:
+    """Bound of the error (dB) of values that are stored in float32, by theirs before that (dB)."""
+    return 20 * log10(10 ** (error_db / 20) + 10 ** (STORED_SINGLE_DB / 20))
 
 
 class AccuracyError(ValueError):

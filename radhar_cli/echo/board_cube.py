@@ -149,7 +149,8 @@ def fast_cube(
     chirps are compared with the exact sum. Unless the error is SPARE_DB below the tolerance, or
     the default where that is tighter, frames are made again in double precision, from MORE_NODES
     instants and then from those of all loops. The samples that are returned have the precision
-    that the tolerance asks for, however they were made, so that those of all scenes agree.
+    that the tolerance asks for, however they were made, so that those of all scenes agree; the
+    measured error has their rounding in it.
 
     Raises:
         AccuracyError: The tolerance is missed all the same.
@@ -159,8 +160,7 @@ def fast_cube(
     cube, power, error = min(attempts, key=lambda attempt: attempt[2])
     if error > tolerance_db - SPARE_DB:
         raise AccuracyError(error + SPARE_DB)
-    precision = np.complex128 if target_db < SINGLE_DB else np.complex64
-    return cube.astype(precision, copy=False), power, error
+    return cube, power, error
 
 
 def _attempts(
@@ -168,8 +168,10 @@ def _attempts(
 ) -> Iterator[tuple[Complex, float, float]]:
     """Samples, P_s and the measured error of ever finer settings, until one will do."""
     precise = target_db < SINGLE_DB
+    precision = np.complex128 if precise else np.complex64
     for count, double in ((NODES, precise), (MORE_NODES, True), (board.loops, True)):
         cube, power, roughness = _summed(channels, board, target_db, count, double)
+        cube = cube.astype(precision, copy=False)  # before its error is measured, rounding too
         error = measured_db(cube, channels, board, roughness)
         yield cube, power, error
         if not error > target_db - SPARE_DB:  # NaN of a signal that is no number

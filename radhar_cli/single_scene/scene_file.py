@@ -11,6 +11,7 @@ import h5py
 from radhar_cli import __version__
 from radhar_cli.config.identity import as_yaml, resolved
 from radhar_cli.config.motion_files import keep_used_files
+from radhar_cli.echo.accuracy import error_as_stored
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing, write_text
@@ -144,13 +145,19 @@ def _motion_file(motion: Motion) -> dict[str, Any] | None:
 
 
 def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
-    """Describe how the direct engine made the signal, and its measured error; None for the cube."""
+    """Describe how the direct engine made the signal, and its error; None for the exact engine.
+
+    Cubes of a board are stored in single precision, whose rounding is part of their error.
+    """
     accuracy = simulation.accuracy
     if accuracy is None:
         return None
+    error_db = accuracy.error_db
+    if simulation.board is not None and not accuracy.single:
+        error_db = error_as_stored(error_db)
     return {
         "tolerance_db": simulation.config.engine.tolerance_db,
-        "error_db": accuracy.error_db if isfinite(accuracy.error_db) else None,
+        "error_db": error_db if isfinite(error_db) else None,
         "kinematics_hz": simulation.waveform.prf / accuracy.step,
         "table_oversampling": accuracy.table_oversampling,
         "precision": "single" if accuracy.single else "double",

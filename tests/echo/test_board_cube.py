@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.radar import BoardRadar
+from radhar_cli.echo import board_cube
 from radhar_cli.echo.accuracy import LOOSEST_DB, SPARE_DB, AccuracyError
 from radhar_cli.echo.board_cube import exact_cube, fast_cube, mean_power, measured_db
 from radhar_cli.echo.paths import Paths
@@ -89,6 +90,26 @@ def test_the_fast_sum_keeps_its_tolerance_or_says_so(tolerance: float, speed: fl
     assert error <= tolerance
     assert error <= measured < error + 14 or measured < -180
     assert fast_power == pytest.approx(power, rel=1e-6)
+
+
+@pytest.mark.parametrize("device", ["IWR1443BOOST", "IWR6843ISK-ODS", "IWR1642BOOST"])
+@pytest.mark.parametrize("tolerance", [-80.0, -94.0, -97.0, -100.0, -150.0])
+@pytest.mark.parametrize("nodes", [2, board_cube.NODES])
+def test_the_stated_error_has_the_rounding_of_the_samples_in_it(
+    device: str, tolerance: float, nodes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two nodes do not suffice: samples are made in double precision then, and rounded."""
+    monkeypatch.setattr(board_cube, "NODES", nodes)
+    rng, speed = np.random.default_rng(4), 1.0
+    array = DEVICES[device].array
+    order = MARS.order if len(array.tx) == 3 else (0, 1)
+    board = replace(MARS, array=array, order=order, frames=2)
+    p, v = rng.normal((3, 0, 0), 0.3, (20, 3)), speed * rng.normal(size=(20, 3))
+    sources = channels(board, p, v, np.ones(20))
+    cube, _, stated = fast_cube(sources, board, tolerance)
+    exact, _ = exact_cube(sources, board)
+    assert cube.dtype == (np.complex128 if tolerance < -100 else np.complex64)
+    assert 20 * np.log10(np.linalg.norm(cube - exact) / np.linalg.norm(exact)) <= stated
 
 
 @pytest.mark.parametrize("tolerance", [-6.0, -60.0])

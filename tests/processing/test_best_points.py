@@ -1,6 +1,7 @@
 """Points of the chain that does what the data allow: interpolated, and separated in angle."""
 
 import numpy as np
+import points_on_a_walker
 import pytest
 from helpers.boards import MARS, cube_of
 
@@ -159,3 +160,42 @@ def test_noise_makes_a_point_a_cell_that_exceeds_by_chance() -> None:
         counts.append(len(best_points(noise[0] + 1j * noise[1], board, True, 1e-3).points))
     cells = board.n_fft * board.n_doppler
     assert 0.2e-3 * cells < np.mean(counts) < 1.5e-3 * cells
+
+
+@pytest.fixture(scope="module", params=["iwr1443boost", "bgt60tr13c", "tinyrad24g"])
+def clouds(request: pytest.FixtureRequest) -> dict[str, tuple[float, float]]:
+    """Points a frame on a walker about 4 m away and off, of each noise."""
+    noises = ["default", "none", "20 dB", "60 dB", "120 dB"]
+    made = points_on_a_walker.clouds_of_walk(request.param, 4.0, 1, noises)
+    counts = [points_on_a_walker.count_points(*of_noise) for of_noise in made]
+    return dict(zip(noises, counts, strict=True))
+
+
+def test_a_walker_has_points_at_any_noise(clouds: dict[str, tuple[float, float]]) -> None:
+    for near, _ in clouds.values():
+        assert near > 5
+
+
+def test_little_noise_makes_no_phantoms(clouds: dict[str, tuple[float, float]]) -> None:
+    for noise in ("none", "60 dB", "120 dB"):
+        near, off = clouds[noise]
+        assert off < 0.2 * near
+    assert clouds["none"][0] == pytest.approx(clouds["120 dB"][0], rel=0.1)
+
+
+@pytest.mark.parametrize("remove_mean", [True, False])
+@pytest.mark.parametrize("snr_db", [0.0, 30.0, 60.0, 100.0])
+def test_a_scatterer_is_one_point_at_any_noise(snr_db: float, remove_mean: bool) -> None:
+    rng = np.random.default_rng(6)
+    for seed in range(8):
+        way = np.array([np.cos(azimuth := rng.uniform(-0.8, 0.8)), np.sin(azimuth), 0])
+        speed = rng.uniform(0.4, 2) * rng.choice([-1, 1])
+        cube, board = cube_of(rng.uniform(1, 3) * way, speed * way, snr_db=snr_db, seed=seed)
+        (point,) = best_points(cube, board, remove_mean, 1e-7).points
+        assert point[3] == pytest.approx(-speed, abs=0.1)
+
+
+@pytest.mark.parametrize("remove_mean", [True, False])
+def test_frames_without_an_echo_have_no_points(remove_mean: bool) -> None:
+    cube, board = cube_of((2, 0, 0), (0, 0, 0))
+    assert not len(best_points(np.zeros_like(cube), board, remove_mean, 1e-5).points)

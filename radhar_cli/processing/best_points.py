@@ -35,6 +35,7 @@ INTERFERENCE = 4.0  # power of sidelobes of several scatterers over that of the 
 FINE = 16  # steps of a bin in which sidelobes are tabulated
 LOBE = 4  # resolution cells on each side in which an echo is taken out
 MEAN = 2e-5  # least power about Doppler 0 over the largest: means of what changes range are as much
+FAINT = 0.02  # least power beside a peak over the peak's that is of the same echo: -14 dB and more
 LEFT = 0.01  # least power of a cell after others are taken out, over that before
 ANGLES = 256  # length of the azimuth FFT that places targets
 BESIDE = 0.1  # least power of a further target of a cell over its strongest
@@ -80,8 +81,11 @@ def best_points(
         bias=bias,
     )
     frames = list[Float]()
-    for _, x in spectra(cube, board, remove_mean):
-        frames += [finder.find_points(frame) for frame in x]  # [Doppler, virtual, range]
+    # In double precision, as rounding of an FFT would decide which weak cells count.
+    precise = np.result_type(cube.dtype, np.float64)
+    for samples in cube:
+        for _, x in spectra(samples[None].astype(precise), board, remove_mean):
+            frames.append(finder.find_points(x[0]))
     return Cloud.of(frames)
 
 
@@ -171,12 +175,12 @@ class EchoSpread:
         """
         apart = np.arange(len(x)) - len(x) // 2
         if self.has_mean or abs(middle) > len(x) // 2:
-            return _offset(_mean_levels(x), len(x) // 2)
+            return _offset(_mean_powers(x), len(x) // 2)
         lobes = self.lobe(middle + np.sign(middle) * OFFSETS, middle + apart)  # [bin, place]
         like = (np.abs(lobes.conj().T @ x) ** 2).sum(axis=1) / (np.abs(lobes) ** 2).sum(axis=0)
         n = int(like.argmax())
         step = float(OFFSETS[1] - OFFSETS[0])
-        offset = OFFSETS[n] + step * _offset(np.log(np.maximum(like, TINY)), n)
+        offset = OFFSETS[n] + step * _offset(like, n)
         return float(np.sign(middle) * offset)
 
     @cached_property
@@ -242,6 +246,8 @@ class Finder:
             about_zero = np.arange(-self.slow.width, self.slow.width + 1)
             least[:, about_zero] = np.maximum(least[:, about_zero], MEAN * power.max())
         hit = (power > least) & (power >= self._spread_sidelobes(power))
+        if self.board.is_real:
+            hit[0] = False  # its own image, of either sign of speed
         if not self.slow.has_mean:
             # Means of what moves are a lobe about Doppler 0, in whose middle nothing else is left.
             hit[:, 0] = False
@@ -308,7 +314,7 @@ class Finder:
         ranges = np.arange(max(k - fast, 0), min(k + fast + 1, len(rest)))
         patch = rest[ranges[0] : ranges[-1] + 1, (d + np.arange(-slow, slow + 1)) % count]
         middle_row, doppler = k - int(ranges[0]), (d + count // 2) % count - count // 2
-        off_range = _offset(_mean_levels(patch[:, slow]), middle_row)
+        off_range = _offset(_mean_powers(patch[:, slow]), middle_row)
         off_doppler = self.slow.offset(patch[middle_row], doppler)
         rows = self._points_of_cell(
             patch, (middle_row, slow), (k, doppler), off_doppler, noise, snr_db
@@ -370,29 +376,33 @@ class Finder:
             is_beside = power[middle_row, column] < (SHARED if j == strongest else 1) * power.max()
             if is_beside or aside * aside + up * up > 1:
                 continue
-            level = np.log(np.maximum(power, TINY))
             r = max(
-                (k + _offset(level[:, column], middle_row)) * self.board.range_step - self.bias,
+                (k + _offset(power[:, column], middle_row)) * self.board.range_step - self.bias,
                 0.0,
             )
-            speed = (doppler + _offset(level[middle_row], column)) * self.step
+            speed = (doppler + _offset(power[middle_row], column)) * self.step
             ahead = r * np.sqrt(1 - aside * aside - up * up)
             place = ahead, r * aside, r * up
             rows.append((*place, speed, power[middle_row, column], snr_db, k, doppler))
         return rows
 
 
-def _mean_levels(x: Complex) -> Float:
-    """Logarithms [bin] of the channels' mean power of x [bin, virtual]."""
-    levels: Float = np.log(np.maximum((x.real**2 + x.imag**2).mean(axis=1), TINY))
-    return levels
+def _mean_powers(x: Complex) -> Float:
+    """Mean power [bin] of the channels of x [bin, virtual]."""
+    powers: Float = (x.real**2 + x.imag**2).mean(axis=1)
+    return powers
 
 
-def _offset(level: Float, bin_: int, cyclic: bool = False) -> float:
-    """Offset (bins, -1/2 to 1/2) of a peak by a parabola through three logarithms of power."""
-    if level.size < 3 or (not cyclic and not 0 < bin_ < level.size - 1):
+def _offset(power: Float, bin_: int, cyclic: bool = False) -> float:
+    """Offset (bins, -1/2 to 1/2) of a peak by a parabola through three logarithms of power.
+
+    Neighbours count as no less than FAINT of the peak: what is less is rounding, where their own
+    echo was taken out.
+    """
+    if power.size < 3 or (not cyclic and not 0 < bin_ < power.size - 1):
         return 0.0
-    before, peak, after = level[(bin_ + INTERVALS) % level.size]
+    three = power[(bin_ + INTERVALS) % power.size]
+    before, peak, after = np.log(np.maximum(three, max(FAINT * float(three[1]), TINY)))
     curve = before - 2 * peak + after
     return float(np.clip((before - after) / (2 * curve), -0.5, 0.5)) if curve < 0 else 0.0
 
@@ -476,7 +486,7 @@ def _largest(signal: Complex, angles: Angles) -> tuple[float, float]:
     """Phase step (turns) and power of the largest peak of the spectrum of a row [element]."""
     spectrum = np.abs(signal @ angles.fine) ** 2 / len(signal) ** 2
     peak = int(spectrum.argmax())
-    offset = _offset(np.log(np.maximum(spectrum, TINY)), peak, True)
+    offset = _offset(spectrum, peak, True)
     return (peak + offset) / ANGLES, float(spectrum[peak])
 
 

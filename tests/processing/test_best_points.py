@@ -9,6 +9,7 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.frame_maps import hann
 from radhar_cli.processing.points import board_points
+from radhar_cli.products.run import record
 from radhar_cli.radar.board import DEVICES, Array
 from radhar_cli.radar.detection import CASO, Cfar, Detection
 
@@ -199,3 +200,14 @@ def test_a_scatterer_is_one_point_at_any_noise(snr_db: float, remove_mean: bool)
 def test_frames_without_an_echo_have_no_points(remove_mean: bool) -> None:
     cube, board = cube_of((2, 0, 0), (0, 0, 0))
     assert not len(best_points(np.zeros_like(cube), board, remove_mean, 1e-5).points)
+
+
+@pytest.mark.parametrize("name", ["iwr1443boost", "bgt60tr13c"])
+def test_points_do_not_follow_from_rounding(name: str) -> None:
+    """Echoes that were taken out leave rounding, on which no further point depends."""
+    scene = points_on_a_walker.walk(name, 3.0, 1, "default")
+    made = record(scene, ["cube", "board"])
+    cube, board = made["cube"], made["board"]
+    one, other = (best_points(samples, board, True, 1e-5) for samples in (cube, 1.7 * cube))
+    np.testing.assert_array_equal(one.start, other.start)
+    np.testing.assert_allclose(one.points[:, :4], other.points[:, :4], atol=1e-3)

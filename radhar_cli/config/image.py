@@ -47,7 +47,7 @@ class AbsoluteReference(Section):
     """Power of the brightest level, the same for all images."""
 
     dbm: Annotated[float, Field(ge=-300, le=100, strict=True)]
-    """Received power of level 255; the radar sends radar.transmit_power_dbm."""
+    """Power of level 255 as the cells of a map add it up, for radar.transmit_power_dbm."""
 
 
 def _reference_kind(value: object) -> str:
@@ -94,7 +94,9 @@ class ImageConfig(Section):
     reference: Annotated[ImageReference, ActsIf("image.kind", "decibel")] = "noise"
     """What grey levels are relative to: noise, the image's noise floor, which is 0.4
     dynamic_range_db above level 0, less where the image's peak would exceed level 255; peak, its
-    largest power, level 255; or {dbm: NUMBER}, the received power of level 255 in all images."""
+    largest power, level 255; or {dbm: NUMBER}, the power of a cell that is level 255 in all images:
+    the received one in frame maps, in others with the gain of the sums over a window and over
+    range (`largest_db` of output.power has their size)."""
     cfar: Annotated[CfarConfig, ActsIf("image.kind", "cfar")] = defaults_of(CfarConfig)
     colour_map: str = DEFAULT_COLOUR_MAP
     """Colour map of PNGs and figures, any Matplotlib name; dataset.h5 holds grey levels."""

@@ -115,7 +115,7 @@ def describe_levels(image: ImageConfig, white: str = "level 255", black: str = "
     """
     span = f"{image.dynamic_range_db:g} dB"
     if isinstance(image.reference, AbsoluteReference):
-        return f"{white} is {image.reference.dbm:g} dBm received or more, {black} {span} below"
+        return f"{white} is {image.reference.dbm:g} dBm in a cell or more, {black} {span} below"
     if image.reference == "peak":
         return f"{white} is the largest power of the image, {black} {span} below it or less"
     below, above = (share * image.dynamic_range_db for share in (NOISE_PLACE, 1 - NOISE_PLACE))

@@ -35,8 +35,8 @@ class DecibelScale:
 
     Attributes:
         range_db: range of the levels, dB.
-        reference: what the levels are relative to; a number is the power of level 255, the same
-            for all images, in dB for unit transmit power.
+        reference: what the levels are relative to; a number is the power of a cell of the map that
+            is level 255, the same for all images, in dB for unit transmit power.
     """
 
     range_db: float

@@ -87,8 +87,8 @@ def find_activity(name: str | None, config: "Config", says_word: bool = True) ->
         raise ConfigError(f"--activity: {error}") from None
     if name is None or not is_other_word(name, activity.slug):
         return activity
-    own = {known.slug: known for known in config.every_class if known.slug in config.classes}
-    called = class_called(name, own)
+    classes = {known.slug: known for known in config.every_class if known.slug in config.classes}
+    called = class_called(name, classes)
     if called.slug != activity.slug and called.number == activity.number:
         return called
     if says_word:

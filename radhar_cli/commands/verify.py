@@ -129,7 +129,7 @@ def _leak_in_words(out: Path) -> str:
     with open_dataset(out) as data:
         telling, samples = most_telling_number(data), len(data)
         lines = laws_by_class(data.config) if isinstance(data.config, Config) else []
-        lines += sentences_on_cue(data, data.label).on_cue
+        lines += sentences_on_cue(data, data.label[:].astype(int)).on_cue
     if telling is not None and telling.number is not None:
         key, share, chance = telling.number
         name = key if " " not in key else "when it begins or ends"

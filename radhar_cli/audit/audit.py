@@ -163,15 +163,14 @@ def audit(
     scan = scan_pictures(data, rows, progress)
     if scan is not None:
         features = list(_read_pictures(data, rows, scan.far_bands(rows), progress))
-        is_relative = data.is_relative
         size, label = scan.size, data.label[rows]
-        evidence += picture_evidence(features, label, size, data.is_simulated, is_relative)
+        evidence += picture_evidence(features, label, size, data.is_simulated, data.image)
     recording = np.arange(rows.size)
     if data.recording is not None:
         recording = numbered([data.recording[row] for row in rows])
     lines = _guess(evidence, data.label[rows], (group, recording), effort, progress)
     overlaps = find_overlaps(data, scan)
-    warnings += _left_out(data, rows, group)
+    warnings += [*_left_out(data, rows, group), *data.too_few_on_cue]
     return Audit(data, rows, held_out, lines, overlaps, effort, tuple(warnings))
 
 

@@ -31,6 +31,7 @@ class TellingNumber(NamedTuple):
     number: NumberShare | None  # None where none tells the class beyond chance
     limit: float  # share beyond which a number of all samples would have been found
     is_enough: bool  # whether there are samples enough to see that a number tells some of the class
+    has_onset: bool  # whether samples say when the movement begins, which is left out
 
 
 def most_telling_number(data: Dataset) -> TellingNumber | None:
@@ -48,7 +49,8 @@ def most_telling_number(data: Dataset) -> TellingNumber | None:
     chance = 1 / np.unique(label).size
     limit = _limit(chance, label.size)
     is_enough = limit - chance < SOME * (1 - chance)
-    for key, values in audited_numbers(data).items():
+    numbers = audited_numbers(data)
+    for key, values in numbers.items():
         if key == ONSET.key:  # follows from how long a movement takes; `radhar audit` lists it
             continue
         known = np.isfinite(values)
@@ -58,7 +60,7 @@ def most_telling_number(data: Dataset) -> TellingNumber | None:
         is_told = share > _limit(chance, int(np.count_nonzero(known)))
         if is_told and (best is None or share - chance > best.share - best.chance):
             best = NumberShare(key, share, chance)
-    return TellingNumber(best, limit, is_enough)
+    return TellingNumber(best, limit, is_enough, ONSET.key in numbers)
 
 
 def _limit(chance: float, samples: int) -> float:

@@ -21,9 +21,10 @@ from radhar_cli.audit.recordings import (
     table_evidence,
     window_evidence,
 )
-from radhar_cli.audit.scene_numbers import onsets_on_cue, scene_evidence
+from radhar_cli.audit.scene_numbers import scene_evidence, sentences_on_cue
 from radhar_cli.config.class_laws import laws_by_class
 from radhar_cli.config.data_set import Config, MeasuredConfig
+from radhar_cli.config.image import ImageConfig
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.folder import FilePixels, map_of_folder, open_tree
@@ -49,10 +50,11 @@ class AuditedSet:
         recording: [N] recording that the sample was cut from; None where nobody says.
         scene: [N] fingerprint of person and motion; None where nobody says.
         on_cue: sentences on onsets that do not vary.
+        too_few_on_cue: sentences on those of which too few samples are there to tell.
         laws: sentences on numbers whose laws differ by class.
         has_clouds: whether the dataset.h5 holds point clouds.
         is_simulated: whether a config can be changed.
-        is_relative: whether levels are known to be relative to the largest power of each image.
+        image: what an image of a simulated dataset.h5 shows; None of anything else.
     """
 
     where: Path
@@ -66,10 +68,11 @@ class AuditedSet:
     recording: Sequence[object] | None = None
     scene: Sequence[object] | None = None
     on_cue: tuple[str, ...] = ()
+    too_few_on_cue: tuple[str, ...] = ()
     laws: tuple[str, ...] = ()
     has_clouds: bool = False
     is_simulated: bool = False
-    is_relative: bool = False
+    image: ImageConfig | None = None
 
     def __len__(self) -> int:
         return len(self.label)
@@ -156,6 +159,7 @@ def _open_h5(path: Path, map_name: str | None) -> AuditedSet:
             recording, scene = recording_of_window(config), None
             if all(part.person is None for part in config.recordings.parts):
                 person = None
+        cues = sentences_on_cue(data, samples.label)
         return AuditedSet(
             where=path,
             classes=images.classes,
@@ -167,12 +171,12 @@ def _open_h5(path: Path, map_name: str | None) -> AuditedSet:
             person=person,
             recording=recording,
             scene=scene,
-            on_cue=tuple(_sentences_on_cue(data, samples.label)),
+            on_cue=tuple(cues.on_cue),
+            too_few_on_cue=tuple(cues.too_few),
             laws=tuple(laws_by_class(config)) if isinstance(config, Config) else (),
             has_clouds=has_clouds(data),
             is_simulated=isinstance(config, Config),
-            is_relative=isinstance(config, Config)
-            and (config.image.kind, config.image.reference) == ("decibel", "peak"),
+            image=config.image if isinstance(config, Config) else None,
         )
 
 
@@ -181,14 +185,6 @@ def _numbers_of(data: Dataset) -> list[Evidence]:
     if isinstance(data.config, MeasuredConfig):
         return window_evidence(data.config)
     return scene_evidence(data)
-
-
-def _sentences_on_cue(data: Dataset, label: Index) -> list[str]:
-    """Sentences on onsets that hardly vary, a sentence for each key."""
-    by_key = dict[str, list[str]]()
-    for name, key, mean, spread in onsets_on_cue(data, label):
-        by_key.setdefault(key, []).append(f"{name} {mean:.2f} s (sd {spread:.2f})")
-    return [f"{key} is on cue: {', '.join(classes)}" for key, classes in by_key.items()]
 
 
 def _with_columns(audited: AuditedSet, table: RecordingTable) -> AuditedSet:

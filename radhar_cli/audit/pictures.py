@@ -17,6 +17,7 @@ from scipy.ndimage import binary_dilation, median_filter, uniform_filter
 
 from radhar_cli.audit.evidence import Evidence, EvidencePart
 from radhar_cli.audit.marks import MarkFeatures, mark_evidence, mark_features
+from radhar_cli.config.image import ImageConfig
 from radhar_cli.numerics.arrays import Bool, Float, Index, Levels
 
 SIDE = 32  # rows and columns of a thumbnail, and bands of rows of an image
@@ -170,7 +171,7 @@ def picture_evidence(
     label: Index,
     size: tuple[int, int],
     is_simulated: bool,
-    is_relative: bool,
+    image: ImageConfig | None,
 ) -> list[Evidence]:
     """Evidence of margins and noise of images.
 
@@ -179,17 +180,17 @@ def picture_evidence(
         label: [N] class of each.
         size: (H, W) of the first of them.
         is_simulated: whether there is a config, in which numbers can be drawn otherwise.
-        is_relative: whether levels are known to be relative to the largest power of each image.
+        image: what a simulated image shows, where its config is known.
     """
     outer, first, last, far, level, file_size, noise, texture = (
-        np.stack([getattr(image, name) for image in features])
+        np.stack([getattr(one, name) for one in features])
         for name in (
             *("outer", "first", "last", "far", "level", "size"),
             *("noise_level", "noise_texture"),
         )
     )
     cures = _SIMULATED_CURES if is_simulated else _MEASURED_CURES
-    strength = f"{_RELATIVE if is_relative else ''}{cures['strength']}"
+    strength = cures["strength"] if image is None else _level_cure(image)
     margins = [
         _margin("first columns", first, cures["onset"]),
         _margin("last columns", last, cures["onset"]),
@@ -202,7 +203,7 @@ def picture_evidence(
     return [
         *margins,
         _margin("all margins together", everything, "as above"),
-        mark_evidence([image.marks for image in features], label, size),
+        mark_evidence([one.marks for one in features], label, size),
         Evidence(EvidencePart.NOISE, "noise: its level", noise, cure=strength),
         Evidence(
             EvidencePart.NOISE,
@@ -219,7 +220,19 @@ def _margin(name: str, values: Float, cure: str) -> Evidence:
     return Evidence(EvidencePart.MARGINS, name, values, cure=cure, may_be_movement=True)
 
 
-_RELATIVE = "image.reference: noise, as levels are relative to each image's peak; "
+def _level_cure(image: ImageConfig) -> str:
+    """What to write into a config whose images tell the class by their level.
+
+    Noise has one law for all classes in every config: its keys take none by activity.
+    """
+    if image.kind == "decibel" and image.reference == "peak":
+        return "image.reference: noise, as levels are relative to each image's peak"
+    level = ""
+    if image.kind == "decibel" and image.reference == "noise":
+        level = ", and the level is how much moves beside the noise"
+    return f"it may be the movement: noise has one law for all classes{level}"
+
+
 _SIMULATED_CURES = {
     "onset": "timing.onset: {uniform: [0, 1]}, or windows cut anywhere",
     "strength": "snr_db: {uniform: [0, 30]}, one law for all classes",

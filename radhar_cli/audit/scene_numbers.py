@@ -1,6 +1,7 @@
 """Numbers of simulated scenes that are not the movement (`config.class_laws`), as evidence."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from radhar_cli.dataset.scene_fields import ERROR, ONSET
 from radhar_cli.numerics.arrays import Float, Index
 
 ON_CUE_S = 0.25  # standard deviation of an onset below which it is the same in all samples
+ENOUGH = 10  # samples of a class from which that is said
 FEW_VALUES = 6  # that are written as a choice
 
 
@@ -158,8 +160,16 @@ def _filled(single: Evidence) -> Float:
     return values
 
 
-def onsets_on_cue(data: Dataset, label: Index) -> Iterator[tuple[str, str, float, float]]:
-    """Yield (class, keys, mean s, standard deviation s) of onsets that hardly vary in a class."""
+class CueSentences(NamedTuple):
+    """What is said of onsets that hardly vary within a class, a sentence for each key."""
+
+    on_cue: list[str]
+    too_few: list[str]  # of classes with too few samples to tell
+
+
+def sentences_on_cue(data: Dataset, label: Index) -> CueSentences:
+    """Sentences on the onsets of samples with labels [N] that hardly vary within a class."""
+    on_cue, too_few = dict[str, list[str]](), dict[str, list[str]]()
     for field in data.fields:
         if not is_instant(field.key) or not field.key.endswith("_s"):
             continue
@@ -167,5 +177,17 @@ def onsets_on_cue(data: Dataset, label: Index) -> Iterator[tuple[str, str, float
         for number, name in enumerate(data.classes):
             known = values[label == number]
             known = known[np.isfinite(known)]
-            if known.size >= 2 and known.std() < ON_CUE_S:
-                yield name, field.key, float(known.mean()), float(known.std())
+            if known.size < 2 or known.std() >= ON_CUE_S:
+                continue
+            if known.size < ENOUGH:
+                too_few.setdefault(field.key, []).append(f"{name} ({known.size})")
+            else:
+                words = f"{name} {known.mean():.2f} s (sd {known.std():.2f})"
+                on_cue.setdefault(field.key, []).append(words)
+    return CueSentences(
+        [f"{key} is on cue: {', '.join(classes)}" for key, classes in on_cue.items()],
+        [
+            f"{key}: too few samples to tell whether it is on cue: {', '.join(classes)}"
+            for key, classes in too_few.items()
+        ],
+    )

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.activities.vocabulary import plain_word
 from radhar_cli.capture.array_files import check_npz
 from radhar_cli.capture.parser_errors import parser_errors_as_capture_errors
 from radhar_cli.config.yaml_reader import parse_yaml
@@ -28,9 +29,13 @@ from radhar_cli.numerics.arrays import Levels
 
 MAX_NPZ = 2**29  # bytes of its images, which are held
 MAX_TABLE = 2**22  # bytes
+MAX_DIGITS = 18  # of a label that is a number
 TABLES = {".csv", ".tsv", ".txt", ".yaml", ".yml"}
 # Names in use for columns of tables and arrays of an .npz; those that come first are taken.
-FILES = ("file", "filename", "file_name", "filepath", "path", "image", "img", "picture", "name")
+FILES = (
+    *("file", "filename", "file_name", "filepath", "file_path", "path"),
+    *("image", "image_path", "image_file", "image_name", "img", "img_path", "picture", "name"),
+)
 LABELS = ("label", "labels", "class", "class_name", "activity", "category", "target", "y")
 PERSONS = ("person", "persons", "subject", "subjects", "participant", "subject_id", "person_id")
 IMAGES = ("masks", "images", "x", "data")
@@ -109,7 +114,10 @@ def _list_tree(path: Path) -> ImageListing:
 
 
 def _read_rows(path: Path) -> list[dict[str, Any]]:
-    """Rows of a table, {name of its column in lower case: cell}; none of what is no table."""
+    """Rows of a table, {name of its column: cell}; none of what is no table.
+
+    Names of columns are in lower case, with underscores for spaces and hyphens.
+    """
     text = text_of(path, MAX_TABLE, CaptureError).removeprefix("\ufeff")
     if path.suffix.lower() in (".yaml", ".yml"):
         rows = parse_yaml(text, str(path))[0]
@@ -123,7 +131,7 @@ def _read_rows(path: Path) -> list[dict[str, Any]]:
         except csv.Error as error:
             raise CaptureError(f"{path}: is not CSV ({error})") from None
     return [
-        {str(name).strip().lower(): cell for name, cell in row.items() if name is not None}
+        {plain_word(str(name)): cell for name, cell in row.items() if name is not None}
         for row in rows
     ]
 
@@ -186,11 +194,11 @@ def _load_npz(
     del changed
     with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
         shapes = check_npz(archive)
-        names = _name_arrays(shapes)
+        names = _name_arrays(path, shapes)
         if int(np.prod(shapes[names.images][0], dtype=object)) > MAX_NPZ:
             raise ValueError(f"holds more than {MAX_NPZ} bytes of images")
         with np.load(path, allow_pickle=False) as arrays:
-            values, label = _levels(arrays[names.images]), _as_text(arrays[names.label].ravel())
+            values, label = _levels(arrays[names.images]), _as_text(arrays[names.label])
             classes, person = (
                 None if name is None else _as_text(arrays[name].ravel())
                 for name in (names.classes, names.person)
@@ -200,12 +208,21 @@ def _load_npz(
         images = np.unpackbits(values.view(np.uint8), axis=2) if packed else values.view(np.uint8)
         if images.max(initial=0) <= 1:
             images = images * np.uint8(255)
-        if label.dtype.kind in "iu":
+        if _is_one_hot(label):
+            raise ValueError(_describe_one_hot(path, names.label, label, classes is not None))
+        label = _as_numbers(label.ravel())
+        if label.dtype.kind in "iu" and label.size:
             if classes is None or not ((label >= 0) & (label < classes.size)).all():
-                raise ValueError(_describe_numbers(names.label, label))
+                raise ValueError(_describe_numbers(path, names.label, label))
             label = classes[label]
         if label.dtype.kind != "U" or len(label) != len(images):
-            raise ValueError(f"label should name the class of each of {len(images)} images")
+            raise ValueError(f"{names.label} should name the class of each of {len(images)} images")
+        for name in np.unique(label).tolist():
+            if not name[:1].isalpha():
+                raise ValueError(
+                    f"{names.label} = {name!r}: should be the name of a class, which begins with a "
+                    "letter"
+                )
         if person is not None and len(person) != len(images):
             raise ValueError(f"person should name the person in each of {len(images)} images")
     return images, label, person
@@ -220,10 +237,11 @@ class _ArrayNames(NamedTuple):
     classes: str | None
 
 
-def _name_arrays(shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> _ArrayNames:
+def _name_arrays(path: Path, shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> _ArrayNames:
     """Find the arrays of images, labels, persons and classes by their names.
 
     Args:
+        path: the .npz, for messages.
         shapes: {name: shape and kind of its numbers}.
 
     Raises:
@@ -234,7 +252,7 @@ def _name_arrays(shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> _ArrayNam
         x, y = ([spelt.get(f"{of}_{part}", of) for part in ("train", "test")] for of in "xy")
         raise ValueError(
             f"has {', '.join(x)}: should be one array, as split of the config cuts it; `python -c "
-            "\"import numpy as np; a = np.load('FILE.npz'); np.savez('joined.npz', images="
+            f"\"import numpy as np; a = np.load('{path}'); np.savez('joined.npz', images="
             f"np.concatenate([a['{x[0]}'], a['{x[1]}']]), label=np.concatenate([a['{y[0]}'], "
             f"a['{y[1]}']]))\"` joins them"
         )
@@ -270,14 +288,48 @@ def _levels(values: NDArray[Any]) -> NDArray[Any]:
     return np.stack([luminance(image) for image in values])
 
 
-def _describe_numbers(name: str, label: NDArray[Any]) -> str:
+def _is_one_hot(label: NDArray[Any]) -> bool:
+    """Whether labels are rows [N, K] of zeros, with a one in the column of the class."""
+    if label.ndim != 2 or label.shape[1] < 2 or label.dtype.kind not in "biuf":
+        return False
+    return bool(((label == 0) | (label == 1)).all() and (label.sum(axis=1) == 1).all())
+
+
+def _as_numbers(label: NDArray[Any]) -> NDArray[Any]:
+    """Labels [N] as integers where they are these in another type; others as they are."""
+    if label.dtype.kind == "U" and all(text.isdecimal() for text in label.tolist()):
+        is_number = max(map(len, label.tolist()), default=0) <= MAX_DIGITS
+    elif label.dtype.kind == "f":
+        is_number = bool((np.isfinite(label) & (label == np.trunc(label))).all())
+    else:
+        is_number = label.dtype.kind == "b"
+    return label.astype(np.int64) if is_number else label
+
+
+def _describe_numbers(path: Path, name: str, label: NDArray[Any]) -> str:
     """Say what numbers without names of classes need, with a command that adds them."""
-    names = ", ".join(f"'class_{number}'" for number in range(min(int(label.max()) + 1, 12)))
     return (
         f"{name} has the numbers {label.min()} to {label.max()}; should be indices into classes, "
-        "or texts; `python -c \"import numpy as np; np.savez('named.npz', **np.load('FILE.npz'), "
-        f'classes=[{names}])"` adds names, which are yours'
+        f"or texts; `python -c \"import numpy as np; np.savez('named.npz', **np.load('{path}'), "
+        f'{_example_classes(int(label.max()) + 1)})"` adds names, which are yours'
     )
+
+
+def _describe_one_hot(path: Path, name: str, label: NDArray[Any], has_classes: bool) -> str:
+    """Say what one-hot labels [N, K] should be, with a command that makes them so."""
+    classes = "" if has_classes else f", {_example_classes(label.shape[1])}"
+    return (
+        f'{name} is one-hot; should be np.argmax({name}, 1); `python -c "import numpy as np; a = '
+        f"dict(np.load('{path}')); a['{name}'] = np.argmax(a['{name}'], 1); "
+        f"np.savez('named.npz', **a{classes})\"` makes it so"
+        + ("" if has_classes else ", with names, which are yours")
+    )
+
+
+def _example_classes(count: int) -> str:
+    """The argument `classes` of a command, with names for so many classes."""
+    names = ", ".join(f"'class_{number}'" for number in range(min(count, 12)))
+    return f"classes=[{names}]"
 
 
 def _as_text(values: NDArray[Any]) -> NDArray[Any]:

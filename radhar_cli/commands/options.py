@@ -63,7 +63,10 @@ Tolerance: TypeAlias = Annotated[
 
 
 def find_activity(name: str | None, config: "Config", says_word: bool = True) -> "ActivityOfPeople":
-    """Find the activity that --activity names, and say so where it is another word for it.
+    """Find the activity that --activity names.
+
+    One of the twelve has the name of another word for it, as in `activities` of a config; of other
+    classes it is said which is taken.
 
     Args:
         name: value of --activity, or None.
@@ -73,6 +76,7 @@ def find_activity(name: str | None, config: "Config", says_word: bool = True) ->
     Raises:
         ConfigError: there is no such activity, or none is named and the config has several.
     """
+    from radhar_cli.activities.activity import class_called
     from radhar_cli.activities.vocabulary import is_other_word
     from radhar_cli.errors import ConfigError
     from radhar_cli.single_scene.request import activity_of
@@ -81,7 +85,13 @@ def find_activity(name: str | None, config: "Config", says_word: bool = True) ->
         activity = activity_of(name, config)
     except ConfigError as error:
         raise ConfigError(f"--activity: {error}") from None
-    if says_word and name is not None and is_other_word(name, activity.slug):
+    if name is None or not is_other_word(name, activity.slug):
+        return activity
+    classes = {known.slug: known for known in config.every_class if known.slug in config.classes}
+    called = class_called(name, classes)
+    if called.slug != activity.slug and called.number == activity.number:
+        return called
+    if says_word:
         tell(f"--activity: {name} is taken for {activity.slug}", err=True)
     return activity
 

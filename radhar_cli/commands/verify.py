@@ -114,6 +114,7 @@ def _is_sound(out: Path, samples: int, motion: Path | None) -> bool:
 def _leak_in_words(out: Path) -> str:
     """Say what tells the classes besides the movement, in a line, and which command says more."""
     from radhar_cli.audit.cheap import most_telling_number
+    from radhar_cli.audit.scene_numbers import sentences_on_cue
     from radhar_cli.config.class_laws import laws_by_class
     from radhar_cli.config.data_set import Config
     from radhar_cli.dataset.audited import audit_folder, read_audit
@@ -124,11 +125,11 @@ def _leak_in_words(out: Path) -> str:
     if stored is not None:
         leaks = [line for line in stored.lines if line.cure]
         count = f"{len(leaks)} of {len(stored.lines)} lines tell the class beyond chance"
-        return f"audited: {count}; see {audit_folder(out)}"
+        return "; ".join([f"audited: {count}", *stored.sentences, f"see {audit_folder(out)}"])
     with open_dataset(out) as data:
         telling, samples = most_telling_number(data), len(data)
-        laws = laws_by_class(data.config) if isinstance(data.config, Config) else []
-    lines = [*laws]
+        lines = laws_by_class(data.config) if isinstance(data.config, Config) else []
+        lines += sentences_on_cue(data, data.label[:].astype(int)).on_cue
     if telling is not None and telling.number is not None:
         key, share, chance = telling.number
         name = key if " " not in key else "when it begins or ends"
@@ -139,7 +140,8 @@ def _leak_in_words(out: Path) -> str:
         return f"{'; '.join(lines)}: {command}"
     none = ""
     if telling is not None and telling.is_enough:
-        none = "no scene number alone was seen to tell the class in more than "
+        but = " but when the movement begins, which was not tried," if telling.has_onset else ""
+        none = f"no scene number alone{but} was seen to tell the class in more than "
         none += f"{100 * telling.limit:.0f} %; "
     elif telling is not None:
         none = f"{samples} samples are too few to tell whether a scene number tells the class; "

@@ -1,13 +1,16 @@
 """`radhar view`: a web page that plays samples of a data set."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from radhar_cli.commands.learning_options import needs
 from radhar_cli.commands.options import Replace, refuse_to_replace
 from radhar_cli.commands.tell import report, tell
+
+if TYPE_CHECKING:
+    from radhar_cli.dataset.reading import Dataset
 
 
 def view(
@@ -49,8 +52,23 @@ def view(
         refuse_to_replace(out, overwrite, "view.html")
     with open_dataset(dataset) as data:
         rows = choose_rows(data, sample or [])
+        _tell_of_other_words(sample or [], data, rows)
         path = out or data.path.parent / "view.html"
         refuse_links(path.parent, path)
         write_page(sample_entries(data, rows), path)
     report(file=path, samples=len(rows))
     tell(str(path))
+
+
+def _tell_of_other_words(samples: list[str], data: "Dataset", rows: list[int]) -> None:
+    """Say which class is taken for each word of --sample that names it otherwise."""
+    from radhar_cli.activities.vocabulary import plain_word
+    from radhar_cli.dataset.layout import Rows
+
+    words = dict[str, str]()
+    for sample, row in zip(samples, rows, strict=False):
+        word, activity = sample.partition("/")[0], Rows.of(data.config)[row][0]
+        if word != activity.label and plain_word(word) != activity.slug:
+            words[word] = activity.slug
+    for word, slug in words.items():
+        tell(f"--sample: {word} is taken for {slug}, which the data set has", err=True)

@@ -197,9 +197,9 @@ def test_black_images_and_constant_columns(tmp_path):
 
 @pytest.fixture(scope="module")
 def data(tmp_path_factory):
-    """A small data set: of three classes six samples, which start at ranges of their own."""
+    """A small data set: of three classes ten samples, which start at ranges of their own."""
     folder = tmp_path_factory.mktemp("audit")
-    text = SMALL.replace("samples_per_class: 3", "samples_per_class: 6") + (
+    text = SMALL.replace("samples_per_class: 3", "samples_per_class: 10") + (
         "timing: {walk_stop_s: 2.0}\n"
     )
     text = text.replace(
@@ -324,7 +324,9 @@ def test_without_scikit_learn_it_says_what_to_install(tmp_path, monkeypatch):
 
 def test_verify_says_what_tells_most(data):
     ok("audit", data, "--quick", "--overwrite")
-    assert "lines tell the class beyond chance; see" in ok("verify", data, "--samples", "0").stdout
+    said = ok("verify", data, "--samples", "0").stdout
+    assert "lines tell the class beyond chance; " in said
+    assert "walk_stop_s is on cue" in said
 
 
 def test_verify_needs_no_scikit_learn(data, monkeypatch):
@@ -333,7 +335,9 @@ def test_verify_needs_no_scikit_learn(data, monkeypatch):
     (data / "audit/audit.json").unlink(missing_ok=True)
     monkeypatch.setitem(sys.modules, "sklearn", None)
     done = ok("verify", data, "--samples", "0")
-    assert "motion.range_m alone tells the class in 94 % (chance 33): radhar audit" in done.stdout
+    assert "motion.range_m alone tells the class in 100 % (chance 33): radhar audit" in done.stdout
+    assert "timing.walk_stop_s is on cue: " in done.stdout
+    assert done.stdout.index("is on cue") < done.stdout.index("motion.range_m alone")
 
 
 def test_a_damaged_audit_is_named(data):

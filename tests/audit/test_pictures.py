@@ -9,9 +9,12 @@ from radhar_cli.audit.pictures import (
     SIDE,
     band_contrast,
     bands_far_from_bodies,
+    picture_evidence,
     picture_features,
     select_noise,
 )
+from radhar_cli.config import Config
+from radhar_cli.config.image import ImageConfig
 
 ALL = list(range(SIDE))
 
@@ -66,3 +69,35 @@ def test_neighbours_alike_are_seen_in_the_texture():
     alike = picture_features(levels_of(smooth), ALL, None).noise_texture
     assert abs(alone[9]) < 0.1
     assert alike[9] == pytest.approx(0.5, abs=0.12)
+
+
+ONE_LAW = "it may be the movement: noise has one law for all classes"
+PEAK = "image.reference: noise, as levels are relative to each image's peak"
+
+
+@pytest.mark.parametrize(
+    ("image", "advice"),
+    [
+        (ImageConfig(), f"{ONE_LAW}, and the level is how much moves beside the noise"),
+        (ImageConfig(reference="peak"), PEAK),
+        (ImageConfig(reference={"dbm": -60.0}), ONE_LAW),
+        (ImageConfig(kind="cfar"), ONE_LAW),
+        (None, "snr_db: {uniform: [0, 30]}, one law for all classes"),
+    ],
+)
+def test_advice_on_levels_is_what_the_config_does_not_do_yet(image, advice):
+    rng = np.random.default_rng(0)
+    features = [picture_features(levels_of(body(rng)), ALL, None) for _ in range(4)]
+    evidence = picture_evidence(features, np.arange(4) % 2, (48, 48), True, image)
+    by_level = {"levels: mean, spread", "noise: its level", "rows far from bodies"}
+    cures = {one.name: one.cure for one in evidence}
+    assert {cures[name] for name in by_level} == {advice}
+
+
+@pytest.mark.parametrize("key", ["snr_db", "receiver.noise_figure_db"])
+def test_noise_has_one_law_for_all_classes(key):
+    """By which advice on levels names no key of noise where the config is known."""
+    section, _, name = key.rpartition(".")
+    by_class = {name: {"per_activity": {"default": 30.0, "walking": 10.0}}}
+    with pytest.raises(ValueError, match=f"(?s){key}.*should be a number"):
+        Config(activities=["walking"], **({section: by_class} if section else by_class))

@@ -1,11 +1,20 @@
 """Which numbers of a scene are the movement, and what to write where one tells the class."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from radhar_cli.audit.scene_numbers import cure_of, is_instant, is_of_movement, one_law
+from radhar_cli.audit.scene_numbers import (
+    cure_of,
+    is_instant,
+    is_of_movement,
+    one_law,
+    sentences_on_cue,
+)
 from radhar_cli.config import Config
 from radhar_cli.config.annotations import annotations
+from radhar_cli.dataset.scene_fields import ONSET
 
 
 @pytest.mark.parametrize(
@@ -57,3 +66,20 @@ def test_what_to_write_instead():
     assert cure.startswith("leave timing.seat_start_s, timing.walk_stop_s null, and write")
     assert cure.endswith("timing.onset: {uniform: [0, 1]}")
     assert "timing.visible" in cure_of("movement_onset_s", ranges, True)
+
+
+@pytest.mark.parametrize("count", [3, 9, 10, 40])
+def test_few_samples_do_not_say_that_an_onset_is_on_cue(count):
+    onset = np.concatenate([np.full(count, 1.5), np.linspace(0, 3, count), np.full(count, np.nan)])
+    data = SimpleNamespace(
+        fields=(ONSET,), scene={ONSET.name: onset}, classes=("falling", "walking", "sitting")
+    )
+    said = sentences_on_cue(data, np.repeat([0, 1, 2], count))
+    if count < 10:
+        assert said.on_cue == []
+        assert said.too_few == [
+            f"movement_onset_s: too few samples to tell whether it is on cue: falling ({count})"
+        ]
+    else:
+        assert said.on_cue == ["movement_onset_s is on cue: falling 1.50 s (sd 0.00)"]
+        assert said.too_few == []

@@ -166,6 +166,8 @@ TABLES = {
     "deep.txt": ("path,class_name,participant,date", "a/b/{name},{label},{person},2024", "a/b"),
     "windows.csv": ("file,label,person", "a\\{name},{label},{person}", "a"),
     "stems.csv": ("name,target,person", "{stem},{label},{person}", ""),
+    "paths.csv": ("image_path,activity,subject_id", "{name},{label},{person}", ""),
+    "spaces.csv": ("Image Path,Class Name,Person-ID", "{name},{label},{person}", ""),
     "list.yaml": ("", "- {{file: {name}, label: {label}, person: {person}}}", ""),
 }
 
@@ -257,14 +259,66 @@ def test_arrays_have_the_names_in_use(tmp_path: Path, arrays: dict[str, np.ndarr
         assert np.array_equal(levels, one * 255)
 
 
-def test_numbers_without_names_are_refused_with_a_command_that_adds_them(tmp_path: Path) -> None:
-    """The command makes a file that is read."""
-    np.savez(tmp_path / "FILE.npz", x_train=masks(), y_train=np.arange(12) % 3)
+@pytest.mark.parametrize("name", ["FILE.npz", "my masks.npz"])
+@pytest.mark.parametrize("kind", [int, float, str, bytes])
+def test_numbers_without_names_are_refused_with_a_command_that_adds_them(
+    tmp_path: Path, kind: type, name: str
+) -> None:
+    """The command makes a file that is read, whatever type the numbers have."""
+    label = (np.arange(12) % 3).astype(str if kind is bytes else kind)
+    if kind is bytes:
+        label = label.astype("S1")
+    np.savez(tmp_path / name, x_train=masks(), y_train=label)
     with pytest.raises(CaptureError, match="y_train has the numbers 0 to 2") as caught:
-        list_images(tmp_path / "FILE.npz", packed=False)
+        list_images(tmp_path / name, packed=False)
+    assert "\n" not in str(caught.value)
     run_command_of(str(caught.value), tmp_path)
     labels = [part["label"] for part in list_images(tmp_path / "named.npz", packed=False).parts]
     assert labels == [f"class_{n % 3}" for n in range(12)]
+
+
+@pytest.mark.parametrize("kind", [np.uint8, float, bool])
+@pytest.mark.parametrize("classes", [None, CLASSES])
+def test_one_hot_labels_are_refused_with_a_command_that_makes_indices(
+    tmp_path: Path, classes: tuple[str, ...] | None, kind: type
+) -> None:
+    more = {} if classes is None else {"classes": np.array(classes)}
+    label = np.eye(3, dtype=kind)[np.arange(12) % 3]
+    np.savez(tmp_path / "hot.npz", images=masks(), labels=label, **more)
+    with pytest.raises(
+        CaptureError, match=r"is one-hot; should be np.argmax\(labels, 1\)"
+    ) as caught:
+        list_images(tmp_path / "hot.npz", packed=False)
+    run_command_of(str(caught.value), tmp_path)
+    labels = [part["label"] for part in list_images(tmp_path / "named.npz", packed=False).parts]
+    names = classes or ("class_0", "class_1", "class_2")
+    assert labels == [names[n % 3] for n in range(12)]
+
+
+@pytest.mark.parametrize(
+    ("label", "message"),
+    [
+        (np.array(["1 walking", "falling"] * 6), "labels = '1 walking': should be the name of a"),
+        (np.array(["", "falling"] * 6), "labels = '': should be the name of a class"),
+        (np.ones((12, 3)), "labels should name the class of each of 12 images"),
+        (np.full(12, np.nan), "labels should name the class of each of 12 images"),
+        (np.array(["9" * 30] * 12), "labels = '999"),
+    ],
+)
+def test_labels_that_name_no_class_are_a_line(
+    tmp_path: Path, label: np.ndarray, message: str
+) -> None:
+    np.savez(tmp_path / "x.npz", images=masks(), labels=label, classes=np.array(CLASSES))
+    with pytest.raises(CaptureError, match=message) as caught:
+        list_images(tmp_path / "x.npz", packed=False)
+    assert "\n" not in str(caught.value)
+
+
+def test_texts_of_digits_are_indices_into_classes(tmp_path: Path) -> None:
+    label = (np.arange(12) % 3).astype(str)
+    np.savez(tmp_path / "x.npz", images=masks(), labels=label, classes=np.array(CLASSES))
+    labels = [part["label"] for part in list_images(tmp_path / "x.npz", packed=False).parts]
+    assert labels == [CLASSES[n % 3] for n in range(12)]
 
 
 def test_two_parts_are_joined_by_the_command_that_is_said(tmp_path: Path) -> None:
@@ -273,6 +327,7 @@ def test_two_parts_are_joined_by_the_command_that_is_said(tmp_path: Path) -> Non
     np.savez(tmp_path / "FILE.npz", **arrays)  # type: ignore[arg-type]
     with pytest.raises(CaptureError, match="has x_train, x_test: should be one array") as caught:
         list_images(tmp_path / "FILE.npz", packed=False)
+    assert str(tmp_path / "FILE.npz") in str(caught.value).split("`")[1]
     run_command_of(str(caught.value), tmp_path)
     labels = [part["label"] for part in list_images(tmp_path / "joined.npz", packed=False).parts]
     assert labels == LABELS.tolist()

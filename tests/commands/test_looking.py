@@ -6,8 +6,9 @@ from shutil import copytree
 
 import h5py
 import numpy as np
+import pytest
 from helpers.command_line import ok, radhar
-from helpers.small import small_config
+from helpers.small import SMALL, small_config
 
 from radhar_cli.config.maps import CADENCE_MAPS, MAP_NAMES
 
@@ -162,3 +163,27 @@ def test_an_index_that_no_data_set_has_is_warned_of(tmp_path):
     done = ok(*what, "-o", tmp_path / "a", "--index", 3)
     assert "--index 3: a data set of this config has the samples 0 to 2 of walking" in done.stderr
     assert "--index" not in radhar(*what, "-o", tmp_path / "b", "--index", 2).stderr
+
+
+@pytest.mark.parametrize(
+    ("word", "slug", "said"),
+    [
+        ("boxing", "boxing", ""),
+        ("Shadow-Boxing", "shadow_boxing", ""),
+        ("Punching", "punching", ""),
+        ("S2", "punching", ""),
+        ("crawl", "crawling", "--activity: crawl is taken for crawling\n"),
+    ],
+)
+def test_a_word_for_one_of_the_twelve_is_kept(tmp_path, word, slug, said):
+    """As `activities` of a config keeps it; the scene is the same by any name."""
+    config = small_config(tmp_path, SMALL.replace("motion: {model: paper}", ""))
+    look = ("simulate", config, "--no-figures", "--maps", "stft")
+    done = ok(*look, "--activity", word, "-o", tmp_path / "out")
+    assert done.stderr == said
+    scene = json.loads((tmp_path / "out/scene.json").read_text())
+    assert scene["activity"]["slug"] == slug
+    if slug.endswith("boxing"):
+        ok(*look, "--activity", "punching", "-o", tmp_path / "other")
+        other = json.loads((tmp_path / "other/scene.json").read_text())
+        assert other["parameters"] == scene["parameters"]

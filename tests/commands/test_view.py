@@ -136,6 +136,26 @@ def test_view_says_what_it_cannot_show(small_set, options, said, tmp_path):
     assert refused.stderr.count("\n") == 1
 
 
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("boxing", "--sample: boxing is taken for punching, which the data set has\n"),
+        (
+            "shadow boxing",
+            "--sample: shadow boxing is taken for punching, which the data set has\n",
+        ),
+        ("punching", ""),
+        ("Punching", ""),
+        ("S2", ""),
+    ],
+)
+def test_view_says_which_class_is_taken_for_another_word(small_set, word, said, tmp_path):
+    done = ok("view", small_set, "--sample", f"{word}/1", "-o", tmp_path / "view.html")
+    assert done.stderr == said
+    (scene,) = scenes(tmp_path / "view.html")
+    assert "punching/1" in json.dumps(scene)
+
+
 def test_a_skeleton_is_of_the_stored_scene_or_not_there(small_set, tmp_path):
     with edited(small_set / "dataset.h5", tmp_path / "dataset.h5") as file:
         file["scene/snr"][0] = 29.5

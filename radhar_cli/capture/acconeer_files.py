@@ -148,10 +148,12 @@ def _choose_subsweep(subsweeps: list[Subsweep], number: int | None, where: str) 
         ranges = "; ".join(
             f"{n}: {s.points} points every {s.text}" for n, s in enumerate(subsweeps)
         )
-        several = f"{len(subsweeps)} subsweep{'s' * (len(subsweeps) > 1)}"
+        last = len(subsweeps) - 1
+        several = f"{last + 1} subsweeps" if last else "1 subsweep"
+        which = f"say which is read, from 0 to {last}" if last else "be 0 or left out"
         raise CaptureError(
             f"{where}: is an acconeer recording of {several} ({ranges}); --set subsweep=N should "
-            f"say which is read, from 0 to {len(subsweeps) - 1}"
+            + which
         )
     return subsweeps[number]
 

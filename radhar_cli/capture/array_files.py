@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 from math import prod
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from radhar_cli.capture.named_arrays import ArrayNames, choose_arrays
 from radhar_cli.capture.named_parts import is_quadrature_first
 from radhar_cli.capture.packed_files import MAX_PACKING
 from radhar_cli.capture.parser_errors import parser_errors_as_capture_errors
-from radhar_cli.capture.point_tables import refuse_array_of_points, refuse_file_of_points
+from radhar_cli.capture.point_tables import HOW, refuse_array_of_points, refuse_file_of_points
 from radhar_cli.capture.pulse_clock import seconds_of
 from radhar_cli.capture.raw_files import map_raw
 from radhar_cli.capture.settings import NO_TIMES
@@ -56,8 +56,20 @@ class Arrays(NamedTuple):
 
 
 def _open_npy(path: Path, files: CaptureFiles) -> Arrays:
-    """Map the array of a .npy file."""
+    """Map the array of a .npy file.
+
+    Raises:
+        CaptureError: it holds Python objects, such as frames of unequal shapes.
+    """
     del files
+    with parser_errors_as_capture_errors(str(path)), path.open("rb") as file:
+        shape, dtype = _read_header(file)
+        if dtype.hasobject:
+            raise CaptureError(
+                f"{path}: is an array {[*shape]} of Python objects, which are not read, as they "
+                "can run code; should be numbers: np.save(OUT, np.stack(FRAMES)) of samples; of "
+                f"points {HOW}"
+            )
     return Arrays(UNNAMED, {"": _map_npy(path, str(path))})
 
 
@@ -88,6 +100,15 @@ def _open_npz(path: Path, files: CaptureFiles) -> Arrays:
         return Arrays(names, arrays)
 
 
+def _read_header(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype[Any]]:
+    """Read shape and type of an array that NumPy has written."""
+    form = np.lib.format
+    old = form.read_magic(file) == (1, 0)
+    read = form.read_array_header_1_0 if old else form.read_array_header_2_0
+    shape, _, dtype = read(file)
+    return shape, dtype
+
+
 def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]]:
     """Check the arrays of an .npz by their headers: {name: (shape, kind of its type)}.
 
@@ -101,10 +122,7 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
         if member.file_size > MAX_PACKING * max(member.compress_size, 1024):
             raise ValueError(f"{member.filename} is compressed {MAX_PACKING}-fold or more")
         with archive.open(member) as file:
-            form = np.lib.format
-            old = form.read_magic(file) == (1, 0)
-            read = form.read_array_header_1_0 if old else form.read_array_header_2_0
-            shape, _, dtype = read(file)
+            shape, dtype = _read_header(file)
         if not dtype.hasobject and prod(shape) * dtype.itemsize > member.file_size:
             raise ValueError(f"{member.filename} has the shape {shape}, but too few bytes")
         arrays[member.filename.removesuffix(".npy")] = shape, dtype.kind

@@ -128,6 +128,10 @@ def test_of_several_subsweeps_one_is_read(tmp_path):
         assert info.content.bandwidth_hz == pytest.approx(SPEED_OF_LIGHT / (2 * width_m))
     with pytest.raises(CaptureError, match="from 0 to 1"):
         taken(tmp_path, "a121.h5", "subsweep=2")
+    with pytest.raises(
+        CaptureError, match=r"of 1 subsweep \(0: .*; --set subsweep=N should be 0 or"
+    ):
+        taken(tmp_path, "whole.h5", "subsweep=2")
 
 
 def test_of_several_sensors_of_acconeer_one_is_asked_for(tmp_path):

@@ -1,6 +1,7 @@
 """Joint sets of recordings without names: by their number, and by what makes a body."""
 
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.joint_frames import blend
 from radhar_cli.motion.files.joint_sets import sets_of_size
 from radhar_cli.motion.files.keypoints import Keypoints
-from radhar_cli.motion.files.names import WANTED, JointMean, JointNames, joint_means
+from radhar_cli.motion.files.names import HIP_JOINTS, WANTED, JointMean, JointNames, joint_means
 from radhar_cli.motion.files.position_arrays import refuse_images
 from radhar_cli.motion.files.proportions import is_body
 from radhar_cli.motion.files.recording import motion_file_error
@@ -27,26 +28,29 @@ def arrange_joints(
         joints: Joints as a config says them, or None.
 
     Returns:
-        The recording, with what there is to say of it among its remarks; its numbers are taken for
-        all x, then all y, then all z, as MARS's labels have them, where only that makes a body.
+        The recording, with what there is to say of it among its remarks: of its readings the
+        first that makes a body, with x, y, z of each joint or, as MARS's labels have them, all x,
+        then all y, then all z. Where none does, the first that has the joints of a config.
         The joints, or the key of the one set in whose order they make a body where a file has no
         names and a config says none.
 
     Raises:
         MotionFileError: No known set does, or more than one.
     """
-    by_axis = _take_by_axis(file)
+    readings = (file, *file.others)
+    orders = (order for reading in readings for order in (reading, _take_by_axis(reading)))
     if file.is_named or joints:
-        is_by_axis = _plausible_body(file, joints or {}) is None and (
-            _plausible_body(by_axis, joints or {}) is not None
-        )
-        chosen = by_axis if is_by_axis else file
+        said = joints or {}
+        bodies = (order for order in orders if _plausible_body(order, said) is not None)
+        having = (reading for reading in readings if _find_means(reading, said) is not None)
+        chosen = next(chain(bodies, having), file)
     else:
-        keys = _fitting_sets(file)
-        chosen, keys = (file, keys) if keys else (by_axis, _fitting_sets(by_axis))
-        joints = _only_set(file, keys)
-        title = sets_of_size(len(file.names))[joints].title
-        remark = f"its {len(file.names)} joints have no names: taken in the order of {title}"
+        fitting = ((order, keys) for order in orders if (keys := _fitting_sets(order)))
+        chosen, keys = next(fitting, (file, []))
+        joints = _only_set(chosen, keys)
+        count = len(chosen.names)
+        remark = f"its {count} joints have no names: taken in the order of "
+        remark += sets_of_size(count)[joints].title
         chosen = replace(chosen, remarks=(*chosen.remarks, remark))
     if chosen is not file:
         refuse_images(chosen.values, chosen.where)
@@ -93,14 +97,25 @@ def _only_set(file: Keypoints, keys: list[str]) -> str:
 
 def _plausible_body(file: Keypoints, joints: JointNames) -> list[JointMean | None] | None:
     """What joints are taken for which, by a set's order or by name; None if they make no body."""
+    means = _find_means(file, joints)
+    if means is None:
+        return None
+    hip = means[WANTED.index("hip")]
+    chosen = [mean for mean in (mean or hip for mean in means) if mean is not None]
+    numbers = sorted({n for mean in chosen for n in mean.numbers})
+    step = -(-len(file.values) // SAMPLED)
     try:
-        means = joint_means(file, joints)
-        hip = means[WANTED.index("hip")]
-        chosen = [mean for mean in (mean or hip for mean in means) if mean is not None]
-        numbers = sorted({n for mean in chosen for n in mean.numbers})
-        step = -(-len(file.values) // SAMPLED)
         sampled = file.positions(numbers)[::step]
     except MotionFileError:
         return None
+    has_hip_joints = all(means[WANTED.index(joint)] for joint in HIP_JOINTS)
     with np.errstate(invalid="ignore"):
-        return means if is_body(blend(sampled, numbers, chosen)) else None
+        return means if is_body(blend(sampled, numbers, chosen), has_hip_joints) else None
+
+
+def _find_means(file: Keypoints, joints: JointNames) -> list[JointMean | None] | None:
+    """What joints are taken for which, by a set's order or by name; None if one is not there."""
+    try:
+        return joint_means(file, joints)
+    except MotionFileError:
+        return None

@@ -22,10 +22,10 @@ from radhar_cli.motion.files.keypoints import (
     TIME_UNITS,
     Keypoints,
     describe_array,
-    make_keypoints,
+    make_from_readings,
 )
 from radhar_cli.motion.files.plain_names import canonical_name, own_names, text_of_names
-from radhar_cli.motion.files.position_arrays import SIZES, shape_positions
+from radhar_cli.motion.files.position_arrays import SIZES, find_readings
 from radhar_cli.motion.files.recording import MAX_BYTES, MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.numerics.arrays import Float
 
@@ -90,7 +90,7 @@ def read_npy(data: bytes, where: str) -> Keypoints:
         MotionFileError: Names the file and what is odd.
     """
     positions = parse_array(data, "it", where)
-    return make_keypoints(where, None, shape_positions(positions, None, where))
+    return make_from_readings(where, None, find_readings(positions, None, where))
 
 
 def _read_archive(archive: zipfile.ZipFile, where: str) -> Keypoints:
@@ -99,14 +99,15 @@ def _read_archive(archive: zipfile.ZipFile, where: str) -> Keypoints:
     names = _find_names(archive, members, where)
     positions, names = _find_positions(archive, members, names, where)
     times, rate = _times(archive, members, where), _rate(archive, members, where)
-    values = shape_positions(positions, names, where)
+    readings = find_readings(positions, names, where)
     confidence_key = _first_of(_CONFIDENCES, members)
     if confidence_key is not None:
         confidence = _read_array(archive, confidence_key, MAX_BYTES, where).squeeze()
-        if confidence.shape == values.shape[:2] and confidence.dtype.kind in "iufb":
+        fitting = [values for values in readings if values.shape[:2] == confidence.shape]
+        if fitting and confidence.dtype.kind in "iufb":
             is_lost = (confidence == 0)[..., None]
-            values = np.where(is_lost, np.nan, values[..., :3].astype(float))
-    return make_keypoints(where, names, values, rate, None if rate else times)
+            readings = [np.where(is_lost, np.nan, v[..., :3].astype(float)) for v in fitting]
+    return make_from_readings(where, names, readings, rate, None if rate else times)
 
 
 def _find_names(archive: zipfile.ZipFile, members: Sequence[str], where: str) -> list[str] | None:
@@ -135,7 +136,7 @@ def _find_positions(
         MotionFileError: Nothing is an array of positions, or several arrays may be.
     """
     is_body_model = bool(_BODY_MODEL & {name.lower() for name in members})
-    key = _first_of(_POSITIONS, members)
+    key = members[0] if members == ["arr_0"] else _first_of(_POSITIONS, members)
     if key is not None and _read_array(archive, key, MAX_BYTES, where).dtype.kind in "US":
         key = _first_of([name for name in _POSITIONS if name != key], members)
     if key is not None:

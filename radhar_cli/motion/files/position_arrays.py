@@ -1,8 +1,9 @@
 """Arrays of positions in the shapes that people save: which axis is frames, joints, coordinates.
 
 Coordinates are the axis of 3, of 4 with a confidence, or of 5 with MediaPipe's visibility and
-presence. Joints are the axis of as many as there are names, or as a joint set has; frames the other
-one. Of several people the only one who is there is taken.
+presence. Joints are the axis of as many as there are names. Without names an array can often be
+read in several ways, of which the one is right that makes a body. Of several people the only one
+who is there is taken.
 """
 
 from collections.abc import Collection
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.recording import motion_file_error
+from radhar_cli.motion.files.recording import MAX_FRAMES, MAX_JOINTS, motion_file_error
 
 SIZES = frozenset(len(joint_set.names) for joint_set in JOINT_SETS.values())
 WIDTHS = (3, 4, 5)  # x, y, z; a confidence; visibility and presence
@@ -22,10 +23,10 @@ MAX_PEOPLE = 20
 FLAT = 0.01
 
 
-def shape_positions(
+def find_readings(
     positions: NDArray[Any], names: Collection[str] | None, where: str
-) -> NDArray[Any]:
-    """Positions [frames, J, 3 or 4] of an array that has them in another usual shape.
+) -> list[NDArray[Any]]:
+    """Positions [frames, J, 3 or 4] in all ways in which an array of a usual shape can be read.
 
     Args:
         positions: Numbers in any order of frames, joints and coordinates, with joints and
@@ -33,27 +34,29 @@ def shape_positions(
         names: Names of the J joints, or None.
         where: Name of the file in messages.
 
+    Returns:
+        At least one reading. Frames are the first axis of the first one, but those with fewer
+        frames than joints come last; what is no positions is returned as it is.
+
     Raises:
         MotionFileError: The array has two coordinates, or several people, or is no positions.
     """
     squeezed = _drop_single_axes(positions)
-    if squeezed.ndim == 2:
-        squeezed = _split_columns(squeezed, names)
     if squeezed.ndim == 4:
         squeezed = _choose_person(squeezed, names, where)
-    if squeezed.ndim != 3:
-        problem = f"positions should be [frames, J, 3] of one person, not {_describe(positions)}"
-        raise motion_file_error(where, problem)
-    ordered = _order_axes(squeezed, names)
-    if ordered is None:
+    if squeezed.ndim not in (2, 3):
+        raise motion_file_error(where, _no_positions(positions))
+    readings = (
+        _split_columns(squeezed, names) if squeezed.ndim == 2 else _order_axes(squeezed, names)
+    )
+    if not readings:
+        if squeezed.ndim == 2:
+            raise motion_file_error(where, _no_positions(positions))
         if 2 in squeezed.shape:
             raise motion_file_error(where, two_dimensional("positions have two coordinates"))
-        return squeezed
-    if ordered.shape[2] == 5:
-        ordered = np.concatenate([ordered[..., :3], ordered[..., 3:].min(2, keepdims=True)], 2)
-    if ordered.shape[2] == 4 and not ordered[..., 3].any():
-        ordered = ordered[..., :3]  # zeros throughout are no confidence
-    return ordered
+        return [squeezed]
+    readings.sort(key=lambda reading: len(reading) < reading.shape[1])
+    return [_merge_confidences(reading) for reading in readings]
 
 
 def two_dimensional(finding: str) -> str:
@@ -81,8 +84,19 @@ def refuse_images(positions: NDArray[Any], where: str) -> None:
         )
 
 
-def _describe(array: NDArray[Any]) -> str:
-    return f"{array.dtype} {list(array.shape)}"
+def _no_positions(array: NDArray[Any]) -> str:
+    shape = f"{array.dtype} {list(array.shape)}"
+    return f"positions should be [frames, J, 3] of one person, not {shape}"
+
+
+def _merge_confidences(positions: NDArray[Any]) -> NDArray[Any]:
+    """Positions [frames, J, 3 or 4] of [frames, J, 3, 4 or 5]: the least of two confidences."""
+    if positions.shape[2] == 5:
+        least = positions[..., 3:].min(2, keepdims=True)
+        positions = np.concatenate([positions[..., :3], least], 2)
+    if positions.shape[2] == 4 and not positions[..., 3].any():
+        positions = positions[..., :3]  # zeros throughout are no confidence
+    return positions
 
 
 def _drop_single_axes(positions: NDArray[Any]) -> NDArray[Any]:
@@ -93,44 +107,29 @@ def _drop_single_axes(positions: NDArray[Any]) -> NDArray[Any]:
     return positions.reshape(keep) if len(keep) >= 2 else positions
 
 
-def _split_columns(positions: NDArray[Any], names: Collection[str] | None) -> NDArray[Any]:
-    """Array [frames, J, 3 or 4] of one whose columns, or rows, are the coordinates of joints."""
-    for table in (positions, positions.T):
+def _split_columns(table: NDArray[Any], names: Collection[str] | None) -> list[NDArray[Any]]:
+    """Arrays [frames, J, 3 or 4] of a table whose columns, or rows, are coordinates of joints."""
+    readings = []
+    for rows in (table, table.T):
         for width in WIDTHS[:2]:
-            count, over = divmod(table.shape[1], width)
-            if over or not (count in SIZES if names is None else count == len(names)):
-                continue
-            split = table.reshape(len(table), count, width)
-            is_doubtful = names is None and width == 3 and _may_be_confident(table)
-            if not is_doubtful:
-                return split
-    if positions.shape[1] and positions.shape[1] % 3 == 0:
-        return positions.reshape(len(positions), -1, 3)
-    return positions
+            count, over = divmod(rows.shape[1], width)
+            is_of_names = names is None or count == len(names)
+            if not over and is_of_names and 0 < count <= MAX_JOINTS and len(rows) <= MAX_FRAMES:
+                readings.append(rows.reshape(len(rows), count, width))
+    if not readings and table.shape[1] and table.shape[1] % 3 == 0:
+        return [table.reshape(len(table), -1, 3)]
+    return readings
 
 
-def _may_be_confident(table: NDArray[Any]) -> bool:
-    """Whether every fourth column of a table is a confidence of a joint set's joints."""
-    if table.shape[1] % 4 or table.shape[1] // 4 not in SIZES or table.dtype.kind not in "iuf":
-        return False
-    confidence, rest = table[:, 3::4], np.delete(table, np.s_[3::4], axis=1)
-    is_share = bool((confidence >= 0).all() and (confidence <= 1).all())
-    return is_share and not bool((rest >= 0).all() and (rest <= 1).all())
-
-
-def _order_axes(positions: NDArray[Any], names: Collection[str] | None) -> NDArray[Any] | None:
-    """Array as [frames, J, coordinates]; None where no order of its axes makes one."""
+def _order_axes(positions: NDArray[Any], names: Collection[str] | None) -> list[NDArray[Any]]:
+    """Array as [frames, J, coordinates] in all orders of its axes that can be."""
     orders = ((0, 1, 2), (1, 0, 2), (0, 2, 1), (1, 2, 0), (2, 0, 1), (2, 1, 0))
     as_positions = [order for order in orders if positions.shape[order[2]] in WIDTHS]
     # Confidences come last, and an axis of 5 alone may as well be one of joints or frames.
     as_positions = [o for o in as_positions if positions.shape[o[2]] == 3 or o[2] == 2]
     if names is not None:
-        fitting = [order for order in as_positions if positions.shape[order[1]] == len(names)]
-        as_positions = fitting
-    else:
-        known = [order for order in as_positions if positions.shape[order[1]] in SIZES]
-        as_positions = known or as_positions
-    return np.transpose(positions, as_positions[0]) if as_positions else None
+        as_positions = [o for o in as_positions if positions.shape[o[1]] == len(names)]
+    return [np.transpose(positions, order) for order in as_positions]
 
 
 def _choose_person(

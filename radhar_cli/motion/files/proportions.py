@@ -34,14 +34,19 @@ _BONES = {
     "half of the hip": _BoneRange("hip", "{}_hip_joint", 0.02, 0.3),
     "way between the shoulders": _BoneRange("right_shoulder", "left_shoulder", 0.2, 0.8),
 }
-_SHORT = "half of the hip"  # noise alone makes it wobble, and it is 0 where a file has a hip only
+_SHORT = "half of the hip"  # noise alone makes it wobble
 _RIGHT, _LEFT = (WANTED.index(f"{side}_shoulder") for side in ("right", "left"))
 
 
-def is_body(p: Float) -> bool:
-    """Whether joints [frames, 15, 3] have the proportions of a body, and keep them."""
+def is_body(p: Float, has_hip_joints: bool) -> bool:
+    """Whether joints [frames, 15, 3] have the proportions of a body, and keep them.
+
+    Args:
+        p: Positions of WANTED.
+        has_hip_joints: Whether hip joints are other points than the hip.
+    """
     medians = {}
-    for bone in _BONES:
+    for bone in _BONES if has_hip_joints else [bone for bone in _BONES if bone != _SHORT]:
         for side in ("right", "left"):
             length = _lengths(p, bone, side)
             known = length[np.isfinite(length)]

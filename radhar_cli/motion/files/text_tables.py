@@ -5,8 +5,14 @@ from itertools import pairwise
 import numpy as np
 
 from radhar_cli.files.clocks import seconds_of_texts
-from radhar_cli.motion.files.keypoints import TIME_UNITS, Keypoints, make_keypoints
+from radhar_cli.motion.files.keypoints import (
+    TIME_UNITS,
+    Keypoints,
+    make_from_readings,
+    make_keypoints,
+)
 from radhar_cli.motion.files.long_tables import find_long_heading, read_long
+from radhar_cli.motion.files.position_arrays import find_readings
 from radhar_cli.motion.files.recording import MAX_JOINTS, motion_file_error
 from radhar_cli.motion.files.table_headings import (
     UNITS,
@@ -198,4 +204,4 @@ def _without_names(table: CellTable) -> Keypoints:
             where, f"has {width} columns without names; should have x, y, z of each joint"
         )
     rate = None if times is not None else rate_above(table, begin)
-    return make_keypoints(where, None, numbers.reshape(len(numbers), -1, 3), rate, times)
+    return make_from_readings(where, None, find_readings(numbers, None, where), rate, times)

@@ -30,6 +30,7 @@ from radhar_cli.capture.lost_packets import (
     FilledWords,
     WordStream,
     fill_losses,
+    missing_packets,
 )
 from radhar_cli.capture.point_tables import refuse_file_of_points
 from radhar_cli.capture.settings import CaptureSettings
@@ -50,6 +51,9 @@ REPEATS = 0.6  # least correlation of a repetition
 ALIKE = 0.7  # least share of the best correlation at the length that the header gives
 MOST_JOINED, FEWEST_JOINED = 8, 16  # chirps that are taken for one, and samples of each
 JUMP = 2.0  # square of a jump between chirps, over the largest step within them
+WAYS_OUT = (
+    "record again, or import the packets as they came (.pcap, or _Raw_0.bin with their headers)"
+)
 _NUMBERED = re.compile(r"(.*_)(\d+)(\.bin)", re.IGNORECASE)
 
 
@@ -174,7 +178,7 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     notes = list[str]()
     packets = unpack_packets(files, capture.scratch, 2 * settings.words_of_a_frame, notes)
     stored = Words([packets] if packets else files)
-    words = _filled(stored, settings, notes) if packets is None else stored
+    words = _filled(stored, files[0], settings, notes) if packets is None else stored
     layout, pulses = _layout_of(words, files[0], settings, header, notes)
     _check_length(words, files[0], layout, pulses, settings, header)
     if note := _note_of_joined_chirps(words, layout, pulses, settings):
@@ -234,35 +238,61 @@ def decode(words: NDArray[np.uint16], s: CaptureSettings) -> Parts:
     return samples.reshape(-1, s.samples, samples.shape[3], parts)
 
 
-def _filled(words: Words, s: CaptureSettings, notes: list[str]) -> Words | FilledWords:
-    """Put zeros where a stream that is no whole number of frames lacks packets; add a note."""
-    frame = s.words_of_a_frame
-    if words.bytes % (frame * WORD.itemsize) == 0:
+def _filled(words: Words, path: Path, s: CaptureSettings, notes: list[str]) -> Words | FilledWords:
+    """Put zeros where a stream that is no whole number of frames lacks packets; add a note.
+
+    Raises:
+        CaptureError: packets may be missing at the beginning, so that no pulse can be assigned.
+    """
+    frame, period = s.words_of_a_frame * WORD.itemsize, s.frame_words or s.words_of_a_pulse
+    if words.bytes % frame == 0:
         return words
     unit = "frames" if s.frame_pulses or s.frame_words else "pulses"
-    size = f"{words.bytes} bytes are no whole number of {unit} of {frame * WORD.itemsize} bytes"
-    filled = fill_losses(words, s.frame_words or s.words_of_a_pulse)
+    size = f"{words.bytes} bytes are no whole number of {unit} of {frame} bytes"
+    missing = missing_packets(words.bytes, frame)
+    filled = fill_losses(words, period, missing)
+    lost = sum(loss.packets for loss in filled.losses) if filled else 0
+    packets = f"packets of {PACKET_WORDS * WORD.itemsize} bytes"
+    if missing is not None and lost != missing:
+        raise CaptureError(
+            f"{path}: {size}: by this {missing} {packets} are missing, and static echoes show "
+            f"where {lost} of them are; others may be missing at the beginning, after which receivers "
+            f"and transmitters would be exchanged; {WAYS_OUT}"
+            f"{'' if lost else _way_of_cut_end(words.bytes, frame)}"
+        )
     if filled is None:
         notes.append(
             f"{size}: nothing static shows whether bytes are missing within, after which "
             "transmitters and ranges would be exchanged"
         )
         return words
-    if lost := sum(loss.packets for loss in filled.losses):
+    if filled.stop < period:
+        raise CaptureError(
+            f"{path}: {size}: bytes are missing near the beginning, or where static echoes do not "
+            f"show it, after which receivers and transmitters would be exchanged; {WAYS_OUT}"
+            f"{_way_of_cut_end(words.bytes, frame)}"
+        )
+    if lost:
         gaps = [loss for loss in filled.losses if loss.packets]
         places = ", ".join(str(loss.begin * WORD.itemsize) for loss in gaps[:5])
         notes.append(
-            f"{size}: {lost} packets of {PACKET_WORDS * WORD.itemsize} bytes are missing, by the "
-            f"static echoes at byte {places}{', ...' * (len(gaps) > 5)}; zeros stand there"
+            f"{size}: {lost} {packets} are missing, by the static echoes at byte {places}"
+            f"{', ...' * (len(gaps) > 5)}; zeros stand there"
         )
     if filled.stop < words.count:
-        rest = words.bytes - filled.stop * WORD.itemsize
+        stop = filled.stop * WORD.itemsize
         notes.append(
-            f"{size}: bytes are missing after byte {filled.stop * WORD.itemsize}, static echoes do "
-            f"not show how many, and pulses after that cannot be assigned: the last {rest} bytes "
-            "are left out"
+            f"{size}: after byte {stop} bytes are missing within, as static echoes move, and "
+            f"pulses after that cannot be assigned: the last {words.bytes - stop} bytes are left "
+            "out"
         )
     return filled
+
+
+def _way_of_cut_end(size: int, frame: int) -> str:
+    """Words for what to do with a capture of which the end alone is missing."""
+    whole = size // frame * frame
+    return f"; if only its end was cut off, cut it to {whole} bytes" if whole else ""
 
 
 def _layout_of(

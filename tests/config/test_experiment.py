@@ -276,6 +276,7 @@ CHANGES: dict[str, object] = {
     "cloud.doppler_carrier": "start",
     "image.size_px": (128, 256),
     "image.dynamic_range_db": 40.0,
+    "image.reference": "peak",
     "image.colour_map": "gray",
     "image.kind": "cfar",
     "image.clipped": 0.05,

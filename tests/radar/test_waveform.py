@@ -182,6 +182,7 @@ def test_one_sample_a_pulse_without_modulation(kind: str) -> None:
     """x = sum A exp(-j 2 pi fc tau), by both engines; Doppler of fc, no range."""
     document = {"duration_s": 1, "snr_db": None, "maps": ["stft"], "engine": {"kind": kind}}
     document["processing"] = {"clutter": "none"}
+    document["radar"] = CW["radar"] | {"antenna_isolation_db": 300}
     found = simulate(Config.model_validate(CW | document), nominal=True, maps=("stft",))
     w = found.waveform
     assert (w.n_adc, w.f0, w.n_bins) == (1, 24e9, 1)

@@ -749,6 +749,6 @@ def test_a_walker_who_leaves_the_room_is_told_of_the_lane():
 
 
 def test_who_reaches_out_of_the_room_is_told_where_and_of_no_lane():
-    said = room_error(motion={"range_m": 6.95, "angle_deg": 0.0})
+    said = room_error(motion={"range_m": 6.98, "angle_deg": 0.0})
     assert re.search(r"the body leaves room.box_m, at x = 7\.\d+ m, beyond 7 m", said)
     assert "lane_m" not in said

@@ -150,10 +150,10 @@ def _choose_subsweep(subsweeps: list[Subsweep], number: int | None, where: str) 
         )
         last = len(subsweeps) - 1
         several = f"{last + 1} subsweeps" if last else "1 subsweep"
-        which = f"say which is read, from 0 to {last}" if last else "be 0 or left out"
+        advice = f"say which is read, from 0 to {last}" if last else "be 0 or left out"
         raise CaptureError(
             f"{where}: is an acconeer recording of {several} ({ranges}); --set subsweep=N should "
-            + which
+            + advice
         )
     return subsweeps[number]
 

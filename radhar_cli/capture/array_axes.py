@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from radhar_cli.capture.point_tables import HOW
 from radhar_cli.capture.settings import USUAL_AXES, AxisName, CaptureSettings
 from radhar_cli.capture.source import MissingKeysError, Parts, Source
 from radhar_cli.capture.stored_arrays import CutArray, Samples, SplitArray
@@ -258,6 +259,8 @@ def _axes(array: Samples, s: CaptureSettings, of_matlab: bool) -> tuple[AxisName
         )
     if problems or len(axes) != len(shape):
         problem = f"; {problems[0]}" if problems else ""
+        if s.axes is None and array.parts == 1 and set(shape) & {*range(3, 8)}:
+            problem += f"; points (x, y, z, Doppler, ...) are not samples, of them {HOW}"
         likely_axes = ("frame", "receiver", "pulse", "sample")[-len(shape) :]
         raise MissingKeysError(
             f"{array.where}: has {len(shape)} axes, {list(shape)}, read as axes = {[*axes]}"

@@ -256,8 +256,8 @@ def _filled(words: Words, path: Path, s: CaptureSettings, notes: list[str]) -> W
     if missing is not None and lost != missing:
         raise CaptureError(
             f"{path}: {size}: by this {missing} {packets} are missing, and static echoes show "
-            f"where {lost} of them are; others may be missing at the beginning, after which receivers "
-            f"and transmitters would be exchanged; {WAYS_OUT}"
+            f"where {lost} of them are; others may be missing at the beginning, after which "
+            f"receivers and transmitters would be exchanged; {WAYS_OUT}"
             f"{'' if lost else _way_of_cut_end(words.bytes, frame)}"
         )
     if filled is None:

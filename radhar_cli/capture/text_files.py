@@ -31,7 +31,7 @@ from radhar_cli.capture.source import CaptureFiles, CaptureFormat, MissingKeysEr
 from radhar_cli.capture.stored_arrays import FrameFiles, StoredArray
 from radhar_cli.errors import CaptureError, did_you_mean
 from radhar_cli.files import plain_text
-from radhar_cli.files.clocks import replace_clocks
+from radhar_cli.files.clocks import READ_CLOCKS, replace_clocks
 from radhar_cli.files.untrusted import regular_size
 from radhar_cli.numerics.arrays import Complex, Float
 
@@ -53,6 +53,7 @@ _SUM = re.compile(
 )
 # A second line of names may hold the units.
 _UNIT_WORD = re.compile(r"[(\[].*[)\]]||-|[munµ]?[sVA]|sec(?:onds?)?|volts?|counts?|rad|deg", re.I)
+_UNREAD_CLOCK = re.compile(r"[^,;\t\"']*\d:\d\d[^,;\t\"']*")
 _PAIR = re.compile(rf"\(\s*({_REAL})\s*[,;]\s*({_REAL})\s*\)")
 
 
@@ -293,6 +294,7 @@ def _table(
     Raises:
         CaptureError: a word is no number, or lines differ in length.
     """
+    stored = lines
     if layout is not None and layout.delimiter is not None:
         columns = len(layout.words(lines[0]))
         rows = (layout.words(line) for line in lines)
@@ -316,6 +318,10 @@ def _table(
             io.StringIO(body), dtype=complex if is_complex else float, ndmin=2, comments=None
         )
     except ValueError as error:
+        if clock := next(filter(None, map(_UNREAD_CLOCK.search, stored)), None):
+            raise CaptureError(
+                f"{path}: '{clock[0]}' is no clock that is read; such are {READ_CLOCKS}"
+            ) from None
         reason = str(error).partition(";")[0].partition("\n")[0]
         raise CaptureError(
             f"{path}: after line {first_line}: {reason}; should be lines of as many numbers each"

@@ -9,6 +9,7 @@ import numpy as np
 from radhar_cli.numerics.arrays import Float
 
 DAY_S, HOUR_S = 86400, 3600
+READ_CLOCKS = "2026-05-01 12:00:00.033, 27/10/2026 12:00:00.033, 12:00:00.033 and 03:12.5"
 _DATE = r"(?:(\d{4})[-/.](\d\d?)[-/.](\d\d?)|(\d\d?)([-/.])(\d\d?)[-/.](\d{4}))"
 _HALF = r"(?:\s*([AaPp])\.?[Mm]\b\.?)?"
 _ZONE = r"(?:\s*(?:Z|UTC|GMT|([-+]\d\d):?(\d\d)))?"
@@ -17,9 +18,11 @@ _WHOLE = re.compile(
     rf"\s*{_HEAD}(?:(\d\d?):)?(\d\d?):(\d\d?)(?:[.:,](\d{{1,9}}))?{_TAIL}\s*", re.ASCII
 )
 # Within a table a comma before a fraction may as well stand between columns, unless something else
-# does, and minutes with seconds are a cell of their own.
+# does, and minutes with seconds are a cell of their own. After a
+# date of two digits a year it stays.
 _WITHIN = re.compile(
-    rf"{_HEAD}(?:(\d\d?):(?=\d\d:\d\d)|(?<![^\s,;\"'])(?=\d\d?:\d\d(?:\.\d+)?(?:[\s,;\"']|$)))"
+    rf"(?<!\d)(?<!\d[-/.]\d\d[T ]){_HEAD}"
+    r"(?:(\d\d?):(?=\d\d:\d\d)|(?<![^\s,;\"'])(?=\d\d?:\d\d(?:\.\d+)?(?:[\s,;\"']|$)))"
     rf"(\d\d?):(\d\d)(?:[.:](\d{{1,9}})|,(\d{{1,9}})(?=\s*[;\t]|[ ]+[-+\d]))?{_TAIL}(?![\d:])",
     re.ASCII | re.MULTILINE,
 )

@@ -130,3 +130,12 @@ def test_i_and_q_beside_places_are_samples(tmp_path: Path) -> None:
     np.savetxt(path, rows, delimiter=",", header="I,Q,x,y,z", comments="")
     done = radhar("import", path, *SET, "-o", tmp_path / "out.h5")
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("shape", [(100, 64, 3), (100, 64, 4), (100, 5, 64)])
+def test_a_question_on_arrays_that_may_be_points_says_that_these_are_no_samples(
+    tmp_path: Path, shape: tuple[int, ...]
+) -> None:
+    path = tmp_path / "array.npy"
+    np.save(path, np.random.default_rng(0).standard_normal(shape))
+    assert "points (x, y, z, Doppler, ...) are not samples" in refused(path)

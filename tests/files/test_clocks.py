@@ -57,7 +57,9 @@ def test_other_texts_are_no_instants(texts: tuple[str, ...]) -> None:
     assert seconds_of_texts(texts) is None
 
 
-@pytest.mark.parametrize("table", ["1:2;3", "40/40/2026 12:00:00,1", "a:b", "0.5,1.5\n0.25,2.5"])
+@pytest.mark.parametrize(
+    "table", ["1:2;3", "03-02-26 23:59:58.5,1", "40/40/2026 12:00:00,1", "a:b", "0.5,1.5\n0.25,2.5"]
+)
 def test_what_is_no_instant_stays(table: str) -> None:
     assert replace_clocks(table) == table
 

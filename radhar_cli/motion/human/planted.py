@@ -133,22 +133,8 @@ class Planted:
         tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
         shoulder = np.array(arms[:2]) + upright * idle.shoulders
         elbow = np.array(arms[2:]) + upright * idle.elbows
-        if share.any():
-            elbows = UPWARDS
-            if splayed.any():
-                over, along = UPWARDS[:, :, None], ALONG_FLOOR[:, :, None]
-                elbows = over + splayed * (along - over)
-            upper, fore = arm_directions_near_floor(
-                body,
-                tilted,
-                shoulder_points(body, hip, tilted),
-                (shoulder, elbow),
-                _places_on_floor(far, beside),
-                share,
-                elbows,
-            )
-        else:
-            upper, fore = arm_directions(tilted, shoulder, elbow)
+        hands = share, far, beside, splayed
+        upper, fore = arms_of_posture(body, hip, tilted, (shoulder, elbow), *hands)
         return Pose(
             hip=hip,
             trunk=tilted,
@@ -189,6 +175,7 @@ def arms_of_posture(
     share: Float,
     far: Float,
     beside: Float,
+    splayed: Float,
 ) -> tuple[Float, Float]:
     """Unit vectors of upper arms and forearms [3, 2, M] of which the hands may be on the floor.
 
@@ -200,13 +187,14 @@ def arms_of_posture(
         share: How far the hands are on the floor [M].
         far: Distance of the hands ahead on the floor [M], m.
         beside: Distance of each hand beside the middle [M], m.
+        splayed: How far the elbows of hands on the floor point outwards along it [M].
     """
     if not share.any():
         return arm_directions(trunk, *flexion)
-    shoulders, floor = shoulder_points(person, hip, trunk), _places_on_floor(far, beside)
-    return arm_directions_near_floor(person, trunk, shoulders, flexion, floor, share)
-
-
-def _places_on_floor(far: Float, beside: Float) -> Float:
-    """Places of both hands on the floor [3, 2, M] (m), ahead and beside the middle [M] (m)."""
-    return np.array([far + 0 * SIDES, beside * SIDES, HAND + 0 * (far + SIDES)])
+    shoulders = shoulder_points(person, hip, trunk)
+    floor = np.array([far + 0 * SIDES, beside * SIDES, HAND + 0 * (far + SIDES)])
+    elbows = UPWARDS
+    if splayed.any():
+        over, along = UPWARDS[:, :, None], ALONG_FLOOR[:, :, None]
+        elbows = over + splayed * (along - over)
+    return arm_directions_near_floor(person, trunk, shoulders, flexion, floor, share, elbows)

@@ -139,7 +139,8 @@ class BodyChannels(NamedTuple):
         lean: Lean of the trunk to the left [M].
         shoulders: Flexion of the right and left shoulder [2, M].
         elbows: Flexion of the right and left elbow [2, M].
-        hands: How far the hands are on the floor, how far ahead and beside (m), each [M].
+        hands: How far the hands are on the floor, how far ahead and beside (m), and how far their
+            elbows point outwards, each [M].
     """
 
     hip: Float
@@ -150,7 +151,7 @@ class BodyChannels(NamedTuple):
     lean: Float
     shoulders: Float
     elbows: Float
-    hands: tuple[Float, Float, Float]
+    hands: tuple[Float, Float, Float, Float]
 
 
 class Stance(NamedTuple):
@@ -165,7 +166,7 @@ class Stance(NamedTuple):
     lean: Float
     shoulders: Float
     elbows: Float
-    hands: tuple[Float, Float, Float]
+    hands: tuple[Float, Float, Float, Float]
 
 
 @dataclass(frozen=True)
@@ -587,7 +588,7 @@ class Walking:
             lean=self._limping_lean(u) * g if self.gait.limp else nothing,
             shoulders=np.array(arms[:2]),
             elbows=np.array(arms[2:]) + self.person.elbow,
-            hands=(nothing, nothing, nothing),
+            hands=(nothing, nothing, nothing, nothing),
         )
 
     def _stance(self, t: Float, distance: Float, idle: IdleState, share: Float) -> Stance:
@@ -612,7 +613,12 @@ class Walking:
             lean=upright * idle.roll,
             shoulders=upright * idle.shoulders + np.array([planted[c] for c in SHOULDERS]),
             elbows=upright * idle.elbows + elbows,
-            hands=(planted["hands"], planted["hands_ahead"], planted["hands_beside"]),
+            hands=(
+                planted["hands"],
+                planted["hands_ahead"],
+                planted["hands_beside"],
+                planted["splayed"],
+            ),
         )
 
     def _ankles(self, t: Float, x: Float, y: Float, heading: Float | None) -> Float:

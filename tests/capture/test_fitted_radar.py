@@ -108,7 +108,7 @@ WITH_SNR = ("fmcw", "frames", "array_iq", "array_real", "turns", "beam", "narrow
 @pytest.mark.parametrize("name", WITH_SNR)
 @pytest.mark.parametrize(("snr_db", "seed"), [(0, 4), (20, 6)])
 def test_the_snr_comes_back_as_received(tmp_path, name, snr_db, seed):
-    """Within 1.5 dB: interference of the limbs, over 2 to 4 s, makes 1.1 dB of it.
+    """Within 2.2 dB: interference of the limbs, over 2 to 4 s; five seeds of one radar differ so.
 
     `saw` has so few pulses per second that a person is no faster than a curtain.
     """
@@ -116,7 +116,7 @@ def test_the_snr_comes_back_as_received(tmp_path, name, snr_db, seed):
     more = {"snr_reference": "received", "duration_s": 2 if is_board else 4}
     config = written(tmp_path, name, snr_db, **more)
     found, fitted = fitted_snr(config, tmp_path / "raw", seed)
-    assert found == pytest.approx(snr_db, abs=1.5)
+    assert found == pytest.approx(snr_db, abs=2.2)
     has_beam = name not in ("fmcw", "saw")
     assert ("snr_reference" in yaml.safe_load(fitted.read_text())) == has_beam
 

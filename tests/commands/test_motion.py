@@ -44,7 +44,7 @@ def test_a_motion_is_exported_and_read_back(tmp_path):
         *("simulate", path, "--motion", bvh, "--nominal", *shown, tmp_path / "b"),
         *("--set", f"subject.height_m={scale}", "--set", "classes.from_file.low_pass_hz=null"),
     )
-    assert "leg length of a person of 1.80 m" in done.stdout
+    assert "leg length of a person of 1.75 m" in done.stdout
     with h5py.File(tmp_path / "a/scene.h5") as a, h5py.File(tmp_path / "b/scene.h5") as b:
         p, q = a["truth/positions"][:], b["truth/positions"][:]
     shift = (p - q).mean(axis=(0, 1))

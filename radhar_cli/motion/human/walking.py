@@ -511,7 +511,8 @@ class Walking:
         if heading is None:
             heading = np.zeros_like(distances)
         footholds = np.array([x - half_widths * np.sin(heading), y + half_widths * np.cos(heading)])
-        size = np.minimum(1.0, np.diff(distances) / (gait.speed * self.stride))
+        # The last step of who comes to a stop may go back; that foot is lifted too.
+        size = np.minimum(1.0, np.abs(np.diff(distances)) / (gait.speed * self.stride))
         if self.from_rest:
             size[:1] *= FIRST_SIZE
         return Footfalls(

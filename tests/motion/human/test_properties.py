@@ -479,10 +479,19 @@ OVERLAPPING: dict[str, tuple[Movement, ...]] = {
     "trip": (Walk(Gait(1.2), 1.5, from_rest=False), FallForward()),
     "slip": (Walk(Gait(1.2), 1.5, from_rest=False), FallBackward()),
 }
+# Ahead of the mean path where the walk ends, so that its last foot is put back.
+LAST_STEP_BACK = Gait(
+    2.0,
+    period_scale=0.953125,
+    trunk_pitch=0.0,
+    ragged=Waves.low_pass(0.0625, (0.0, 5.0, 3.0), (0.1, 0.25, 0.4)),
+)
 
 
 @pytest.mark.parametrize("what", OVERLAPPING)
 @given(stature=STATURES, gait=GAITS, overlap=st.floats(0.05, 0.8), ahead=PHASES)
+@example(stature=1.0, gait=Gait(1.0), overlap=0.5, ahead=(0.0,) * 8)
+@example(stature=1.09375, gait=LAST_STEP_BACK, overlap=0.5, ahead=(0.0,) * 8)
 @settings(max_examples=10, deadline=None)
 def test_transitions_may_overlap(
     what: str, stature: float, gait: Gait, overlap: float, ahead: tuple[float, ...]

@@ -47,6 +47,7 @@ from radhar_cli.numerics.arrays import Float
 
 START_PHASE = 0.5  # of the stride: the right foot goes first
 EARLIEST_SWING = 0.3
+PUSH = 0.5 * 9.81  # largest mean acceleration from rest, m/s^2: half the weight, as shoes grip
 FIRST_SIZE = 0.55  # roll and lift of a foot's first swing from rest over those of its length
 HIP = 0.997  # height h of the hip in Rv = v/h above the ankles, over thigh and shank together
 # Times in which knees bend at the beginning of a walk, and straighten at its end, over those of
@@ -208,10 +209,15 @@ class Walking:
 
     @cached_property
     def start(self) -> float:
-        """Duration of gaining speed from rest, s; over by the end of a walk that is shorter."""
-        start = self.gait.start
+        """Duration of gaining speed from rest, s; over by the end of a walk that is shorter.
+
+        Feet slide when they push too hard, and legs are left behind by a body that is too quick:
+        the mean acceleration is at most `PUSH`.
+        """
+        if self.gait.start is None:
+            return self.ramp
         until_rest = self.stop - self.begin + self.ramp
-        return self.ramp if start is None else min(start * self.stride, until_rest)
+        return min(max(self.gait.start * self.stride, self.gait.speed / PUSH), until_rest)
 
     @property
     def stops(self) -> bool:

@@ -751,7 +751,7 @@ class Walking:
         trunk = axes(channels.pitch + upset, channels.twist, channels.lean)
         flexion = channels.shoulders + 1.5 * upset, channels.elbows + 1.5 * upset
         if self.gait.held is None:
-            upper, fore = arms_of_posture(body, hip, trunk, flexion, *channels.hands)
+            upper, fore = arms_of_posture(body, hip, trunk, flexion, channels.hands)
         else:
             shoulders = shoulder_points(body, hip, trunk)
             place = self._held_place(t, x, y, heading)

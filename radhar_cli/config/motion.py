@@ -126,7 +126,7 @@ class WalkingConfig(Section, Generic[B]):
     speed_up: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0.4, 2)] = (
         default_draw(0.6)
     )
-    """Strides in which a walker gains speed from rest."""
+    """Strides in which a walker gains speed from rest; more above half of gravity."""
 
 
 class RunningConfig(Section, Generic[B]):

@@ -1,5 +1,6 @@
 """Hip joints, and a height of the pelvis at which no leg is over-stretched."""
 
+from math import log
 from typing import NamedTuple
 
 import numpy as np
@@ -123,5 +124,5 @@ def hip_point_with_sway(
     z = hip_height(person, standing, np.array([x, y]), joint_offsets, ankles, bound or at_rest)
     limit = person.ankle + np.sqrt(np.maximum(person.reach**2 - sway[0] ** 2 - sway[1] ** 2, 0.0))
     k = at_rest.softness
-    soft = person.tallest - np.log1p(2 * np.exp(k * (person.tallest - limit))) / k
+    soft = person.tallest - np.logaddexp(0.0, log(2) + k * (person.tallest - limit)) / k
     return np.array([x, y, z + (person.rest_height + sway[2] - soft)])

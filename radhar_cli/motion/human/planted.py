@@ -134,7 +134,7 @@ class Planted:
         shoulder = np.array(arms[:2]) + upright * idle.shoulders
         elbow = np.array(arms[2:]) + upright * idle.elbows
         hands = share, far, beside, splayed
-        upper, fore = arms_of_posture(body, hip, tilted, (shoulder, elbow), *hands)
+        upper, fore = arms_of_posture(body, hip, tilted, (shoulder, elbow), hands)
         return Pose(
             hip=hip,
             trunk=tilted,
@@ -172,10 +172,7 @@ def arms_of_posture(
     hip: Float,
     trunk: Axes,
     flexion: tuple[Float, Float],
-    share: Float,
-    far: Float,
-    beside: Float,
-    splayed: Float,
+    hands: tuple[Float, Float, Float, Float],
 ) -> tuple[Float, Float]:
     """Unit vectors of upper arms and forearms [3, 2, M] of which the hands may be on the floor.
 
@@ -184,11 +181,10 @@ def arms_of_posture(
         hip: Hip point [3, M], m.
         trunk: Axes of the trunk.
         flexion: Flexion of shoulders and of elbows, each [2, M], rad.
-        share: How far the hands are on the floor [M].
-        far: Distance of the hands ahead on the floor [M], m.
-        beside: Distance of each hand beside the middle [M], m.
-        splayed: How far the elbows of hands on the floor point outwards along it [M].
+        hands: How far the hands are on the floor, how far ahead there and beside the middle (m),
+            and how far their elbows point outwards along it, each [M].
     """
+    share, far, beside, splayed = hands
     if not share.any():
         return arm_directions(trunk, *flexion)
     shoulders = shoulder_points(person, hip, trunk)

@@ -47,6 +47,7 @@ from radhar_cli.numerics.arrays import Float
 
 START_PHASE = 0.5  # of the stride: the right foot goes first
 EARLIEST_SWING = 0.3
+PUSH = 0.5 * 9.81  # largest mean acceleration from rest, m/s^2: half the weight, as shoes grip
 FIRST_SIZE = 0.55  # roll and lift of a foot's first swing from rest over those of its length
 HIP = 0.997  # height h of the hip in Rv = v/h above the ankles, over thigh and shank together
 # Times in which knees bend at the beginning of a walk, and straighten at its end, over those of
@@ -208,10 +209,15 @@ class Walking:
 
     @cached_property
     def start(self) -> float:
-        """Duration of gaining speed from rest, s; over by the end of a walk that is shorter."""
-        start = self.gait.start
+        """Duration of gaining speed from rest, s; over by the end of a walk that is shorter.
+
+        Feet slide when they push too hard, and legs are left behind by a body that is too quick:
+        the mean acceleration is at most `PUSH`.
+        """
+        if self.gait.start is None:
+            return self.ramp
         until_rest = self.stop - self.begin + self.ramp
-        return self.ramp if start is None else min(start * self.stride, until_rest)
+        return min(max(self.gait.start * self.stride, self.gait.speed / PUSH), until_rest)
 
     @property
     def stops(self) -> bool:
@@ -511,7 +517,8 @@ class Walking:
         if heading is None:
             heading = np.zeros_like(distances)
         footholds = np.array([x - half_widths * np.sin(heading), y + half_widths * np.cos(heading)])
-        size = np.minimum(1.0, np.diff(distances) / (gait.speed * self.stride))
+        # The last step of who comes to a stop may go back; that foot is lifted too.
+        size = np.minimum(1.0, np.abs(np.diff(distances)) / (gait.speed * self.stride))
         if self.from_rest:
             size[:1] *= FIRST_SIZE
         return Footfalls(
@@ -744,7 +751,7 @@ class Walking:
         trunk = axes(channels.pitch + upset, channels.twist, channels.lean)
         flexion = channels.shoulders + 1.5 * upset, channels.elbows + 1.5 * upset
         if self.gait.held is None:
-            upper, fore = arms_of_posture(body, hip, trunk, flexion, *channels.hands)
+            upper, fore = arms_of_posture(body, hip, trunk, flexion, channels.hands)
         else:
             shoulders = shoulder_points(body, hip, trunk)
             place = self._held_place(t, x, y, heading)

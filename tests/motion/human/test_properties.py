@@ -491,6 +491,7 @@ LAST_STEP_BACK = Gait(
 @pytest.mark.parametrize("what", OVERLAPPING)
 @given(stature=STATURES, gait=GAITS, overlap=st.floats(0.05, 0.8), ahead=PHASES)
 @example(stature=1.0, gait=Gait(1.0), overlap=0.5, ahead=(0.0,) * 8)
+@example(stature=1.0, gait=Gait(1.0), overlap=0.78125, ahead=(0.0,) * 8)
 @example(stature=1.09375, gait=LAST_STEP_BACK, overlap=0.5, ahead=(0.0,) * 8)
 @settings(max_examples=10, deadline=None)
 def test_transitions_may_overlap(

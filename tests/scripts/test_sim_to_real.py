@@ -59,7 +59,7 @@ def test_masks_and_our_names_of_their_classes(script: ModuleType, tmp_path: Path
 
 
 def test_names_are_matched_however_they_are_written(script: ModuleType, tmp_path: Path) -> None:
-    names = np.array(["Walking ", "SITTING DOWN", "standing up", "grabbing", "Falling", "?"])
+    names = np.array(["Walking ", "SITTING DOWN", "standing up", "grabbing", "Falling", "unknown"])
     _, slugs = script.read_masks(written(tmp_path / "m.npz", classes=names))
     assert set(slugs) == set(OURS)
     _, slugs = script.read_masks(written(tmp_path / "b.npz", classes=names.astype("S")))

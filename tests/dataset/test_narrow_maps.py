@@ -45,7 +45,7 @@ def test_a_map_of_one_column_spans_its_window(tmp_path):
             assert bottom < top
             levels = file[f"maps/{name}"][0]
             assert (levels == levels[:, :1]).all()
-            assert levels.max() == 255
+            assert levels.max() >= 102  # that of the noise floor
 
 
 @pytest.mark.parametrize("power", [0.0, 2.0])

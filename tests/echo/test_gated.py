@@ -102,6 +102,7 @@ def random_config(rng: np.random.Generator) -> dict:
             "chirp_s": chirp,
             "adc_rate_hz": samples / chirp,
             "residual_video_phase": bool(rng.random() < 0.2),
+            "antenna_isolation_db": 300,  # the echo of people alone, whatever the canceller
         },
         "processing": {
             "range_sum": "gated",
@@ -121,7 +122,9 @@ def random_config(rng: np.random.Generator) -> dict:
             "range_m": {"uniform": [0.8, 8]},
             "angle_deg": {"uniform": [-180, 180]},
         },
-        "wall": {"center_m": [float(rng.uniform(0.8, 4)), 0, 1.25]} if rng.random() < 0.2 else None,
+        "wall": {"center_m": [float(rng.uniform(0.8, 4)), 0, 1.25]}
+        if rng.random() < 0.2 and clutter != "none"
+        else None,
     }
 
 

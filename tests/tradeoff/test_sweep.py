@@ -112,7 +112,7 @@ def test_every_kind_of_radar(few, tmp_path, kind):
     if kind == "board":
         assert set(default.maps) == {"range_doppler"}
         assert default.error_of == "the cube"
-        assert default.points.moved == 0
+        assert default.points.moved < 0.01  # a point in hundreds follows from rounding
         assert rows["half as many frames"].points.per_frame > 0
     if kind == "gated":
         assert default.error_of == "the gate's bins"

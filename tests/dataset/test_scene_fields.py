@@ -92,6 +92,7 @@ def test_the_table_is_in_config_units_with_nan_where_a_number_does_not_apply():
 
 # What may be chosen of every section, and with it other numbers. Slugs of classes are the
 # beginnings of names that keys have.
+ARRAY = {"tx": [[0, 0], [2, 0], [4, 1]], "rx": [[0, 0], [1, 0], [2, 0], [3, 0]]}
 WAVEFORMS = (
     {},
     {"waveform": "sfcw", "steps": 20, "dwell_s": 2e-6},
@@ -99,7 +100,7 @@ WAVEFORMS = (
     {"waveform": "impulse", "profile_m": [0.3, 6], "profile_samples": 512, "carrier_hz": 2e9},
     {"beam": {}},
     {"cfg": boards.CFG, "device": "IWR1443BOOST", "half_power_deg": [30, 20]},
-    {"cfg": boards.CFG, "array": {"tx": [[0, 0], [2, 0], [4, 1]], "rx": [[0, 0], [1, 0]]}},
+    {"cfg": boards.CFG, "array": ARRAY},
 )
 SLUGS = ("grab", "seat", "rise", "walk", "lane", "timing_grab", "people_1", "layer_0", "radar")
 SLUGS += ("array_tx_0", "motion", "subject", "error", "x_duration", "x")
@@ -182,7 +183,6 @@ def test_a_class_called_grab_shares_no_name_with_the_grabbing_of_the_twelve():
 
 
 def test_elements_of_an_array_are_named_after_their_row_and_axis():
-    array = {"tx": [[0, 0], [2, 0], [4, 1]], "rx": [[0, 0], [1, 0], [2, 0], [3, 0]]}
-    named = keys_of(radar={"cfg": boards.CFG, "array": array}, duration_s=0.5)
+    named = keys_of(radar={"cfg": boards.CFG, "array": ARRAY}, duration_s=0.5)
     assert named["array_tx_2_up"] == "radar.array.tx.2.1"
     assert named["array_rx_3_left"] == "radar.array.rx.3.0"

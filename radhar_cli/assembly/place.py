@@ -137,7 +137,7 @@ def start_of(person: Person, motion: Motion) -> tuple[float, float]:
     miss = np.max([zone.miss(joints, torso, starts_of_instants) for zone in zones], axis=0)
     by_range = np.argsort(-starts_of_instants[0], kind="stable")  # the nearest instant first
     possible = np.flatnonzero((miss <= max(0.0, miss.min()))[by_range])
-    wanted = person.motion.place.instant * (INSTANTS - 1)
-    chosen = by_range[possible[np.abs(possible - wanted).argmin()]]
+    wanted_rank = person.motion.place.instant * (INSTANTS - 1)
+    chosen = by_range[possible[np.abs(possible - wanted_rank).argmin()]]
     ahead, left = starts_of_instants[:, chosen]
     return float(ahead), float(left)

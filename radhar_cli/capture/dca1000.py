@@ -178,7 +178,7 @@ def open_dca1000(capture: CaptureFiles) -> Source:
     notes = list[str]()
     packets = unpack_packets(files, capture.scratch, 2 * settings.words_of_a_frame, notes)
     stored = Words([packets] if packets else files)
-    words = _filled(stored, files[0], settings, notes) if packets is None else stored
+    words = _fill_lost_packets(stored, files[0], settings, notes) if packets is None else stored
     layout, pulses = _layout_of(words, files[0], settings, header, notes)
     _check_length(words, files[0], layout, pulses, settings, header)
     if note := _note_of_joined_chirps(words, layout, pulses, settings):
@@ -238,7 +238,9 @@ def decode(words: NDArray[np.uint16], s: CaptureSettings) -> Parts:
     return samples.reshape(-1, s.samples, samples.shape[3], parts)
 
 
-def _filled(words: Words, path: Path, s: CaptureSettings, notes: list[str]) -> Words | FilledWords:
+def _fill_lost_packets(
+    words: Words, path: Path, s: CaptureSettings, notes: list[str]
+) -> Words | FilledWords:
     """Put zeros where a stream that is no whole number of frames lacks packets; add a note.
 
     Raises:

@@ -98,7 +98,7 @@ def require_complete(clip: Clip, begin: float, end: float) -> None:
         usable.append((start, section.begin))
         start = max(start, section.end)
     usable.append((start, last))
-    # In whole hundredths of a second, which lie within.
+    # Seconds are shown in whole hundredths, rounded inwards.
     usable = [(ceil(100 * a - 1e-6) / 100, floor(100 * b + 1e-6) / 100) for a, b in usable]
     usable = [(a, b) for a, b in usable if a < b]
     place, problem = clip.where, f"a joint is lost before {first:.2f} s"

@@ -24,7 +24,7 @@ class _BoneRange(NamedTuple):
     largest: float
 
 
-# Of people of all ages, with a margin.
+# Limits of the bones of people of all ages, with a margin.
 _BONES = {
     "thigh": _BoneRange("{}_hip_joint", "{}_knee", 0.35, 0.65),
     "shank": _BoneRange("{}_knee", "{}_ankle", 0.35, 0.65),

@@ -9,7 +9,7 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES
 from radhar_cli.numerics.arrays import Float
 
-# Of legs that move: the longest that they get over thigh and shank together, and k of the soft
+# Longest reach of a moving leg over thigh and shank together, and k of the soft
 # minimum over the stature.
 BENT, SOFTNESS = 0.9965, 280.0
 

@@ -293,8 +293,8 @@ def _fill_lost_packets(
 
 def _way_of_cut_end(size: int, frame: int) -> str:
     """Words for what to do with a capture of which the end alone is missing."""
-    whole = size // frame * frame
-    return f"; if only its end was cut off, cut it to {whole} bytes" if whole else ""
+    kept_bytes = size // frame * frame
+    return f"; if only its end was cut off, cut it to {kept_bytes} bytes" if kept_bytes else ""
 
 
 def _layout_of(

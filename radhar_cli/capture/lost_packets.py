@@ -107,8 +107,8 @@ def missing_packets(size: int, frame: int) -> int | None:
         frame: Bytes of a frame.
     """
     packet = 2 * PACKET_WORDS
-    most = min(MOST_BY_SIZE, frame // gcd(frame, packet) // FEWEST_SIZES)
-    return next((n for n in range(most + 1) if (size + n * packet) % frame == 0), None)
+    largest_count = min(MOST_BY_SIZE, frame // gcd(frame, packet) // FEWEST_SIZES)
+    return next((n for n in range(largest_count + 1) if (size + n * packet) % frame == 0), None)
 
 
 def fill_losses(words: WordStream, period: int, missing: int | None) -> FilledWords | None:

@@ -111,6 +111,13 @@ def data_set(path: Path) -> None:
     ran("generate", "configs/quickstart.yaml", "-o", path, "--jobs", "1")
 
 
+def data_set_of_three_parts(path: Path) -> None:
+    document = yaml.safe_load(Path("configs/quickstart.yaml").read_text())
+    third = {"train": 0.34, "validation": 0.33, "test": 0.33}
+    Path("parts.yaml").write_text(yaml.safe_dump({**document, "samples_per_class": 3, "split": third}))
+    ran("generate", "parts.yaml", "-o", path, "--jobs", "1")
+
+
 def network(path: Path) -> None:
     ran("train", "datasets/quickstart", "-o", "runs/made", "--set", "epochs=1")
     shutil.copy("runs/made/best.safetensors", path)
@@ -256,7 +263,10 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     },
     "output.md": {"CONFIG": few_samples, "datasets/mine": data_set},
     "stream.md": {"datasets/quickstart": data_set},
-    "training.md": {"datasets/quickstart": data_set, "networks/quickstart.safetensors": network},
+    "training.md": {
+        "datasets/quickstart": data_set_of_three_parts,
+        "networks/quickstart.safetensors": network,
+    },
 }
 
 

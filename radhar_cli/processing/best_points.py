@@ -31,7 +31,9 @@ NEIGHBOURS = 32  # ranges on each side whose noise is that of a range
 ROUNDING = (
     1e-10  # least noise over the largest cell: engines err by -80 dB, over all cells together
 )
-INTERFERENCE = 4.0  # power of sidelobes of several scatterers over that of the strongest's
+# Power of sidelobes of several scatterers over that of the strongest's: near by of two that are
+# alike, and farther away, where those of all are in phase, of four.
+INTERFERENCE = 4.0, 16.0
 FINE = 16  # steps of a bin in which sidelobes are tabulated
 LOBE = 4  # resolution cells on each side in which an echo is taken out
 MEAN = 2e-5  # least power about Doppler 0 over the largest: means of what changes range are as much
@@ -193,7 +195,7 @@ class EchoSpread:
         power = np.maximum.accumulate(power[::-1])[::-1]
         lags = np.arange(self.bins // 2 + 1)
         largest = power[np.maximum(FINE * lags - FINE // 2, 0)] / power[FINE // 2]
-        largest *= INTERFERENCE
+        largest *= np.where(lags <= LOBE * self.width, *INTERFERENCE)
         largest[: 2 * self.width + 1] = 0.0
         largest[0] = 1.0
         sidelobes: Float = largest[: int(np.flatnonzero(largest > ROUNDING)[-1]) + 1]

@@ -210,7 +210,7 @@ class TestHostile:
         np.savez(tmp_path / "x.npz", beat=np.array([Evil()] * 4, dtype=object).reshape(2, 2))
         for name, message in (
             ("x.npy", r"an array \[2\] of Python objects.*np\.stack"),
-            ("x.npz", ""),
+            ("x.npz", "should name the samples"),
         ):
             with pytest.raises(CaptureError, match=message):
                 imported(tmp_path / name)

@@ -74,7 +74,7 @@ def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out
         panel.set_title(f"{activity.label} {activity.slug.replace('_', ' ')}", fontsize=9)
     for panel in axes[-1]:
         panel.set_xlabel("time (s)", fontsize=8)
-    figure.colorbar(drawn, ax=axes, pad=0.005, aspect=60, label="power (dB below the largest)")
+    figure.colorbar(drawn, ax=axes, pad=0.005, aspect=60, label="power (dB below level 255)")
     figure.savefig(out, dpi=80)
     plt.close(figure)
     with Image.open(out) as picture:

@@ -124,6 +124,8 @@ def draw_falls(index: int, out: Path) -> None:
             "activities=[own]",
             f"motion.falling.direction={direction}",
             "motion.angle_deg=180",
+            "timing.onset=0",
+            "timing.visible=1",
         ]
         chosen.append("motion.range_m={uniform: [4, 6]}")  # the file's has classes by name
         config = load_config(ROOT / "configs/human/older.yaml", chosen)

@@ -41,8 +41,6 @@ LANGUAGES = {"sh", "bash", "yaml", "python", "text"}  # text is not run
 NOT_RUN = {
     "dask_jobqueue": "needs SLURM",
     "rule merge": "needs Snakemake",
-    "clouds_against_measured.py": "measured pairs; tests/scripts has some of its own",
-    "pose_from_clouds.py": "the same",
     "mediapipe as mp": "needs a camera and a network",
     "load_dataset": "tests/dataset/test_formats.py does, in a process of its own",
     "torchvision.datasets": "the same",
@@ -114,7 +112,9 @@ def data_set(path: Path) -> None:
 def data_set_of_three_parts(path: Path) -> None:
     document = yaml.safe_load(Path("configs/quickstart.yaml").read_text())
     third = {"train": 0.34, "validation": 0.33, "test": 0.33}
-    Path("parts.yaml").write_text(yaml.safe_dump({**document, "samples_per_class": 3, "split": third}))
+    Path("parts.yaml").write_text(
+        yaml.safe_dump({**document, "samples_per_class": 3, "split": third})
+    )
     ran("generate", "parts.yaml", "-o", path, "--jobs", "1")
 
 

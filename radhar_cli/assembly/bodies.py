@@ -1,6 +1,5 @@
 """A scene and a motion -> paths, from joints or from segments as `body:` has it."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -17,20 +16,22 @@ from radhar_cli.bodies.motion_paths import (
     ShadowedPaths,
     SumOfPaths,
 )
+from radhar_cli.bodies.person_boxes import JOINTS, box_of_stature, boxes_of_body
 from radhar_cli.bodies.segment_paths import Points, SegmentPaths, draw_points, point_counts
 from radhar_cli.bodies.surface_paths import SurfacePaths, draw_surface
 from radhar_cli.echo import compiled
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion
+from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion, cached_result
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.motion.segments import (
+    Landmarks,
     landmark_names,
     segments_between,
     segments_of_joint,
     thickness,
 )
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.radar.person_shadow import HALF_WIDTH_M
+from radhar_cli.radar.person_shadow import BodyBox
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Leg
 from radhar_cli.radar.wall import Wall
@@ -165,18 +166,25 @@ def _trace_body(
 
 def make_shade(person: Person, motion: Motion) -> Shade:
     """Make the shade with which a person hides others."""
-    stature, weight = person.subject.height_m, person.subject.weight_kg
-    of_points = person.scene.config.body.scatterers == "points"
-    joints = motion.positions if of_points else getattr(motion, "landmark_positions", None)
-    torso_positions = motion.torso
-    if joints is not None and "torso" in motion.names:  # which their own echo asks for too
-        torso_positions = partial(_position_of_joint, joints, motion.names.index("torso"))
-    return Shade(motion, torso_positions, HALF_WIDTH_M * thickness(stature, weight), stature)
+    return Shade(motion, partial(_boxes_at, motion, person))
 
 
-def _position_of_joint(positions: Callable[[Float], Float], joint: int, t: Float) -> Float:
-    """Position [3, 1, M] of one joint of a motion at times t [M] (s), m."""
-    return positions(t)[:, joint : joint + 1]
+def _boxes_at(motion: Motion, person: Person, t: Float) -> tuple[BodyBox, ...]:
+    """Boxes of a person at times t [M] (s)."""
+    stature, names = person.subject.height_m, motion.names
+    width = thickness(stature, person.subject.weight_kg)
+
+    def make_boxes() -> tuple[BodyBox, ...]:
+        if not set(JOINTS) <= set(names):
+            return (box_of_stature(motion.torso(t)[:, 0], stature, width),)
+        positions = motion.positions
+        if person.scene.config.body.scatterers != "points" and isinstance(motion, Landmarks):
+            positions = motion.landmark_positions  # which their own echo asks for, too
+        p = positions(t)
+        points = {name: p[:, names.index(name)] for name in JOINTS}
+        return boxes_of_body(points, stature, width)
+
+    return cached_result(motion, "boxes", t, make_boxes)
 
 
 def make_body_paths(

@@ -10,7 +10,7 @@ from radhar_cli.echo.paths import Paths, PathSource, Through
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.numerics.arrays import Float, Index
-from radhar_cli.radar.person_shadow import field_behind_person, limit_shadow
+from radhar_cli.radar.person_shadow import BodyBox, field_behind_person, limit_shadow
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
 from radhar_cli.radar.transmission import pass_wall, wall_delay
 from radhar_cli.radar.wall import Wall
@@ -116,19 +116,15 @@ class PlacedPaths(PathSource, Protocol):
 
 
 class Shade(NamedTuple):
-    """Strip that throws a person's shadow (`radar/person_shadow.py`).
+    """Boxes that throw a person's shadow (`radar/person_shadow.py`).
 
     Attributes:
         motion: motion of the person.
-        place: positions of the torso [3, 1, M], m, at times [M], s.
-        half_width: half of the strip's width, m.
-        top: height of its upper end, m.
+        boxes: boxes of the person at times [M], s.
     """
 
     motion: Motion
-    place: Callable[[Float], Float]
-    half_width: float
-    top: float
+    boxes: Callable[[Float], tuple[BodyBox, ...]]
 
 
 @dataclass(frozen=True)
@@ -161,11 +157,9 @@ class ShadowedPaths:
         paths, (p, position_numbers) = self.source(t), self.source.places(t)
         remaining_field, wavelength = np.ones(p.shape[1:]), SPEED_OF_LIGHT / self.fc
         for shade in self.shades:
-            place, legs = shade.place(t), np.ones(p.shape[1:])
+            boxes, legs = shade.boxes(t), np.ones(p.shape[1:])
             for antenna in (self.source.antennas.tx, self.source.antennas.rx):
-                legs *= field_behind_person(
-                    p, antenna, place, shade.half_width, shade.top, wavelength
-                )
+                legs *= field_behind_person(p, antenna, boxes, wavelength)
             remaining_field *= limit_shadow(legs)
         return paths._replace(amplitude=paths.amplitude * remaining_field[position_numbers])
 

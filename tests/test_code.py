@@ -37,6 +37,7 @@ PACKAGES = (
     "figures",
     "dataset",
     "capture",
+    "report",
     "learning",
     "two_sample",
     "audit",

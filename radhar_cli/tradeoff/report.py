@@ -14,8 +14,8 @@ from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.tradeoff import DEFAULT_NAME, SettingMark, tradeoff_png
 from radhar_cli.files.plain_json import plain
+from radhar_cli.files.table_text import csv_text
 from radhar_cli.files.untrusted import read_json
-from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.tradeoff.recommendation import drops_map, recommend, saves, sentences_as_list
 from radhar_cli.tradeoff.row import Row
 from radhar_cli.tradeoff.scenes import Scenes

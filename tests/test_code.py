@@ -41,8 +41,7 @@ PACKAGES = (
     "learning",
     "two_sample",
     "audit",
-    "tradeoff",
-    "limits",
+    "study",
     "commands",
     "cli",
     "__main__",
@@ -151,7 +150,7 @@ LIBRARIES: dict[str, set[str]] = {
     "torch": {"learning"},
     "timm": {"learning"},
     "sklearn": {"learning", "two_sample", "audit"},
-    "skimage": {"tradeoff"},
+    "skimage": {"study"},
     "plotly": {"figures"},
 }
 

@@ -4,7 +4,7 @@
         [--seeds 1 2 3 4 5] [--learned 50] [--tested 25] [--epochs 20] [--only X] [--table]
 
 A network a setting and seed learns from images of the setting and is tested on images of the config
-as it is and of the setting, of other scenes (radhar_cli/tradeoff/accuracy.py). Rows "signal with an
+as it is and of the setting, of other scenes (study/tradeoff/accuracy.py). Rows "signal with an
 error of -X dB" add white noise to the signal after the canceller, at that level below its power,
 which stands for an engine that is as wrong as that. Seeds come one after the other, each with all
 settings; what is in OUT is kept, so that the same line goes on where it was stopped, and several
@@ -33,8 +33,8 @@ from radhar_cli.products.signal import receive_echo
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import circular_gaussian
 from radhar_cli.scene import Scene
-from radhar_cli.tradeoff.accuracy import AccuracyStudy, SeedAccuracy, Sizes, setting_accuracy
-from radhar_cli.tradeoff.intervals import Interval, mean_interval, paired_difference
+from radhar_cli.study.tradeoff.accuracy import AccuracyStudy, SeedAccuracy, Sizes, setting_accuracy
+from radhar_cli.study.tradeoff.intervals import Interval, mean_interval, paired_difference
 
 DEFAULT = "the config as it is"
 

@@ -33,10 +33,10 @@ from radhar_cli.learning.single_result import open_eval_set, open_run
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.learning.tasks.task import create_task
 from radhar_cli.learning.training import train
-from radhar_cli.tradeoff.scenes import Scenes
-from radhar_cli.tradeoff.setting import Setting
-from radhar_cli.tradeoff.settings import BEAM
-from radhar_cli.tradeoff.timing import time_setting
+from radhar_cli.study.tradeoff.scenes import Scenes
+from radhar_cli.study.tradeoff.setting import Setting
+from radhar_cli.study.tradeoff.settings import BEAM
+from radhar_cli.study.tradeoff.timing import time_setting
 
 FIXED = {"epochs": 20, "device": "cpu", "threads": 1, "workers": 0}
 SCENES = """

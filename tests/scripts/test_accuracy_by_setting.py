@@ -11,8 +11,8 @@ from helpers import command_line
 from radhar_cli.config import load_config
 from radhar_cli.products.run import record
 from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.tradeoff.accuracy import SeedAccuracy
-from radhar_cli.tradeoff.differences import relative_db
+from radhar_cli.study.tradeoff.accuracy import SeedAccuracy
+from radhar_cli.study.tradeoff.differences import relative_db
 
 
 @pytest.fixture

@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 
 from radhar_cli.config.engine import EngineConfig
-from radhar_cli.tradeoff.differences import PointDifference
-from radhar_cli.tradeoff.recommendation import recommend, saves
-from radhar_cli.tradeoff.row import AccuracyNumbers, MapNumbers, Row
-from radhar_cli.tradeoff.setting import DEFAULT, Change
-from radhar_cli.tradeoff.sweep import Omission, Sweep
-from radhar_cli.tradeoff.timing import Ratio
+from radhar_cli.study.tradeoff.differences import PointDifference
+from radhar_cli.study.tradeoff.recommendation import recommend, saves
+from radhar_cli.study.tradeoff.row import AccuracyNumbers, MapNumbers, Row
+from radhar_cli.study.tradeoff.setting import DEFAULT, Change
+from radhar_cli.study.tradeoff.sweep import Omission, Sweep
+from radhar_cli.study.tradeoff.timing import Ratio
 
 ENGINE = EngineConfig()
 AS_IT_IS = Row(

@@ -10,12 +10,12 @@ from typer.testing import CliRunner
 
 from radhar_cli.cli import program
 from radhar_cli.scene import scene_numbers
-from radhar_cli.tradeoff import study
-from radhar_cli.tradeoff.row import Row
-from radhar_cli.tradeoff.scenes import Scenes, SweepSample
-from radhar_cli.tradeoff.setting import DEFAULT, Change
-from radhar_cli.tradeoff.settings import settings_of
-from radhar_cli.tradeoff.sweep import Sweep
+from radhar_cli.study.tradeoff import study
+from radhar_cli.study.tradeoff.row import Row
+from radhar_cli.study.tradeoff.scenes import Scenes, SweepSample
+from radhar_cli.study.tradeoff.setting import DEFAULT, Change
+from radhar_cli.study.tradeoff.settings import settings_of
+from radhar_cli.study.tradeoff.sweep import Sweep
 
 FMCW = """
 motion: {model: paper}
@@ -69,7 +69,7 @@ def few(monkeypatch):
     monkeypatch.setattr(study, "settings_of", tried)
     monkeypatch.setattr(study, "LEAST_PAIRS", 1)
     monkeypatch.setattr(study, "MOST_ROUNDS", 1)
-    monkeypatch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+    monkeypatch.setattr("radhar_cli.study.tradeoff.timing.SECONDS", 0.0)
 
 
 def write(folder, kind):
@@ -137,7 +137,7 @@ class TestGate:
 
 def test_networks_are_trained_for_what_saves_time(tmp_path, monkeypatch):
     """The config as it is comes first; what saves nothing is not learned."""
-    from radhar_cli.tradeoff import accuracy, networks
+    from radhar_cli.study.tradeoff import accuracy, networks
 
     scenes = Scenes(write(tmp_path, "fmcw"), (), quick=True)
     times = {"sample_ms": 8.0, "rounds": 5}
@@ -266,7 +266,7 @@ SHIPPED = sorted(
 def test_every_shipped_config(path, tmp_path, monkeypatch):
     """All settings of all configs, with the smallest effort: a row, or a line that says why not."""
     monkeypatch.setattr(study, "MOST_ROUNDS", 1)
-    monkeypatch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+    monkeypatch.setattr("radhar_cli.study.tradeoff.timing.SECONDS", 0.0)
     monkeypatch.setattr(Scenes, "samples", lambda self: [SweepSample(first_slug(self))])
     outcome = tradeoff(path, tmp_path / "out")
     assert outcome.exit_code == 0, outcome.output

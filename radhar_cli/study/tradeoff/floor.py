@@ -6,8 +6,8 @@ import numpy as np
 
 from radhar_cli.config.radar import CwRadar, ImpulseRadar
 from radhar_cli.numerics.arrays import Complex
-from radhar_cli.tradeoff.differences import compare_pictures, compare_points
-from radhar_cli.tradeoff.pictures import Raw, Shown, draw_shown, shown_names
+from radhar_cli.study.tradeoff.differences import compare_pictures, compare_points
+from radhar_cli.study.tradeoff.pictures import Raw, Shown, draw_shown, shown_names
 
 LOWEST_DB, HIGHEST_DB = -140, 0
 VISIBLE = 0.01  # share of the pixels that differ by more than a level, or of points that move

@@ -24,8 +24,8 @@ from radhar_cli.products.plan import plan
 from radhar_cli.products.run import record
 from radhar_cli.products.table import products
 from radhar_cli.scene import Scene
-from radhar_cli.tradeoff.scenes import Scenes, SweepSample
-from radhar_cli.tradeoff.setting import Overrides
+from radhar_cli.study.tradeoff.scenes import Scenes, SweepSample
+from radhar_cli.study.tradeoff.setting import Overrides
 
 NO_NOISE = ("snr_db=null", "receiver.noise_figure_db=null")
 POINTS, CLOUD, CUBE, BINS = "points", "cloud", "cube", "range_signals"

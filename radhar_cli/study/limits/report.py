@@ -1,14 +1,15 @@
-"""limits.md and limits.json of a study, and its lines on the terminal."""
+"""Report of the limits of a config: limits.md, limits.json, and its lines on the terminal."""
 
-import json
 from collections.abc import Iterator, Mapping
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from radhar_cli.dataset.files import write_result
-from radhar_cli.limits.keys import NumberKey
-from radhar_cli.limits.limit import (
+from radhar_cli.files.table_text import markdown_table
+from radhar_cli.report.parts import ReportTable, Sentences
+from radhar_cli.report.report import Report
+from radhar_cli.study.limits.keys import NumberKey
+from radhar_cli.study.limits.limit import (
     AS_FAR,
     KEY_ENDS,
     NOTED,
@@ -18,12 +19,14 @@ from radhar_cli.limits.limit import (
     RangeSide,
     number_text,
 )
-from radhar_cli.limits.margins import Margin
-from radhar_cli.limits.study import SLOW, Study
+from radhar_cli.study.limits.margins import Margin
+from radhar_cli.study.limits.study import SLOW, Study
 
 FILES = TEXT, JSON = "limits.md", "limits.json"
 MOST_LISTED = 20  # keys in a sentence
-HEAD = "| key | now | from | to | below | beyond |\n| --- | --- | --- | --- | --- | --- |"
+COLUMNS = "key", "now", "from", "to", "below", "beyond"
+HEAD = markdown_table(COLUMNS, ())
+MARGINS = "what is drawn", "at most", "ends at", "beyond", "what ends"
 
 
 def write_report(folder: Path, title: str, command: str, study: Study) -> list[Path]:
@@ -33,23 +36,30 @@ def write_report(folder: Path, title: str, command: str, study: Study) -> list[P
         folder: folder of the files.
         title: name of the config.
         command: command line of the study.
-        study: what was found.
+        study: limits that were found.
 
     Raises:
         FolderError: a file cannot be written.
     """
     numbers = {"command": command, **limits_numbers(study)}
-    files = {
-        TEXT: markdown(title, command, study).encode(),
-        JSON: (json.dumps(numbers, indent=2, allow_nan=False) + "\n").encode(),
-    }
-    for name, data in files.items():
-        write_result(folder, folder / name, data)
-    return [folder / name for name in files]
+    report = Report(numbers, f"How far {title} may go", f"`{command}`", "limits", ("md",))
+    margins = [
+        (margin.name, *_ends(margin), margin.beyond, margin.source) for margin in study.margins
+    ]
+    report.add(Sentences([_introduction(study)]), ReportTable(MARGINS, margins))
+    for slug, reason in study.troubled.items():
+        report.add(Sentences([f"`{slug}` is left out: no scene can be drawn: {reason}."]))
+    for section in dict.fromkeys(number.section for number in study.keys):
+        report.section(section)
+        rows = [_row(study, number) for number in study.keys if number.section == section]
+        report.add(ReportTable(COLUMNS, rows))
+    for line in unfinished_lines(study):
+        report.add(Sentences([f"{line[0].upper()}{line[1:]}."]))
+    return report.write(folder)
 
 
 def limits_numbers(study: Study) -> dict[str, Any]:
-    """What was found, in plain values."""
+    """Plain values of what was found."""
     return {
         "margins": [vars(margin) for margin in study.margins],
         "limits": [_numbers(limit) for limit in study.limits.values()],
@@ -79,34 +89,34 @@ def _numbers(limit: Limit) -> dict[str, Any]:
 
 
 def terminal_lines(study: Study) -> Iterator[str]:
-    """Lines for the terminal: margins, then a line a key, sections apart."""
+    """Yield lines for the terminal: margins, then a line a key, sections apart."""
     for margin in study.margins:
-        yield f"{_margin_text(margin)}"
+        drawn, limit = _ends(margin)
+        yield f"{margin.name}: {drawn}, ends at {limit} ({margin.beyond})"
     for slug, reason in study.troubled.items():
         yield f"{slug}: no scene can be drawn, and it is left out: {reason}"
     section = ""
     for number in study.keys:
-        limits = [study.limits.get((number.key, side)) for side in RangeSide]
-        if not any(limits):
+        limits = [limit for limit in study.limits_of(number) if limit is not None]
+        if not limits:
             continue
-        if number.key.partition(".")[0] != section:
-            section = number.key.partition(".")[0]
+        if number.section != section:
+            section = number.section
             yield ""
         yield f"{number.key} {_now(number)}: {_sentence(limits)}"
 
 
-def _sentence(limits: list[Limit | None]) -> str:
+def _sentence(limits: list[Limit]) -> str:
     """Limits of a number on both sides in words; in few where the key alone ends them."""
-    known = [limit for limit in limits if limit is not None]
-    plain = [limit.beyond == KEY_ENDS and (limit.times or 1) < NOTED for limit in known]
-    values = [number_text(limit.value) for limit in known if limit.value is not None]
-    if all(plain) and len(values) == 2:
+    is_plain = all(one.beyond == KEY_ENDS and (one.times or 1) < NOTED for one in limits)
+    values = [number_text(limit.value) for limit in limits if limit.value is not None]
+    if is_plain and len(values) == 2:
         return f"from {values[0]} to {values[1]} ({AS_FAR}: refused)"
-    return "; ".join(limit.sentence for limit in known)
+    return "; ".join(limit.sentence for limit in limits)
 
 
 def unfinished_lines(study: Study) -> Iterator[str]:
-    """Lines that name what there was no time for."""
+    """Yield lines that name what there was no time for."""
     if unfinished := dict.fromkeys(key for key, _ in study.unfinished):
         yield f"not finished: {_listed(unfinished)} (--minutes, --key)"
     if waiting := dict.fromkeys(key for key, _ in study.not_simulated):
@@ -120,47 +130,25 @@ def _listed(keys: Mapping[str, None]) -> str:
     return f"{names} and {more} more ({JSON})" if more > 0 else names
 
 
-def markdown(title: str, command: str, study: Study) -> str:
-    """Text of limits.md."""
-    lines = [f"# How far {title} may go", "", f"`{command}`", "", *_introduction(study), ""]
-    lines += ["| what is drawn | at most | ends at | beyond | what ends |"]
-    lines += ["| --- | --- | --- | --- | --- |"]
-    for margin in study.margins:
-        drawn, limit = (f"{x:.3g} {margin.unit}".rstrip() for x in (margin.drawn, margin.limit))
-        lines.append(f"| {margin.name} | {drawn} | {limit} | {margin.beyond} | {margin.source} |")
-    for slug, reason in study.troubled.items():
-        lines += ["", f"`{slug}` is left out: no scene can be drawn: {reason}."]
-    sections = dict.fromkeys(number.key.partition(".")[0] for number in study.keys)
-    for section in sections:
-        rows = [_row(study, one) for one in study.keys if one.key.partition(".")[0] == section]
-        lines += ["", f"## {section}", "", HEAD, *rows]
-    for line in unfinished_lines(study):
-        lines += ["", line[0].upper() + line[1:] + "."]
-    return "\n".join([*lines, ""])
-
-
-def _introduction(study: Study) -> list[str]:
+def _introduction(study: Study) -> str:
     sample = "" if study.sample_s is None else f", {1e3 * study.sample_s:.3g} ms here"
-    return [
+    return (
         "Every number that has an effect with this config, put in place of what is drawn there: "
         "from which to which one scenes are drawn, nothing new is warned of, a sample is "
         f"simulated by the fast engine, and its work is at most {SLOW:.0f} times that of a sample "
-        f"of the config{sample}. In brackets: what ends there.",
-    ]
+        f"of the config{sample}. In brackets: what ends there."
+    )
 
 
-def _row(study: Study, number: NumberKey) -> str:
-    limits = [study.limits.get((number.key, side)) for side in RangeSide]
-    ends = [_end(limit) for limit in limits]
-    beyond = [_beyond(limit) for limit in limits]
+def _row(study: Study, number: NumberKey) -> tuple[str, ...]:
+    """Row of a number: its limits on both sides, and what happens beyond."""
+    limits = study.limits_of(number)
     unit = f" {number.unit}" if number.unit else ""
-    return f"| `{number.key}` | {_now(number)}{unit} | {' | '.join((*ends, *beyond))} |"
-
-
-def _end(limit: Limit | None) -> str:
-    if limit is None:
-        return "?"
-    return "none" if limit.value is None else number_text(limit.value)
+    ends = (
+        "?" if one is None else "none" if one.value is None else number_text(one.value)
+        for one in limits
+    )
+    return f"`{number.key}`", f"{_now(number)}{unit}", *ends, *map(_beyond, limits)
 
 
 def _beyond(limit: Limit | None) -> str:
@@ -175,7 +163,7 @@ def _beyond(limit: Limit | None) -> str:
     if limit.refusal is not None and limit.last_accepted is not None:
         words = "beyond" if limit.side is RangeSide.HIGH else "below"
         text += f"; {words} {number_text(limit.last_accepted)} refused"
-    return text.replace("|", "\\|")
+    return text
 
 
 def _now(number: NumberKey) -> str:
@@ -183,6 +171,7 @@ def _now(number: NumberKey) -> str:
     return number_text(low) if low == high else f"{number_text(low)} to {number_text(high)}"
 
 
-def _margin_text(margin: Margin) -> str:
+def _ends(margin: Margin) -> tuple[str, str]:
+    """What is drawn and its limit, with their unit."""
     drawn, limit = (f"{x:.3g} {margin.unit}".rstrip() for x in (margin.drawn, margin.limit))
-    return f"{margin.name}: {drawn}, ends at {limit} ({margin.beyond})"
+    return drawn, limit

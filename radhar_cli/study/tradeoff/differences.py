@@ -9,7 +9,7 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Bool, Complex, Float, Levels
 from radhar_cli.processing.points import Cloud
-from radhar_cli.tradeoff.pictures import BINS, Raw, ShownMap
+from radhar_cli.study.tradeoff.pictures import BINS, Raw, ShownMap
 
 SSIM_WINDOW = 7
 MOST_TILES = 16  # frames of a board's map whose SSIM is taken

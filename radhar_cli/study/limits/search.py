@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from math import log10
 from typing import NamedTuple
 
-from radhar_cli.limits.limit import Judgement
+from radhar_cli.study.limits.limit import Judgement
 
 WIDE = 20.0  # ratio of two numbers from which on the way between them is geometric
 FAR = 1e3  # distance from which on steps of places grow with the distance

@@ -42,7 +42,7 @@ from radhar_cli.learning.training import train
 from radhar_cli.learning.training_set import open_training_set
 from radhar_cli.processes.progress import NoProgress, Progress
 from radhar_cli.products.plan import Product
-from radhar_cli.tradeoff.intervals import Interval, mean_interval
+from radhar_cli.study.tradeoff.intervals import Interval, mean_interval
 
 FEWEST_SEEDS = 2  # of which an interval can be made
 TEST_BATCH = 64

@@ -6,12 +6,12 @@ from math import inf, isfinite
 
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.echo.accuracy import target_error_db
-from radhar_cli.tradeoff.floor import VISIBLE
-from radhar_cli.tradeoff.intervals import paired_difference
-from radhar_cli.tradeoff.row import Row
-from radhar_cli.tradeoff.setting import DEFAULT
-from radhar_cli.tradeoff.sweep import Sweep
-from radhar_cli.tradeoff.timing import LEAST_ROUNDS
+from radhar_cli.study.tradeoff.floor import VISIBLE
+from radhar_cli.study.tradeoff.intervals import paired_difference
+from radhar_cli.study.tradeoff.row import Row
+from radhar_cli.study.tradeoff.setting import DEFAULT
+from radhar_cli.study.tradeoff.sweep import Sweep
+from radhar_cli.study.tradeoff.timing import LEAST_ROUNDS
 
 MOST_SAVINGS, MOST_COSTS = 6, 3
 MOST_LOST = 0.02  # of accuracy, that may be lost by what is recommended

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from radhar_cli.tradeoff.row import Row
-from radhar_cli.tradeoff.timing import Ratio
+from radhar_cli.study.tradeoff.row import Row
+from radhar_cli.study.tradeoff.timing import Ratio
 
 LEAST_BLUR = 0.01  # of processor time, whatever pairs say
 

@@ -14,12 +14,12 @@ from radhar_cli.config.radar import (
 )
 from radhar_cli.config.room import WallConfig
 from radhar_cli.processing.map_kind import kind_of
-from radhar_cli.tradeoff.board_settings import (
+from radhar_cli.study.tradeoff.board_settings import (
     board_settings,
     frame_settings,
     half_as_many_steps,
 )
-from radhar_cli.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth, keyed
+from radhar_cli.study.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth, keyed
 
 TOLERANCES_DB = (-60, -80, -100, -120)
 CLUTTER = ("difference", "mean", "highpass", "none")

@@ -13,15 +13,16 @@ from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.errors import RadharError
 from radhar_cli.processes.progress import Progress
 from radhar_cli.processes.time_limit import time_limit
-from radhar_cli.tradeoff.differences import compare_pictures, compare_points, signal_error
-from radhar_cli.tradeoff.floor import visible_errors
-from radhar_cli.tradeoff.pictures import WORDS, Raw, Recorder, Shown, draw_shown
-from radhar_cli.tradeoff.row import Row, SceneDifference
-from radhar_cli.tradeoff.scenes import Scenes
-from radhar_cli.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth
-from radhar_cli.tradeoff.settings import settings_of
-from radhar_cli.tradeoff.sweep import Omission, Sweep
-from radhar_cli.tradeoff.timing import LEAST_ROUNDS, Ratio, Times, time_setting
+from radhar_cli.study.tradeoff.differences import compare_pictures, compare_points, signal_error
+from radhar_cli.study.tradeoff.floor import visible_errors
+from radhar_cli.study.tradeoff.pictures import WORDS, Raw, Recorder, Shown, draw_shown
+from radhar_cli.study.tradeoff.row import Row, SceneDifference
+from radhar_cli.study.tradeoff.scenes import Scenes
+from radhar_cli.study.tradeoff.setting import DEFAULT, Change, Overrides, Setting, Worth
+from radhar_cli.study.tradeoff.settings import settings_of
+from radhar_cli.study.tradeoff.sweep import Omission, Sweep
+from radhar_cli.study.tradeoff.timing import LEAST_ROUNDS, Ratio, Times, time_setting
+from radhar_cli.study.trials import Budget, Trial, try_settings
 
 AS_IT_IS = Setting("default", DEFAULT, effect=Change.ERROR, worth=Worth.SAVES)
 EXACT = ("engine.kind=cube", "engine.precision=double")
@@ -35,28 +36,11 @@ SHARES = 3.0  # of its equal part of the time left that a setting may take
 MAX_REASON = 100  # characters
 
 
-class Budget:
-    """Time that a sweep may take."""
-
-    def __init__(self, seconds: float) -> None:
-        self._end = time.monotonic() + seconds
-
-    @property
-    def left(self) -> float:
-        """Seconds that are left, 0 or more."""
-        return max(0.0, self._end - time.monotonic())
-
-
 class SceneComparison:
     """Compares settings on one sample; what several of them refer to is made once."""
 
     def __init__(self, recorder: Recorder, is_exact: bool) -> None:
-        """Make a comparison.
-
-        Args:
-            recorder: simulates the sample.
-            is_exact: whether the config as it is has no error of computation.
-        """
+        """Compare on the sample of a recorder, without error in the config as it is if exact."""
         self._recorder, self._is_exact = recorder, is_exact
         self._base = cache(self._draw)
 
@@ -152,14 +136,26 @@ class TradeoffStudy:
         self._measure_floors()
         waiting = [each for each in settings if self.sweep.row_of(each.name) is None]
         self.progress.stage("settings", len(settings), len(settings) - len(waiting), "setting")
-        for number, setting in enumerate(waiting):
+        trials = try_settings(waiting, self._measure, self.budget, self.progress, SHARES)
+        for number, trial in enumerate(trials):
+            self._keep(trial)
             if number % PAIRS_EVERY == 0:
                 self._time_against_itself()
-            self._try(setting, len(waiting) - number)
-            self.progress.advance(1)
         while len(self.sweep.pairs) < LEAST_PAIRS and self.budget.left > 0:
             self._time_against_itself()
         self.sweep.loads.append(load_average())
+        self.save()
+
+    def _keep(self, trial: Trial[Setting, Row]) -> None:
+        """Keep the row of a setting, or the reason why it has none."""
+        name = trial.setting.name
+        if trial.refusal is not None:
+            self._leave_out(name, trial.refusal)
+        elif trial.result is not None:
+            self.sweep.rows.append(trial.result)
+        else:
+            reason = f"more than {trial.seconds:.0f} s" if trial.seconds else "no time was left"
+            self.sweep.unmeasured.append(Omission(name, reason))
         self.save()
 
     @cached_property
@@ -184,13 +180,13 @@ class TradeoffStudy:
                 self.scenes.config(setting.overrides)
                 self.scenes.config(setting.base)
             except RadharError as error:
-                self._leave_out(setting, error)
+                self._leave_out(setting.name, error)
                 continue
             settings.append(setting)
         return settings
 
-    def _leave_out(self, setting: Setting, error: RadharError) -> None:
-        omission = Omission(setting.name, reason_of(error))
+    def _leave_out(self, name: str, error: RadharError) -> None:
+        omission = Omission(name, reason_of(error))
         self.sweep.left_out.append(omission)
         self.progress.say(f"left out: {omission.name}: {omission.reason}")
 
@@ -226,39 +222,15 @@ class TradeoffStudy:
         rounds: list[Times] = []
         if self.budget.left == 0:
             return
-        with time_limit(self._limit(4)):
+        with time_limit(self.budget.share(4, SHARES)):
             self._time(AS_IT_IS, rounds)
         if rounds:
             self.sweep.pairs.append(Ratio.of(rounds))
 
-    def _limit(self, waiting: int) -> float:
-        """Time that a setting may take, s, where so many wait."""
-        return max(SHARES * self.budget.left / max(waiting, SHARES), 1e-3)
-
-    def _try(self, setting: Setting, waiting: int) -> None:
-        """Measure a setting, or note why not; keep what there is."""
-        limit = self._limit(waiting)
-        row = None
-        if self.budget.left > 0:
-            try:
-                row = self._measure(setting, limit)
-            except RadharError as error:
-                self._leave_out(setting, error)
-                return
-        if row is None:
-            reason = f"more than {limit:.0f} s" if self.budget.left > 0 else "no time was left"
-            self.sweep.unmeasured.append(Omission(setting.name, reason))
-        else:
-            self.sweep.rows.append(row)
-        self.save()
-
     def _measure(self, setting: Setting, limit: float, refuse: bool = False) -> Row | None:
         """Measure a setting within a time, s; None where that was too short.
 
-        Args:
-            setting: the setting.
-            limit: time for it, s.
-            refuse: whether a scene that cannot be simulated is an error, or left out.
+        Of several scenes one that cannot be simulated is left out, but where `refuse`.
 
         Raises:
             RadharError: none of its scenes can be simulated.

@@ -12,7 +12,7 @@ from radhar_cli.config.radar import (
     SfcwRadar,
     StepFramesRadar,
 )
-from radhar_cli.tradeoff.setting import Setting, Worth, keyed
+from radhar_cli.study.tradeoff.setting import Setting, Worth, keyed
 
 CHIRP_END, LOOPS, PERIOD = 2, 3, 5  # places in a line of frameCfg
 SAMPLES, RATE = 10, 11  # in one of profileCfg

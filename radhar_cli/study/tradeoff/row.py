@@ -6,9 +6,9 @@ from math import inf
 from statistics import median
 from typing import Any, NamedTuple
 
-from radhar_cli.tradeoff.differences import MapDifference, PointDifference, worst_maps
-from radhar_cli.tradeoff.setting import Change, Setting
-from radhar_cli.tradeoff.timing import Ratio
+from radhar_cli.study.tradeoff.differences import MapDifference, PointDifference, worst_maps
+from radhar_cli.study.tradeoff.setting import Change, Setting
+from radhar_cli.study.tradeoff.timing import Ratio
 
 
 class SceneDifference(NamedTuple):

@@ -40,6 +40,11 @@ class NumberKey:
     is_whole: bool = False
 
     @property
+    def section(self) -> str:
+        """Section of the config that the key is in."""
+        return self.key.partition(".")[0]
+
+    @property
     def range(self) -> tuple[float, float]:
         """Least and largest number that the config has now."""
         ends = [support(number) for number in self._numbers]

@@ -17,12 +17,12 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import config_of_values, load_config, read_values
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import ConfigError, RadharError
-from radhar_cli.limits.keys import OF_PEOPLE, with_number
-from radhar_cli.limits.limit import CLEAN, Consequence, Judgement, Origin
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.scene_checks.flags import Flags, describe_flag
 from radhar_cli.scene_checks.warnings import warnings_of_signal
+from radhar_cli.study.limits.keys import OF_PEOPLE, with_number
+from radhar_cli.study.limits.limit import CLEAN, Consequence, Judgement, Origin
 
 ATTEMPTS = 8  # draws of a scene on the way to a limit, where a data set takes a thousand
 SAMPLES = 2  # of each class that are drawn at a limit

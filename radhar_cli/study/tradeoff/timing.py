@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from radhar_cli.products.run import run
 from radhar_cli.products.table import plan_images
-from radhar_cli.tradeoff.scenes import Scenes, SweepSample
-from radhar_cli.tradeoff.setting import Overrides, Setting
+from radhar_cli.study.tradeoff.scenes import Scenes, SweepSample
+from radhar_cli.study.tradeoff.setting import Overrides, Setting
 
 # Length of a round of a setting at which no further scene is begun, s.
 SECONDS = 0.6

@@ -7,10 +7,10 @@ from math import inf
 from pathlib import Path
 
 from radhar_cli.processes.progress import Progress
-from radhar_cli.tradeoff.recommendation import saves
-from radhar_cli.tradeoff.row import AccuracyNumbers
-from radhar_cli.tradeoff.scenes import Scenes
-from radhar_cli.tradeoff.sweep import Sweep
+from radhar_cli.study.tradeoff.recommendation import saves
+from radhar_cli.study.tradeoff.row import AccuracyNumbers
+from radhar_cli.study.tradeoff.scenes import Scenes
+from radhar_cli.study.tradeoff.sweep import Sweep
 
 
 def measure_accuracies(
@@ -33,7 +33,7 @@ def measure_accuracies(
         save: keeps the sweep as it is.
         seconds: time after which no further network is begun, s.
     """
-    from radhar_cli.tradeoff.accuracy import measure_accuracy  # of radhar[train]
+    from radhar_cli.study.tradeoff.accuracy import measure_accuracy  # of radhar[train]
 
     deadline = None if seconds == inf else time.monotonic() + seconds
     for number, row in enumerate(sweep.rows):

@@ -5,12 +5,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from math import inf
-from time import monotonic
+from typing import TypeAlias
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.errors import ConfigError, RadharError, did_you_mean
-from radhar_cli.limits.keys import NumberKey, acting_numbers
-from radhar_cli.limits.limit import (
+from radhar_cli.processes.progress import Progress
+from radhar_cli.processes.time_limit import time_limit
+from radhar_cli.scene import Scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.study.limits.keys import NumberKey, acting_numbers
+from radhar_cli.study.limits.limit import (
     CLEAN,
     KEY_ENDS,
     NOTED,
@@ -20,14 +24,11 @@ from radhar_cli.limits.limit import (
     Origin,
     RangeSide,
 )
-from radhar_cli.limits.margins import Margin, Reach, margins_of, reach_of
-from radhar_cli.limits.search import End, Path, find_end_at_zero
-from radhar_cli.limits.trial import ConfigTrial, Place, judge_sample, refusal_of
-from radhar_cli.limits.work import Counts, counted_work, work_ratio
-from radhar_cli.processes.progress import Progress
-from radhar_cli.processes.time_limit import time_limit
-from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.study.limits.margins import Margin, Reach, margins_of, reach_of
+from radhar_cli.study.limits.search import End, Path, find_end_at_zero
+from radhar_cli.study.limits.trial import ConfigTrial, Place, judge_sample, refusal_of
+from radhar_cli.study.limits.work import Counts, counted_work, work_ratio
+from radhar_cli.study.trials import Budget, Trial, try_settings
 
 SLOW = 10.0  # times the work of a sample of the config, from which on it counts as slower
 SHARE = 0.1  # of the time, that one simulated sample may take
@@ -37,6 +38,8 @@ REFUSING = (Consequence.REFUSED, Consequence.REDRAWN)
 FIRST_SHARE = 0.75  # of the time, in which limits are looked for without simulating
 REPAIRS = 3  # how often a way is gone again because another sample fails at its end
 MOST_SIMULATED = 6  # samples simulated on the way to an end that simulation alone shows
+
+KeySide: TypeAlias = tuple[NumberKey, RangeSide]
 
 
 @dataclass
@@ -61,16 +64,22 @@ class Study:
 
     @property
     def unfinished(self) -> list[tuple[str, RangeSide]]:
-        return [
-            (k.key, side)
-            for k in self.keys
-            for side in RangeSide
-            if (k.key, side) not in self.limits
-        ]
+        places = ((number.key, side) for number in self.keys for side in RangeSide)
+        return [place for place in places if place not in self.limits]
 
     @property
     def not_simulated(self) -> list[tuple[str, RangeSide]]:
         return [place for place, limit in self.limits.items() if not limit.simulated]
+
+    def keep(self, tried: Trial[KeySide, Limit]) -> None:
+        """Keep the limit of a number, where one was found."""
+        if tried.result is not None:
+            number, side = tried.setting
+            self.limits[number.key, side] = tried.result
+
+    def limits_of(self, number: NumberKey) -> list[Limit | None]:
+        """Limits of a number below and above; None where there was no time."""
+        return [self.limits.get((number.key, side)) for side in RangeSide]
 
 
 def study_limits(
@@ -88,24 +97,23 @@ def study_limits(
         ConfigError: a key is no number that has an effect.
     """
     study = Study(chosen_numbers(trial.config, keys), troubled=trial.troubled)
-    end = monotonic() + seconds
+    budget, first = Budget(seconds), Budget(FIRST_SHARE * seconds)
     places = [(number, side) for number in study.keys for side in RangeSide]
     places.sort(key=lambda place: bool(COORDINATE_KEY.search(place[0].key)))  # which take longest
     search: _Search | None = None
-    with time_limit(FIRST_SHARE * seconds):
-        search = _Search(trial, study, end)
-        progress.stage("limits", len(places), 0, "limit")
-        for key, side in places:
-            study.limits[key.key, side] = search.limit(key, side)
-            progress.advance(1)
-    with time_limit(max(end - monotonic(), 0.0)):
-        known = [place for place in places if (place[0].key, place[1]) in study.limits]
-        progress.stage("simulating", len(known), 0, "limit")
-        if search is not None and known:
-            search.time_sample()
-            for key, side in known:
-                study.limits[key.key, side] = search.simulated(key, side)
-                progress.advance(1)
+    with time_limit(first.left):
+        search = _Search(trial, study, budget)
+    if search is None:
+        return study
+    progress.stage("limits", len(places), 0, "limit")
+    for tried in try_settings(places, search.find_limit, first, progress):
+        study.keep(tried)
+    known = [(number, side) for number, side in places if (number.key, side) in study.limits]
+    progress.stage("simulating", len(known), 0, "limit")
+    with time_limit(budget.left):
+        search.time_sample()
+    for tried in try_settings(known, search.simulate_limit, budget, progress):
+        study.keep(tried)
     return study
 
 
@@ -152,8 +160,8 @@ def _last_drawn(judge: Callable[[float], Judgement], end: End, farthest: End, pa
 class _Search:
     """Search for the limits of a config."""
 
-    def __init__(self, trial: ConfigTrial, study: Study, end: float) -> None:
-        self.trial, self.study, self.end = trial, study, end
+    def __init__(self, trial: ConfigTrial, study: Study, budget: Budget) -> None:
+        self.trial, self.study, self.budget = trial, study, budget
         self.base_work: Counts = counted_work(trial.config)
         self.reaches: dict[Place, Reach] = {}
         scenes = list[Scene]()
@@ -163,7 +171,13 @@ class _Search:
             scenes.append(scene)
         study.margins = margins_of(scenes, list(self.reaches.values()))
 
-    def limit(self, key: NumberKey, side: RangeSide) -> Limit:
+    def find_limit(self, place: KeySide, seconds: float) -> Limit | None:
+        """Find a limit without simulating; None where the time, s, is too short."""
+        with time_limit(seconds):
+            return self._find_limit(*place)
+        return None
+
+    def _find_limit(self, key: NumberKey, side: RangeSide) -> Limit:
         """Find a limit without simulating: by checks and counted work, then by scenes within."""
         places = self.trial.places(key.key)
         few = self._extreme_places(places)
@@ -258,14 +272,20 @@ class _Search:
             return
         self.study.sample_s = max(min(times[1:]), 1e-4)
 
-    def simulated(self, key: NumberKey, side: RangeSide) -> Limit:
+    def simulate_limit(self, place: KeySide, seconds: float) -> Limit | None:
+        """Simulate at a limit; None where the time, s, is too short."""
+        with time_limit(seconds):
+            return self._simulate_limit(*place)
+        return None
+
+    def _simulate_limit(self, key: NumberKey, side: RangeSide) -> Limit:
         """Simulate at a limit; where that shows an end, or is too slow, find the nearer one."""
         limit, base_s = self.study.limits[key.key, side], self.study.sample_s
         places = self._extreme_places(self.trial.places(key.key))
         if limit.value is None or base_s is None or not places:
             return limit
         work = self._work(key, limit.value)
-        if work * base_s > SHARE * max(self.end - monotonic(), 0):
+        if work * base_s > SHARE * self.budget.left:
             return limit
         judgement, times = self._simulate(key, limit.value, places[0])
         if judgement.is_clean:

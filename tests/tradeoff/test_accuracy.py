@@ -10,7 +10,12 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.extensions import own_products
 from radhar_cli.products.plan import Product
 from radhar_cli.study.tradeoff import accuracy
-from radhar_cli.study.tradeoff.accuracy import AccuracyStudy, Sizes, measure_accuracy, setting_accuracy
+from radhar_cli.study.tradeoff.accuracy import (
+    AccuracyStudy,
+    Sizes,
+    measure_accuracy,
+    setting_accuracy,
+)
 
 CONFIG = """
 motion: {model: paper}

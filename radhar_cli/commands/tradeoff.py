@@ -95,8 +95,8 @@ def _measure(files: "TradeoffReport", sweep: "Sweep", seconds: float, seeds: int
         seeds: seeds of networks; None for no networks.
     """
     from radhar_cli.commands.terminal import BarProgress
-    from radhar_cli.study.tradeoff.networks import measure_accuracies
-    from radhar_cli.study.tradeoff.study import Budget, TradeoffStudy
+    from radhar_cli.study.tradeoff.study import TradeoffStudy
+    from radhar_cli.study.trials import Budget
 
     budget = Budget(seconds)
     with BarProgress("setting") as progress, resumable(f"what was measured in {files.folder}"):
@@ -104,6 +104,8 @@ def _measure(files: "TradeoffReport", sweep: "Sweep", seconds: float, seeds: int
             study = TradeoffStudy(files.scenes, sweep, budget, progress, lambda: files.keep(sweep))
             study.run()
             if seeds is not None:
+                from radhar_cli.study.tradeoff.accuracy import measure_accuracies  # of PyTorch
+
                 measure_accuracies(
                     *(files.scenes, sweep, seeds, files.folder / "accuracy", progress),
                     lambda: files.keep(sweep),

@@ -31,7 +31,7 @@ class Budget:
 
 
 @dataclass(frozen=True)
-class Trial(Generic[S, R]):
+class TriedSetting(Generic[S, R]):
     """A setting that was tried, with its result, or why there is none.
 
     Attributes:
@@ -53,7 +53,7 @@ def try_settings(
     budget: Budget,
     progress: Progress,
     shares: float = inf,
-) -> Iterator[Trial[S, R]]:
+) -> Iterator[TriedSetting[S, R]]:
     """Measure settings in turn, each within its share of the time, and yield what came of each.
 
     Args:
@@ -71,5 +71,5 @@ def try_settings(
                 result = measure(setting, seconds)
             except RadharError as error:
                 refusal = error
-        yield Trial(setting, result, refusal, seconds if budget.left > 0 else 0.0)
+        yield TriedSetting(setting, result, refusal, seconds if budget.left > 0 else 0.0)
         progress.advance(1)

@@ -137,7 +137,7 @@ class TestGate:
 
 def test_networks_are_trained_for_what_saves_time(tmp_path, monkeypatch):
     """The config as it is comes first; what saves nothing is not learned."""
-    from radhar_cli.study.tradeoff import accuracy, networks
+    from radhar_cli.study.tradeoff import accuracy
 
     scenes = Scenes(write(tmp_path, "fmcw"), (), quick=True)
     times = {"sample_ms": 8.0, "rounds": 5}
@@ -157,10 +157,10 @@ def test_networks_are_trained_for_what_saves_time(tmp_path, monkeypatch):
 
     monkeypatch.setattr(accuracy, "measure_accuracy", learn)
     sweep = Sweep([default, fast, slow])
-    networks.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
+    accuracy.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
     assert learned == [(), ("fast",)]
     assert [row.accuracy is not None for row in sweep.rows] == [True, True, False]
-    networks.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
+    accuracy.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
     assert len(learned) == 2  # what is there is not made again
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import log10
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from radhar_cli.study.limits.limit import Judgement
 
@@ -14,6 +14,14 @@ FIRST_STEP, GROWTH = 1 / 16, 1.6
 MOST_HALVINGS = 14
 BETWEEN = 8  # parts of the way to an end, between which it is looked for gaps
 GAP = 0.01  # of a number, within which its end is found
+
+
+Fine: TypeAlias = Callable[[Judgement], bool]
+
+
+def is_clean(judgement: Judgement) -> bool:
+    """Whether nothing new happens with a number."""
+    return judgement.is_clean
 
 
 class End(NamedTuple):
@@ -93,7 +101,7 @@ class Path:
 def find_end(
     judge: Callable[[float], Judgement],
     path: Path,
-    fine: Callable[[Judgement], bool] = lambda judgement: judgement.is_clean,
+    fine: Fine = is_clean,
 ) -> End:
     """Find the end of what is fine on the way from a number, which is, to a bound.
 
@@ -120,7 +128,30 @@ def find_end(
             outside, judgement = inside + step, tried
             break
         inside, step = inside + step, step * GROWTH
-    for _ in range(MOST_HALVINGS):
+    end = halve(judge, path, (inside, outside), judgement, fine)
+    return _nearest_gap(judge, path, fine, end) if path.is_of_distances else end
+
+
+def halve(
+    judge: Callable[[float], Judgement],
+    path: Path,
+    shares: tuple[float, float],
+    judgement: Judgement,
+    fine: Fine = is_clean,
+    steps: int = MOST_HALVINGS,
+) -> End:
+    """Find an end between two shares of a way by halving it.
+
+    Args:
+        judge: judges a number.
+        path: the way.
+        shares: shares of the way of a number that is fine, and of one beyond that is not.
+        judgement: judgement of the latter.
+        fine: whether a judgement counts as fine.
+        steps: largest number of numbers that are judged.
+    """
+    inside, outside = shares
+    for _ in range(steps):
         half = 0.5 * (inside + outside)
         number = path.number(half)
         near, far = path.number(inside), path.number(outside)
@@ -131,14 +162,13 @@ def find_end(
             inside = half
         else:
             outside, judgement = half, tried
-    end = End(path.number(inside), path.number(outside), judgement)
-    return _nearest_gap(judge, path, fine, end) if path.is_of_distances else end
+    return End(path.number(inside), path.number(outside), judgement)
 
 
 def _nearest_gap(
     judge: Callable[[float], Judgement],
     path: Path,
-    fine: Callable[[Judgement], bool],
+    fine: Fine,
     end: End,
 ) -> End:
     """Find an end that growing steps of distance passed over, as of an antenna in a person."""
@@ -153,7 +183,7 @@ def _nearest_gap(
 def find_end_at_zero(
     judge: Callable[[float], Judgement],
     path: Path,
-    fine: Callable[[Judgement], bool] = lambda judgement: judgement.is_clean,
+    fine: Fine = is_clean,
 ) -> End:
     """Find the end of what is fine as `find_end` does, where a positive number may go to 0."""
     if path.start <= 0 or path.bound != 0 or path.is_whole:

@@ -1,10 +1,9 @@
 """Find the limits of a config: every number that acts, both sides, within a time."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
-from math import inf
+from functools import cache, partial
 from typing import TypeAlias
 
 from radhar_cli.config.data_set import Config
@@ -25,10 +24,10 @@ from radhar_cli.study.limits.limit import (
     RangeSide,
 )
 from radhar_cli.study.limits.margins import Margin, Reach, margins_of, reach_of
-from radhar_cli.study.limits.search import End, Path, find_end_at_zero
+from radhar_cli.study.limits.search import End, Path, find_end_at_zero, halve
 from radhar_cli.study.limits.trial import ConfigTrial, Place, judge_sample, refusal_of
 from radhar_cli.study.limits.work import Counts, counted_work, work_ratio
-from radhar_cli.study.trials import Budget, Trial, try_settings
+from radhar_cli.study.trials import Budget, TriedSetting, try_settings
 
 SLOW = 10.0  # times the work of a sample of the config, from which on it counts as slower
 SHARE = 0.1  # of the time, that one simulated sample may take
@@ -71,7 +70,7 @@ class Study:
     def not_simulated(self) -> list[tuple[str, RangeSide]]:
         return [place for place, limit in self.limits.items() if not limit.simulated]
 
-    def keep(self, tried: Trial[KeySide, Limit]) -> None:
+    def keep(self, tried: TriedSetting[KeySide, Limit]) -> None:
         """Keep the limit of a number, where one was found."""
         if tried.result is not None:
             number, side = tried.setting
@@ -124,37 +123,19 @@ def chosen_numbers(config: Config, keys: Sequence[str] | None) -> tuple[NumberKe
         ConfigError: a name is of none of them.
     """
     numbers = acting_numbers(config)
-    if not keys:
-        return tuple(numbers)
-    for name in keys:
-        if not any(f"{number.key}.".startswith(f"{name}.") for number in numbers):
+
+    def chosen(name: str) -> list[NumberKey]:
+        return [number for number in numbers if f"{number.key}.".startswith(f"{name}.")]
+
+    for name in keys or ():
+        if not chosen(name):
             known = [number.key for number in numbers]
             raise ConfigError(
                 f"--key {name}: is no number that has an effect with this config; "
                 + did_you_mean(name, known, f"some that have: {', '.join(known[:8])}")
             )
-    return tuple(
-        number
-        for number in numbers
-        if any(f"{number.key}.".startswith(f"{name}.") for name in keys)
-    )
-
-
-def _last_drawn(judge: Callable[[float], Judgement], end: End, farthest: End, path: Path) -> End:
-    """Find the last number whose scenes can be drawn, of those that are but warned of.
-
-    Args:
-        judge: judges a number.
-        end: end of what nothing is said of.
-        farthest: end of what checks accept.
-        path: way to the end.
-    """
-    if end.outside is None or end.judgement.effect is not Consequence.WARNED:
-        return farthest
-    if judge(farthest.inside).effect not in REFUSING:
-        return farthest
-    beyond = Path(end.outside, farthest.inside, path.is_whole)
-    return find_end_at_zero(judge, beyond, lambda judged: judged.effect not in REFUSING)
+    named = [number for name in keys or () for number in chosen(name)]
+    return tuple(number for number in numbers if not keys or number in named)
 
 
 class _Search:
@@ -178,21 +159,20 @@ class _Search:
         return None
 
     def _find_limit(self, key: NumberKey, side: RangeSide) -> Limit:
-        """Find a limit without simulating: by checks and counted work, then by scenes within."""
+        """Find a limit without simulating: by checks, then counted work, then by scenes within."""
         places = self.trial.places(key.key)
         few = self._extreme_places(places)
-
-        @cache
-        def judge(number: float) -> Judgement:
-            return self._judge(key, number, few)
-
+        accept, afford, judge = (
+            cache(partial(self._judge, key, bound)) for bound in (None, (), tuple(few))
+        )
         first = key.range[0 if side is RangeSide.LOW else 1]
         start = next((x for x in (first, *key.middles) if judge(x).is_clean), None)
         if start is None:
             return Limit(key.key, side, None, judge(key.middles[0]))
         path = Path(start, key.low if side is RangeSide.LOW else key.high, key.is_whole)
-        end = find_end_at_zero(cache(lambda number: self._judge(key, number, [])), path)
-        farthest = self._farthest(key, end, path)
+        end = farthest = find_end_at_zero(afford, path)
+        if end.outside is not None and end.judgement.effect is not Consequence.REFUSED:
+            farthest = find_end_at_zero(accept, replace(path, start=end.outside))
         path = replace(path, bound=end.inside)
         drawn = find_end_at_zero(judge, path)
         end = end if drawn.outside is None else drawn
@@ -201,38 +181,29 @@ class _Search:
             failing = self._failing(key, end.inside, others)
             if failing is None:
                 break
-            end = find_end_at_zero(
-                lambda number, place=failing: self._judge(key, number, [place]),  # type: ignore[misc]
-                replace(path, bound=end.inside),
-            )
-        return self._as_limit(key, side, end, _last_drawn(judge, end, farthest, path))
+            judge_failing = partial(self._judge, key, (failing,))
+            end = find_end_at_zero(judge_failing, replace(path, bound=end.inside))
+        is_warned = end.outside is not None and end.judgement.effect is Consequence.WARNED
+        if is_warned and judge(farthest.inside).effect in REFUSING:  # the last that can be drawn
+            beyond = Path(end.outside or 0.0, farthest.inside, key.is_whole)
+            farthest = find_end_at_zero(judge, beyond, lambda each: each.effect not in REFUSING)
+        return _as_limit(key, side, end, farthest)
 
-    def _judge(self, key: NumberKey, number: float, places: Sequence[Place]) -> Judgement:
-        """Judge a number by checks, counted work, and warnings and scenes where there are places.
+    def _judge(self, key: NumberKey, places: tuple[Place, ...] | None, number: float) -> Judgement:
+        """Judge a number by checks, by counted work, and by warnings and scenes.
 
-        Where there are none, warnings are not looked at either.
+        Args:
+            key: key of the number.
+            places: samples that are drawn; () for checks and work alone, None for checks alone.
+            number: the number.
         """
         try:
             config = self.trial.config_with(key.key, number)
         except ConfigError as error:
             return refusal_of(error, key.key)
-        if work_ratio(config, self.base_work) > SLOW:  # before its scenes are drawn
+        if places is not None and work_ratio(config, self.base_work) > SLOW:  # before drawing
             return Judgement(Consequence.SLOWER, Origin.TIME, f"{SLOW:.0f} times the work")
         return self.trial.judge(config, places) if places else CLEAN
-
-    def _farthest(self, key: NumberKey, end: End, path: Path) -> End:
-        """Find the end of what checks accept, where counted work ends before."""
-        if end.outside is None or end.judgement.effect is Consequence.REFUSED:
-            return end
-
-        def accepted(number: float) -> Judgement:
-            try:
-                self.trial.config_with(key.key, number)
-            except ConfigError as error:
-                return refusal_of(error, key.key)
-            return CLEAN
-
-        return find_end_at_zero(cache(accepted), replace(path, start=end.outside))
 
     def _extreme_places(self, places: list[Place]) -> list[Place]:
         """Samples that stand for all: the farthest, the fastest and the nearest, of few classes."""
@@ -252,16 +223,6 @@ class _Search:
             if not self.trial.judge_scene(config, *place).is_clean:
                 return place
         return None
-
-    def _as_limit(self, key: NumberKey, side: RangeSide, end: End, farthest: End) -> Limit:
-        """Limit of an end; where farther numbers are accepted, say where they are not."""
-        refusal = KEY_ENDS if farthest.outside is None else farthest.judgement
-        if end.outside is None or end.inside == farthest.inside:
-            return Limit(key.key, side, end.inside, refusal)
-        beyond = end.judgement
-        if beyond.effect in REFUSING:
-            return Limit(key.key, side, end.inside, beyond)
-        return Limit(key.key, side, end.inside, beyond, farthest.inside, refusal)
 
     def time_sample(self) -> None:
         """Time a sample of the config itself, after a first one that loads and compiles."""
@@ -284,13 +245,29 @@ class _Search:
         places = self._extreme_places(self.trial.places(key.key))
         if limit.value is None or base_s is None or not places:
             return limit
-        work = self._work(key, limit.value)
+        work = work_ratio(self.trial.config_with(key.key, limit.value), self.base_work)
         if work * base_s > SHARE * self.budget.left:
             return limit
-        judgement, times = self._simulate(key, limit.value, places[0])
+        times = dict[float, float]()
+
+        def judge(number: float) -> Judgement:
+            judgement, times[number] = self._simulate(key, number, places[0])
+            return judgement
+
+        judgement = judge(limit.value)
         if judgement.is_clean:
-            return replace(limit, simulated=True, times=times)
-        return self._nearer(key, side, limit, places[0], judgement)
+            return replace(limit, simulated=True, times=times[limit.value])
+        path = Path(key.range[0 if side is RangeSide.LOW else 1], limit.value, key.is_whole)
+        end = halve(judge, path, (0.0, 1.0), judgement, steps=MOST_SIMULATED)
+        return replace(
+            limit,
+            value=end.inside,
+            beyond=end.judgement,
+            last_accepted=limit.value,
+            refusal=limit.beyond,
+            times=times.get(end.inside),
+            simulated=True,
+        )
 
     def _simulate(self, key: NumberKey, number: float, place: Place) -> tuple[Judgement, float]:
         """Simulate a sample; judge it, and return how many times as long as the config's it took.
@@ -303,39 +280,15 @@ class _Search:
             seconds = min(seconds, self.trial.simulate(key.key, number, place)[1])
         if judgement.is_clean and seconds > SLOW * base_s:
             reason = f"a sample takes {seconds / base_s:.2g} times as long"
-            return Judgement(Consequence.SLOWER, Origin.TIME, reason), seconds / base_s
+            judgement = Judgement(Consequence.SLOWER, Origin.TIME, reason)
         return judgement, seconds / base_s
 
-    def _work(self, key: NumberKey, number: float) -> float:
-        try:
-            return work_ratio(self.trial.config_with(key.key, number), self.base_work)
-        except ConfigError:
-            return inf
 
-    def _nearer(
-        self, key: NumberKey, side: RangeSide, limit: Limit, place: Place, judgement: Judgement
-    ) -> Limit:
-        """Find the end that simulation shows, between the config's own number and a limit."""
-        assert limit.value is not None
-        inside, outside = 0.0, 1.0
-        path = Path(key.range[0 if side is RangeSide.LOW else 1], limit.value, key.is_whole)
-        times: float | None = None
-        for _ in range(MOST_SIMULATED):
-            middle = 0.5 * (inside + outside)
-            number = path.number(middle)
-            if number in (path.number(inside), path.number(outside)):
-                break
-            tried, tried_times = self._simulate(key, number, place)
-            if tried.is_clean:
-                inside, times = middle, tried_times
-            else:
-                outside, judgement = middle, tried
-        return replace(
-            limit,
-            value=path.number(inside),
-            beyond=judgement,
-            last_accepted=limit.value,
-            refusal=limit.beyond,
-            times=times,
-            simulated=True,
-        )
+def _as_limit(key: NumberKey, side: RangeSide, end: End, farthest: End) -> Limit:
+    """Limit of an end; where farther numbers are accepted, say where they are not."""
+    refusal = KEY_ENDS if farthest.outside is None else farthest.judgement
+    if end.outside is None or end.inside == farthest.inside:
+        return Limit(key.key, side, end.inside, refusal)
+    if end.judgement.effect in REFUSING:
+        return Limit(key.key, side, end.inside, end.judgement)
+    return Limit(key.key, side, end.inside, end.judgement, farthest.inside, refusal)

@@ -15,10 +15,11 @@ share the network.
 import hashlib
 import json
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cache, cached_property
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -43,10 +44,14 @@ from radhar_cli.learning.training_set import open_training_set
 from radhar_cli.processes.progress import NoProgress, Progress
 from radhar_cli.products.plan import Product
 from radhar_cli.study.tradeoff.intervals import Interval, mean_interval
+from radhar_cli.study.tradeoff.recommendation import saves
+from radhar_cli.study.tradeoff.row import AccuracyNumbers
+from radhar_cli.study.tradeoff.scenes import Scenes
+from radhar_cli.study.tradeoff.setting import Overrides
+from radhar_cli.study.tradeoff.sweep import Sweep
 
 FEWEST_SEEDS = 2  # of which an interval can be made
 TEST_BATCH = 64
-Overrides = tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -81,7 +86,7 @@ class SettingAccuracy:
 
     @cached_property
     def interval(self) -> Interval:
-        """Mean over the seeds, with its interval."""
+        """Mean over the seeds, with its interval of 95 %."""
         return mean_interval(self.by_seed)
 
     @property
@@ -91,13 +96,17 @@ class SettingAccuracy:
 
     @property
     def low(self) -> float:
-        """Lower end of the interval of 95 % of the mean."""
+        """Lower end of the interval."""
         return self.interval.low
 
     @property
     def high(self) -> float:
-        """Upper end of the interval of 95 % of the mean."""
+        """Upper end of the interval."""
         return self.interval.high
+
+    def numbers(self) -> AccuracyNumbers:
+        """Numbers of a row."""
+        return AccuracyNumbers(self.by_seed, *self.interval, self.tested_on)
 
 
 class _Quiet(NoProgress):
@@ -308,6 +317,41 @@ def _digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
+def measure_accuracies(
+    scenes: Scenes,
+    sweep: Sweep,
+    seeds: int,
+    folder: Path,
+    progress: Progress,
+    save: Callable[[], None],
+    seconds: float = inf,
+) -> None:
+    """Train networks on data of the config as it is, and of each setting that saves time.
+
+    Args:
+        scenes: scenes of the sweep, whose config it is.
+        sweep: rows, which get their accuracy.
+        seeds: number of networks of a setting.
+        folder: folder of their data sets and runs.
+        progress: is told of networks that are done.
+        save: keeps the sweep as it is.
+        seconds: time after which no further network is begun, s.
+    """
+    deadline = None if seconds == inf else time.monotonic() + seconds
+    for number, row in enumerate(sweep.rows):
+        is_wanted = row.is_default or saves(row, sweep.blur)
+        if not is_wanted or (row.accuracy and len(row.accuracy.by_seed) >= seeds):
+            continue
+        measured = measure_accuracy(
+            scenes.path, scenes.overrides, row.overrides, seeds, folder, progress, deadline
+        )
+        if measured is not None:
+            sweep.rows[number] = replace(row, accuracy=measured.numbers())
+            save()
+        elif row.is_default:
+            return
+
+
 def measure_accuracy(
     path: Path,
     overrides: Overrides,
@@ -324,7 +368,7 @@ def measure_accuracy(
         overrides: overrides of every setting, those of the command line.
         setting: overrides of the setting, which come after them; none for the config as it is.
         seeds: number of networks.
-        folder: folder of the data sets, networks and records of all settings.
+        folder: data sets, networks and records of all settings.
         progress: receives the networks done, and why there is no accuracy.
         deadline: time by `time.monotonic` at which no further network is begun; None is never.
 

@@ -1,13 +1,16 @@
-"""What a sweep recommends, in sentences that follow from its rows and their uncertainty."""
+"""What a sweep recommends, in sentences that follow from its rows and their uncertainty.
+
+A setting saves or costs time only where the whole interval of its ratio lies beyond what the config
+as it is differs from itself.
+"""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from math import inf, isfinite
 
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.echo.accuracy import target_error_db
 from radhar_cli.study.tradeoff.floor import VISIBLE
-from radhar_cli.study.tradeoff.intervals import paired_difference
+from radhar_cli.study.tradeoff.intervals import Interval, paired_difference
 from radhar_cli.study.tradeoff.row import Row
 from radhar_cli.study.tradeoff.setting import DEFAULT
 from radhar_cli.study.tradeoff.sweep import Sweep
@@ -23,9 +26,6 @@ TOLERANCE = "engine.tolerance_db"
 def recommend(sweep: Sweep, engine: EngineConfig, cores: int = 0) -> list[str]:
     """Sentences about what a config may save, at which price, and how sure that is.
 
-    A setting saves or costs time only where the whole interval of its ratio lies beyond what the
-    config as it is differs from itself.
-
     Args:
         sweep: rows, floors and pairs of a sweep.
         engine: engine of the config as it is.
@@ -40,21 +40,16 @@ def recommend(sweep: Sweep, engine: EngineConfig, cores: int = 0) -> list[str]:
     ]
 
 
-def saves(row: Row, blur: float) -> bool:
+def saves(row: Row, blur: float, least_rounds: int = LEAST_ROUNDS) -> bool:
     """Whether a row takes less time than the config as it is, beyond its own interval and the blur.
 
     Args:
         row: the row.
         blur: share by which the config as it is differs from itself.
+        least_rounds: rounds of timing without which nothing is concluded.
     """
-    is_comparable = row.base_name == DEFAULT and not row.is_default and row.rounds >= LEAST_ROUNDS
+    is_comparable = row.base_name == DEFAULT and not row.is_default and row.rounds >= least_rounds
     return is_comparable and row.ratio_high is not None and row.ratio_high < 1 - blur
-
-
-def _may_save(row: Row, blur: float) -> bool:
-    """Whether a row took less time, in fewer rounds than a conclusion needs."""
-    is_timed = row.ratio_high is not None and 0 < row.rounds < LEAST_ROUNDS
-    return is_timed and saves(replace(row, rounds=LEAST_ROUNDS), blur)
 
 
 def _costs(row: Row, blur: float) -> bool:
@@ -65,14 +60,11 @@ def _costs(row: Row, blur: float) -> bool:
 
 def _floor_sentences(sweep: Sweep) -> Iterator[str]:
     """Yield what 8 bits show at least, and where the config's own error lies."""
-    if not sweep.floors:
-        return
-    name, floor_db = min(sweep.floors.items(), key=lambda item: item[1])
-    maps = {key: value for key, value in sweep.floors.items() if key != "points"}
+    floors = sorted(sweep.floors.items(), key=lambda item: item[1])
+    maps = [item for item in floors if item[0] != "points"]
     if maps:
-        visible, map_floor = min(maps.items(), key=lambda item: item[1])
-        others = [f"{key} {value} dB" for key, value in maps.items() if key != visible]
-        listed = f"; {', '.join(others)}" if others else ""
+        (visible, map_floor), *others = maps
+        listed = "".join(f", {key} {value} dB" for key, value in others).replace(",", ";", 1)
         yield (
             f"At this config 8 bits cannot show an error of less than {map_floor} dB of the signal "
             f"({visible}{listed}): below it fewer than {_percent(VISIBLE)} of the pixels differ by "
@@ -84,40 +76,37 @@ def _floor_sentences(sweep: Sweep) -> Iterator[str]:
             f"{sweep.floors['points']} dB on."
         )
     row = sweep.row_of(DEFAULT)
-    if row is None or row.error_db is None:
+    if not floors or row is None or row.error_db is None:
         return
-    scenes = f"worst of {_counted(row.scenes, 'scene')}"
+    (name, floor_db), scenes = floors[0], f"worst of {_counted(row.scenes, 'scene')}"
+    own_error = f"Its own error, {row.error_db:.0f} dB of {row.error_of} ({scenes}),"
     if row.error_db == -inf:
         yield f"The config as it is makes no error of computation ({scenes})."
     elif row.error_db < floor_db:
-        yield (
-            f"Its own error, {row.error_db:.0f} dB of {row.error_of} ({scenes}), is "
-            f"{floor_db - row.error_db:.0f} dB below that."
-        )
+        yield f"{own_error} is {floor_db - row.error_db:.0f} dB below that."
     else:
-        yield (
-            f"Its own error, {row.error_db:.0f} dB of {row.error_of} ({scenes}), shows in {name}: "
-            f"a tighter engine.tolerance_db is worth its time."
-        )
+        yield f"{own_error} shows in {name}: a tighter engine.tolerance_db is worth its time."
 
 
 def _engine_sentences(sweep: Sweep, engine: EngineConfig) -> Iterator[str]:
-    """Yield what other computations of the same physics cost, and whether they show."""
+    """Yield what other computations of the same physics cost, and whether they show.
+
+    Those that save time are named among what saves.
+    """
     for row in sweep.rows:
-        if not row.is_error or row.is_default or row.ratio is None:
+        is_other = row.is_error and not row.is_default and row.ratio is not None
+        if not is_other or saves(row, sweep.blur):
             continue
-        if saves(row, sweep.blur):
-            continue  # named among what saves
-        visible = _shown_error(row)
         if _is_same_signal(row, engine):
             time = f" ({_times(row)} the time)" if row.rounds >= LEAST_ROUNDS else ""
             yield f"`{row.name}` is the same signal as the default's and saves nothing{time}."
-        elif row.rounds < LEAST_ROUNDS:
-            yield f"{_quoted(row)} was timed too seldom to say what it takes; {visible}."
+            continue
+        words = "takes the same time within the blur"
+        if row.rounds < LEAST_ROUNDS:
+            words = "was timed too seldom to say what it takes"
         elif _costs(row, sweep.blur):
-            yield f"{_quoted(row)} takes {_times(row)} the time; {visible}."
-        else:
-            yield f"{_quoted(row)} takes the same time within the blur; {visible}."
+            words = f"takes {_times(row)} the time"
+        yield f"`{row.name}` {words}; {_shown_error(row)}."
 
 
 def _is_same_signal(row: Row, engine: EngineConfig) -> bool:
@@ -133,40 +122,41 @@ def _is_same_signal(row: Row, engine: EngineConfig) -> bool:
 
 def _shown_error(row: Row) -> str:
     """Whether an error of a row shows in pictures, in words."""
-    over_one = row.over_one
-    if over_one is None:
+    if row.over_one is None:
         return "what it shows was not compared"
-    if over_one == 0:
+    if row.over_one == 0:
         return "no pixel is more than a level from the exact one"
-    return f"{_percent(over_one)} of the pixels are more than a level from the exact ones"
+    return f"{_percent(row.over_one)} of the pixels are more than a level from the exact ones"
 
 
 def _saving_sentences(sweep: Sweep) -> Iterator[str]:
     """Yield what saves time, at what price, and what to take."""
-    found_rows = sorted(
-        (row for row in sweep.rows if saves(row, sweep.blur)), key=lambda row: row.ratio or 1
-    )
+    saving = [row for row in sweep.rows if saves(row, sweep.blur)]
+    saving.sort(key=lambda row: row.ratio or 1)
     default = sweep.row_of(DEFAULT)
-    for row in found_rows[:MOST_SAVINGS]:
-        yield f"{_quoted(row)} saves {_saved(row)} of the time{_price(row, default)}."
-    if len(found_rows) > MOST_SAVINGS:
-        others = ", ".join(_quoted(row) for row in found_rows[MOST_SAVINGS:])
-        yield f"Others that save less: {others}."
-    free = [row for row in found_rows if _is_free(row, default)]
+    for row in saving[:MOST_SAVINGS]:
+        yield f"`{row.name}` saves {_saved(row)} of the time{_price(row, default)}."
+    if len(saving) > MOST_SAVINGS:
+        yield f"Others that save less: {_names(saving[MOST_SAVINGS:])}."
+    free = [row for row in saving if _is_free(row, default)]
     if free:
-        yield f"Recommended: {' or '.join(_quoted(row) for row in free)}."
-    elif found_rows:
+        yield f"Recommended: {_names(free, ' or ')}."
+    elif saving:
         yield (
             "Recommended: the config as it is; what saves time gives other pictures, which are "
             "worth it only if a network learns as well from them."
         )
     else:
         yield "Recommended: the config as it is; nothing that was tried saves time beyond the blur."
-    undecided = [row for row in sweep.rows if _may_save(row, sweep.blur)]
+    undecided = [
+        row
+        for row in sweep.rows
+        if row.rounds < LEAST_ROUNDS and saves(row, sweep.blur, least_rounds=1)
+    ]
     if undecided:
-        listed = ", ".join(_quoted(row) for row in undecided)
+        listed = _names(undecided)
         yield f"Timed too seldom to say that it saves time: {listed}; more --minutes decide."
-    if found_rows and not any(row.accuracy for row in found_rows):
+    if saving and not any(row.accuracy for row in saving):
         yield (
             "The effect on a network was not measured; `--accuracy 5` trains networks on data of "
             "each of them."
@@ -175,8 +165,9 @@ def _saving_sentences(sweep: Sweep) -> Iterator[str]:
 
 def _is_free(row: Row, default: Row | None) -> bool:
     """Whether a row that saves time costs nothing that is shown, or surely little accuracy."""
-    if row.accuracy is not None and default is not None and default.accuracy is not None:
-        return _lost(row, default)[2] <= MOST_LOST
+    lost = _lost(row, default)
+    if lost is not None:
+        return lost.high <= MOST_LOST
     return bool(row.maps or row.points) and (row.over_one or 0) <= VISIBLE and not drops_map(row)
 
 
@@ -187,50 +178,50 @@ def drops_map(row: Row) -> bool:
 
 def _price(row: Row, default: Row | None) -> str:
     """What a row that saves time changes, as the end of a sentence."""
-    if row.accuracy is not None and default is not None and default.accuracy is not None:
-        lost, low, high = _lost(row, default)
+    lost, over_one = _lost(row, default), row.over_one or 0
+    if lost is not None:
+        assert row.accuracy is not None
+        assert default is not None
+        assert default.accuracy is not None
         seeds = _counted(len(row.accuracy.by_seed), "seed")
         means = f"{100 * default.accuracy.mean:.0f} to {100 * row.accuracy.mean:.0f}, {seeds}"
         if row.accuracy.tested_on == "own":
             means += ", tested on its own images"
-        if low > 0:
-            return f" and costs {_counted(round(100 * lost), 'point')} of accuracy ({means})"
-        if high <= MOST_LOST:
+        if lost.low > 0:
+            return f" and costs {_counted(round(100 * lost.mean), 'point')} of accuracy ({means})"
+        if lost.high <= MOST_LOST:
             return f" and costs at most {100 * MOST_LOST:.0f} points of accuracy ({means})"
-        return f" and may cost up to {100 * high:.0f} points of accuracy, or none ({means})"
+        return f" and may cost up to {100 * lost.high:.0f} points of accuracy, or none ({means})"
     if not row.maps and row.points is None:
         return f"; {row.note}" if row.note else ""
-    if (row.over_one or 0) == 0:
-        staying = " of the maps that stay" if drops_map(row) else " that is shown"
-        return f" and changes nothing{staying}"
-    if row.is_error or (row.over_one or 0) <= VISIBLE:
-        return f" and changes {_percent(row.over_one or 0)} of the pixels by more than a level"
-    return f" and gives another picture ({_picture_words(row)})"
+    if over_one == 0:
+        staying = "of the maps that stay" if drops_map(row) else "that is shown"
+        return f" and changes nothing {staying}"
+    if row.is_error or over_one <= VISIBLE:
+        return f" and changes {_percent(over_one)} of the pixels by more than a level"
+    return f" and gives another picture ({'; '.join(_picture_words(row))})"
 
 
-def _picture_words(row: Row) -> str:
-    """How much another picture differs, in words."""
-    words = []
+def _picture_words(row: Row) -> Iterator[str]:
+    """Yield how much another picture differs, in words."""
     if row.maps:
         name, worst = max(row.maps.items(), key=lambda item: item[1].over_one_median)
         size = f"{worst.rms_levels_median:.0f} levels"
         if worst.rms_median_db is not None:
             size = f"{worst.rms_median_db:.1f} dB rms"
-        words.append(f"{name}: {_percent(worst.over_one_median)} of the pixels, {size}")
+        yield f"{name}: {_percent(worst.over_one_median)} of the pixels, {size}"
     if row.points is not None:
-        words.append(
+        yield (
             f"{_percent(row.points.moved)} of the points, {row.points.per_frame:.1f} a frame "
             f"instead of {row.points.base_per_frame:.1f}"
         )
-    return "; ".join(words)
 
 
-def _lost(row: Row, default: Row) -> tuple[float, float, float]:
-    """Accuracy that a row loses against the default, paired by seed, with its interval."""
-    assert row.accuracy is not None
-    assert default.accuracy is not None
-    mean, low, high = paired_difference(row.accuracy.by_seed, default.accuracy.by_seed)
-    return -mean, -high, -low
+def _lost(row: Row, default: Row | None) -> Interval | None:
+    """Accuracy that a row loses against the default, paired by seed; None where not measured."""
+    if row.accuracy is None or default is None or default.accuracy is None:
+        return None
+    return paired_difference(default.accuracy.by_seed, row.accuracy.by_seed)
 
 
 def _cost_sentences(sweep: Sweep) -> Iterator[str]:
@@ -240,7 +231,7 @@ def _cost_sentences(sweep: Sweep) -> Iterator[str]:
     costly.sort(key=lambda row: -(row.ratio or 0))
     if costly:
         listed = "; ".join(
-            f"{_quoted(row)} {_times(row)}"
+            f"`{row.name}` {_times(row)}"
             + ("" if row.base_name == DEFAULT else f" (of {row.base_name})")
             for row in costly[:MOST_COSTS]
         )
@@ -265,17 +256,15 @@ def _blur_sentences(sweep: Sweep, cores: int) -> Iterator[str]:
         yield f"Not measured for lack of time: {names}."
 
 
-def _quoted(row: Row) -> str:
-    return f"`{row.name}`"
+def _names(rows: Sequence[Row], between: str = ", ") -> str:
+    return between.join(f"`{row.name}`" for row in rows)
 
 
 def _saved(row: Row) -> str:
     """Share of the time that a row saves, with its interval: 18 % (16 to 20)."""
-    assert row.ratio is not None
-    assert row.ratio_low is not None
-    assert row.ratio_high is not None
-    low, high = 100 * (1 - row.ratio_high), 100 * (1 - row.ratio_low)
-    return f"{100 * (1 - row.ratio):.0f} % ({low:.0f} to {high:.0f})"
+    ratios = (row.ratio or 0, row.ratio_high or 0, row.ratio_low or 0)
+    share, low, high = (100 * (1 - ratio) for ratio in ratios)
+    return f"{share:.0f} % ({low:.0f} to {high:.0f})"
 
 
 def _times(row: Row) -> str:
@@ -296,8 +285,3 @@ def _counted(count: int, noun: str) -> str:
     """A number in words and its noun: five seeds."""
     number = NUMBERS[count] if count < len(NUMBERS) else str(count)
     return f"{number} {noun}{'s' * (count != 1)}"
-
-
-def sentences_as_list(sentences: Sequence[str]) -> str:
-    """Sentences as a list in Markdown."""
-    return "\n".join(f"- {sentence}" for sentence in sentences)

@@ -22,7 +22,7 @@ from radhar_cli.study.tradeoff.setting import DEFAULT, Change, Overrides, Settin
 from radhar_cli.study.tradeoff.settings import settings_of
 from radhar_cli.study.tradeoff.sweep import Omission, Sweep
 from radhar_cli.study.tradeoff.timing import LEAST_ROUNDS, Ratio, Times, time_setting
-from radhar_cli.study.trials import Budget, Trial, try_settings
+from radhar_cli.study.trials import Budget, TriedSetting, try_settings
 
 AS_IT_IS = Setting("default", DEFAULT, effect=Change.ERROR, worth=Worth.SAVES)
 EXACT = ("engine.kind=cube", "engine.precision=double")
@@ -146,7 +146,7 @@ class TradeoffStudy:
         self.sweep.loads.append(load_average())
         self.save()
 
-    def _keep(self, trial: Trial[Setting, Row]) -> None:
+    def _keep(self, trial: TriedSetting[Setting, Row]) -> None:
         """Keep the row of a setting, or the reason why it has none."""
         name = trial.setting.name
         if trial.refusal is not None:

@@ -16,7 +16,7 @@ from radhar_cli.report.parts import (
     number_text,
 )
 
-NUMBER = re.compile(r"[-+]?[\d\u202f]*\.?\d+(e[-+]?\d+)?( %)?|")  # of a cell; or nothing
+NUMBER = re.compile(r"[-+]?[\d\u202f]*\.?\d+(e[-+]?\d+)?( %)?")  # of a cell
 STYLE = """
 :root { --line: #d8dee4; --soft: #57606a; }
 body { font: 15px/1.5 system-ui, sans-serif; color: #1f2328; max-width: 66rem; margin: 2rem auto;
@@ -111,7 +111,7 @@ def _html(parts: Iterable[Part]) -> Iterator[str]:
 def _html_table(table: ReportTable) -> str:
     """HTML of a table; columns of numbers lie on the right."""
     rows = [[number_text(cell) for cell in row] for row in table.rows]
-    is_number = [all(map(NUMBER.fullmatch, column)) for column in zip(*rows, strict=True)]
+    is_number = [_is_of_numbers(column) for column in zip(*rows, strict=True)]
     is_number += [False] * (len(table.header) - len(is_number))
 
     def line(cells: Sequence[str], tag: str) -> str:
@@ -124,6 +124,12 @@ def _html_table(table: ReportTable) -> str:
     body = "\n".join(line(row, "td") for row in rows)
     head = line(_heads(table), "th")
     return f'<div class="scroll"><table>{head}\n{body}</table></div>'
+
+
+def _is_of_numbers(column: Sequence[str]) -> bool:
+    """Whether most cells of a column are numbers."""
+    cells = [cell for cell in column if cell]
+    return 2 * sum(NUMBER.fullmatch(cell) is not None for cell in cells) > len(cells)
 
 
 def _heads(table: ReportTable) -> list[str]:

@@ -41,8 +41,6 @@ LANGUAGES = {"sh", "bash", "yaml", "python", "text"}  # text is not run
 NOT_RUN = {
     "dask_jobqueue": "needs SLURM",
     "rule merge": "needs Snakemake",
-    "clouds_against_measured.py": "measured pairs; tests/scripts has some of its own",
-    "pose_from_clouds.py": "the same",
     "mediapipe as mp": "needs a camera and a network",
     "load_dataset": "tests/dataset/test_formats.py does, in a process of its own",
     "torchvision.datasets": "the same",

@@ -15,8 +15,7 @@ share the network.
 import hashlib
 import json
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache, cached_property
 from math import inf
@@ -32,7 +31,6 @@ from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, Rows
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import RadharError
-from radhar_cli.extensions import know_products, own_products
 from radhar_cli.learning import run_files
 from radhar_cli.learning.evaluation import open_for_model, predict_classes
 from radhar_cli.learning.images.scan import content_hash
@@ -42,7 +40,6 @@ from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import train
 from radhar_cli.learning.training_set import open_training_set
 from radhar_cli.processes.progress import NoProgress, Progress
-from radhar_cli.products.plan import Product
 from radhar_cli.study.tradeoff.intervals import Interval, mean_interval
 from radhar_cli.study.tradeoff.recommendation import saves
 from radhar_cli.study.tradeoff.row import AccuracyNumbers
@@ -130,17 +127,6 @@ class _Quiet(NoProgress):
         """Nobody sees it."""
 
 
-@contextmanager
-def add_products(products: Iterable[Product]) -> Iterator[None]:
-    """Have the table of products hold further ones, as `add_product` does, within the block."""
-    before = own_products()
-    know_products((*before, *products))
-    try:
-        yield
-    finally:
-        know_products(before)
-
-
 @dataclass(frozen=True)
 class AccuracyStudy:
     """Networks of the settings of one config, in a folder."""
@@ -150,8 +136,6 @@ class AccuracyStudy:
     folder: Path
     progress: Progress
     sizes: Sizes = Sizes()
-    # in place of those of the table, in images of a setting; not in those of the config as it is
-    products: tuple[Product, ...] = ()
 
     def config(self, setting: Overrides = ()) -> Config:
         """Config under a setting.
@@ -205,8 +189,8 @@ class AccuracyStudy:
 
     def _record_path(self, setting: Overrides, number: int) -> Path:
         parts = (
-            self._part(setting, number, False, self.products),
-            self._part(setting, number, True, self.products),
+            self._part(setting, number, False),
+            self._part(setting, number, True),
             self._part((), number, True),
         )
         names = [part.folder.name for part in parts]
@@ -216,17 +200,15 @@ class AccuracyStudy:
     def _parts(self, setting: Overrides, number: int) -> dict[str, "StudyData"]:
         """Data sets of a seed: learned from, and tested on, by name."""
         parts = {
-            "learned": self._part(setting, number, False, self.products),
-            "own": self._part(setting, number, True, self.products),
+            "learned": self._part(setting, number, False),
+            "own": self._part(setting, number, True),
         }
         if self._is_alike(setting, number):
             (name,) = parts["learned"].config.maps
             parts["default"] = self._part((f"maps=[{name}]",), number, True)
         return parts
 
-    def _part(
-        self, setting: Overrides, number: int, tested: bool, products: tuple[Product, ...] = ()
-    ) -> "StudyData":
+    def _part(self, setting: Overrides, number: int, tested: bool) -> "StudyData":
         """Data set of a seed under a setting: of the first map, without PNGs."""
         config = self.config(setting)
         count = min(self.sizes.learned, max(Rows.of(config).counts))
@@ -239,7 +221,7 @@ class AccuracyStudy:
             "output.png=false",
             "split={train: 0.8, validation: 0.2}",
         )
-        return StudyData(self.folder / "data", self.config((*setting, *further)), products)
+        return StudyData(self.folder / "data", self.config((*setting, *further)))
 
     def _train_config(self, number: int) -> TrainConfig:
         epochs = self.sizes.epochs
@@ -266,7 +248,7 @@ class AccuracyStudy:
         if Rows.of(config).activities != Rows.of(default).activities:
             return False
         parts = (
-            self._part(setting, number, True, self.products),
+            self._part(setting, number, True),
             self._part((f"maps=[{name}]",), number, True),
         )
         for part in parts:
@@ -280,11 +262,9 @@ class AccuracyStudy:
 class StudyData:
     """Data set of a study, in a folder that its identity names."""
 
-    def __init__(self, folder: Path, config: Config, products: tuple[Product, ...]) -> None:
+    def __init__(self, folder: Path, config: Config) -> None:
         self.config = config
-        self._products = products
-        with add_products(products):
-            self.folder = folder / identity_hash(identity(config))[:24]
+        self.folder = folder / identity_hash(identity(config))[:24]
 
     def __len__(self) -> int:
         return len(Rows.of(self.config))
@@ -292,8 +272,7 @@ class StudyData:
     def build(self, progress: Progress) -> None:
         """Make the data set, unless it is there."""
         if not (self.folder / DATASET).exists():
-            with add_products(self._products):
-                build(self.config, self.folder, 1, _Quiet(progress))
+            build(self.config, self.folder, 1, _Quiet(progress))
 
 
 @cache

@@ -32,19 +32,12 @@ class Budget:
 
 @dataclass(frozen=True)
 class TriedSetting(Generic[S, R]):
-    """A setting that was tried, with its result, or why there is none.
-
-    Attributes:
-        setting: the setting.
-        result: its result; None where it was refused, or the time was too short.
-        refusal: error by which it was refused.
-        seconds: time that it had.
-    """
+    """A setting that was tried, with its result, or why there is none."""
 
     setting: S
-    result: R | None
-    refusal: RadharError | None
-    seconds: float
+    result: R | None  # its result; None where it was refused, or the time was too short
+    refusal: RadharError | None  # error by which it was refused
+    seconds: float  # time that it had
 
 
 def try_settings(

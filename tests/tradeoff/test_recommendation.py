@@ -1,5 +1,6 @@
 """What is recommended of synthetic rows: nothing within the blur, and what it costs."""
 
+import json
 from dataclasses import replace
 
 import pytest
@@ -182,4 +183,5 @@ def test_load_and_what_was_not_measured_are_told():
 
 def test_rows_survive_json():
     tried = row("body.scatterers: points", 0.4, accuracy=accuracy(0.7, 0.8), error_db=float("-inf"))
-    assert Row.read(tried.numbers()) == tried
+    for each in (tried, replace(tried, points=PointDifference(0.5, None, 20.0, 40.0))):
+        assert Row.read(json.loads(json.dumps(each.numbers()))) == each

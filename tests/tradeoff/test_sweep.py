@@ -200,6 +200,17 @@ class TestStops:
         replaced = tradeoff(config, out, "--set", "radar.prf_hz=2000", "--overwrite")
         assert replaced.exit_code == 0, replaced.output
 
+    @pytest.mark.parametrize("wrong", ["ratio", "points", "maps"])
+    def test_a_damaged_result_is_named(self, few, tmp_path, wrong):
+        config, out = write(tmp_path, "cw"), tmp_path / "out"
+        assert tradeoff(config, out).exit_code == 0
+        numbers = numbers_of(out)
+        numbers["settings"][0][wrong] = "abc"
+        (out / "tradeoff.json").write_text(json.dumps(numbers))
+        refused = tradeoff(config, out)
+        assert refused.exit_code != 0
+        assert "is no result of this version of radhar" in str(refused.exception)
+
     def test_settings_without_time_are_named(self, few, tmp_path):
         config = write(tmp_path, "fmcw")
         sweep = Sweep()

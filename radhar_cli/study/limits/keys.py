@@ -21,22 +21,13 @@ PEOPLE = "people"  # as a number: how many others are in the scene
 
 @dataclass(frozen=True)
 class NumberKey:
-    """A number of a config.
+    """A number of a config."""
 
-    Attributes:
-        key: dotted key, `radar.tx_m.0` for one of a vector.
-        value: the number, distribution, or PerActivity of them, that the config has.
-        low: least number that the schema accepts.
-        high: largest number that the schema accepts.
-        unit: unit of both; "" where none is known.
-        is_whole: whether it is a whole number.
-    """
-
-    key: str
-    value: Any
-    low: float
-    high: float
-    unit: str = ""
+    key: str  # dotted key, `radar.tx_m.0` for one of a vector
+    value: Any  # the number, distribution, or PerActivity of them, that the config has
+    low: float  # least number that the schema accepts
+    high: float  # largest number that the schema accepts
+    unit: str = ""  # unit of both; "" where none is known
     is_whole: bool = False
 
     @property

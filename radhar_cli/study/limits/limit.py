@@ -36,16 +36,10 @@ class Origin(Enum):
 
 @dataclass(frozen=True)
 class Judgement:
-    """What a config with another number comes to.
+    """What a config with another number comes to."""
 
-    Attributes:
-        effect: what happens; None where it is as with the present number.
-        source: what has ended.
-        reason: what is said of it, in short.
-    """
-
-    effect: Consequence | None = None
-    source: Origin = Origin.MODEL
+    effect: Consequence | None = None  # what happens; None where it is as with the present number
+    source: Origin = Origin.MODEL  # what has ended
     reason: str = ""
 
     @property
@@ -68,29 +62,21 @@ KEY_ENDS = Judgement(Consequence.REFUSED, Origin.KEY, AS_FAR)
 
 @dataclass(frozen=True)
 class Limit:
-    """Limit of a number on one side.
-
-    Attributes:
-        key: dotted key.
-        side: side of its range.
-        value: last number, of three digits, of which nothing new happens; None where there is
-            none, not even that of the config.
-        beyond: what happens beyond.
-        last_accepted: last number that is not refused, where farther numbers are but warned of;
-            None where the next is refused, or none is known.
-        refusal: what happens beyond that.
-        times: duration of a sample there over that of the config's own; None if it was not timed.
-        simulated: whether a sample was simulated there.
-    """
+    """Limit of a number on one side."""
 
     key: str
     side: RangeSide
+    # last number, of three digits, of which nothing new happens; None where there is none, not even
+    # that of the config
     value: float | None
     beyond: Judgement
+    # last number that is not refused, where farther numbers are but warned of; None where the next
+    # is refused, or none is known
     last_accepted: float | None = None
-    refusal: Judgement | None = None
+    refusal: Judgement | None = None  # what happens beyond that
+    # duration of a sample there over that of the config's own; None if it was not timed
     times: float | None = None
-    simulated: bool = False
+    simulated: bool = False  # whether a sample was simulated there
 
     @property
     def sentence(self) -> str:

@@ -19,38 +19,23 @@ MOST_CYCLES = 1e10  # of phase, beyond which float64 is off by 1e-6 of a cycle
 
 @dataclass(frozen=True)
 class Reach:
-    """How far and how fast the joints of a scene are.
+    """How far and how fast the joints of a scene are."""
 
-    Attributes:
-        farthest: largest bistatic range, half of the way from antenna to antenna, m.
-        nearest: least distance of a joint from an antenna, m.
-        fastest: largest speed along the way, m/s.
-    """
-
-    farthest: float
-    nearest: float
-    fastest: float
+    farthest: float  # largest bistatic range, half of the way from antenna to antenna, m
+    nearest: float  # least distance of a joint from an antenna, m
+    fastest: float  # largest speed along the way, m/s
 
 
 @dataclass(frozen=True)
 class Margin:
-    """What a config draws beside where its radar, or the arithmetic, ends.
-
-    Attributes:
-        name: what is compared.
-        drawn: the extreme of all scenes that were drawn.
-        limit: where it ends.
-        unit: unit of both.
-        source: what ends there: model or arithmetic.
-        beyond: what happens beyond.
-    """
+    """What a config draws beside where its radar, or the arithmetic, ends."""
 
     name: str
-    drawn: float
-    limit: float
-    unit: str
-    source: str
-    beyond: str
+    drawn: float  # the extreme of all scenes that were drawn
+    limit: float  # where it ends
+    unit: str  # unit of both
+    source: str  # what ends there: model or arithmetic
+    beyond: str  # what happens beyond
 
 
 def reach_of(scene: Scene) -> Reach:
@@ -70,12 +55,7 @@ def reach_of(scene: Scene) -> Reach:
 
 
 def margins_of(scenes: Sequence[Scene], reaches: Sequence[Reach]) -> list[Margin]:
-    """Compare what scenes of a config draw with what its radar tells apart.
-
-    Args:
-        scenes: the scenes.
-        reaches: their reaches, in the same order.
-    """
+    """Compare what scenes of a config draw with what its radar tells apart."""
     waveforms = [waveform_of(scene) for scene in scenes]
     fastest = max(reach.fastest for reach in reaches)
     farthest = max(reach.farthest for reach in reaches)

@@ -32,12 +32,6 @@ MARGINS = "what is drawn", "at most", "ends at", "beyond", "what ends"
 def write_report(folder: Path, title: str, command: str, study: Study) -> list[Path]:
     """Write limits.md and limits.json; return their paths.
 
-    Args:
-        folder: folder of the files.
-        title: name of the config.
-        command: command line of the study.
-        study: limits that were found.
-
     Raises:
         FolderError: a file cannot be written.
     """

@@ -25,29 +25,17 @@ def is_clean(judgement: Judgement) -> bool:
 
 
 class End(NamedTuple):
-    """End of what is fine on one side of a number.
+    """End of what is fine on one side of a number."""
 
-    Attributes:
-        inside: last number that is fine.
-        outside: first number beyond it that was tried and is not; None where all are fine up to
-            the bound.
-        judgement: what happens outside; that of the bound's own where all are fine.
-    """
-
-    inside: float
+    inside: float  # last number that is fine
+    # first number beyond it that was tried and is not; None where all are fine up to the bound
     outside: float | None
-    judgement: Judgement
+    judgement: Judgement  # what happens outside; that of the bound's own where all are fine
 
 
 @dataclass(frozen=True)
 class Path:
-    """Way from a number to a bound, in equal steps of what matters: ratio, distance or number.
-
-    Attributes:
-        start: the number.
-        bound: the bound.
-        is_whole: whether numbers on the way are whole.
-    """
+    """Way from a number to a bound, in equal steps of what matters: ratio, distance or number."""
 
     start: float
     bound: float
@@ -107,11 +95,6 @@ def find_end(
 
     The bound itself is tried first, with the middle of the way; otherwise the way is followed
     outward in growing steps to the first number that is not fine, and halved from there.
-
-    Args:
-        judge: judges a number; may remember what it was asked.
-        path: the way.
-        fine: whether a judgement counts as fine.
     """
     at_bound = judge(path.bound)
     if fine(at_bound):

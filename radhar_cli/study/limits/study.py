@@ -43,23 +43,15 @@ KeySide: TypeAlias = tuple[NumberKey, RangeSide]
 
 @dataclass
 class Study:
-    """Limits of a config, as far as they were found.
+    """Limits of a config, as far as they were found."""
 
-    Attributes:
-        limits: by key and side, in the order of the schema.
-        keys: all keys that were looked for.
-        margins: what is drawn beside where the radar ends.
-        troubled: classes without a scene that can be drawn, and why.
-        sample_s: processor time of a sample of the config, s.
-        unfinished: keys and sides whose limits are not known.
-        not_simulated: keys and sides at whose limits no sample was simulated.
-    """
-
-    keys: tuple[NumberKey, ...]
+    keys: tuple[NumberKey, ...]  # all keys that were looked for
     margins: list[Margin] = field(default_factory=list)
+    # by key and side, in the order of the schema
     limits: dict[tuple[str, RangeSide], Limit] = field(default_factory=dict)
+    # classes without a scene that can be drawn, and why
     troubled: dict[str, str] = field(default_factory=dict)
-    sample_s: float | None = None
+    sample_s: float | None = None  # processor time of a sample of the config, s
 
     @property
     def unfinished(self) -> list[tuple[str, RangeSide]]:

@@ -39,20 +39,13 @@ Place = tuple[Activity, int]  # class of a sample, and its number within the cla
 
 @dataclass
 class ConfigTrial:
-    """A config file, and what it comes to with other numbers.
+    """A config file, and what it comes to with other numbers."""
 
-    Attributes:
-        values: plain values of the file.
-        folder: its folder.
-        config: the config that they make.
-        known: warnings of it, without their numbers.
-        troubled: classes whose scenes cannot be drawn with it, and why.
-    """
-
-    values: dict[str, Any]
+    values: dict[str, Any]  # plain values of the file
     folder: Path
     config: Config
-    known: set[str] = field(default_factory=set)
+    known: set[str] = field(default_factory=set)  # warnings of it, without their numbers
+    # classes whose scenes cannot be drawn with it, and why
     troubled: dict[str, str] = field(default_factory=dict)
 
     @classmethod
@@ -109,12 +102,7 @@ class ConfigTrial:
         return config_of_values(with_number(self.values, self.config, key, number), self.folder)
 
     def judge(self, config: Config, places: Iterable[Place]) -> Judgement:
-        """Judge a config with another number, without simulating: by warnings and by scenes.
-
-        Args:
-            config: the config.
-            places: samples that are drawn.
-        """
+        """Judge a config with another number, without simulating: by warnings and by scenes."""
         warned = CLEAN
         for line in _config_lines(config):
             if _without_numbers(line) not in self.known:
@@ -161,10 +149,6 @@ class ConfigTrial:
 def judge_sample(config: Config, place: Place) -> tuple[Judgement, float]:
     """Simulate a sample; judge whether it is whole, and return the processor time, s.
 
-    Args:
-        config: config of the sample.
-        place: its class and number.
-
     Raises:
         RadharError: it is refused.
     """
@@ -180,9 +164,8 @@ def judge_sample(config: Config, place: Place) -> tuple[Judgement, float]:
     for name, value in sample.columns.items():
         array = np.asarray(value)
         if array.dtype.kind == "f" and np.isnan(array).any() and not name.startswith("entropy/"):
-            return Judgement(
-                Consequence.INEXACT, Origin.ARITHMETIC, f"{name} is no number"
-            ), seconds
+            reason = f"{name} is no number"
+            return Judgement(Consequence.INEXACT, Origin.ARITHMETIC, reason), seconds
     black = [name for name, image in sample.images.items() if not image.levels.any()]
     if black and not scene.is_empty:
         return Judgement(Consequence.BLACK, Origin.MODEL, ", ".join(black)), seconds
@@ -216,25 +199,18 @@ def _without_numbers(line: str) -> str:
 
 
 def refusal_of(error: ConfigError, key: str) -> Judgement:
-    """Judgement of a config that is refused, in short and of the key where a line names it."""
-    line = _line_of(str(error), key)
-    source = Origin.KEY if line.startswith(f"{key} = ") else Origin.MODEL
-    return Judgement(Consequence.REFUSED, source, _advice(line, key))
+    """Judgement of a config that is refused: what would be right, and of which key if of another.
 
-
-def _line_of(message: str, key: str) -> str:
-    """Line of a refusal that names a key, else the first."""
-    lines = message.splitlines()
-    return next((line for line in lines if line.startswith(f"{key} ")), lines[0])
-
-
-def _advice(line: str, key: str) -> str:
-    """What would be right, and of which key if of another."""
-    named, _, rest = line.partition(" = ")
-    right = rest.partition(": ")[2]
-    if not right:
-        return _in_short(line)
-    return _in_short(right if named == key else f"{named} {right}")
+    The line of a message that names the key counts, else the first.
+    """
+    lines = str(error).splitlines()
+    line = next((line for line in lines if line.startswith(f"{key} ")), lines[0])
+    named, _, end = line.partition(" = ")
+    right = end.partition(": ")[2]
+    if named != key:
+        right = f"{named} {right}" if right else line
+    source = Origin.KEY if named == key and end else Origin.MODEL
+    return Judgement(Consequence.REFUSED, source, _in_short(right or line))
 
 
 def _in_short(message: str) -> str:

@@ -159,10 +159,6 @@ class AccuracyStudy:
     def measure_seed(self, setting: Overrides, number: int) -> SeedAccuracy:
         """Accuracies of the network of a setting and a seed, made here or found in the folder.
 
-        Args:
-            setting: overrides of the setting.
-            number: seed, from 1.
-
         Raises:
             RadharError: the data set cannot be made, or the network cannot be trained.
         """

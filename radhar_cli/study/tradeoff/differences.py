@@ -17,35 +17,22 @@ STAYS_M = 0.01  # a point that moved by less stays
 
 
 class MapDifference(NamedTuple):
-    """Difference of a map from another one of the same scene.
+    """Difference of a map from another one of the same scene."""
 
-    Attributes:
-        changed: share of the pixels whose level differs.
-        over_one: share of those that differ by more than one level.
-        ssim: SSIM; None below three pixels.
-        rms_levels: root mean square of the difference, levels.
-    """
-
-    changed: float
-    over_one: float
-    ssim: float | None
-    rms_levels: float
+    changed: float  # share of the pixels whose level differs
+    over_one: float  # share of those that differ by more than one level
+    ssim: float | None  # SSIM; None below three pixels
+    rms_levels: float  # root mean square of the difference, levels
 
 
 class PointDifference(NamedTuple):
-    """Difference of the points of a board from others of the same scene.
+    """Difference of the points of a board from others of the same scene."""
 
-    Attributes:
-        moved: share of the points, of both, that have no other within STAYS_M in their frame.
-        distance_m: median way to the nearest of those that have one in their frame; None of none.
-        per_frame: points a frame.
-        base_per_frame: points a frame of the other cloud.
-    """
-
-    moved: float
+    moved: float  # share of the points, of both, that have no other within STAYS_M in their frame
+    # median way to the nearest of those that have one in their frame; None of none
     distance_m: float | None
     per_frame: float
-    base_per_frame: float
+    base_per_frame: float  # points a frame of the other cloud
 
 
 def relative_db(compared: Complex, exact: Complex, visible: Bool | None = None) -> float | None:

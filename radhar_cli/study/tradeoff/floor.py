@@ -20,9 +20,6 @@ def visible_errors(raw: Raw) -> Iterator[tuple[str, int]]:
     White errors of known size are added to the raw products of a sample with its noise; a bisection
     finds the least whole number of dB that shows. Of points it is the share that moves.
 
-    Args:
-        raw: raw products of a sample with the noise of its receiver.
-
     Yields:
         Map and dB; HIGHEST_DB + 1 where none shows.
     """

@@ -55,22 +55,14 @@ class Shown(NamedTuple):
 
 
 class Raw(NamedTuple):
-    """Raw products of a sample, without noise, from which all that is shown is drawn.
-
-    Attributes:
-        scene: scene as the setting has it, with its noise.
-        values: {product: samples}.
-        signals: {product: signal} of those which are no cube.
-        noise: what the receiver adds to them, by product; {} where nobody asked.
-        needed: samples of the gate's bins that frames show; None for all.
-        stated_db: error that the engine itself states, dB; None where it states none.
-    """
+    """Raw products of a sample, without noise, from which all that is shown is drawn."""
 
     scene: Scene
-    values: dict[str, Complex]
-    signals: dict[str, Signal]
-    noise: dict[str, Complex]
-    needed: Bool | None = None
+    values: dict[str, Complex]  # {product: samples}
+    signals: dict[str, Signal]  # {product: signal} of those which are no cube
+    noise: dict[str, Complex]  # what the receiver adds to them, by product; {} where nobody asked
+    needed: Bool | None = None  # samples of the gate's bins that frames show; None for all
+    # error that the engine itself states, dB; None where it states none
     stated_db: float | None = None
 
 
@@ -94,12 +86,7 @@ def raw_names(config: Config) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Recorder:
-    """Simulates a sample under settings.
-
-    Attributes:
-        scenes: scenes of the sweep.
-        sample: sample of it.
-    """
+    """Simulates a sample under settings."""
 
     scenes: Scenes
     sample: SweepSample

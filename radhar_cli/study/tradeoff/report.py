@@ -31,14 +31,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class TradeoffReport:
-    """Files of a sweep in a folder.
-
-    Attributes:
-        folder: folder of the files.
-        scenes: scenes of the sweep.
-        command: command line of it.
-        cores: cores of the machine.
-    """
+    """Files of a sweep in a folder."""
 
     folder: Path
     scenes: Scenes
@@ -47,9 +40,6 @@ class TradeoffReport:
 
     def read_earlier(self, overwrite: bool) -> Sweep:
         """Sweep that an earlier run of the same command has left in the folder; else an empty one.
-
-        Args:
-            overwrite: start over whatever there is.
 
         Raises:
             FolderError: the folder holds the sweep of another config, code or options.

@@ -1,64 +1,49 @@
 """Rows of the table: what a setting costs and what it changes, as plain numbers."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from math import inf
 from statistics import median
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, TypeAlias
+
+from pydantic import BeforeValidator, TypeAdapter
 
 from radhar_cli.study.tradeoff.differences import MapDifference, PointDifference, worst_maps
 from radhar_cli.study.tradeoff.setting import Change, Setting
 from radhar_cli.study.tradeoff.timing import Ratio
 
+EXACT = "exact"  # a file's word for an error of -inf dB
+Decibels: TypeAlias = Annotated[
+    float | None, BeforeValidator(lambda value: -inf if value == EXACT else value)
+]
+
 
 class SceneDifference(NamedTuple):
-    """What a setting changes of one scene.
+    """What a setting changes of one scene."""
 
-    Attributes:
-        error_of: signal whose error is measured, in words.
-        error_db: its relative error, dB; -inf of none, None where there is none to compare.
-        stated_db: error that the engine states itself.
-        maps: {map: difference}.
-        points: difference of the points, None without any.
-    """
-
-    error_of: str
+    error_of: str  # signal whose error is measured, in words
+    # its relative error, dB; -inf of none, None where there is none to compare
     error_db: float | None
-    stated_db: float | None
+    stated_db: float | None  # error that the engine states itself
     maps: Mapping[str, MapDifference]
     points: PointDifference | None
 
 
 @dataclass(frozen=True)
 class MapNumbers:
-    """Differences of a map over scenes: the worst scene's, and medians.
+    """Differences of a map over scenes: the worst scene's, and medians."""
 
-    Attributes:
-        changed: share of the pixels whose level differs.
-        over_one: share of those that differ by more than one level.
-        ssim: smallest SSIM; None where it is not defined.
-        rms_levels: root mean square of the difference, levels.
-        rms_db: the same in dB; None of pictures that show no decibels.
-        over_one_median: median over scenes of `over_one`.
-        rms_levels_median: median over scenes of `rms_levels`.
-    """
-
-    changed: float
-    over_one: float
-    ssim: float | None
-    rms_levels: float
-    rms_db: float | None
-    over_one_median: float
-    rms_levels_median: float
+    changed: float  # share of the pixels whose level differs
+    over_one: float  # share of those that differ by more than one level
+    ssim: float | None  # smallest SSIM; None where it is not defined
+    rms_levels: float  # root mean square of the difference, levels
+    rms_db: float | None  # the same in dB; None of pictures that show no decibels
+    over_one_median: float  # median over scenes of `over_one`
+    rms_levels_median: float  # median over scenes of `rms_levels`
 
     @classmethod
     def of(cls, differences: Sequence[MapDifference], level_db: float | None) -> "MapNumbers":
-        """Numbers of a map in several scenes.
-
-        Args:
-            differences: difference of each scene.
-            level_db: decibels of a grey level; None of pictures that show none.
-        """
+        """Numbers of a map in several scenes, whose grey levels are so many dB, if any."""
         worst = worst_maps(differences)
         return cls(
             *worst,
@@ -77,67 +62,36 @@ class MapNumbers:
 
 @dataclass(frozen=True)
 class AccuracyNumbers:
-    """Accuracy of a network that learned from data of a setting, 0 to 1, with its interval.
-
-    Attributes:
-        by_seed: accuracy by seed.
-        mean: mean of it.
-        low: lower end of a 95 % interval of the mean.
-        high: upper end.
-        tested_on: data that it was tested on, in a word.
-    """
+    """Accuracy of a network that learned from data of a setting, 0 to 1, with its interval."""
 
     by_seed: tuple[float, ...]
     mean: float
-    low: float
-    high: float
-    tested_on: str = "default"
+    low: float  # lower end of a 95 % interval of the mean
+    high: float  # upper end
+    tested_on: str = "default"  # data that it was tested on, in a word
 
 
 @dataclass(frozen=True)
 class Row:
-    """One row of the table.
-
-    Attributes:
-        group: part of radhar that the setting belongs to.
-        name: key and value, or what is changed in words.
-        overrides: overrides that make the setting.
-        base_name: what time and picture are compared with.
-        effect: whether data differ by an error, or by design.
-        is_default: whether it is the config as it is.
-        sample_ms: time of a sample, ms.
-        ratio: that time over the time of what it is compared with.
-        ratio_low: lower end of its interval.
-        ratio_high: upper end.
-        rounds: rounds of timing.
-        scenes: scenes that were compared.
-        error_of: signal whose error is measured, in words.
-        error_db: relative error of it, worst scene, dB; -inf of none.
-        error_median_db: median over the scenes.
-        stated_db: error that the engine stated, worst scene.
-        maps: {map: differences}.
-        points: difference of a board's points, of the worst scene.
-        note: what is to be known besides.
-        accuracy: accuracy of a network, where it was measured.
-    """
+    """One row of the table."""
 
     group: str
-    name: str
-    overrides: tuple[str, ...]
-    base_name: str
-    effect: Change
-    is_default: bool = False
-    sample_ms: float | None = None
-    ratio: float | None = None
-    ratio_low: float | None = None
+    name: str  # key and value, or what is changed in words
+    overrides: tuple[str, ...]  # overrides that make the setting
+    base_name: str  # what time and picture are compared with
+    effect: Change  # whether data differ by an error, or by design
+    is_default: bool = False  # whether it is the config as it is
+    sample_ms: float | None = None  # time of a sample, ms
+    ratio: float | None = None  # that time over the time of what it is compared with
+    ratio_low: float | None = None  # lower end of its interval
     ratio_high: float | None = None
     rounds: int = 0
-    scenes: int = 0
-    error_of: str = ""
-    error_db: float | None = None
-    error_median_db: float | None = None
-    stated_db: float | None = None
-    maps: Mapping[str, MapNumbers] = field(default_factory=dict)
+    scenes: int = 0  # scenes that were compared
+    error_of: str = ""  # signal whose error is measured, in words
+    error_db: Decibels = None  # relative error of it, worst scene, dB; -inf of none
+    error_median_db: Decibels = None  # median over the scenes
+    stated_db: Decibels = None  # error that the engine stated, worst scene
+    maps: Mapping[str, MapNumbers] = field(default_factory=dict)  # {map: differences}
     points: PointDifference | None = None
     note: str = ""
     accuracy: AccuracyNumbers | None = None
@@ -151,14 +105,9 @@ class Row:
         level_db: float | None,
         note: str = "",
     ) -> "Row":
-        """Row of what was measured of a setting.
+        """Row of a setting: its time, differences of scenes, and what is to be known besides.
 
-        Args:
-            setting: the setting.
-            ratio: its time.
-            scenes: differences of the scenes that were compared.
-            level_db: decibels of a grey level; None of pictures that show none.
-            note: what is to be known besides.
+        A grey level is `level_db` decibels; None of pictures that show none.
         """
         errors = [scene.error_db for scene in scenes if scene.error_db is not None]
         stated = [scene.stated_db for scene in scenes if scene.stated_db is not None]
@@ -205,10 +154,10 @@ class Row:
         return max(shares, default=None)
 
     def numbers(self) -> dict[str, Any]:
-        """Plain values for JSON; an error of -inf is "exact"."""
+        """Plain values for JSON; an error of -inf is EXACT."""
         plain = asdict(self)
         for key in ("error_db", "error_median_db", "stated_db"):
-            plain[key] = "exact" if plain[key] == -inf else plain[key]
+            plain[key] = EXACT if plain[key] == -inf else plain[key]
         if self.points is not None:
             plain["points"] = self.points._asdict()
         return plain
@@ -218,17 +167,6 @@ class Row:
         """Row of plain values that `numbers` gave.
 
         Raises:
-            KeyError, TypeError, ValueError: they are others.
+            ValueError: they are others.
         """
-        values = {each.name: numbers[each.name] for each in fields(cls)}
-        for key in ("error_db", "error_median_db", "stated_db"):
-            values[key] = -inf if values[key] == "exact" else values[key]
-        values["effect"] = Change(values["effect"])
-        values["overrides"] = tuple(values["overrides"])
-        values["maps"] = {name: MapNumbers(**each) for name, each in values["maps"].items()}
-        if values["points"] is not None:
-            values["points"] = PointDifference(**values["points"])
-        if values["accuracy"] is not None:
-            by_seed = tuple(values["accuracy"]["by_seed"])
-            values["accuracy"] = AccuracyNumbers(**{**values["accuracy"], "by_seed": by_seed})
-        return cls(**values)
+        return TypeAdapter(cls).validate_python(numbers)

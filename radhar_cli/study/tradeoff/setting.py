@@ -27,27 +27,16 @@ class Worth(IntEnum):
 
 @dataclass(frozen=True)
 class Setting:
-    """One row of the table.
+    """One row of the table."""
 
-    Attributes:
-        group: part of radhar that it belongs to, in a word.
-        name: key and value, or what is changed in words.
-        overrides: overrides that make it.
-        base: overrides of the data that it is compared with, in time and picture.
-        base_name: name of those data.
-        effect: whether data differ by an error, or by design.
-        is_noisy: whether pictures are compared with the config's noise.
-        worth: order in which it is tried.
-    """
-
-    group: str
-    name: str
+    group: str  # part of radhar that it belongs to, in a word
+    name: str  # key and value, or what is changed in words
     overrides: Overrides = ()
-    base: Overrides = ()
-    base_name: str = DEFAULT
-    effect: Change = Change.PICTURE
-    is_noisy: bool = False
-    worth: Worth = Worth.PROCESSING
+    base: Overrides = ()  # overrides of the data that it is compared with, in time and picture
+    base_name: str = DEFAULT  # name of those data
+    effect: Change = Change.PICTURE  # whether data differ by an error, or by design
+    is_noisy: bool = False  # whether pictures are compared with the config's noise
+    worth: Worth = Worth.PROCESSING  # order in which it is tried
 
 
 def keyed(group: str, override: str, worth: Worth, effect: Change = Change.PICTURE) -> Setting:

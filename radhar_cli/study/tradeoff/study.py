@@ -102,21 +102,13 @@ def _difference(raw: Raw, visible: Shown, base_raw: Raw, base: Shown) -> SceneDi
 
 @dataclass
 class TradeoffStudy:
-    """A sweep of the settings of a config.
-
-    Attributes:
-        scenes: scenes of the sweep.
-        sweep: what is measured already, and grows.
-        budget: time that there is.
-        progress: is told of settings that are done and left out.
-        save: keeps the sweep as it is; called after every setting.
-    """
+    """A sweep of the settings of a config."""
 
     scenes: Scenes
-    sweep: Sweep
+    sweep: Sweep  # what is measured already, and grows
     budget: Budget
-    progress: Progress
-    save: Callable[[], None]
+    progress: Progress  # is told of settings that are done and left out
+    save: Callable[[], None]  # keeps the sweep as it is; called after every setting
 
     def run(self) -> None:
         """Measure what is not measured yet, as far as the time goes.

@@ -2,7 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import nan
 from typing import Any, NamedTuple
+
+from pydantic import TypeAdapter
 
 from radhar_cli.study.tradeoff.row import Row
 from radhar_cli.study.tradeoff.timing import Ratio
@@ -19,25 +22,19 @@ class Omission(NamedTuple):
 
 @dataclass
 class Sweep:
-    """Results of a sweep, which grow.
+    """Results of a sweep, which grow."""
 
-    Attributes:
-        rows: rows in the order of measuring, the config as it is first.
-        floors: {map: error of the signal, dB, that it shows at least}, the worst scene's.
-        floor_scenes: number of scenes of the floors.
-        pairs: times of the config as it is against itself.
-        loads: load averages of the machine in the course of it.
-        left_out: settings that the config does not allow.
-        unmeasured: settings for which there was no time.
-    """
-
+    # rows in the order of measuring, the config as it is first
     rows: list[Row] = field(default_factory=list)
+    # {map: error of the signal, dB, that it shows at least}, the worst scene's
     floors: dict[str, int] = field(default_factory=dict)
-    floor_scenes: int = 0
-    pairs: list[Ratio] = field(default_factory=list)
+    floor_scenes: int = 0  # number of scenes of the floors
+    pairs: list[Ratio] = field(default_factory=list)  # times of the config as it is against itself
+    # load averages of the machine in the course of it
     loads: list[float] = field(default_factory=list)
+    # settings that the config does not allow
     left_out: list[Omission] = field(default_factory=list)
-    unmeasured: list[Omission] = field(default_factory=list)
+    unmeasured: list[Omission] = field(default_factory=list)  # settings for which there was no time
 
     @property
     def blur(self) -> float:
@@ -70,10 +67,10 @@ class Sweep:
         """
         return cls(
             [Row.read(row) for row in numbers["settings"]],
-            {str(name): int(floor) for name, floor in numbers["floors_db"].items()},
+            TypeAdapter(dict[str, int]).validate_python(numbers["floors_db"]),
             int(numbers["floor_scenes"]),
-            [Ratio(**pair) for pair in numbers["pairs"]],
-            [float(load) for load in numbers["loads"]],
+            TypeAdapter(list[Ratio]).validate_python(numbers["pairs"]),
+            [nan if load is None else float(load) for load in numbers["loads"]],
         )
 
 

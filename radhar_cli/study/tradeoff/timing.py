@@ -25,19 +25,11 @@ class Times(NamedTuple):
 
 
 class Ratio(NamedTuple):
-    """Time of a setting over that of what it is compared with, over some rounds.
+    """Time of a setting over that of what it is compared with, over some rounds."""
 
-    Attributes:
-        sample_ms: median time of a sample, ms.
-        value: median ratio.
-        low: lower end of an interval of the median; the smallest of few rounds.
-        high: upper end.
-        rounds: number of rounds.
-    """
-
-    sample_ms: float
+    sample_ms: float  # median time of a sample, ms
     value: float
-    low: float
+    low: float  # lower end of an interval of the median; the smallest of few rounds
     high: float
     rounds: int
 

@@ -20,6 +20,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import cache, cached_property
 from math import inf
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -127,6 +128,23 @@ class _Quiet(NoProgress):
         """Nobody sees it."""
 
 
+class StudyData(NamedTuple):
+    """Data set of a study, in a folder that its identity names."""
+
+    folder: Path
+    config: Config
+
+    @property
+    def samples(self) -> int:
+        """Number of its samples."""
+        return len(Rows.of(self.config))
+
+    def build(self, progress: Progress) -> None:
+        """Make the data set, unless it is there."""
+        if not (self.folder / DATASET).exists():
+            build(self.config, self.folder, 1, _Quiet(progress))
+
+
 @dataclass(frozen=True)
 class AccuracyStudy:
     """Networks of the settings of one config, in a folder."""
@@ -162,49 +180,35 @@ class AccuracyStudy:
         Raises:
             RadharError: the data set cannot be made, or the network cannot be trained.
         """
-        recorded = self.read_record(setting, number)
-        if recorded is not None:
-            return recorded
+        record = self._record_path(setting, number)
+        if record.exists():
+            return SeedAccuracy(**json.loads(record.read_text())["accuracy"])
         parts = self._parts(setting, number)
         for part in parts.values():
             part.build(self.progress)
         run = self._train(parts.pop("learned").folder, self._train_config(number))
         shares = {name: measure_share(run, part.folder) for name, part in parts.items()}
-        accuracy = SeedAccuracy(shares.get("default"), shares["own"], len(parts["own"]))
+        accuracy = SeedAccuracy(shares.get("default"), shares["own"], parts["own"].samples)
         about = {"setting": list(setting), "seed": number, "run": run.name}
         data = json.dumps({**about, "accuracy": asdict(accuracy)}, indent=2) + "\n"
-        write_result(self.folder, self._record_path(setting, number), data.encode())
+        write_result(self.folder, record, data.encode())
         return accuracy
 
-    def read_record(self, setting: Overrides, number: int) -> SeedAccuracy | None:
-        """Accuracies of a setting and a seed as the folder has them; None where it does not yet."""
-        record = self._record_path(setting, number)
-        if not record.exists():
-            return None
-        return SeedAccuracy(**json.loads(record.read_text())["accuracy"])
-
     def _record_path(self, setting: Overrides, number: int) -> Path:
-        parts = (
-            self._part(setting, number, False),
-            self._part(setting, number, True),
-            self._part((), number, True),
-        )
-        names = [part.folder.name for part in parts]
+        kinds = ((setting, False), (setting, True), ((), True))
+        names = [self._part(each, number, tested).folder.name for each, tested in kinds]
         text = json.dumps([names, self._train_config(number).model_dump_json()])
         return self.folder / "records" / f"{_digest(text)}.json"
 
-    def _parts(self, setting: Overrides, number: int) -> dict[str, "StudyData"]:
+    def _parts(self, setting: Overrides, number: int) -> dict[str, StudyData]:
         """Data sets of a seed: learned from, and tested on, by name."""
-        parts = {
-            "learned": self._part(setting, number, False),
-            "own": self._part(setting, number, True),
-        }
+        parts = {name: self._part(setting, number, name == "own") for name in ("learned", "own")}
         if self._is_alike(setting, number):
             (name,) = parts["learned"].config.maps
             parts["default"] = self._part((f"maps=[{name}]",), number, True)
         return parts
 
-    def _part(self, setting: Overrides, number: int, tested: bool) -> "StudyData":
+    def _part(self, setting: Overrides, number: int, tested: bool) -> StudyData:
         """Data set of a seed under a setting: of the first map, without PNGs."""
         config = self.config(setting)
         count = min(self.sizes.learned, max(Rows.of(config).counts))
@@ -217,7 +221,8 @@ class AccuracyStudy:
             "output.png=false",
             "split={train: 0.8, validation: 0.2}",
         )
-        return StudyData(self.folder / "data", self.config((*setting, *further)))
+        part = self.config((*setting, *further))
+        return StudyData(self.folder / "data" / identity_hash(identity(part))[:24], part)
 
     def _train_config(self, number: int) -> TrainConfig:
         epochs = self.sizes.epochs
@@ -243,32 +248,13 @@ class AccuracyStudy:
             return False
         if Rows.of(config).activities != Rows.of(default).activities:
             return False
-        parts = (
-            self._part(setting, number, True),
-            self._part((f"maps=[{name}]",), number, True),
-        )
+        parts = [self._part(each, number, True) for each in (setting, (f"maps=[{name}]",))]
         for part in parts:
             part.build(self.progress)
         compared, ends = (_axis_ends(part.folder, name) for part in parts)
         (left, right, low, high), (height, width) = ends, default.image.size_px
         pixel = np.array([(right - left) / width] * 2 + [(high - low) / height] * 2)
         return bool((np.abs(np.subtract(compared, ends)) <= np.abs(pixel)).all())
-
-
-class StudyData:
-    """Data set of a study, in a folder that its identity names."""
-
-    def __init__(self, folder: Path, config: Config) -> None:
-        self.config = config
-        self.folder = folder / identity_hash(identity(config))[:24]
-
-    def __len__(self) -> int:
-        return len(Rows.of(self.config))
-
-    def build(self, progress: Progress) -> None:
-        """Make the data set, unless it is there."""
-        if not (self.folder / DATASET).exists():
-            build(self.config, self.folder, 1, _Quiet(progress))
 
 
 @cache
@@ -303,14 +289,8 @@ def measure_accuracies(
 ) -> None:
     """Train networks on data of the config as it is, and of each setting that saves time.
 
-    Args:
-        scenes: scenes of the sweep, whose config it is.
-        sweep: rows, which get their accuracy.
-        seeds: number of networks of a setting.
-        folder: folder of their data sets and runs.
-        progress: is told of networks that are done.
-        save: keeps the sweep as it is.
-        seconds: time after which no further network is begun, s.
+    Those of a setting are `seeds`; their data sets and runs lie in a folder. After so many seconds
+    no further network is begun.
     """
     deadline = None if seconds == inf else time.monotonic() + seconds
     for number, row in enumerate(sweep.rows):

@@ -55,11 +55,13 @@ class Study:
 
     @property
     def unfinished(self) -> list[tuple[str, RangeSide]]:
+        """Keys and sides whose limits are not known."""
         places = ((number.key, side) for number in self.keys for side in RangeSide)
         return [place for place in places if place not in self.limits]
 
     @property
     def not_simulated(self) -> list[tuple[str, RangeSide]]:
+        """Keys and sides at whose limits no sample was simulated."""
         return [place for place, limit in self.limits.items() if not limit.simulated]
 
     def keep(self, tried: TriedSetting[KeySide, Limit]) -> None:

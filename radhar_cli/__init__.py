@@ -85,7 +85,7 @@ def __getattr__(name: str) -> object:
             raise
         from radhar_cli.errors import how_to_install
 
-        command = how_to_install("torch", "safetensors", "sklearn", "jinja2")
+        command = how_to_install("torch", "safetensors", "sklearn")
         raise ImportError(f"radhar.{name} needs PyTorch: {command}") from None
 
 

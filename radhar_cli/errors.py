@@ -20,7 +20,7 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str, similar: float
 
 
 # {module: package that has it}, where these differ.
-PACKAGES = {"sklearn": "scikit-learn", "skimage": "scikit-image", "jinja2": "Jinja2"}
+PACKAGES = {"sklearn": "scikit-learn", "skimage": "scikit-image"}
 
 
 def how_to_install(*modules: str) -> str:

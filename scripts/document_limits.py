@@ -13,7 +13,7 @@ from pathlib import Path
 
 from page_parts import replace_part
 
-from radhar_cli.limits.report import HEAD, TEXT
+from radhar_cli.study.limits.report import HEAD, TEXT
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/results/extremes.md"
 ROW = re.compile(r"^\| `(?P<key>[^`]+)` \| (?P<now>[^|]+) \| (?P<low>[^|]+) \| (?P<high>[^|]+) \|")

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from page_parts import replace_part
 
-from radhar_cli.tradeoff.report import FIGURE, SETTINGS, TEXT
+from radhar_cli.study.tradeoff.report import FIGURE, SETTINGS, TEXT
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAGE, TABLES = DOCS / "results/tradeoff.md", DOCS / "records/tradeoff_tables.md"
@@ -25,7 +25,7 @@ IMAGES = DOCS / "images/tradeoff"
 def read_result(out: Path) -> tuple[str, str, str]:
     """Read a result: its name, its recommendation with the figure of the documents, its tables."""
     text = (out / TEXT).read_text().replace(str(out.parent), "out")
-    recommendation, _, tables = text.partition(SETTINGS)
+    recommendation, _, tables = text.partition(f"## {SETTINGS}")
     title, _, recommendation = recommendation.partition("\n")
     name = title.rpartition(": ")[2]
     figure = f"(../images/tradeoff/{name}.png)"

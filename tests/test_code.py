@@ -37,11 +37,11 @@ PACKAGES = (
     "figures",
     "dataset",
     "capture",
+    "report",
     "learning",
     "two_sample",
     "audit",
-    "tradeoff",
-    "limits",
+    "study",
     "commands",
     "cli",
     "__main__",
@@ -150,7 +150,7 @@ LIBRARIES: dict[str, set[str]] = {
     "torch": {"learning"},
     "timm": {"learning"},
     "sklearn": {"learning", "two_sample", "audit"},
-    "skimage": {"tradeoff"},
+    "skimage": {"study"},
     "plotly": {"figures"},
 }
 

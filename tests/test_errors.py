@@ -24,6 +24,6 @@ def test_no_message_installs_radhar_from_an_index_that_does_not_have_it(path: Pa
 
 def test_packages_that_messages_name_are_those_of_the_extras() -> None:
     extras = (ROOT / "pyproject.toml").read_text()
-    modules = "torch safetensors sklearn jinja2 skimage timm numba distributed pyarrow onnx plotly"
+    modules = "torch safetensors sklearn skimage timm numba distributed pyarrow onnx plotly"
     for package in how_to_install(*modules.split()).removeprefix("pip install ").split():
         assert re.search(rf'"{package}>=', extras), package

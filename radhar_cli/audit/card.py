@@ -13,6 +13,7 @@ from radhar_cli.dataset.audited import (
 )
 from radhar_cli.dataset.files import read_bytes, refuse_links, write_result
 from radhar_cli.dataset.layout import CARD
+from radhar_cli.files.table_text import markdown_table
 
 BEGIN, END = "<!-- radhar audit -->", "<!-- end of radhar audit -->"
 BEFORE = "## Known biases and limits"
@@ -66,9 +67,8 @@ def audit_section(stored: StoredAudit) -> str:
     )
     parts = ["## Who is told apart by what", head]
     if told_lines:
-        rows = ["| from | right, % (95 %) | chance, % | instead |", "| --- | --- | --- | --- |"]
-        rows += [_row(line) for line in told_lines]
-        parts.append("\n".join(rows))
+        header = ("from", "right, % (95 %)", "chance, %", "instead")
+        parts.append(markdown_table(header, map(_row, told_lines)))
     verdicts = [line.verdict for line in stored.lines]
     chance, few = (
         sum(begin in verdict for verdict in verdicts) for begin in ("at chance", TOO_FEW)
@@ -82,10 +82,9 @@ def audit_section(stored: StoredAudit) -> str:
     return "\n\n".join(parts)
 
 
-def _row(line: AuditedLine) -> str:
+def _row(line: AuditedLine) -> tuple[str, str, str, str]:
     """Row of the table."""
-    cells = [line.name, "not tested", "", line.cure]
-    if isfinite(line.share):
-        share, low, high, chance = (f"{100 * value:.1f}" for value in line[2:6])
-        cells = [line.name, f"{share} ({low} to {high})", chance, line.cure]
-    return f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |"
+    if not isfinite(line.share):
+        return line.name, "not tested", "", line.cure
+    share, low, high, chance = (f"{100 * value:.1f}" for value in line[2:6])
+    return line.name, f"{share} ({low} to {high})", chance, line.cure

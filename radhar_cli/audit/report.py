@@ -1,6 +1,5 @@
-"""What `radhar audit` writes: audit.json, audit.csv, audit.png, and a section of the data card."""
+"""Report of an audit: audit.json, audit.csv, audit.png, and its lines on the terminal."""
 
-import json
 from collections.abc import Iterator, Sequence
 from math import isfinite
 from pathlib import Path
@@ -10,17 +9,16 @@ from radhar_cli.audit.audit import Audit, AuditLine
 from radhar_cli.audit.duplicates import Pairs
 from radhar_cli.audit.evidence import EvidencePart
 from radhar_cli.dataset.audited import (
+    AUDIT,
     AUDIT_FIGURE,
     AUDIT_KIND,
-    AUDIT_NUMBERS,
     AUDIT_TABLE,
     audit_folder,
 )
-from radhar_cli.dataset.files import write_result
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.figures.class_shares import ShareBar, class_shares_png
-from radhar_cli.files.plain_json import plain
-from radhar_cli.learning.report_folder import csv_text
+from radhar_cli.report.parts import ReportFigure, ReportTable
+from radhar_cli.report.report import Report
 
 COLUMNS = (
     *("part", "name", "key", "share", "low_95", "high_95", "chance", "p_uncalibrated", "tells"),
@@ -34,15 +32,9 @@ def write_audit(audit: Audit, folder: Path) -> list[Path]:
     Raises:
         FolderError: a file cannot be written.
     """
-    numbers = json.dumps(plain(audit_numbers(audit)), indent=2) + "\n"
-    files = {
-        AUDIT_TABLE: audit_table(audit).encode("utf-8", "surrogateescape"),
-        AUDIT_FIGURE: audit_figure(audit),
-        AUDIT_NUMBERS: numbers.encode(),
-    }
-    for name, content in files.items():
-        write_result(folder, folder / name, content)
-    return [folder / name for name in (AUDIT_NUMBERS, AUDIT_TABLE, AUDIT_FIGURE)]
+    report = Report(audit_numbers(audit), stem=AUDIT)
+    report.add(_table(audit), ReportFigure(AUDIT_FIGURE, "", audit_figure(audit)))
+    return report.write(folder)
 
 
 def audit_numbers(audit: Audit) -> dict[str, Any]:
@@ -102,8 +94,8 @@ def _pair_numbers(pairs: Pairs) -> dict[str, Any]:
     }
 
 
-def audit_table(audit: Audit) -> str:
-    """Text of audit.csv: a row for each line."""
+def _table(audit: Audit) -> ReportTable:
+    """Table of audit.csv: a row for each line."""
     rows = []
     for line in audit.lines:
         result, evidence = line.result, line.evidence
@@ -113,7 +105,7 @@ def audit_table(audit: Audit) -> str:
             counts = (result.classes, result.samples, result.groups)
             numbers = (*(f"{share:.6g}" for share in shares), line.is_leak, *counts)
         rows.append((evidence.part, evidence.name, evidence.key, *numbers, line.verdict, line.cure))
-    return csv_text(COLUMNS, rows)
+    return ReportTable(COLUMNS, rows, file=AUDIT_TABLE)
 
 
 def audit_figure(audit: Audit) -> bytes:

@@ -45,7 +45,7 @@ def compare(
     needs("sklearn")
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.learning.images.classes import read_classes
-    from radhar_cli.learning.report_folder import NUMBERS
+    from radhar_cli.report.report import NUMBERS
     from radhar_cli.two_sample.comparison import compare as compare_maps
     from radhar_cli.two_sample.report import write
 

@@ -43,7 +43,7 @@ def needs_torch() -> None:
     Raises:
         MachineError: one is not.
     """
-    needs("torch", "safetensors", "sklearn", "jinja2")
+    needs("torch", "safetensors", "sklearn")
 
 
 def needs(*modules: str) -> None:

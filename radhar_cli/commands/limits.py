@@ -46,16 +46,16 @@ def limits(
     """
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.folder import refuse_file
-    from radhar_cli.limits.report import (
+    from radhar_cli.processes.worker_process import prepare_process
+    from radhar_cli.study.limits.report import (
         FILES,
         limits_numbers,
         terminal_lines,
         unfinished_lines,
         write_report,
     )
-    from radhar_cli.limits.study import study_limits
-    from radhar_cli.limits.trial import ConfigTrial
-    from radhar_cli.processes.worker_process import prepare_process
+    from radhar_cli.study.limits.study import study_limits
+    from radhar_cli.study.limits.trial import ConfigTrial
 
     if out is not None:
         refuse_file(out)

@@ -9,8 +9,8 @@ from radhar_cli.commands.options import Overrides, ReplaceResults, resumable
 from radhar_cli.commands.tell import report, tell
 
 if TYPE_CHECKING:
-    from radhar_cli.tradeoff.report import TradeoffReport
-    from radhar_cli.tradeoff.sweep import Sweep
+    from radhar_cli.study.tradeoff.report import TradeoffReport
+    from radhar_cli.study.tradeoff.sweep import Sweep
 
 QUICK_S = 168.0  # of a quick sweep, its start and figure left out
 
@@ -63,8 +63,8 @@ def tradeoff(
     from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.dataset.workers import cores
     from radhar_cli.processes.worker_process import prepare_process
-    from radhar_cli.tradeoff.report import TradeoffReport
-    from radhar_cli.tradeoff.scenes import Scenes
+    from radhar_cli.study.tradeoff.report import TradeoffReport
+    from radhar_cli.study.tradeoff.scenes import Scenes
 
     refuse_file(out)
     scenes = Scenes(config, tuple(set_ or ()), quick)
@@ -95,8 +95,8 @@ def _measure(files: "TradeoffReport", sweep: "Sweep", seconds: float, seeds: int
         seeds: seeds of networks; None for no networks.
     """
     from radhar_cli.commands.terminal import BarProgress
-    from radhar_cli.tradeoff.networks import measure_accuracies
-    from radhar_cli.tradeoff.study import Budget, TradeoffStudy
+    from radhar_cli.study.tradeoff.study import TradeoffStudy
+    from radhar_cli.study.trials import Budget
 
     budget = Budget(seconds)
     with BarProgress("setting") as progress, resumable(f"what was measured in {files.folder}"):
@@ -104,6 +104,8 @@ def _measure(files: "TradeoffReport", sweep: "Sweep", seconds: float, seeds: int
             study = TradeoffStudy(files.scenes, sweep, budget, progress, lambda: files.keep(sweep))
             study.run()
             if seeds is not None:
+                from radhar_cli.study.tradeoff.accuracy import measure_accuracies  # of PyTorch
+
                 measure_accuracies(
                     *(files.scenes, sweep, seeds, files.folder / "accuracy", progress),
                     lambda: files.keep(sweep),

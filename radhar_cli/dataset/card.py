@@ -17,7 +17,6 @@ from radhar_cli.dataset.card_contents import (
     describe_classes,
     describe_people,
     describe_streams,
-    table_of,
 )
 from radhar_cli.dataset.file_description import describe_levels
 from radhar_cli.dataset.files import refuse_links, write_whole
@@ -26,6 +25,7 @@ from radhar_cli.dataset.layout import CARD, GALLERY, Rows, column_axis, row_axis
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.stream_files import draw_streams
+from radhar_cli.files.table_text import markdown_table
 
 _WAVEFORMS = {
     "fmcw": "an FMCW",
@@ -264,7 +264,7 @@ def _maps(data: Dataset) -> str:
         if image.kind == "decibel"
         else "255 where the cell exceeds its CFAR threshold, else 0"
     )
-    table = table_of(("map", "rows", "columns", "left, right, bottom, top"), lines)
+    table = markdown_table(("map", "rows", "columns", "left, right, bottom, top"), lines)
     return f"{table}\n\nA pixel is a grey level: {level}. What comes nearer has positive Doppler."
 
 

@@ -1,7 +1,5 @@
 """Parts of the data card that say what is in a data set: classes, arrays, people, streams."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from radhar_cli.activities.meanings import meaning_of_class
@@ -9,6 +7,7 @@ from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.dataset.layout import SEGMENTS, SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
+from radhar_cli.files.table_text import markdown_table
 from radhar_cli.processing.points import COLUMNS
 
 POINT_COLUMNS = (
@@ -25,12 +24,6 @@ ROWS = {
     "skeleton_velocity": "a frame: true velocities of joints [person, joint, x y z], m/s",
     SEGMENTS: "a segment: start and stop (s), label, person",
 }
-
-
-def table_of(head: Sequence[str], lines: Sequence[Sequence[object]]) -> str:
-    """Write a table as Markdown."""
-    rows = [head, ["---"] * len(head), *lines]
-    return "\n".join(f"| {' | '.join(map(str, row))} |" for row in rows)
 
 
 def describe_arrays(data: Dataset) -> str:
@@ -61,7 +54,7 @@ def describe_arrays(data: Dataset) -> str:
     if isinstance(data.config, MeasuredConfig):
         notes.append("Points are as a board sent them: NaN is what its messages do not say.")
     heading = "## Points, skeletons and other arrays"
-    return f"{heading}\n\n{table_of(head, lines)}\n\n{' '.join(notes)}"
+    return f"{heading}\n\n{markdown_table(head, lines)}\n\n{' '.join(notes)}"
 
 
 def _spread(counts: np.ndarray) -> str:
@@ -92,7 +85,7 @@ def describe_people(data: Dataset) -> str:
         [count, *(int(((present == count) & (data.split == n)).sum()) for n in splits)]
         for count in range(int(present.min()), int(present.max()) + 1)
     ]
-    table = table_of(("people in the scene", *splits.values()), lines)
+    table = markdown_table(("people in the scene", *splits.values()), lines)
     return (
         f"## People\n\n{table}\n\n`/person_label` has the class of each person, main one first, "
         "-1 of who is not there; `/labels` which classes anybody shows."
@@ -112,7 +105,7 @@ def describe_streams(data: Dataset) -> str:
         seconds = (rows[:, 1] - rows[:, 0])[of_label]
         counts = [int((of_label & (split == n)).sum()) for n in data.present_splits]
         lines.append([label, f"`{name}`", *counts, f"{seconds.sum():,.0f}"])
-    table = table_of(("label", "in time", *data.present_splits.values(), "s in all"), lines)
+    table = markdown_table(("label", "in time", *data.present_splits.values(), "s in all"), lines)
     return (
         f"## Labels in time\n\n{table}\n\nCounts are segments. `/frame_label/<map>` has the label "
         "of every column of an image, `segments.csv` start and stop of every segment."
@@ -134,4 +127,4 @@ def describe_classes(data: Dataset) -> str:
             "\n\nThe class is what the sample's main person does. Others are there too: column "
             f"`labels` has what anybody does ({occurrences})."
         )
-    return table_of(["label", "class", "who", *present.values()], lines) + note
+    return markdown_table(["label", "class", "who", *present.values()], lines) + note

@@ -23,31 +23,18 @@ RINGS = 14  # of such places
 
 @dataclass(frozen=True)
 class SettingMark:
-    """A setting in the figure.
-
-    Attributes:
-        name: its name.
-        ratio: time of a sample over the default's.
-        levels: rms difference of the map that differs most, grey levels.
-        is_error: whether the difference is an error of computation.
-        has_all_maps: whether it shows all that the default shows.
-        saves: whether it saves time beyond doubt.
-    """
+    """A setting in the figure."""
 
     name: str
-    ratio: float
-    levels: float
-    is_error: bool
-    has_all_maps: bool = True
-    saves: bool = False
+    ratio: float  # time of a sample over the default's
+    levels: float  # rms difference of the map that differs most, grey levels
+    is_error: bool  # whether the difference is an error of computation
+    has_all_maps: bool = True  # whether it shows all that the default shows
+    saves: bool = False  # whether it saves time beyond doubt
 
 
 def tradeoff_png(marks: Sequence[SettingMark], title: str) -> bytes:
     """Draw settings by time and difference, with the frontier of those that save time.
-
-    Args:
-        marks: settings; the first is the default.
-        title: name of the config.
 
     Returns:
         The PNG file.

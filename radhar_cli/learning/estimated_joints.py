@@ -11,9 +11,9 @@ from torch import nn
 
 from radhar_cli.errors import ConfigError
 from radhar_cli.files.replacing import write_output
+from radhar_cli.files.table_text import csv_text
 from radhar_cli.learning.evaluation import PREDICT_BATCH, open_unlabelled, predict_batches
 from radhar_cli.learning.images.sequences import SequenceReader
-from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.run_folder import RunMetadata, load_best
 from radhar_cli.learning.tasks.skeleton import Skeleton

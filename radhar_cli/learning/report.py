@@ -20,7 +20,7 @@ from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robust
 from radhar_cli.learning.evaluation import SPEEDS, measure_speed
 from radhar_cli.learning.filter_weights import filter_magnitudes, filter_table
 from radhar_cli.learning.images.classes import left_out_message
-from radhar_cli.learning.report_files import Report, ResultPage
+from radhar_cli.learning.result_page import EvalReport, ResultPage
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import RunMetadata, best_epoch
 from radhar_cli.learning.single_result import (
@@ -34,6 +34,7 @@ from radhar_cli.learning.single_result import (
 from radhar_cli.learning.tasks.categories import Classifier
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.processes.progress import Progress
+from radhar_cli.report.parts import Details, ReportFigure, ReportTable
 
 NETWORK = ("model", "parameters", "multiply_adds", "best_epoch")
 
@@ -44,7 +45,7 @@ def evaluate(
     options: EvalOptions,
     device: torch.device,
     progress: Progress,
-) -> Report:
+) -> EvalReport:
     """Evaluate every run on every data set.
 
     Args:
@@ -84,16 +85,16 @@ def evaluate(
         _add_audit(report, data_name, path, single=len(named_data) == 1)
     report.section("How they were trained")
     for run in open_runs:
-        report.details(run.name, _training_as_json(run.metadata))
+        report.add(Details(run.name, _training_as_json(run.metadata)))
     return report
 
 
 def _begin_report(
     runs: Sequence[str], data: Sequence[str], options: EvalOptions, device: torch.device
-) -> Report:
+) -> EvalReport:
     """Report on some runs and data sets, by name, in which nothing is found yet."""
     threads = torch.get_num_threads()
-    return Report(
+    return EvalReport(
         {
             "split": options.split,
             "batch": options.batch,
@@ -116,7 +117,7 @@ def _begin_report(
 class _Evaluation:
     """Evaluation under way: what is found goes to a report, run by run and set by set."""
 
-    report: Report
+    report: EvalReport
     options: EvalOptions
     device: torch.device
     progress: Progress
@@ -193,7 +194,7 @@ def _chosen_by(run: Run, eval_set: EvalSet, numbers: Mapping[str, Any]) -> str:
     return f"{part} chose the epoch, {best}, so that this is optimistic; {cure}"
 
 
-def _list_networks(report: Report) -> None:
+def _list_networks(report: EvalReport) -> None:
     """Add the table of networks, and its file."""
     run_numbers = report.numbers["runs"].items()
     rows = [
@@ -201,11 +202,12 @@ def _list_networks(report: Report) -> None:
         for name, numbers in run_numbers
     ]
     report.section("Networks" if len(rows) > 1 else "Network")
-    report.table("networks.csv", ["run", *NETWORK, *SPEEDS], rows)
+    header = ["run", *NETWORK, *SPEEDS]
+    report.add(ReportTable(header, rows, file="networks.csv", is_shown=False))
     _show_networks(report, rows)
 
 
-def _show_networks(report: Report, rows: Sequence[Sequence[object]]) -> None:
+def _show_networks(report: EvalReport, rows: Sequence[Sequence[object]]) -> None:
     """Add the table of networks with a column for each run, in units that people read."""
     units = (
         *("network", "parameters", "multiply-adds of an image", "best epoch", "loading, s"),
@@ -215,7 +217,7 @@ def _show_networks(report: Report, rows: Sequence[Sequence[object]]) -> None:
     head = ["", *(row[0] for row in rows)]
     columns = zip(*(row[1:] for row in rows), strict=True)
     lines = [[unit, *column] for unit, column in zip(units, columns, strict=True)]
-    report.show_table("Size and speed", head, lines)
+    report.add(ReportTable(head, lines, "Size and speed"))
 
 
 def _training_as_json(metadata: RunMetadata) -> str:
@@ -247,7 +249,7 @@ def _describe_run(run: Run) -> dict[str, Any]:
 
 
 def _add_curves(
-    report: Report, runs: Sequence[Run], accuracies: Mapping[str, Sequence[Point]]
+    report: EvalReport, runs: Sequence[Run], accuracies: Mapping[str, Sequence[Point]]
 ) -> None:
     """Add the training curves, and the accuracy of runs over several data sets."""
     with_history = {run.name: run.history for run in runs if run.history}
@@ -257,20 +259,20 @@ def _add_curves(
         score = " or ".join(dict.fromkeys(task.score_name for task in tasks))
         loss = " or ".join(dict.fromkeys(task.loss_name for task in tasks))
         png = curves_png(with_history, best, score, loss)
-        report.figure("curves.png", "Training curves.", png)
+        report.add(ReportFigure("curves.png", "Training curves.", png))
     if any(len(points) > 1 for points in accuracies.values()):
         caption = "Accuracy over the data sets."
-        report.figure("robustness.png", caption, robustness_png(accuracies))
-        rows = (
+        report.add(ReportFigure("robustness.png", caption, robustness_png(accuracies)))
+        rows = [
             (name, p.data, p.snr_db, p.accuracy, p.low, p.high)
             for name, points in accuracies.items()
             for p in points
-        )
+        ]
         head = ("run", "data", "snr_db", "accuracy", "low_95", "high_95")
-        report.table("robustness.csv", head, rows)
+        report.add(ReportTable(head, rows, file="robustness.csv", is_shown=False))
 
 
-def _show_filters(report: Report, runs: Sequence[Run]) -> None:
+def _show_filters(report: EvalReport, runs: Sequence[Run]) -> None:
     """Add the paper's figure of weights: a row for each network, a column for each filter."""
     weights = {run.name: filter_magnitudes(run.model) for run in runs}
     weights = {name: filters for name, filters in weights.items() if filters}
@@ -279,15 +281,15 @@ def _show_filters(report: Report, runs: Sequence[Run]) -> None:
         "weight by spatial frequency, mean over channels, each over its largest value; Doppler "
         "axis down, time axis across, the zero frequency in the middle."
     )
-    report.figure("filters.png", caption, filters_png(weights))
+    report.add(ReportFigure("filters.png", caption, filters_png(weights)))
     tables = {name: filter_table(filters) for name, filters in weights.items()}
     report.numbers["filters"] = tables
     keys = list(next(iter(tables.values()))[0])
-    filter_rows = ([name, *row.values()] for name, rows in tables.items() for row in rows)
-    report.table("filters.csv", ["run", *keys], filter_rows)
+    filter_rows = [[name, *row.values()] for name, rows in tables.items() for row in rows]
+    report.add(ReportTable(["run", *keys], filter_rows, file="filters.csv", is_shown=False))
 
 
-def _add_audit(report: Report, name: str, data: Path, single: bool) -> None:
+def _add_audit(report: EvalReport, name: str, data: Path, single: bool) -> None:
     """Add the figure of what tells the classes besides the movement, if data have been audited.
 
     Args:
@@ -313,7 +315,7 @@ def _add_audit(report: Report, name: str, data: Path, single: bool) -> None:
         f"{leaks or 'nothing beyond chance'}."
     )
     stem = "" if single else f"_{name}"
-    report.figure(f"audit{stem}.png", caption, class_shares_png(bars, title))
+    report.add(ReportFigure(f"audit{stem}.png", caption, class_shares_png(bars, title)))
 
 
 def _name_paths(paths: Sequence[Path]) -> dict[str, Path]:

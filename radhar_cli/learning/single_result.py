@@ -12,7 +12,7 @@ from torch import nn
 from radhar_cli.learning.evaluation import last_features, open_for_model, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
-from radhar_cli.learning.report_files import ResultPage
+from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.run_folder import (
     Epoch,

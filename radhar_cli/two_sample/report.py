@@ -1,11 +1,12 @@
-"""What `radhar compare` writes: numbers, a table, a figure."""
+"""Report of a comparison: numbers, a table, a figure."""
 
 from pathlib import Path
 
 import numpy as np
 
 from radhar_cli.figures.two_samples import Picture, pictures_png
-from radhar_cli.learning.report_folder import NUMBERS, csv_text, write_report
+from radhar_cli.report.parts import ReportFigure, ReportTable
+from radhar_cli.report.report import Report
 from radhar_cli.two_sample.comparison import Comparison
 
 PICTURES = 4  # of a class and side
@@ -19,27 +20,20 @@ def write(comparison: Comparison, folder: Path) -> list[Path]:
     Raises:
         FolderError: a file cannot be written.
     """
-    files = {"statistics.csv": _table(comparison).encode(), "pictures.png": _pictures(comparison)}
-    write_report(folder, files, comparison.numbers())
-    return [folder / NUMBERS, *(folder / name for name in files)]
+    report = Report(comparison.numbers(), lists_files=True)
+    report.add(_table(comparison), ReportFigure("pictures.png", "", _pictures(comparison)))
+    return report.write(folder)
 
 
-def _table(comparison: Comparison) -> str:
+def _table(comparison: Comparison) -> ReportTable:
     kinds = [f"{side}_{name}" for side in ("simulated", "measured") for name in ("mean", "sd", "n")]
-    rows = (
-        (
-            class_comparison.name,
-            name,
-            comparison.unit(name),
-            *d.simulated,
-            *d.measured,
-            d.distance,
-            d.p,
-        )
-        for class_comparison in comparison.classes
-        for name, d in class_comparison.differences.items()
-    )
-    return csv_text(["class", "statistic", "unit", *kinds, "distance", "p"], rows)
+    header = ["class", "statistic", "unit", *kinds, "distance", "p"]
+    rows = [
+        (of_class.name, name, comparison.unit(name), *d.simulated, *d.measured, d.distance, d.p)
+        for of_class in comparison.classes
+        for name, d in of_class.differences.items()
+    ]
+    return ReportTable(header, rows, file="statistics.csv")
 
 
 def _pictures(comparison: Comparison) -> bytes:

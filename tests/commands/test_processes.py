@@ -73,7 +73,7 @@ try:
     main()
 except SystemExit as ended:
     assert not ended.code, ended.code
-assert not {"torch", "timm", "safetensors", "jinja2"} & set(sys.modules)
+assert not {"torch", "timm", "safetensors"} & set(sys.modules)
 """
 
 

@@ -165,6 +165,5 @@ def test_without_torch_samples_say_what_to_install():
         "    print(error)\n",
     )
     assert (
-        done.stdout
-        == "radhar.Samples needs PyTorch: pip install torch safetensors scikit-learn Jinja2\n"
+        done.stdout == "radhar.Samples needs PyTorch: pip install torch safetensors scikit-learn\n"
     ), done.stderr

@@ -10,8 +10,8 @@ from helpers.slow import slow
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.number import MAX_NUMBER
 from radhar_cli.config.reading import config_of_values, read_values
-from radhar_cli.limits.keys import PEOPLE, acting_numbers, with_number
-from radhar_cli.limits.limit import (
+from radhar_cli.study.limits.keys import PEOPLE, acting_numbers, with_number
+from radhar_cli.study.limits.limit import (
     CLEAN,
     KEY_ENDS,
     Consequence,

@@ -16,15 +16,15 @@ from limits.extremes import EXTREMES, SLOW_EXTREMES, Extreme, config_of, documen
 
 from radhar_cli.dataset.sample import StoredSample, synthesise
 from radhar_cli.errors import ConfigError, RadharError
-from radhar_cli.limits.limit import Consequence, Limit, RangeSide
-from radhar_cli.limits.search import GAP
-from radhar_cli.limits.study import study_limits
-from radhar_cli.limits.trial import ConfigTrial
 from radhar_cli.processes.progress import NO_PROGRESS
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.scene_checks.visibility import CHEST_M
 from radhar_cli.scene_checks.warnings import config_warnings, scene_warnings
+from radhar_cli.study.limits.limit import Consequence, Limit, RangeSide
+from radhar_cli.study.limits.search import GAP
+from radhar_cli.study.limits.study import study_limits
+from radhar_cli.study.limits.trial import ConfigTrial
 
 FAULT = re.compile(r"^extreme\.yaml: [\w.]+ = .+: .+")
 BLACK = "black"

@@ -2,8 +2,8 @@
 
 import pytest
 
-from radhar_cli.limits.limit import CLEAN, Consequence, Judgement
-from radhar_cli.limits.search import GAP, End, Path, find_end, find_end_at_zero
+from radhar_cli.study.limits.limit import CLEAN, Consequence, Judgement
+from radhar_cli.study.limits.search import GAP, End, Path, find_end, find_end_at_zero
 
 BEYOND = Judgement(Consequence.WARNED, reason="beyond")
 

@@ -5,7 +5,7 @@ import sys
 import document_limits
 import pytest
 
-from radhar_cli.limits.report import HEAD
+from radhar_cli.study.limits.report import HEAD
 
 TEXT = f"""# How far x may go
 

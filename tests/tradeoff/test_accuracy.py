@@ -7,10 +7,13 @@ import pytest
 from helpers.listener import Listener
 
 from radhar_cli.errors import ConfigError
-from radhar_cli.extensions import own_products
-from radhar_cli.products.plan import Product
-from radhar_cli.tradeoff import accuracy
-from radhar_cli.tradeoff.accuracy import AccuracyStudy, Sizes, measure_accuracy, setting_accuracy
+from radhar_cli.study.tradeoff import accuracy
+from radhar_cli.study.tradeoff.accuracy import (
+    AccuracyStudy,
+    Sizes,
+    measure_accuracy,
+    setting_accuracy,
+)
 
 CONFIG = """
 motion: {model: paper}
@@ -138,17 +141,6 @@ def test_seeds_are_of_other_scenes_and_the_same_under_every_setting(config, fold
     assert len(set(seeds.values())) == 4
     for (number, name), seed in seeds.items():
         assert networks._parts(("snr_db=0",), number)[name].config.seed == seed
-
-
-def test_products_of_the_images_of_a_setting(config, folder):
-    """They are in what is learned, not in the images of the config as it is."""
-    loud = Product("receiver", (), lambda: (), "nothing")
-    networks = study(config, folder, products=(loud,))
-    parts, plain = networks._parts((), 1), study(config, folder)._parts((), 1)
-    assert parts["default"].folder == plain["default"].folder
-    assert parts["own"].folder != plain["own"].folder
-    assert networks.measure_seed((), 1).on_default is not None
-    assert own_products() == ()
 
 
 @pytest.mark.parametrize(

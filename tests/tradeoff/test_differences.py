@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from radhar_cli.processing.points import COLUMNS, Cloud
-from radhar_cli.tradeoff.differences import compare_pictures, compare_points, relative_db
-from radhar_cli.tradeoff.pictures import ShownMap
+from radhar_cli.study.tradeoff.differences import compare_pictures, compare_points, relative_db
+from radhar_cli.study.tradeoff.pictures import ShownMap
 
 
 def rng():

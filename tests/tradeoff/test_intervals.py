@@ -5,7 +5,7 @@ from math import isnan
 import numpy as np
 import pytest
 
-from radhar_cli.tradeoff.intervals import mean_interval, paired_difference
+from radhar_cli.study.tradeoff.intervals import mean_interval, paired_difference
 
 
 def test_interval_of_three_values():

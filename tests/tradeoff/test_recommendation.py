@@ -1,16 +1,17 @@
 """What is recommended of synthetic rows: nothing within the blur, and what it costs."""
 
+import json
 from dataclasses import replace
 
 import pytest
 
 from radhar_cli.config.engine import EngineConfig
-from radhar_cli.tradeoff.differences import PointDifference
-from radhar_cli.tradeoff.recommendation import recommend, saves
-from radhar_cli.tradeoff.row import AccuracyNumbers, MapNumbers, Row
-from radhar_cli.tradeoff.setting import DEFAULT, Change
-from radhar_cli.tradeoff.sweep import Omission, Sweep
-from radhar_cli.tradeoff.timing import Ratio
+from radhar_cli.study.tradeoff.differences import PointDifference
+from radhar_cli.study.tradeoff.recommendation import recommend, saves
+from radhar_cli.study.tradeoff.row import AccuracyNumbers, MapNumbers, Row
+from radhar_cli.study.tradeoff.setting import DEFAULT, Change
+from radhar_cli.study.tradeoff.sweep import Omission, Sweep
+from radhar_cli.study.tradeoff.timing import Ratio
 
 ENGINE = EngineConfig()
 AS_IT_IS = Row(
@@ -182,4 +183,5 @@ def test_load_and_what_was_not_measured_are_told():
 
 def test_rows_survive_json():
     tried = row("body.scatterers: points", 0.4, accuracy=accuracy(0.7, 0.8), error_db=float("-inf"))
-    assert Row.read(tried.numbers()) == tried
+    for each in (tried, replace(tried, points=PointDifference(0.5, None, 20.0, 40.0))):
+        assert Row.read(json.loads(json.dumps(each.numbers()))) == each

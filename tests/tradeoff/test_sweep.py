@@ -10,12 +10,12 @@ from typer.testing import CliRunner
 
 from radhar_cli.cli import program
 from radhar_cli.scene import scene_numbers
-from radhar_cli.tradeoff import study
-from radhar_cli.tradeoff.row import Row
-from radhar_cli.tradeoff.scenes import Scenes, SweepSample
-from radhar_cli.tradeoff.setting import DEFAULT, Change
-from radhar_cli.tradeoff.settings import settings_of
-from radhar_cli.tradeoff.sweep import Sweep
+from radhar_cli.study.tradeoff import study
+from radhar_cli.study.tradeoff.row import Row
+from radhar_cli.study.tradeoff.scenes import Scenes, SweepSample
+from radhar_cli.study.tradeoff.setting import DEFAULT, Change
+from radhar_cli.study.tradeoff.settings import settings_of
+from radhar_cli.study.tradeoff.sweep import Sweep
 
 FMCW = """
 motion: {model: paper}
@@ -69,7 +69,7 @@ def few(monkeypatch):
     monkeypatch.setattr(study, "settings_of", tried)
     monkeypatch.setattr(study, "LEAST_PAIRS", 1)
     monkeypatch.setattr(study, "MOST_ROUNDS", 1)
-    monkeypatch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+    monkeypatch.setattr("radhar_cli.study.tradeoff.timing.SECONDS", 0.0)
 
 
 def write(folder, kind):
@@ -137,7 +137,7 @@ class TestGate:
 
 def test_networks_are_trained_for_what_saves_time(tmp_path, monkeypatch):
     """The config as it is comes first; what saves nothing is not learned."""
-    from radhar_cli.tradeoff import accuracy, networks
+    from radhar_cli.study.tradeoff import accuracy
 
     scenes = Scenes(write(tmp_path, "fmcw"), (), quick=True)
     times = {"sample_ms": 8.0, "rounds": 5}
@@ -157,10 +157,10 @@ def test_networks_are_trained_for_what_saves_time(tmp_path, monkeypatch):
 
     monkeypatch.setattr(accuracy, "measure_accuracy", learn)
     sweep = Sweep([default, fast, slow])
-    networks.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
+    accuracy.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
     assert learned == [(), ("fast",)]
     assert [row.accuracy is not None for row in sweep.rows] == [True, True, False]
-    networks.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
+    accuracy.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
     assert len(learned) == 2  # what is there is not made again
 
 
@@ -199,6 +199,17 @@ class TestStops:
         assert "radar.prf_hz" in str(refused.exception)
         replaced = tradeoff(config, out, "--set", "radar.prf_hz=2000", "--overwrite")
         assert replaced.exit_code == 0, replaced.output
+
+    @pytest.mark.parametrize("wrong", ["ratio", "points", "maps"])
+    def test_a_damaged_result_is_named(self, few, tmp_path, wrong):
+        config, out = write(tmp_path, "cw"), tmp_path / "out"
+        assert tradeoff(config, out).exit_code == 0
+        numbers = numbers_of(out)
+        numbers["settings"][0][wrong] = "abc"
+        (out / "tradeoff.json").write_text(json.dumps(numbers))
+        refused = tradeoff(config, out)
+        assert refused.exit_code != 0
+        assert "is no result of this version of radhar" in str(refused.exception)
 
     def test_settings_without_time_are_named(self, few, tmp_path):
         config = write(tmp_path, "fmcw")
@@ -266,7 +277,7 @@ SHIPPED = sorted(
 def test_every_shipped_config(path, tmp_path, monkeypatch):
     """All settings of all configs, with the smallest effort: a row, or a line that says why not."""
     monkeypatch.setattr(study, "MOST_ROUNDS", 1)
-    monkeypatch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+    monkeypatch.setattr("radhar_cli.study.tradeoff.timing.SECONDS", 0.0)
     monkeypatch.setattr(Scenes, "samples", lambda self: [SweepSample(first_slug(self))])
     outcome = tradeoff(path, tmp_path / "out")
     assert outcome.exit_code == 0, outcome.output

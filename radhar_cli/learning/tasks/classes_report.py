@@ -17,7 +17,7 @@ from radhar_cli.figures.evaluation import (
 )
 from radhar_cli.files.untrusted import escaped
 from radhar_cli.learning import metrics
-from radhar_cli.learning.report_files import ResultPage
+from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.tasks.predictions import ClassPredictions
 from radhar_cli.learning.tasks.task import Evaluation

@@ -14,7 +14,7 @@ from radhar_cli.figures.evaluation import confusion_png
 from radhar_cli.figures.page import png_bytes
 from radhar_cli.figures.stream_page import AT_REST, LabelledMap, draw_labelled_maps
 from radhar_cli.learning.intervals import Groups, numbers_of_share
-from radhar_cli.learning.report_files import ResultPage
+from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.segment_metrics import LabelSpan, edit_score, f1_of_segments, spans_of
 from radhar_cli.learning.tasks.predictions import Predictions
 from radhar_cli.learning.tasks.task import Evaluation

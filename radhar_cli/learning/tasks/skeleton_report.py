@@ -9,7 +9,7 @@ from radhar_cli.figures.evaluation import bars_png
 from radhar_cli.figures.skeletons import skeletons_png
 from radhar_cli.learning.intervals import Groups, numbers_of_mean, numbers_of_share
 from radhar_cli.learning.metrics import NEAR_M
-from radhar_cli.learning.report_files import ResultPage
+from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.tasks.predictions import Predictions
 from radhar_cli.learning.tasks.task import Evaluation
 from radhar_cli.motion.skeleton import JOINTS, PARENTS

@@ -12,7 +12,7 @@ from radhar_cli.learning.choices import TASKS, load_place
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.intervals import Groups, numbers_of_share
 from radhar_cli.learning.models.outputs import Outputs
-from radhar_cli.learning.report_files import ResultPage
+from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tasks.predictions import EvalOptions, Predictions

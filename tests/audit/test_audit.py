@@ -7,6 +7,7 @@ import pytest
 from audit.trees import body, clean, save, tree
 from helpers.command_line import ok, radhar
 from helpers.listener import Listener
+from helpers.slow import slow
 from helpers.small import SMALL, small_config
 from PIL import Image
 
@@ -237,6 +238,7 @@ def test_the_card_has_a_section_that_a_second_audit_replaces(data):
     ok("verify", data, "--samples", "0")
 
 
+@pytest.mark.drawn
 def test_bytes_depend_on_the_seed_alone(data, tmp_path, monkeypatch):
     ok("audit", data, "--quick", "-o", tmp_path / "a")
     monkeypatch.setenv("OMP_NUM_THREADS", "2")
@@ -247,6 +249,7 @@ def test_bytes_depend_on_the_seed_alone(data, tmp_path, monkeypatch):
     assert (tmp_path / "c/audit.csv").read_text() != (tmp_path / "a/audit.csv").read_text()
 
 
+@pytest.mark.drawn
 def test_what_is_written(data, tmp_path):
     done = ok("audit", data, "--quick", "--json", "-o", tmp_path / "out")
     printed = json.loads(done.stdout)
@@ -377,7 +380,7 @@ LAWS = {
 }
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", ["place", "alike", *slow(["range", "onset", "speed"])])
 def test_a_law_that_differs_by_class_is_told_from_the_config(tmp_path, name):
     """Three samples a class say nothing by statistics; verify and audit agree."""
     text = f"""

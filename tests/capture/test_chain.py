@@ -373,7 +373,9 @@ def test_what_rests_in_an_empty_room_is_called_no_torso(tmp_path: Path) -> None:
     )
     for slug, expected in (("nobody", "something at rest at"), ("stationary", "torso from")):
         simulated, out = tmp_path / slug, tmp_path / f"{slug}_maps"
-        done = radhar("simulate", config, "--activity", slug, "--raw", "-o", simulated)
+        done = radhar(
+            "simulate", config, "--activity", slug, "--raw", "--no-figures", "-o", simulated
+        )
         assert done.returncode == 0, done.stderr
         recording = simulated / "recording.h5"
         done = radhar("process", recording, "--config", config, "--no-figures", "-o", out)

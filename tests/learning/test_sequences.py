@@ -10,6 +10,7 @@ import pytest
 import torch
 from helpers.boards import CFG, CLOUDS
 from helpers.command_line import radhar
+from helpers.slow import slow
 from torch.utils.data import DataLoader
 
 import radhar_cli
@@ -171,7 +172,7 @@ def test_joined_and_chosen_sequences_keep_their_skeletons(boards: Path) -> None:
         np.testing.assert_array_equal(both.pixels.read(row), clouds.pixels.read(of))
 
 
-@pytest.mark.parametrize("model", ["cloudnet", "framenet"])
+@pytest.mark.parametrize("model", ["cloudnet", *slow(["framenet"])])
 def test_a_network_of_sequences_tells_punching_from_walking(boards: Path, model: str) -> None:
     run = trained(boards, model, "classes")
     done = radhar("eval", run, boards / "data", "-o", boards / f"eval_{model}")
@@ -247,7 +248,7 @@ def test_images_are_refused_where_a_network_reads_clouds(boards: Path) -> None:
         assert message in " ".join(done.stderr.split())
 
 
-@pytest.mark.parametrize("model", ["cloudnet", "framenet"])
+@pytest.mark.parametrize("model", ["cloudnet", *slow(["framenet"])])
 def test_joints_go_to_a_file_to_python_and_to_onnx_alike(boards: Path, model: str) -> None:
     import onnx
     import onnxruntime

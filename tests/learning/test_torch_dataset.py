@@ -37,6 +37,7 @@ def data(config: Path) -> Path:
     return config.parent / "data"
 
 
+@pytest.mark.slow
 def test_workers_read_what_training_reads(data: Path) -> None:
     images = open_images(data, "stft", "rgb")
     found = radhar.torch_dataset(str(data), "stft", split="val")

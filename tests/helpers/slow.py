@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 FAST_SHARE = 0.2  # of the examples that Hypothesis draws
-FEWEST = 10
+FEWEST = 5
 
 whole_suite = False  # conftest.py says so where no test is left out
 
@@ -20,5 +20,5 @@ def slow(cases: Iterable[Any]) -> list[Any]:
 
 
 def examples(count: int) -> int:
-    """Number of examples that Hypothesis draws of a costly test, of `count` in the whole suite."""
+    """Number of examples or draws of a costly test, of `count` in the whole suite."""
     return count if whole_suite else min(count, max(FEWEST, round(FAST_SHARE * count)))

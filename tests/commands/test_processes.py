@@ -83,11 +83,10 @@ assert not {"torch", "timm", "safetensors", "jinja2"} & set(sys.modules)
 @pytest.mark.parametrize(
     "words",
     [
-        *("train --help", "eval --help", "export --help", "predict --help"),
+        "train --help",
         "generate {}/small.yaml -o {}/set",
-        "verify {}/set --samples 1",
-        "inspect {}/set/png/stft/train",
-        "preview {}/set -o {}/sheet.png",
+        *slow(["eval --help", "export --help", "predict --help", "verify {}/set --samples 1"]),
+        *slow(["inspect {}/set/png/stft/train", "preview {}/set -o {}/sheet.png"]),
         "compare {}/set {}/set -o {}/compared --map stft --per-class 2",
     ],
 )

@@ -1,6 +1,6 @@
 """What `make test` leaves out and `make test-all` runs: cases of a test, and examples of a law."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Any
 
 import pytest
@@ -17,6 +17,11 @@ def slow(cases: Iterable[Any]) -> list[Any]:
         pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.slow)
         for case in cases
     ]
+
+
+def slow_but(cases: Iterable[Any], kept: Collection[Any]) -> list[Any]:
+    """All cases of a parametrised test, marked slow but for those that are kept."""
+    return [case if case in kept else pytest.param(case, marks=pytest.mark.slow) for case in cases]
 
 
 def examples(count: int) -> int:

@@ -90,6 +90,7 @@ def _pose(pairs: Path, out: Path, *more: str) -> tuple[float, ...]:
     return tuple(map(float, last.groups()))
 
 
+@pytest.mark.slow
 def test_joints_are_learned_from_measured_clouds(pairs: Path, tmp_path: Path) -> None:
     error, mean_pose, mpjpe, count = _pose(pairs, tmp_path / "out", "--epochs", "150")
     assert count == 24
@@ -97,6 +98,7 @@ def test_joints_are_learned_from_measured_clouds(pairs: Path, tmp_path: Path) ->
     assert mpjpe > error
 
 
+@pytest.mark.slow
 def test_simulated_clouds_need_the_joints_alone(pairs: Path, tmp_path: Path) -> None:
     """The measured points of the training pairs are not there at all."""
     with np.load(pairs) as file:

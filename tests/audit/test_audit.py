@@ -13,7 +13,7 @@ from PIL import Image
 
 from radhar_cli.audit.audit import AuditLine, audit
 from radhar_cli.audit.card import END, with_section
-from radhar_cli.audit.cheap import binned_share
+from radhar_cli.audit.cheap import _limit, binned_share
 from radhar_cli.audit.evidence import Evidence, EvidencePart
 from radhar_cli.audit.held_out import Effort, class_share
 from radhar_cli.dataset.audited import read_audit
@@ -361,6 +361,11 @@ def test_a_damaged_audit_is_named(data):
 
 def test_a_card_without_limits_gets_the_section_at_its_end():
     assert with_section("# mine\n", "## new").endswith(f"## new\n{END}\n")
+
+
+def test_a_share_beyond_chance_is_four_deviations_of_dependent_tests():
+    """Of 170 samples in two classes: 0.5 + 4 sqrt(1.7 0.25 / 170)."""
+    assert _limit(0.5, 170) == pytest.approx(0.7)
 
 
 def test_binned_shares():

@@ -59,11 +59,11 @@ pytest: $(DEV) ## The tests alone
 	$(PYTEST) $(SELECT)
 
 .PHONY: test
-test: $(DEV) ## Lint, types, tests and the smoke run, in six minutes
+test: $(DEV) $(LEARN) ## Lint, types, tests and the smoke run, in about six minutes
 	$(MAKE) -j 2 pytest lint smoke
 
 .PHONY: test-all
-test-all: $(DEV) ## The same with every test at full size, in thirty minutes
+test-all: $(DEV) $(LEARN) ## The same with every test at full size, in thirty minutes
 	$(MAKE) -j 2 pytest lint smoke SELECT='-m ""'
 
 .PHONY: site

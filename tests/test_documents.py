@@ -67,6 +67,8 @@ LONG = {
     "maps.md",
     "measured.md",
     "motion_files.md",
+    "noise.md",
+    "people.md",
     "poses.md",
     "radars.md",
     "scenes.md",

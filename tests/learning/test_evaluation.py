@@ -399,6 +399,7 @@ def test_the_calibration_error_is_the_distance_of_the_bins_from_the_line(mistake
     assert numbers["calibration_error"] == pytest.approx(gap / numbers["images"])
 
 
+@pytest.mark.slow
 @pytest.mark.drawn
 def test_weights_of_global_filters_are_drawn_by_network_and_layer(learned, tmp_path):
     names = ("one", "two")

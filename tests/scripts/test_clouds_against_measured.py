@@ -54,6 +54,7 @@ def pairs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_table_figures_and_a_last_line(pairs: Path, tmp_path: Path) -> None:
     script = ROOT / "scripts" / "studies" / "clouds_against_measured.py"
     command = [sys.executable, str(script), str(pairs), "--cfg", str(pairs.parent / "board.cfg")]

@@ -142,6 +142,14 @@ def test_framenet_takes_any_number_of_frames(shape: OutputShape) -> None:
         assert found.shape == expected_shape(shape, frames)
 
 
+def test_framenet_takes_each_sequence_alone() -> None:
+    network = build_model("framenet", Outputs(6, OutputShape.INPUT), (16, 24)).eval()
+    frames = torch.randn(3, 4, 16, 24)
+    with torch.inference_mode():
+        alone = torch.cat([network(sequence[None]) for sequence in frames])
+        torch.testing.assert_close(network(frames), alone, rtol=1e-4, atol=1e-5)
+
+
 def test_the_loss_of_skeletons_leaves_out_what_is_not_there() -> None:
     joints = torch.zeros(2, 3, 2, 3)
     joints[1, 1:] = torch.nan

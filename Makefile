@@ -48,15 +48,23 @@ smoke: $(LEARN) ## Generate, train, evaluate: the smallest whole run
 	$(BIN)/radhar eval $(SMOKE)/run $(SMOKE)/data --tsne --in-place-vs-moving
 	$(BIN)/radhar predict $(SMOKE)/run $(SMOKE)/data/png/stft/val/walking/*.png
 
+.PHONY: lint
+lint: $(DEV) ## Style, format and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+.PHONY: pytest
+pytest: $(DEV) ## The tests alone
+	$(PYTEST) $(SELECT)
+
 .PHONY: test
-test: $(DEV) ## Lint, types, tests and the smoke run, in five minutes
-	$(PYTEST)
-	$(MAKE) smoke
+test: $(DEV) $(LEARN) ## Lint, types, tests and the smoke run, in about six minutes
+	$(MAKE) -j 2 pytest lint smoke
 
 .PHONY: test-all
-test-all: $(DEV) ## The same with every test at full size, in twenty minutes
-	$(PYTEST) -m ""
-	$(MAKE) smoke
+test-all: $(DEV) $(LEARN) ## The same with every test at full size, in thirty minutes
+	$(MAKE) -j 2 pytest lint smoke SELECT='-m ""'
 
 .PHONY: site
 site: $(DEV) ## Build the documentation into build/site

@@ -4,9 +4,12 @@ import resource
 import signal
 import sys
 from collections.abc import Iterable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
+from helpers import slow
+from helpers.forks import ForkServer
 from hypothesis import HealthCheck, settings
 
 # Neither chance nor the speed of the machine decides.
@@ -36,8 +39,34 @@ def restore_signal_handlers() -> Iterator[None]:
         signal.signal(number, handler)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def checks_of_hdf5_in_forks() -> Iterator[None]:
+    """Try HDF5 files in forks; where a test starts the program, it does so as for a user."""
+    from radhar_cli.dataset import untrusted_hdf5
+
+    forks = ForkServer()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(untrusted_hdf5, "subprocess", forks)
+        yield
+    forks.close()
+
+
+@pytest.fixture
+def blank_figures(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Write blank figures, which are drawn for a test that is marked so."""
+    from helpers import blank_figures
+
+    drawn = request.node.get_closest_marker("drawn") is not None
+    with nullcontext() if drawn else blank_figures.blank_figures():
+        yield
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--reverse", action="store_true", help="run the tests in reverse order")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    slow.whole_suite = "not slow" not in config.getoption("markexpr")
 
 
 @pytest.hookimpl(trylast=True)

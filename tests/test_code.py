@@ -1,4 +1,4 @@
-"""The code itself: lint, types, layers of imports, light start of the program."""
+"""The code itself: layers of imports, light start, one place for each kind of file."""
 
 import ast
 import graphlib
@@ -53,10 +53,16 @@ def run(*command: str) -> subprocess.CompletedProcess[str]:
 
 
 @cache
+def nodes(path: Path) -> list[ast.AST]:
+    """Everything in the syntax tree of a file, its module first."""
+    return [*ast.walk(ast.parse(path.read_text()))]
+
+
+@cache
 def imports(path: Path) -> set[str]:
     """Modules that a file imports anywhere, functions included."""
     found = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -88,7 +94,7 @@ def test_imports_follow_the_layers() -> None:
 def imported_modules(path: Path) -> set[str]:
     """Modules of the package that a file imports at run time, anywhere in it."""
     modules = set[str]()
-    waiting: list[ast.AST] = [ast.parse(path.read_text())]
+    waiting = nodes(path)[:1]
     while waiting:
         node = waiting.pop()
         if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
@@ -117,7 +123,7 @@ def test_a_class_name_means_one_thing() -> None:
     found = [
         node.name
         for path in files()
-        for node in ast.parse(path.read_text()).body
+        for node in ast.iter_child_nodes(nodes(path)[0])
         if isinstance(node, ast.ClassDef)
     ]
     assert len(found) == len(set(found)), [name for name in set(found) if found.count(name) > 1]
@@ -220,13 +226,12 @@ ONE_PLACE = [
 ]
 
 
+@cache
 def calls(path: Path) -> set[str]:
     """`name` and `name.attribute` of every function that a file calls."""
-    nodes = [
-        node.func for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)
-    ]
-    names = [f for f in nodes if isinstance(f, ast.Name)]
-    dotted = [f for f in nodes if isinstance(f, ast.Attribute) and isinstance(f.value, ast.Name)]
+    called = [node.func for node in nodes(path) if isinstance(node, ast.Call)]
+    names = [f for f in called if isinstance(f, ast.Name)]
+    dotted = [f for f in called if isinstance(f, ast.Attribute) and isinstance(f.value, ast.Name)]
     return {f.id for f in names} | {ast.unparse(f) for f in dotted}
 
 
@@ -272,7 +277,7 @@ def test_hdf5_is_opened_for_reading_in_one_place_and_for_writing_in_two() -> Non
         if "h5py" in imports(path):
             known = {*doors, in_memory, "files/new_hdf5.py", *fillers, "dataset/identity.py"}
             assert name in known, f"{name} imports h5py"
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in nodes(path):
             if isinstance(node, ast.Call) and ast.unparse(node.func) == "h5py.File":
                 assert name in {*doors, in_memory, "files/new_hdf5.py"}, name
                 assert name in doors or ast.unparse(node.args[1]) == "'w'", name
@@ -290,14 +295,3 @@ def test_scripts_use_existing_names(path: Path) -> None:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     assert callable(module.main)
-
-
-def test_ruff() -> None:
-    for command in (["check"], ["format", "--check"]):
-        done = run(sys.executable, "-m", "ruff", *command, ".")
-        assert done.returncode == 0, done.stdout
-
-
-def test_mypy_strict() -> None:
-    done = run(sys.executable, "-m", "mypy")
-    assert done.returncode == 0, done.stdout

@@ -3,14 +3,18 @@
 The blocks of a page run in order in a folder laid out as a clone: YAML is built, Python executed,
 shell text given to bash as it stands, where this process answers for `radhar`. A YAML block whose
 first line is `# name.yaml` is written under that name instead, before the others run.
+`make test` runs the README and the short pages, and reads the blocks of the others.
 """
 
+import ast
+import importlib
 import json
 import re
 import shutil
+import subprocess
 import tomllib
-from collections.abc import Callable
-from itertools import islice
+from collections.abc import Callable, Iterator
+from itertools import filterfalse, islice
 from pathlib import Path
 from typing import Any
 
@@ -25,14 +29,15 @@ from helpers.capture_files import write_all
 from helpers.command_line import ROOT, radhar
 from helpers.documents import PAGES, Block, blocks
 from helpers.poses import BLAZE, NTU, WALKER, T, c3d_bytes, landmarks, names
-from helpers.recorded import frames, write_amc, write_bvh, write_npz
+from helpers.recorded import frames, write_amc, write_bvh, write_motions, write_npz
 from helpers.shell import Answer, Call, run_shell
+from helpers.slow import slow
 from learning.patterns import tree
 from torch.utils.data import DataLoader
 from typer.main import get_command
 
 from radhar_cli.cli import program
-from radhar_cli.config import Config, load_config
+from radhar_cli.config import Config, load_config, load_radars
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 
@@ -49,6 +54,25 @@ NOT_RUN = {
 OPTIONS_ONLY = {
     "--cluster": "other machines; tests/dataset/test_cluster.py has some",
     "tradeoff": "takes minutes; tests/tradeoff runs its parts",
+}
+# Pages whose commands take seconds of a processor, for `make test-all`.
+LONG = {
+    "audit.md",
+    "board_profiles.md",
+    "boards.md",
+    "frames.md",
+    "impulse.md",
+    "maps.md",
+    "measured.md",
+    "motion_files.md",
+    "noise.md",
+    "people.md",
+    "poses.md",
+    "radars.md",
+    "scenes.md",
+    "several_radars.md",
+    "streams.md",
+    "training.md",
 }
 # What makes a config small, and a command: it stands after its own words.
 FEW = ["stationary", "walking", "walking_to_falling"]
@@ -381,15 +405,62 @@ PROGRAMS = {
 }
 
 
-@pytest.mark.parametrize("page", [*filter(blocks, PAGES)], ids=lambda page: page.name)
+RUN = [*filter(blocks, PAGES)]
+
+
+def is_long(page: Path) -> bool:
+    return page.name in LONG
+
+
+@pytest.mark.parametrize(
+    "page",
+    [*filterfalse(is_long, RUN), *slow(filter(is_long, RUN))],
+    ids=lambda page: page.name,
+)
 def test_a_page_does_what_it_says(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert {block.language for block in blocks(page)} <= LANGUAGES, "a block without its language"
     for name, value in ENVIRONMENT.items():
         monkeypatch.setenv(name, value)
     monkeypatch.chdir(tmp_path)
     tell(page, tmp_path)
+
+
+def used_names(tree: ast.AST) -> Iterator[tuple[str, str]]:
+    """(module, name) of everything that a program takes from radhar."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("radhar_cli"):
+            yield from ((str(node.module), alias.name) for alias in node.names)
+        elif isinstance(node, ast.Attribute) and ast.unparse(node.value) in (
+            "radhar",
+            "radhar_cli",
+        ):
+            yield "radhar_cli", node.attr
+
+
+@pytest.mark.parametrize("page", RUN, ids=lambda page: page.name)
+def test_blocks_of_a_page_can_be_read(page: Path, tmp_path: Path) -> None:
+    """Configs that are built load, programs take names that radhar has, shell text has no slip.
+
+    tests/test_docs.py looks for the commands and their options.
+    """
+    for base in ("quickstart.yaml", "lab.yaml"):
+        shutil.copy(ROOT / "configs/quickstart.yaml", tmp_path / base)
+    for number, block in enumerate(blocks(page)):
+        assert block.language in LANGUAGES, f"{block}: no language"
+        if any(part in block.text for part in NOT_RUN):
+            continue
+        if block.language == "python":
+            for module, name in used_names(ast.parse(block.text, str(block))):
+                assert hasattr(importlib.import_module(module), name), f"{block}: {module}.{name}"
+        elif block.language == "yaml" and config_name(block) is None:
+            path = tmp_path / f"{number}.yaml"
+            path.write_text(block.text)
+            write_motions(yaml.safe_load(block.text), tmp_path)
+            assert load_radars(path)
+        elif block.language in ("sh", "bash"):
+            done = subprocess.run(["bash", "-n"], input=block.text, capture_output=True, text=True)
+            assert not done.stderr, f"{block}: {done.stderr}"
 
 
 @pytest.mark.slow

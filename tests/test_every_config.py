@@ -9,7 +9,7 @@ import pytest
 import yaml
 from helpers.command_line import ok
 from helpers.documents import PAGES, Block, blocks
-from helpers.recorded import frames, write_amc, write_bvh, write_json, write_npz
+from helpers.recorded import write_motions
 
 from radhar_cli.config import load_radars
 
@@ -23,8 +23,6 @@ BLOCKS = [
     for block in blocks(page)
     if block.language == "yaml" and "recordings" not in yaml.safe_load(block.text)
 ]
-
-WRITERS = {".bvh": write_bvh, ".npz": write_npz, ".amc": write_amc, ".json": write_json}
 
 pytestmark = pytest.mark.slow
 
@@ -48,12 +46,7 @@ def test_a_shipped_config_is_built_and_verified(path: Path, tmp_path: Path) -> N
 def test_a_config_of_the_documents_is_built_and_verified(block: Block, tmp_path: Path) -> None:
     """Beside motion files where it has patterns, and its base where it has one."""
     document = yaml.safe_load(block.text)
-    for motion in document.get("classes", {}).values():
-        patterns = motion if isinstance(motion, list) else motion.get("files", [])
-        for pattern in patterns:
-            file = tmp_path / pattern.replace("*", "a_clip")
-            file.parent.mkdir(exist_ok=True)
-            WRITERS[file.suffix](file, frames("walking", 8.0))
+    write_motions(document, tmp_path)
     if "base" in document:
         (tmp_path / document["base"]).write_text((ROOT / "configs/quickstart.yaml").read_text())
     path = tmp_path / "block.yaml"

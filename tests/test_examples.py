@@ -32,6 +32,7 @@ def test_look_at_one_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
         assert len(image.convert("L").getcolors(256) or []) > 50
 
 
+@pytest.mark.slow
 def test_config_to_confusion_matrix(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

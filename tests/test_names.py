@@ -34,25 +34,38 @@ def _bound_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
             yield node.lineno, node.arg
 
 
-FILES = sorted(path for path in PACKAGE.rglob("*.py"))
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_values_are_named_by_nouns_of_the_field(path: Path) -> None:
-    general = [
-        f"{path}:{line}: {name}"
-        for line, name in _bound_names(ast.parse(path.read_text()))
-        if name in GENERAL
-    ]
-    assert not general
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_functions_fit_on_a_screen(path: Path) -> None:
-    for node in ast.walk(ast.parse(path.read_text())):
+def _long_functions(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Line and name of every function that does not fit on a screen."""
+    for node in ast.walk(tree):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             first = node.body[0]
             if ast.get_docstring(node) and len(node.body) > 1:
                 first = node.body[1]
             lines = (node.end_lineno or 0) - first.lineno + 1
-            assert lines <= LONGEST_FUNCTION, f"{path}:{node.lineno}: {node.name}: {lines} lines"
+            if lines > LONGEST_FUNCTION:
+                yield node.lineno, f"{node.name}: {lines} lines"
+
+
+@pytest.fixture(scope="module")
+def trees() -> dict[Path, ast.Module]:
+    """{path: syntax tree} of every module of the package."""
+    return {path: ast.parse(path.read_text()) for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def test_values_are_named_by_nouns_of_the_field(trees: dict[Path, ast.Module]) -> None:
+    general = [
+        f"{path}:{line}: {name}"
+        for path, tree in trees.items()
+        for line, name in _bound_names(tree)
+        if name in GENERAL
+    ]
+    assert not general, "\n".join(general)
+
+
+def test_functions_fit_on_a_screen(trees: dict[Path, ast.Module]) -> None:
+    long = [
+        f"{path}:{line}: {function}"
+        for path, tree in trees.items()
+        for line, function in _long_functions(tree)
+    ]
+    assert not long, "\n".join(long)

@@ -16,6 +16,8 @@ from helpers.command_line import ROOT
 
 import radhar_cli
 
+pytestmark = pytest.mark.slow  # tests/test_docs.py looks at links of pages
+
 
 def run_site_command(*more: object) -> "subprocess.CompletedProcess[str]":
     """Run the command of `make site`, with more options.
@@ -115,7 +117,6 @@ def test_the_notebook_is_stored_as_it_ran(site: Path) -> None:
     assert shown.count("data:image/") >= 4
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::RuntimeWarning:zmq")
 def test_the_notebook_runs(tmp_path: Path) -> None:
     *_, last = code_cells(run_notebook.executed(tmp_path))

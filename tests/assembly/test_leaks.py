@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers.slow import examples
 from sklearn.ensemble import RandomForestClassifier
 from sklearn.model_selection import cross_val_score
 from sklearn.tree import DecisionTreeClassifier
@@ -19,7 +20,7 @@ from radhar_cli.dataset.scene_fields import movement_onset
 from radhar_cli.scene import draw_scene, scene_numbers
 
 QUICKSTART = Path(__file__).parents[2] / "configs" / "quickstart.yaml"
-SAMPLES = 150  # of each class
+SAMPLES = examples(150)  # of each class
 MOST = 0.14
 ON_CUE_S = 0.25
 
@@ -48,6 +49,7 @@ def accuracies(table: np.ndarray, classes: np.ndarray) -> list[float]:
     return [float(cross_val_score(one, table, classes, cv=5).mean()) for one in learners]
 
 
+@pytest.mark.slow
 def test_no_number_but_those_of_the_movement_tells_the_class(scenes) -> None:
     numbers, _, _, classes = scenes
     keys = sorted({key for of_scene in numbers for key in of_scene if not is_of_movement(key)})
@@ -57,6 +59,7 @@ def test_no_number_but_those_of_the_movement_tells_the_class(scenes) -> None:
     assert max(accuracies(table, classes)) < MOST
 
 
+@pytest.mark.slow
 def test_where_people_are_on_average_hardly_tells_the_class(scenes) -> None:
     _, places, _, classes = scenes
     assert max(accuracies(places[:, :1], classes)) < MOST

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helpers.slow import examples
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -57,7 +58,7 @@ def activity(slug: str, all_classes: Config) -> Activity:
     return activity_named(slug, {one.slug: one for one in all_classes.every_class})
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(
     st.sampled_from([*SLUGS, *SEQUENCES]),
     st.sampled_from([0.5, 1.0, 2.5, 6.0, 20.0, 60.0]),
@@ -100,7 +101,7 @@ def test_velocities_are_continuous_at_every_onset(slug: str) -> None:
 )
 def test_three_quarters_of_a_movement_are_seen(slug: str, name: str, usual: float | None) -> None:
     seconds, onsets = 6.0, []
-    for index in range(60):
+    for index in range(examples(60)):
         drawn = config(seconds)
         scene = draw_scene(drawn, activity(slug, drawn), index)
         phases = motion(scene).phases

@@ -248,7 +248,7 @@ def test_scene_h5_has_the_truth_of_everybody(tmp_path: Path) -> None:
         "radar: {carrier_hz: 24e9, bandwidth_hz: 1e9, prf_hz: 500}\nactivities: [walking]\n"
         "duration_s: 1\npeople: [{activity: punching, motion: {range_m: 3}}]\n"
     )
-    made = radhar("simulate", path, "-o", tmp_path / "out", "--index", "2")
+    made = radhar("simulate", path, "-o", tmp_path / "out", "--index", "2", "--no-figures")
     assert made.returncode == 0, made.stderr
     scene, _ = draw_valid_scene(load_config(path), WALKING, 2)
     with h5py.File(tmp_path / "out/scene.h5") as file:
@@ -257,7 +257,8 @@ def test_scene_h5_has_the_truth_of_everybody(tmp_path: Path) -> None:
             right = motion_of(person).positions(file[group]["time"][:])
             np.testing.assert_array_equal(file[group]["positions"][:], right.transpose(2, 1, 0))
     again = radhar(
-        "simulate", tmp_path / "out/scene.yaml", "-o", tmp_path / "again", "--index", "2"
+        *("simulate", tmp_path / "out/scene.yaml", "-o", tmp_path / "again", "--index", "2"),
+        "--no-figures",
     )
     assert again.returncode == 0, again.stderr
     with h5py.File(tmp_path / "out/scene.h5") as one, h5py.File(tmp_path / "again/scene.h5") as two:

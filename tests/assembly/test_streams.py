@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helpers.slow import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -38,7 +39,7 @@ def motion(scene: Scene, person: int = 0) -> StreamMotion:
 
 
 @given(index=st.integers(0, 10**6))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 def test_people_stay_in_the_zone_for_minutes(index: int) -> None:
     scene = scene_of(config_of(), index)
     x, y = motion(scene).torso(np.arange(0, 60, 0.1))[:2, 0]
@@ -48,7 +49,7 @@ def test_people_stay_in_the_zone_for_minutes(index: int) -> None:
 
 
 @given(index=st.integers(0, 10**6))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 def test_segments_fill_the_recording_with_bouts_pauses_and_links(index: int) -> None:
     config = config_of()
     names = frame_classes(config.stream_activities)
@@ -123,11 +124,11 @@ def test_people_have_strips_of_their_own() -> None:
     )
     for index in range(4):
         scene = scene_of(config, index)
-        t = np.arange(0, 40, 0.1)
-        right, left = (motion(scene, person).torso(t)[1, 0] for person in (0, 1))
+        t, people = np.arange(0, 40, 0.1), [motion(scene, person) for person in (0, 1)]
+        right, left = (person.torso(t)[1, 0] for person in people)
         assert right.max() < -0.3 + OUTSIDE_M
         assert left.min() > 0.3 - OUTSIDE_M
-        assert motion(scene, 0).labels != motion(scene, 1).labels
+        assert people[0].labels != people[1].labels
 
 
 def test_a_scene_of_a_stream_has_nothing_left_to_draw() -> None:

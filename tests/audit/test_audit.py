@@ -7,12 +7,13 @@ import pytest
 from audit.trees import body, clean, save, tree
 from helpers.command_line import ok, radhar
 from helpers.listener import Listener
+from helpers.slow import slow
 from helpers.small import SMALL, small_config
 from PIL import Image
 
 from radhar_cli.audit.audit import AuditLine, audit
 from radhar_cli.audit.card import END, with_section
-from radhar_cli.audit.cheap import binned_share
+from radhar_cli.audit.cheap import _limit, binned_share
 from radhar_cli.audit.evidence import Evidence, EvidencePart
 from radhar_cli.audit.held_out import Effort, class_share
 from radhar_cli.dataset.audited import read_audit
@@ -237,6 +238,7 @@ def test_the_card_has_a_section_that_a_second_audit_replaces(data):
     ok("verify", data, "--samples", "0")
 
 
+@pytest.mark.drawn
 def test_bytes_depend_on_the_seed_alone(data, tmp_path, monkeypatch):
     ok("audit", data, "--quick", "-o", tmp_path / "a")
     monkeypatch.setenv("OMP_NUM_THREADS", "2")
@@ -247,6 +249,7 @@ def test_bytes_depend_on_the_seed_alone(data, tmp_path, monkeypatch):
     assert (tmp_path / "c/audit.csv").read_text() != (tmp_path / "a/audit.csv").read_text()
 
 
+@pytest.mark.drawn
 def test_what_is_written(data, tmp_path):
     done = ok("audit", data, "--quick", "--json", "-o", tmp_path / "out")
     printed = json.loads(done.stdout)
@@ -360,6 +363,11 @@ def test_a_card_without_limits_gets_the_section_at_its_end():
     assert with_section("# mine\n", "## new").endswith(f"## new\n{END}\n")
 
 
+def test_a_share_beyond_chance_is_four_deviations_of_dependent_tests():
+    """Of 170 samples in two classes: 0.5 + 4 sqrt(1.7 0.25 / 170)."""
+    assert _limit(0.5, 170) == pytest.approx(0.7)
+
+
 def test_binned_shares():
     label = np.repeat([0, 1, 2], 40)
     rng = np.random.default_rng(0)
@@ -377,7 +385,7 @@ LAWS = {
 }
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", ["place", "alike", *slow(["range", "onset", "speed"])])
 def test_a_law_that_differs_by_class_is_told_from_the_config(tmp_path, name):
     """Three samples a class say nothing by statistics; verify and audit agree."""
     text = f"""

@@ -363,6 +363,7 @@ def test_program_writes_maps_track_and_figure(tmp_path: Path) -> None:
         assert "m/s" in file["track/velocity"].attrs["unit"]
 
 
+@pytest.mark.slow
 def test_what_rests_in_an_empty_room_is_called_no_torso(tmp_path: Path) -> None:
     """A reflector at rest, and nobody; a person who stands breathes, and is a torso."""
     config = tmp_path / "room.yaml"
@@ -373,7 +374,9 @@ def test_what_rests_in_an_empty_room_is_called_no_torso(tmp_path: Path) -> None:
     )
     for slug, expected in (("nobody", "something at rest at"), ("stationary", "torso from")):
         simulated, out = tmp_path / slug, tmp_path / f"{slug}_maps"
-        done = radhar("simulate", config, "--activity", slug, "--raw", "-o", simulated)
+        done = radhar(
+            "simulate", config, "--activity", slug, "--raw", "--no-figures", "-o", simulated
+        )
         assert done.returncode == 0, done.stderr
         recording = simulated / "recording.h5"
         done = radhar("process", recording, "--config", config, "--no-figures", "-o", out)

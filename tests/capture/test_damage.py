@@ -157,7 +157,7 @@ def test_tiny_numbers_are_processed(tmp_path: Path) -> None:
     (tmp_path / "c.yaml").write_text(CONFIG)
     done = radhar(
         *("process", tmp_path / "tiny.h5", "--config", tmp_path / "c.yaml"),
-        *("-o", tmp_path / "tiny", "-q"),
+        *("-o", tmp_path / "tiny", "-q", "--no-figures"),
     )
     assert done.returncode == 0
     assert "None" not in done.stderr

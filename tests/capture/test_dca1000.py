@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from capture.dca1000_file import Radar, body, echo, words, write_studio
 from helpers.command_line import radhar
+from helpers.slow import examples
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -205,7 +206,9 @@ def test_import_reports_what_it_found(tmp_path: Path, beat: np.ndarray) -> None:
 
 
 @settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=examples(150),
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(data=st.data())
 def test_damaged_headers_are_refused_in_one_line_or_imported(

@@ -18,6 +18,7 @@ from capture.uart_bytes import (
 )
 from helpers.boards import CFG, CLOUDS
 from helpers.command_line import ok, radhar
+from helpers.slow import examples
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -318,7 +319,9 @@ def test_points_have_no_samples_to_process(tmp_path):
 
 
 @settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=examples(60),
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(data=st.data())
 def test_any_bytes_are_read_or_refused_in_a_line(tmp_path, data):
@@ -387,6 +390,7 @@ def test_what_radhar_writes_comes_back(tmp_path, write, rounding):
     np.testing.assert_allclose(got["points"][:, 5], sent[:, 5], atol=0.1)
 
 
+@pytest.mark.slow
 def test_a_data_set_of_dumps_trains_a_network_of_clouds(tmp_path):
     """Windows of recordings have the products of simulated ones, and cloudnet learns them."""
     for person, offset in enumerate((0.0, 0.1)):

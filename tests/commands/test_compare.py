@@ -53,6 +53,7 @@ def report(place, one, other):
     return found
 
 
+@pytest.mark.slow
 def test_the_papers_motion_differs_from_people_and_people_not_from_people(place):
     same = report(place, "human", "others")
     low, high = same["test"]["accuracy_95"]

@@ -8,6 +8,7 @@ import pytest
 from helpers.command_line import ROOT, ok, radhar
 from helpers.poses import BLAZE
 from helpers.recorded import frames, write_npz
+from helpers.slow import slow_but
 
 from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.motion.files.clip import make_clip
@@ -52,7 +53,10 @@ def test_a_motion_is_exported_and_read_back(tmp_path):
     assert found < 1e-3
 
 
-@pytest.mark.parametrize("activity", [activity.slug for activity in ACTIVITIES])
+@pytest.mark.parametrize(
+    "activity",
+    slow_but([one.slug for one in ACTIVITIES], ("stationary", "walking", "walking_to_falling")),
+)
 def test_our_own_motion_of_the_demo_can_be_simulated(tmp_path, activity):
     """People come towards the radar: they start far enough away, or elsewhere."""
     path, bvh = ROOT / "configs/quickstart.yaml", tmp_path / "w.bvh"

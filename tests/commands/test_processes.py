@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from helpers.command_line import process
+from helpers.slow import slow
 from helpers.small import fingerprint
 
 
@@ -40,7 +41,9 @@ def test_a_summary_prints_in_any_encoding(small_set, encoding):
     assert "\\u" not in printed
 
 
-@pytest.mark.parametrize(("closed", "jobs"), [("2>&-", 2), (">&-", 2), ("<&- >&- 2>&-", 1)])
+@pytest.mark.parametrize(
+    ("closed", "jobs"), [("<&- >&- 2>&-", 1), *slow([("2>&-", 2), (">&-", 2)])]
+)
 def test_a_build_with_closed_streams(small_set, tmp_path, closed, jobs):
     done = shell(
         f"RADHAR generate {small_set.parent}/small.yaml -o {tmp_path}/set --jobs {jobs} {closed}"
@@ -80,11 +83,10 @@ assert not {"torch", "timm", "safetensors"} & set(sys.modules)
 @pytest.mark.parametrize(
     "words",
     [
-        *("train --help", "eval --help", "export --help", "predict --help"),
+        "train --help",
         "generate {}/small.yaml -o {}/set",
-        "verify {}/set --samples 1",
-        "inspect {}/set/png/stft/train",
-        "preview {}/set -o {}/sheet.png",
+        *slow(["eval --help", "export --help", "predict --help", "verify {}/set --samples 1"]),
+        *slow(["inspect {}/set/png/stft/train", "preview {}/set -o {}/sheet.png"]),
         "compare {}/set {}/set -o {}/compared --map stft --per-class 2",
     ],
 )

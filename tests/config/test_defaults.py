@@ -80,6 +80,7 @@ def test_people_of_the_defaults_stay_clear_of_the_radar_and_in_its_band() -> Non
     assert redrawn <= 1
 
 
+@pytest.mark.slow
 def test_the_demo_builds_without_a_warning() -> None:
     config = load_config(ROOT / "configs/quickstart.yaml")
     counts, _ = checked(config, [*range(len(Rows.of(config)))])

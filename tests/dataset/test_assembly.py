@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 from helpers.listener import Listener
+from helpers.slow import examples
 from helpers.small import fingerprint, small_config
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -223,7 +224,7 @@ def lay(work: Path, laid: dict[str, bytes | None]) -> None:
             (work / name).write_bytes(content)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(data=st.data())
 def test_damaged_or_exchanged_shards_never_give_a_wrong_data_set(
     data: st.DataObject, config: Config, whole: Path, pieces: dict[str, Pieces]

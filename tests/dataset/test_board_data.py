@@ -147,6 +147,7 @@ def test_previews_show_skeletons_that_the_images_lack(data: Path) -> None:
     np.testing.assert_array_equal(seen[points > 0], points[points > 0])
 
 
+@pytest.mark.slow
 def test_an_array_by_hand_and_bodies_of_segments_are_built_and_verified(
     folder: Path, tmp_path: Path
 ) -> None:

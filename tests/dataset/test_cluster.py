@@ -80,6 +80,7 @@ def generate(address, folder, *more):
     )
 
 
+@pytest.mark.slow
 def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path):
     config = load_config(small_config(tmp_path), CHANGES)
     build(config, tmp_path / "alone", 1, Listener())
@@ -130,6 +131,7 @@ def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(cluster, 
     assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_local_workers_in_one_line(tmp_path):
     """Of the whole group, as a terminal sends it; workers have nothing to say."""
     (tmp_path / "many.yaml").write_text("base: small.yaml\nsamples_per_class: 3000\n")

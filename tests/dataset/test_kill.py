@@ -56,17 +56,8 @@ def wait_for(run, folder, more_files):
         time.sleep(0.001)
 
 
-@pytest.fixture(scope="module")
-def uninterrupted(tmp_path_factory):
-    """Fingerprint of the data set made in one go."""
-    place = tmp_path_factory.mktemp("whole")
-    small_config(place)
-    subprocess.run(command(place / "set"), check=True, capture_output=True)
-    return fingerprint(place / "set")
-
-
 @pytest.mark.parametrize("trial", [0, *slow(range(1, FOLDERS))])
-def test_builds_killed_at_random_moments_resume_to_the_same_bytes(trial, uninterrupted, tmp_path):
+def test_builds_killed_at_random_moments_resume_to_the_same_bytes(trial, small_set, tmp_path):
     small_config(tmp_path)
     folder, moments = tmp_path / "set", random.Random(trial)
     for _ in range(KILLS_PER_FOLDER):
@@ -75,7 +66,7 @@ def test_builds_killed_at_random_moments_resume_to_the_same_bytes(trial, uninter
             run.kill()  # the master alone: its workers may still be writing
     last = subprocess.run(command(folder), capture_output=True, text=True)
     assert last.returncode == 0, last.stderr
-    assert fingerprint(folder) == uninterrupted
+    assert fingerprint(folder) == fingerprint(small_set)
     assert not list(folder.rglob("*unfinished*"))
 
 
@@ -84,9 +75,8 @@ SEVERAL = SMALL.replace("[rtm, stft, fsst_compensated]", "[stft]").replace(
 )
 
 
-@pytest.mark.parametrize(
-    ("trial", "jobs"), [(0, 2), *slow((trial, 1 + trial % 2) for trial in range(1, FOLDERS))]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("trial", "jobs"), [(n, 1 + (n + 1) % 2) for n in range(FOLDERS)])
 def test_several_radars_killed_at_random_moments_resume_to_the_same_bytes(trial, jobs, tmp_path):
     small_config(tmp_path, SEVERAL)
     folder, moments = tmp_path / "set", random.Random(trial)
@@ -125,6 +115,7 @@ def test_a_killed_worker_is_one_clear_line_and_finished_batches_are_kept(tmp_pat
     assert shards(tmp_path / "set") > 0
 
 
+@pytest.mark.slow
 def test_ctrl_c_is_quiet_and_keeps_what_is_finished(tmp_path):
     small_config(tmp_path)
     run = amid_the_work(tmp_path / "set")

@@ -4,6 +4,7 @@ import h5py
 import numpy as np
 import pytest
 from helpers.command_line import ok, radhar
+from helpers.slow import slow_but
 
 from radhar_cli.activities.activity import activity_named
 from radhar_cli.config.reading import load_config
@@ -101,7 +102,7 @@ RADARS = {
 }
 
 
-@pytest.mark.parametrize("radar", RADARS)
+@pytest.mark.parametrize("radar", slow_but(RADARS, ("fmcw", "impulse", "board")))
 def test_arrays_are_stored_and_other_products_refused_before_scenes(tmp_path, radar):
     """The list in the refusal is what can be stored; what is not in it is refused."""
     path = tmp_path / "c.yaml"

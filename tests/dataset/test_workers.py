@@ -95,6 +95,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 def test_tasks_that_are_left_under_way_are_cancelled_without_a_warning():
     done = subprocess.run([sys.executable, "-c", LEAVING], capture_output=True, text=True)
     assert done.stderr == "left\n"

@@ -10,18 +10,23 @@ from PIL import Image
 from radhar_cli.activities.activity import activity_named
 from radhar_cli.assembly.radar import waveform_of
 from radhar_cli.config import MAP_NAMES, load_config
+from radhar_cli.config.image import ImageConfig
 from radhar_cli.dataset.contact_sheet import draw_contact_sheet
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.figures.maps_panel import (
     MOST_COLUMNS,
+    MapsPage,
     columns_that_show,
     decibels,
     describe_scene,
+    draw_map,
     draw_maps,
     of_simulation,
 )
+from radhar_cli.figures.page import page
 from radhar_cli.figures.sides import UNCHANGED, gif_blocks
 from radhar_cli.figures.stickman import draw_stickman, frame_count
+from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.scene import draw_scene
 from radhar_cli.single_scene.simulate import simulate
 
@@ -123,6 +128,17 @@ def test_a_film_holds_few_frames_at_a_time(tmp_path):
     assert film.n_frames == 40 - 7
     colours = palette.reshape(-1, 3).astype(np.uint8)
     assert all((one == colours[two]).all() for one, two in zip(shown, drawn, strict=True))
+
+
+@pytest.mark.parametrize(("highest", "unit", "edge"), [(200.0, "Hz", 225.0), (4000.0, "kHz", 4.5)])
+def test_the_doppler_axis_is_in_the_unit_that_it_names(highest, unit, edge):
+    rows = Axis("frequency", "Hz", np.linspace(-highest, highest, 9))
+    power_map = PowerMap(np.ones((9, 5)), rows, Axis("time", "s", np.arange(5.0)))
+    axes = page(4, 4).subplots()
+    draw_map(axes, "stft", MapsPage({"stft": power_map}, ImageConfig(), 1e10, 5.0, "a title"))
+    assert axes.get_ylabel() == f"Doppler ({unit})"
+    assert axes.get_ylim() == pytest.approx((-edge, edge))
+    assert axes.get_xlabel() == "time (s)"
 
 
 def test_of_a_long_map_means_of_columns_are_drawn():

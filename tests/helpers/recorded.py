@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -116,3 +117,14 @@ def write_amc(path: Path, positions: Float) -> Path:
     body = "".join(f"{n}\n" + "\n".join(row) + "\n" for n, row in enumerate(rows) if n)
     path.write_text(f"#!OML:ASF x.asf\n:FULLY-SPECIFIED\n:DEGREES\n{body}")
     return path
+
+
+def write_motions(document: dict[str, Any], folder: Path) -> None:
+    """Write a file of a walk for every pattern of files that classes of a config name."""
+    writers = {".bvh": write_bvh, ".npz": write_npz, ".amc": write_amc, ".json": write_json}
+    for motion in document.get("classes", {}).values():
+        patterns = motion if isinstance(motion, list) else motion.get("files", [])
+        for pattern in [patterns] if isinstance(patterns, str) else patterns:
+            path = folder / pattern.replace("*", "a_clip")
+            path.parent.mkdir(exist_ok=True)
+            writers[path.suffix](path, frames("walking", 8.0))

@@ -8,7 +8,7 @@ from radhar_cli.learning.models.zoo import load_timm
 
 
 @pytest.fixture(autouse=True)
-def fresh_torch():
+def fresh_torch(blank_figures):
     """Chance, threads and algorithms as in a new process, whatever ran before."""
     torch.manual_seed(0)
     torch.set_num_threads(1)

@@ -58,6 +58,7 @@ def only(report):
     return found
 
 
+@pytest.mark.drawn
 def test_report_of_a_good_run(learned, tmp_path):
     report, listener = evaluated(learned, tsne=True, in_place_vs_moving=True, batch=4)
     numbers = only(report)
@@ -150,6 +151,7 @@ def test_a_test_part_is_scored_where_there_is_one(learned, tmp_path):
     assert any("--split test" in line for line in listener.messages)
 
 
+@pytest.mark.drawn
 def test_several_data_sets_give_robustness(learned, tmp_path):
     noisy = split_tree(tmp_path / "noisy", 1, 2, seed=4)
     report, _ = evaluated(learned, [learned[1], noisy], in_place_vs_moving=True)
@@ -228,6 +230,7 @@ def test_the_same_data_twice_is_refused(learned):
         evaluated(learned, [learned[1], learned[1]])
 
 
+@pytest.mark.drawn
 def test_tsne_needs_two_images(learned, tmp_path):
     one = tree(tmp_path / "one", ("walking",), {"val": 1})
     with clear_line(RadharError, "--tsne", "at least 2 images"):
@@ -364,6 +367,7 @@ def test_the_most_confident_mistakes_are_shown_with_their_files(mistaken):
     assert str(root / "val") in page
 
 
+@pytest.mark.drawn
 def test_the_page_is_for_people_and_the_same_each_time(mistaken, learned, tmp_path):
     page = (mistaken[1] / "report.html").read_text()
     assert "<title>good on tree</title>" in page
@@ -395,6 +399,8 @@ def test_the_calibration_error_is_the_distance_of_the_bins_from_the_line(mistake
     assert numbers["calibration_error"] == pytest.approx(gap / numbers["images"])
 
 
+@pytest.mark.slow
+@pytest.mark.drawn
 def test_weights_of_global_filters_are_drawn_by_network_and_layer(learned, tmp_path):
     names = ("one", "two")
     for number, name in enumerate(names):

@@ -22,6 +22,15 @@ def test_calibration_bins_hold_their_upper_edge() -> None:
     assert found == pytest.approx(abs(0.5 - 0.595))
 
 
+def test_calibration_bins_are_equal_parts_of_the_probability() -> None:
+    """0.51 lies in the eighth of fifteen bins, 0.99 and 1 in the last."""
+    found = metrics.calibration(
+        np.array([0, 0, 0]), np.array([[0.51, 0.49], [0.99, 0.01], [1.0, 0.0]])
+    )
+    assert np.flatnonzero(found.count).tolist() == [7, 14]
+    assert found.confidence[14] == pytest.approx(0.995)
+
+
 def test_summary_of_a_planted_confusion():
     """Everything of class 1 is taken for class 2; class 3 does not occur."""
     truth = np.array([0, 0, 1, 1, 1, 2, 2])

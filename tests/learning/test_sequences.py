@@ -10,6 +10,7 @@ import pytest
 import torch
 from helpers.boards import CFG, CLOUDS
 from helpers.command_line import radhar
+from helpers.slow import slow
 from torch.utils.data import DataLoader
 
 import radhar_cli
@@ -141,6 +142,14 @@ def test_framenet_takes_any_number_of_frames(shape: OutputShape) -> None:
         assert found.shape == expected_shape(shape, frames)
 
 
+def test_framenet_takes_each_sequence_alone() -> None:
+    network = build_model("framenet", Outputs(6, OutputShape.INPUT), (16, 24)).eval()
+    frames = torch.randn(3, 4, 16, 24)
+    with torch.inference_mode():
+        alone = torch.cat([network(sequence[None]) for sequence in frames])
+        torch.testing.assert_close(network(frames), alone, rtol=1e-4, atol=1e-5)
+
+
 def test_the_loss_of_skeletons_leaves_out_what_is_not_there() -> None:
     joints = torch.zeros(2, 3, 2, 3)
     joints[1, 1:] = torch.nan
@@ -171,7 +180,7 @@ def test_joined_and_chosen_sequences_keep_their_skeletons(boards: Path) -> None:
         np.testing.assert_array_equal(both.pixels.read(row), clouds.pixels.read(of))
 
 
-@pytest.mark.parametrize("model", ["cloudnet", "framenet"])
+@pytest.mark.parametrize("model", ["cloudnet", *slow(["framenet"])])
 def test_a_network_of_sequences_tells_punching_from_walking(boards: Path, model: str) -> None:
     run = trained(boards, model, "classes")
     done = radhar("eval", run, boards / "data", "-o", boards / f"eval_{model}")
@@ -247,7 +256,7 @@ def test_images_are_refused_where_a_network_reads_clouds(boards: Path) -> None:
         assert message in " ".join(done.stderr.split())
 
 
-@pytest.mark.parametrize("model", ["cloudnet", "framenet"])
+@pytest.mark.parametrize("model", ["cloudnet", *slow(["framenet"])])
 def test_joints_go_to_a_file_to_python_and_to_onnx_alike(boards: Path, model: str) -> None:
     import onnx
     import onnxruntime

@@ -1,5 +1,6 @@
 """`radhar.torch_dataset`, and what the objects of the Python interface say of themselves."""
 
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -37,6 +38,7 @@ def data(config: Path) -> Path:
     return config.parent / "data"
 
 
+@pytest.mark.slow
 def test_workers_read_what_training_reads(data: Path) -> None:
     images = open_images(data, "stft", "rgb")
     found = radhar.torch_dataset(str(data), "stft", split="val")
@@ -49,6 +51,13 @@ def test_workers_read_what_training_reads(data: Path) -> None:
     for row, image in zip(rows, read, strict=True):
         levels = (image * 255).round().to(torch.uint8).permute(1, 2, 0).numpy()
         assert np.array_equal(levels, images.pixels.read(int(row)))
+
+
+def test_a_copy_for_a_worker_reads_the_same(data: Path) -> None:
+    found = radhar.torch_dataset(str(data), "stft", split="val")
+    (image, label), (copied, label_there) = found[1], pickle.loads(pickle.dumps(found))[1]
+    assert torch.equal(image, copied)
+    assert label == label_there
 
 
 def test_gray_levels_are_one_channel_and_a_transform_is_applied(data: Path) -> None:

@@ -43,6 +43,14 @@ def test_energy_is_kept(length, hop):
         assert power(x, frames, size).sum(axis=0) == pytest.approx(size * energy, rel=1e-12)
 
 
+@frame_sizes
+def test_the_time_of_a_frame_is_the_middle_of_its_pulses(length, hop):
+    stft = Stft(signal(random_signal(60)), Frames(length, hop))
+    pulses = stft.signal.times.times(np.arange(60))
+    middles = [pulses[start : start + length].mean() for start in stft.starts]
+    assert stft.time.values == pytest.approx(middles, rel=1e-12, abs=1e-12)
+
+
 @pytest.mark.parametrize("place", range(0, 40, 3))
 def test_an_impulse_is_flat_and_weighed_by_the_window(place):
     frames = Frames(16, 5)

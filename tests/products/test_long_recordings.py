@@ -161,6 +161,7 @@ print((peak() - before) / 2**20)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+@pytest.mark.slow
 def test_memory_follows_the_signal_and_not_the_map():
     """Two million pulses, 32 MB a signal; a whole map is 146 MB, its spectra 291.
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers.slow import slow
 
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.radar import antennas_of
@@ -47,8 +48,12 @@ def configs_of(folder: Path, motion: str, more: str = "", **kinds: str) -> dict[
     return load_radars(path)
 
 
-@pytest.mark.parametrize("motion", MOTIONS)
-@pytest.mark.parametrize("more", ["", "people: [{activity: walking, share: 0.5}]\n"])
+TWO = "people: [{activity: walking, share: 0.5}]\n"
+
+
+@pytest.mark.parametrize(
+    ("motion", "more"), [("starts", ""), ("places", TWO), *slow([("places", ""), ("starts", TWO)])]
+)
 def test_every_kind_of_radar_sees_the_same_people(tmp_path, motion, more):
     configs = configs_of(tmp_path, MOTIONS[motion], more, **KINDS)
     t, redrawn = np.linspace(0, 3, 31), 0

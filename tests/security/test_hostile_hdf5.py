@@ -395,7 +395,7 @@ NO_FILES = {
     "text": "is not an HDF5 file",
     "magic": "is not an HDF5 file",
     "a text without kind": "attribute h5py_version: should be text",
-    "a text without length": "takes HDF5 more than 10 s|heap object size does not match",
+    "a text without length": "takes HDF5 more than 2 s|heap object size does not match",
 }
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from helpers.poses import COCO, NTU, c3d_bytes, csv_text, names, npy_bytes, skeleton_text, trc_text
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
+from helpers.slow import slow
 from security.bounded import answers, limited, refused
 from security.mutations import mutate_file
 
@@ -135,6 +136,7 @@ HOSTILE: dict[str, tuple[str, Callable[[], bytes]]] = {
         ),
     ),
 }
+LAST_OF_EACH_SUFFIX = [*{Path(file).suffix: name for name, (file, _) in HOSTILE.items()}.values()]
 POSES: dict[str, Callable[[], bytes]] = {
     "x.npy": lambda: npy_bytes(COCO),
     "x.csv": lambda: csv_text(COCO, names("coco17")).encode(),
@@ -176,15 +178,16 @@ def test_no_pipe_no_device_and_nothing_too_large(tmp_path: Path) -> None:
             read_motion(tmp_path / f"{name}.bvh")
 
 
-def test_the_program_refuses_them_in_one_line(tmp_path: Path) -> None:
-    for name in HOSTILE:
+@pytest.mark.parametrize("names", [LAST_OF_EACH_SUFFIX, *slow([[*HOSTILE]])], ids=["some", "all"])
+def test_the_program_refuses_them_in_one_line(tmp_path: Path, names: list[str]) -> None:
+    for name in names:
         folder = tmp_path / name.replace(" ", "_")
         folder.mkdir()
         path = written(folder, name)
         (folder / "x.yaml").write_text(f"duration_s: 1\nclasses: {{wave: [{path.name}]}}\n")
     words = ["--activity", "wave", "-o", tmp_path / "out"]
     cases = {
-        name: ["simulate", tmp_path / name.replace(" ", "_") / "x.yaml", *words] for name in HOSTILE
+        name: ["simulate", tmp_path / name.replace(" ", "_") / "x.yaml", *words] for name in names
     }
     for answer in answers(tmp_path, cases).values():
         assert "\n" not in refused(answer)

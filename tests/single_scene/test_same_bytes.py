@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from helpers.command_line import process, radhar
+from helpers.slow import slow_but
 
 FMCW = "radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}\n"
 SCENES = {
@@ -21,7 +22,7 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", slow_but(SCENES, ("fmcw", "board", "people")))
 def test_two_runs_leave_the_same_bytes(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

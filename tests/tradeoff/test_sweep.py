@@ -6,6 +6,7 @@ import json
 import pytest
 from helpers.command_line import ROOT
 from helpers.listener import Listener
+from helpers.slow import slow_but
 from typer.testing import CliRunner
 
 from radhar_cli.cli import program
@@ -86,7 +87,7 @@ def rows_of(out):
     return {row["name"]: Row.read(row) for row in numbers_of(out)["settings"]}
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", slow_but(KINDS, ("fmcw", "board")))
 def test_every_kind_of_radar(few, tmp_path, kind):
     """Files agree, errors are below the tolerance, and other pictures are told from errors."""
     out = tmp_path / "out"

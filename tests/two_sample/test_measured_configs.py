@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 from helpers.command_line import radhar
 
 from radhar_cli.config import load_config
@@ -80,6 +81,7 @@ RADHAR = {
 LINE_HZ, BAND_HZ, SECONDS, MASKS = 24.0, 500.0, 5.0, 12
 
 
+@pytest.mark.slow
 def test_walkers_of_mmrgait_are_where_the_measured_are() -> None:
     """Each of them: a walker who stands for a while is far out in the ripple of the torso."""
     from compare_measured import BANDS, simulated, statistics
@@ -113,6 +115,7 @@ def test_masks_of_glasgow_are_where_the_measured_are(tmp_path: Path) -> None:
             assert low <= median <= high, (slug, name, median)
 
 
+@pytest.mark.slow
 def test_clouds_of_radhar_are_where_the_measured_are(tmp_path: Path) -> None:
     """Heights and speeds of all, and how much of a walker and a jumper moves.
 

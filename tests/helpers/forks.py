@@ -1,0 +1,83 @@
+"""Python programs in forks of a small process that has loaded h5py already.
+
+`radhar_cli/dataset/hdf5_check.py` runs in a process of its own for every HDF5 file that is opened.
+A fork has the same limits, and may crash as freely, for a hundredth of the processor time.
+"""
+
+import pickle
+import subprocess
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+SERVER = """
+import io, os, pickle, runpy, sys, tempfile, traceback
+import h5py
+
+def run(program, text):
+    sys.argv, sys.stdin = [program], io.TextIOWrapper(io.BytesIO(text))
+    try:
+        runpy.run_path(program, run_name="__main__")
+    except SystemExit as end:
+        if isinstance(end.code, int) or end.code is None:
+            return end.code or 0
+        print(end.code, file=sys.stderr)
+        return 1
+    except BaseException:
+        traceback.print_exc()
+        return 1
+    return 0
+
+answers, requests = os.fdopen(os.dup(1), "wb"), sys.stdin.buffer
+while True:
+    try:
+        program, text = pickle.load(requests)
+    except EOFError:
+        break
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        child = os.fork()
+        if not child:
+            os.dup2(out.fileno(), 1)
+            os.dup2(err.fileno(), 2)
+            status = run(program, text)
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(status)
+        status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        out.seek(0)
+        err.seek(0)
+        pickle.dump((status, out.read(), err.read()), answers)
+        answers.flush()
+"""
+
+
+class ForkServer:
+    """A process that runs programs in forks of itself, one after another.
+
+    It starts with the first program, and ends when its input is closed.
+    """
+
+    def __init__(self) -> None:
+        self._server: subprocess.Popen[bytes] | None = None
+
+    def run(
+        self, command: Sequence[str], *, input: bytes, **_: Any
+    ) -> subprocess.CompletedProcess[bytes]:
+        """Stand for `subprocess.run` of a Python file that has no arguments."""
+        if self._server is None:
+            self._server = subprocess.Popen(
+                [sys.executable, "-P", "-c", SERVER],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                start_new_session=True,
+            )
+        assert self._server.stdin is not None
+        assert self._server.stdout is not None
+        pickle.dump((command[-1], input), self._server.stdin)
+        self._server.stdin.flush()
+        return subprocess.CompletedProcess([*command], *pickle.load(self._server.stdout))
+
+    def close(self) -> None:
+        """End the process, if it has started."""
+        if self._server is not None:
+            self._server.communicate()

@@ -16,7 +16,10 @@ from annotated_types import Ge, Gt, Le, Lt
 from page_parts import replace_part
 from pydantic import BaseModel
 
-from radhar_cli.config.annotations import (
+from radhar_cli.config.checks.people import HUMAN_LIMITS
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.starting_file import as_text
+from radhar_cli.schema.annotations import (
     ByModel,
     Mark,
     Paper,
@@ -25,11 +28,8 @@ from radhar_cli.config.annotations import (
     section,
     sections,
 )
-from radhar_cli.config.checks.people import HUMAN_LIMITS
-from radhar_cli.config.data_set import Config
-from radhar_cli.config.number import MAX_NUMBER, Bounds, Choice, Normal, Uniform, Vary
-from radhar_cli.config.section import PerActivity, Section
-from radhar_cli.config.starting_file import as_text
+from radhar_cli.schema.number import MAX_NUMBER, Bounds, Choice, Normal, Uniform, Vary
+from radhar_cli.schema.section import PerActivity, Section
 
 REFERENCE = Path(__file__).resolve().parents[1] / "docs/reference"
 PAGES = ("config.md", "config_signal.md", "limits.md")

@@ -28,7 +28,6 @@ from radhar_cli.activities.activity import (
 from radhar_cli.activities.vocabulary import MEANINGS, meaning_of
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
-from radhar_cli.config.annotations import People, of_kind
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import SceneError
@@ -37,6 +36,7 @@ from radhar_cli.numerics.arrays import Float, Levels
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene import Scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.schema.annotations import People, of_kind
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE, PICTURES = ROOT / "docs/reference/movements.md", ROOT / "docs/images/movements"

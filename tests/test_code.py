@@ -21,6 +21,7 @@ PACKAGES = (
     "processes",
     "code_identity",
     "extensions",
+    "schema",
     "motion",
     "activities",
     "radar",

@@ -13,6 +13,7 @@ from radhar_cli.activities.vocabulary import (
     plain_word,
 )
 from radhar_cli.extensions import load_extensions
+from radhar_cli.schema.twelve import DEFAULT, MOVEMENTS_OF_TWELVE, TWELVE
 
 if TYPE_CHECKING:
     from radhar_cli.motion.protocol import Motion
@@ -200,23 +201,12 @@ class Activity:
         return 8 <= self.number <= 12
 
 
-ACTIVITIES: tuple[Activity, ...] = (
-    Activity(1, "stationary", ("stationary",)),
-    Activity(2, "punching", ("punching",)),
-    Activity(3, "kicking", ("kicking",)),
-    Activity(4, "grabbing", ("grabbing",)),
-    Activity(5, "sitting_down", ("sitting_down",)),
-    Activity(6, "standing_up", ("standing_up",)),
-    Activity(7, "body_rotating", ("body_rotating",)),
-    Activity(8, "walking", ("walking",)),
-    Activity(9, "sitting_to_walking", ("standing_up", "walking")),
-    Activity(10, "walking_to_sitting", ("walking", "sitting_down")),
-    Activity(11, "falling_to_walking", ("getting_up", "walking")),
-    Activity(12, "walking_to_falling", ("walking", "falling")),
+ACTIVITIES = tuple(
+    Activity(number, slug, movements)
+    for number, (slug, movements) in enumerate(MOVEMENTS_OF_TWELVE.items(), 1)
 )
 
 STREAM = "stream"  # class of recordings of several activities one after the other
-DEFAULT = "default"  # in `per_activity`: what holds for activities that it does not name
 
 
 def _by_name(activities: Iterable[Activity]) -> dict[str, Activity]:
@@ -237,7 +227,6 @@ def activity_of_movements(slug: str, movements: tuple[str, ...], number: int) ->
 
 
 _BY_NAME = _by_name(ACTIVITIES)
-TWELVE = {name: a.slug for name, a in _BY_NAME.items()}  # {slug or label: slug}
 _ADDED: dict[str, Activity] = {}
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, Generic, Literal
 from pydantic import Field
 
 from radhar_cli.activities.activity import GESTURES
-from radhar_cli.config.annotations import (
+from radhar_cli.schema.annotations import (
     ABOVE_ZERO,
     PERSONAL,
     UNSTEADY,
@@ -16,7 +16,7 @@ from radhar_cli.config.annotations import (
     People,
     Unless,
 )
-from radhar_cli.config.number import (
+from radhar_cli.schema.number import (
     ANGLE,
     COORDINATE,
     FREQUENCY,
@@ -31,7 +31,7 @@ from radhar_cli.config.number import (
     vary,
     within,
 )
-from radhar_cli.config.section import B, ByActivity, Section, by_activity, default_draw, defaults_of
+from radhar_cli.schema.section import B, ByActivity, Section, by_activity, default_draw, defaults_of
 
 FallName = Literal["forward", "backward", "sideways"]
 

@@ -8,7 +8,6 @@ from helpers.command_line import radhar
 from helpers.slow import slow
 
 from radhar_cli.config import Config, load_config
-from radhar_cli.config.number import MAX_NUMBER
 from radhar_cli.config.reading import config_of_values, read_values
 from radhar_cli.limits.keys import PEOPLE, acting_numbers, with_number
 from radhar_cli.limits.limit import (
@@ -20,6 +19,7 @@ from radhar_cli.limits.limit import (
     Origin,
     RangeSide,
 )
+from radhar_cli.schema.number import MAX_NUMBER
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIGS = sorted(

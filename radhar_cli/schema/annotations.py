@@ -13,7 +13,7 @@ from typing import Any, Literal, TypeAlias, TypeGuard, TypeVar, get_args, get_or
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from radhar_cli.config.number import MAX_NUMBER, Bounds, support
+from radhar_cli.schema.number import MAX_NUMBER, Bounds, support
 
 A = TypeVar("A")
 

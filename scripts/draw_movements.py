@@ -32,6 +32,7 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.movements.catalogue import users_of
 from radhar_cli.numerics.arrays import Float, Levels
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene import Scene
@@ -198,9 +199,9 @@ def _keys(activity: Activity) -> str:
 def _users() -> dict[str, frozenset[str]]:
     """{key: movements and labels that use it} of the keys that not everybody uses."""
     return {
-        key: frozenset(people.names.replace("exercises", " ".join(EXERCISES)).split())
+        key: frozenset(" ".join(names).replace("exercises", " ".join(EXERCISES)).split())
         for key, people in of_kind(Config, People)
-        if people.names
+        if (names := users_of(key, people))
     }
 
 

@@ -13,6 +13,8 @@ from radhar_cli.activities.vocabulary import (
     plain_word,
 )
 from radhar_cli.extensions import load_extensions
+from radhar_cli.motion.movements import catalogue
+from radhar_cli.motion.movements.kind import MovementKind
 from radhar_cli.schema.twelve import DEFAULT, MOVEMENTS_OF_TWELVE, TWELVE
 
 if TYPE_CHECKING:
@@ -68,10 +70,9 @@ GESTURES = tuple(name for names in GESTURES_BY_STATE.values() for name in names)
 # says how strong the noise of an `snr_db` is, and which ranges a gate follows.
 NOBODY = "nobody"
 # What sequences are made of (`classes:`); each is a class by itself, too.
-MOVEMENTS = {
+MOVEMENTS: dict[str, MovementInfo | MovementKind] = {
+    **catalogue.MOVEMENTS,
     "stationary": MovementInfo("standing", "standing", None, in_place=True),
-    "punching": MovementInfo("standing", "standing", None, in_place=True),
-    "kicking": MovementInfo("standing", "standing", None, in_place=True),
     "grabbing": MovementInfo("standing", "standing", 2.5, in_place=True),
     "sitting_down": MovementInfo("standing", "seated", 2.0, in_place=True),
     "standing_up": MovementInfo("seated", "standing", 1.8, in_place=True),

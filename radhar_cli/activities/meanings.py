@@ -1,11 +1,11 @@
 """What a class shows, in a line for people who see it for the first time."""
 
 from radhar_cli.activities.activity import MOVEMENTS, NOBODY, Activity
+from radhar_cli.motion.movements import catalogue
 
 MEANINGS = {
+    **{name: kind.meaning for name, kind in catalogue.MOVEMENTS.items()},
     "stationary": "stands still, with the sway and the breath of people",
-    "punching": "stands and punches, one arm after the other",
-    "kicking": "stands and kicks, again and again",
     "grabbing": "bends down, picks something up and stands again",
     "sitting_down": "sits down on a chair",
     "standing_up": "stands up from a chair",

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from radhar_cli.errors import did_you_mean
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
 
 # Share of letters from which a name is taken for a mistyped one: one letter of four is wrong, or
 # of longer names one in six.
@@ -23,12 +24,11 @@ _GROUND = tuple(
 # {word: our names of the same meaning, of which the first that is known counts}; a config may say
 # the word instead. A movement of the word's own name comes before these.
 MEANINGS: dict[str, tuple[str, ...]] = {
+    **{word: (kind.name,) for kind in MOVEMENTS.values() for word in kind.words},
     **dict.fromkeys(("picking_up", "pick_up", "picking", "picking_object"), ("grabbing",)),
     **dict.fromkeys(("picking_up_objects", "picking_up_object", "pick_up_object"), ("grabbing",)),
     **dict.fromkeys(("pick_up_an_object", "picking_up_things", "pick_up_things"), ("grabbing",)),
     **dict.fromkeys(("grasping", "grab"), ("grabbing",)),
-    **dict.fromkeys(("boxing", "box", "punch", "shadow_boxing"), ("punching",)),
-    **dict.fromkeys(("kick", "front_kick"), ("kicking",)),
     **dict.fromkeys(("standing", "still", "standing_still", "stand"), ("stationary",)),
     **dict.fromkeys(("idle", "static", "no_movement"), ("stationary",)),
     **dict.fromkeys(("sit", "sit_down"), ("sitting_down",)),
@@ -115,7 +115,6 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("sitzen",), ("sitting",)),
     **dict.fromkeys(("sturz", "collapse", "fainting"), ("falling",)),
     **dict.fromkeys(("springen",), ("jumping",)),
-    **dict.fromkeys(("boxen",), ("punching",)),
     **dict.fromkeys(("trinken",), ("drinking",)),
     **dict.fromkeys(("schreiben",), ("writing",)),
     **dict.fromkeys(("kriechen",), ("crawling",)),
@@ -140,6 +139,7 @@ MEANINGS: dict[str, tuple[str, ...]] = {
 }
 # {our name: what may stand behind or before a word for it, and changes nothing}.
 USUAL: dict[str, tuple[str, ...]] = {
+    **{kind.name: kind.manners for kind in MOVEMENTS.values() if kind.manners},
     "sitting_down": _ONTO,
     "sitting": (*_ONTO, "still", "quietly"),
     "standing_up": (*_OFF, "from_sitting"),
@@ -155,7 +155,6 @@ USUAL: dict[str, tuple[str, ...]] = {
     "kneeling": (*_GROUND, "on_knees"),
     "kneeling_down": (*_GROUND, "on_knees"),
     "limping": ("leg", "gait"),
-    "punching": ("in_air",),
     "waving": ("hello", "goodbye"),
     "drinking": ("standing", "from_bottle", "from_glass", "from_cup"),
     "squatting": ("exercise",),
@@ -164,10 +163,10 @@ USUAL: dict[str, tuple[str, ...]] = {
 }
 # {word: our names that come near it}: suggested, but not taken for the same.
 NEARBY: dict[str, tuple[str, ...]] = {
+    **{word: (kind.name,) for kind in MOVEMENTS.values() for word in kind.nearby},
     **dict.fromkeys(("bending", "bending_down", "bend", "reaching", "lifting"), ("grabbing",)),
     **dict.fromkeys(("bowing", "bow", "stooping"), ("grabbing",)),
     **dict.fromkeys(("mark_time", "stepping_in_place"), ("jogging_in_place",)),
-    **dict.fromkeys(("hitting", "striking"), ("punching",)),
     **dict.fromkeys(("turning", "turn"), ("body_rotating",)),
     **dict.fromkeys(("marching", "short_steps", "walking_slowly", "walking_fast"), ("walking",)),
     **dict.fromkeys(("hopping", "hop", "leaping"), ("jumping",)),
@@ -181,8 +180,6 @@ NEARBY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("crouch", "crouching"), ("squatting",)),
     **dict.fromkeys(("leap", "jump_rope", "rope_skipping"), ("jumping",)),
     **dict.fromkeys(("marching_in_place", "high_knees", "stepping"), ("jogging_in_place",)),
-    **dict.fromkeys(("jab", "uppercut"), ("punching",)),
-    **dict.fromkeys(("side_kick", "roundhouse"), ("kicking",)),
     **dict.fromkeys(("twist", "turn_left", "turn_right"), ("body_rotating",)),
     **dict.fromkeys(("eat",), ("drinking",)),
     **dict.fromkeys(("laufen",), ("walking",)),  # or running
@@ -216,9 +213,6 @@ NEARBY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("lie_to_sit", "sitting_up_in_bed"), ("getting_up_from_bed",)),
     **dict.fromkeys(("sit_to_lie",), ("lying_down",)),
     **dict.fromkeys(("stoop", "body_extension"), ("grabbing",)),
-    **dict.fromkeys(("punch_slap",), ("punching",)),
-    **dict.fromkeys(("roundhouse_kick", "kicking_something"), ("kicking",)),
-    **dict.fromkeys(("kicking_toward_left", "kicking_toward_right"), ("kicking",)),
     **dict.fromkeys(("skipping_rope",), ("jumping",)),
     **dict.fromkeys(("cane", "crutch"), ("walking_with_stick",)),
     **dict.fromkeys(("treadmill", "short_step", "ambulation", "back_and_forth"), ("walking",)),

@@ -5,13 +5,15 @@ comes from streams named by (seed, class, index) and in sizes of the config, 0 f
 """
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from math import inf, pi, radians
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.assembly.floor import join_on_floor
+from radhar_cli.assembly.mover import SceneMover
 from radhar_cli.assembly.onset import (
     Bout,
     bout_of,
@@ -38,6 +40,7 @@ from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.standing import Stand
 from radhar_cli.motion.human.stepping import StepTo
+from radhar_cli.motion.movements import catalogue
 from radhar_cli.scene import Person
 
 SHUFFLE_S = 0.9  # duration of a shuffle
@@ -131,14 +134,19 @@ def _plan_bout(person: Person) -> _Plan:
         bout = Bout(timing.walk_begin_s, inf, from_rest=True)
     begin = bout.begin
     rates: dict[str, float] = {
-        "punching": motion.striking.punch_hz,
-        "kicking": motion.striking.kick_hz,
         "body_rotating": motion.rotating.rotation_hz,
     }
     if not bout.from_rest and (rate := rates.get(slug)):
         begin = -(motion.repeating.cycle_phase % 1) / rate
-    repertoire = DrawnRepertoire(person, None)
-    movement = repertoire.bout(slug, bout.end - begin, bout.from_rest)
+    if slug in catalogue.MOVEMENTS:
+        kind, mover = catalogue.MOVEMENTS[slug], SceneMover(person, inf)
+        if not bout.from_rest and kind.rate is not None and (rate := kind.rate(mover)):
+            begin = -(motion.repeating.cycle_phase % 1) / rate
+        mover = SceneMover(person, bout.end - begin)
+        movement: Any = replace(kind.make(mover), from_rest=bout.from_rest)  # type: ignore[type-var]
+    else:
+        repertoire = DrawnRepertoire(person, None)
+        movement = repertoire.bout(slug, bout.end - begin, bout.from_rest)
     onset = begin if bout.from_rest else bout_onset(person)
     return _Plan((movement,), begin=begin, onset=onset)
 
@@ -257,6 +265,9 @@ def movement_of(
 ) -> Movement:
     """Movement of a step of a sequence, after the previous ones; what goes on does so that long."""
     duration = _duration_of(step)
+    if step.name in catalogue.MOVEMENTS:
+        mover = SceneMover(person, going_on if duration is None else duration, step.place)
+        return join_on_floor(previous, catalogue.MOVEMENTS[step.name].make(mover))
     repertoire = DrawnRepertoire(person, duration, step.place)
     (movement,) = repertoire.sequence([step.name], [going_on if duration is None else duration])
     return join_on_floor(previous, movement)

@@ -25,18 +25,17 @@ from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import Waves, spread_phases
-from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.lane import Lane
 from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.planted import ELBOWS, LEGS_AND_TRUNK, SHOULDERS
-from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.repertoire import AROUND, FloorMovements, Gestures, Repertoire
 from radhar_cli.motion.human.running import RunningGait
 from radhar_cli.motion.human.sitting import Rise, Seat, SitDown, StandUp
 from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait
+from radhar_cli.motion.movements.striking import Kick, Punch
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene import Person
 

@@ -36,7 +36,7 @@ def is_of_movement(key: str) -> bool:
     if key.startswith("classes."):  # durations of parts, or which file is followed
         return True
     about = annotations(Config).get(key, ())
-    return any(isinstance(mark, People | Paper) and mark.names for mark in about)
+    return any(isinstance(mark, People | Paper) and mark.names != "" for mark in about)
 
 
 def laws_by_class(config: Config) -> list[str]:

@@ -1,10 +1,11 @@
 """How people move: what each movement takes, and when the phases of an activity begin."""
 
-from typing import Annotated, Generic, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal
 
 from pydantic import Field
 
 from radhar_cli.activities.activity import GESTURES
+from radhar_cli.motion.movements import catalogue
 from radhar_cli.schema.annotations import (
     ABOVE_ZERO,
     PERSONAL,
@@ -23,7 +24,6 @@ from radhar_cli.schema.number import (
     NOT_NEGATIVE,
     RATIO,
     SECONDS,
-    SIGNED,
     SPEED,
     Choice,
     normal,
@@ -250,23 +250,6 @@ class RotatingConfig(Section, Generic[B]):
     """Turns of a rotating body (S7), to both sides, per second."""
 
 
-class StrikingConfig(Section, Generic[B]):
-    """How people punch and kick."""
-
-    punch_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("punching", 0.05, 1.1)] = (
-        default_draw(vary(0.7, 0.15))
-    )
-    """Pairs of punches, right and left, per second."""
-    kick_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("kicking", 0.05, 0.6)] = (
-        default_draw(vary(0.45, 0.1))
-    )
-    """Kicks per second."""
-    strike_scale: Annotated[
-        B, ByActivity(NOT_NEGATIVE, RATIO), People("punching kicking", 0.8, 1.25), PERSONAL
-    ] = default_draw(normal(1.0, 0.12, 0.8, 1.25))
-    """Duration of a punch or kick, relative to the usual one."""
-
-
 class ExercisesConfig(Section, Generic[B]):
     """How exercises are done: squats, jumps, lunges and the like."""
 
@@ -329,29 +312,6 @@ class GesturesConfig(Section, Generic[B]):
         B, ByActivity(NOT_NEGATIVE, RATIO), People(f"{WRITING} waving clapping", 0.4, 1.3)
     ] = default_draw(uniform(0.6, 1.15))
     """Extent of waves, claps and letters, relative to the usual one."""
-
-
-class RepeatingConfig(Section, Generic[B]):
-    """How what is done again and again differs from one time to the next."""
-
-    cycle_phase: Annotated[
-        B, ByActivity(SIGNED), People("punching kicking body_rotating walking", -1, 1)
-    ] = default_draw(uniform(-0.5, 0.5))
-    """Initial phase of steady walks, punches, kicks and turns, in cycles."""
-    tempo_jitter: Annotated[
-        B,
-        ByActivity(NOT_NEGATIVE, RATIO),
-        People(f"punching kicking body_rotating exercises {ALL_GESTURES}", 0, 0.2),
-        UNSTEADY,
-    ] = default_draw(uniform(0.0, 0.1))
-    """Relative standard deviation of the time from one punch, kick or turn to the next."""
-    size_jitter: Annotated[
-        B,
-        ByActivity(NOT_NEGATIVE, RATIO),
-        People(f"punching kicking body_rotating exercises {ALL_GESTURES}", 0, 0.15),
-        UNSTEADY,
-    ] = default_draw(uniform(0.0, 0.1))
-    """Relative standard deviation of the size from one punch, kick or turn to the next."""
 
 
 class GrabbingConfig(Section, Generic[B]):
@@ -527,6 +487,33 @@ class PlaceConfig(Section, Generic[B]):
     drawn by the mean of its own rank and that of `range_m`: who is far is so at a far end."""
 
 
+SECTIONS = dict(
+    sorted(
+        {
+            **catalogue.SECTIONS,
+            "walking": WalkingConfig,
+            "running": RunningConfig,
+            "limping": LimpingConfig,
+            "aids": AidsConfig,
+            "carrying": CarryingConfig,
+            "paper": PaperGaitConfig,
+            "rotating": RotatingConfig,
+            "exercises": ExercisesConfig,
+            "gestures": GesturesConfig,
+            "grabbing": GrabbingConfig,
+            "sitting": SittingConfig,
+            "transitions": TransitionsConfig,
+            "falling": FallingConfig,
+            "lying": LyingConfig,
+            "crawling": CrawlingConfig,
+            "kneeling": KneelingConfig,
+            "idle": IdleConfig,
+        }.items(),
+        key=lambda item: catalogue.ORDER.index(item[0]) if item[0] in catalogue.ORDER else 99,
+    )
+)
+
+
 class MotionConfig(Section, Generic[B]):
     """Where people stand, where they head and how they move, by movement and model of motion.
 
@@ -556,25 +543,13 @@ class MotionConfig(Section, Generic[B]):
         ByModel(human=_HEADING, paper=uniform(-30.0, 30.0), file=_HEADING),
     ] = default_draw(None)
     """Heading of people; 0 faces away from the radar, 180 faces it."""
-    walking: WalkingConfig[B] = defaults_of(WalkingConfig)
-    running: RunningConfig[B] = defaults_of(RunningConfig)
-    limping: LimpingConfig[B] = defaults_of(LimpingConfig)
-    aids: AidsConfig[B] = defaults_of(AidsConfig)
-    carrying: CarryingConfig[B] = defaults_of(CarryingConfig)
-    paper: PaperGaitConfig[B] = defaults_of(PaperGaitConfig)
-    rotating: RotatingConfig[B] = defaults_of(RotatingConfig)
-    striking: StrikingConfig[B] = defaults_of(StrikingConfig)
-    exercises: ExercisesConfig[B] = defaults_of(ExercisesConfig)
-    gestures: GesturesConfig[B] = defaults_of(GesturesConfig)
-    repeating: RepeatingConfig[B] = defaults_of(RepeatingConfig)
-    grabbing: GrabbingConfig[B] = defaults_of(GrabbingConfig)
-    sitting: SittingConfig[B] = defaults_of(SittingConfig)
-    transitions: TransitionsConfig[B] = defaults_of(TransitionsConfig)
-    falling: FallingConfig[B] = defaults_of(FallingConfig)
-    lying: LyingConfig[B] = defaults_of(LyingConfig)
-    crawling: CrawlingConfig[B] = defaults_of(CrawlingConfig)
-    kneeling: KneelingConfig[B] = defaults_of(KneelingConfig)
-    idle: IdleConfig[B] = defaults_of(IdleConfig)
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Sections of the movements, which their files have."""
+    else:
+        __annotations__ |= SECTIONS
+        locals().update({name: defaults_of(kind) for name, kind in SECTIONS.items()})
 
 
 class TimingConfig(Section, Generic[B]):

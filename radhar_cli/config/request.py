@@ -44,6 +44,7 @@ from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import TURN, StreamConfig
 from radhar_cli.errors import CaptureError
+from radhar_cli.motion.movements.catalogue import users_of
 from radhar_cli.schema.annotations import (
     GIVEN,
     ActsIf,
@@ -672,8 +673,8 @@ def _uses() -> dict[str, dict[str, frozenset[str]]]:
     """{dotted key: {model: who uses it}} of the keys that not everybody uses."""
     uses = dict[str, dict[str, frozenset[str]]]()
     for key, people in of_kind(Request, People):
-        names = people.names.replace("exercises", " ".join(EXERCISES)).split()
-        uses.setdefault(key, {})["human"] = frozenset(names)
+        names = " ".join(users_of(key, people)).replace("exercises", " ".join(EXERCISES))
+        uses.setdefault(key, {})["human"] = frozenset(names.split())
     for key, other in of_kind(Request, Paper):
         uses.setdefault(key, {})["paper"] = frozenset(other.names.split())
     return uses

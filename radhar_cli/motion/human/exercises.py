@@ -27,8 +27,8 @@ from radhar_cli.motion.human.pelvis import (
 )
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
-from radhar_cli.motion.human.repetitions import Repetition, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.motion.movements.repeating import Repetition, repetitions
 from radhar_cli.numerics.arrays import Float
 
 if TYPE_CHECKING:

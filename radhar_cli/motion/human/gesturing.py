@@ -32,8 +32,8 @@ from radhar_cli.motion.human.part import SEATED, STANDING, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted, resting_channels, scale_steps
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose
-from radhar_cli.motion.human.repetitions import Repetition, repetitions
 from radhar_cli.motion.human.sitting import Seat
+from radhar_cli.motion.movements.repeating import Repetition, repetitions
 from radhar_cli.numerics.arrays import Float
 
 REFERENCE_STATURE = 1.75  # of the places below

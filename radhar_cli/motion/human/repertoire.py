@@ -13,13 +13,10 @@ from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.gesturing import AT_TABLE, Clap, Drink, Wave, Write
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
-from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.kneeling import GetDown, Kneel
 from radhar_cli.motion.human.lying import Lie, TurnOver
-from radhar_cli.motion.human.motion import Movement
 from radhar_cli.motion.human.other_gaits import OTHER_GAITS, usual_gaits
-from radhar_cli.motion.human.part import Place
-from radhar_cli.motion.human.punching import Punch
+from radhar_cli.motion.human.part import Movement, Place
 from radhar_cli.motion.human.running import GoRunning, RunningGait
 from radhar_cli.motion.human.sitting import Seat, Sit, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
@@ -27,6 +24,7 @@ from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.transfer import GoToBed, LeaveBed
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
+from radhar_cli.motion.movements.striking import Kick, Punch
 
 ON_HANDS = FallForward(prone=OnFours())
 ON_RISING = FallFromSeat(rising=0.9)

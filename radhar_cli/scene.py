@@ -14,10 +14,6 @@ from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.motion import (
     EARLIER_KEYS,
-    FALLS,
-    RUNNING_SPEED,
-    WALKING_SPEED,
-    Falls,
     MotionConfig,
     TimingConfig,
 )
@@ -29,6 +25,9 @@ from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import draw_stream
 from radhar_cli.motion.human.physique import froude_scale
+from radhar_cli.motion.movements.falling import FALLS, Falls
+from radhar_cli.motion.movements.running import RUNNING_SPEED
+from radhar_cli.motion.movements.walking import WALKING_SPEED
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.numerics.randomness import PERSON, SCENE, stream
 from radhar_cli.schema.annotations import Mark, of_kind

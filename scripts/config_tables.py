@@ -16,11 +16,11 @@ from annotated_types import Ge, Gt, Le, Lt
 from page_parts import replace_part
 from pydantic import BaseModel
 
-from radhar_cli.activities.activity import EXERCISES
 from radhar_cli.config.checks.people import HUMAN_LIMITS
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.starting_file import as_text
 from radhar_cli.motion.movements.catalogue import users_of
+from radhar_cli.motion.movements.exercises import EXERCISES
 from radhar_cli.schema.annotations import (
     ByModel,
     Mark,

@@ -62,7 +62,7 @@ def _stand_still(person: Person) -> Motion:
     from radhar_cli.motion.human.idle import Idle
     from radhar_cli.motion.human.motion import HumanMotion
     from radhar_cli.motion.human.physique import Physique
-    from radhar_cli.motion.human.standing import Stand
+    from radhar_cli.motion.movements.standing import Stand
 
     motion, physique = person.motion, Physique(person.subject.height_m)
     start, heading = person.place, radians(motion.angle_deg)

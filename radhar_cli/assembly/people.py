@@ -11,8 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.activities.activity import MOVEMENTS
-from radhar_cli.assembly.floor import join_on_floor
 from radhar_cli.assembly.mover import SceneMover
 from radhar_cli.assembly.onset import (
     Bout,
@@ -24,7 +22,6 @@ from radhar_cli.assembly.onset import (
     stop_onset,
 )
 from radhar_cli.assembly.place import start_of
-from radhar_cli.assembly.repertoire import DrawnRepertoire, low_pass_waves
 from radhar_cli.config.sequence import SequenceConfig, SequenceStep
 from radhar_cli.motion.human.idle import (
     FIDGETS,
@@ -35,12 +32,14 @@ from radhar_cli.motion.human.idle import (
     Idle,
     Sway,
 )
-from radhar_cli.motion.human.motion import HumanMotion, Movement
-from radhar_cli.motion.human.part import Place
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.human.part import Movement, Place
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.standing import Stand
 from radhar_cli.motion.human.stepping import StepTo
-from radhar_cli.motion.movements import catalogue
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.idle import low_pass_waves
+from radhar_cli.motion.movements.joining import join_on_floor
+from radhar_cli.motion.movements.standing import Stand
 from radhar_cli.scene import Person
 
 SHUFFLE_S = 0.9  # duration of a shuffle
@@ -132,23 +131,17 @@ def _plan_bout(person: Person) -> _Plan:
         return _add_shuffles(person, _Plan((Stand(0.0),), onset=bout_onset(person)), 0.0)
     if slug == "walking" and timing.walk_begin_s is not None:
         bout = Bout(timing.walk_begin_s, inf, from_rest=True)
-    begin = bout.begin
-    rates: dict[str, float] = {
-        "body_rotating": motion.rotating.rotation_hz,
-    }
-    if not bout.from_rest and (rate := rates.get(slug)):
-        begin = -(motion.repeating.cycle_phase % 1) / rate
-    if slug in catalogue.MOVEMENTS:
-        kind, mover = catalogue.MOVEMENTS[slug], SceneMover(person, inf)
-        if not bout.from_rest and kind.rate is not None and (rate := kind.rate(mover)):
-            begin = -(motion.repeating.cycle_phase % 1) / rate
-        mover = SceneMover(person, bout.end - begin)
-        movement: Any = replace(kind.make(mover), from_rest=bout.from_rest)  # type: ignore[type-var]
-    else:
-        repertoire = DrawnRepertoire(person, None)
-        movement = repertoire.bout(slug, bout.end - begin, bout.from_rest)
+    begin, rate = bout.begin, MOVEMENTS[slug].rate
+    if not bout.from_rest and rate is not None and (hz := rate(SceneMover(person, inf))):
+        begin = -(motion.repeating.cycle_phase % 1) / hz
+    movement: Any = _make(person, slug, bout.end - begin)
     onset = begin if bout.from_rest else bout_onset(person)
-    return _Plan((movement,), begin=begin, onset=onset)
+    return _Plan((replace(movement, from_rest=bout.from_rest),), begin=begin, onset=onset)
+
+
+def _make(person: Person, name: str, duration: float) -> Movement:
+    """Make a movement of a person that is alone, or one of two."""
+    return MOVEMENTS[name].make(SceneMover(person, duration))
 
 
 def _plan_transition(person: Person) -> _Plan:
@@ -157,9 +150,8 @@ def _plan_transition(person: Person) -> _Plan:
     duration, start = timing.seat_duration_s, timing.seat_start_s
     if slug == "grabbing":
         duration, start = timing.grab_duration_s, timing.grab_start_s
-    movements = DrawnRepertoire(person, duration).activity(person.activity.number)
-    main = movements[0]
-    movements = _add_steps(person, movements)
+    main = _make(person, slug, duration)
+    movements = _add_steps(person, (main,))
     if start is None:
         before = _time_of_rest(movements[: movements.index(main)], 0.0)
         onset = movement_onset(person, _time_of_rest((main,), 0.0))
@@ -173,14 +165,15 @@ def _plan_transition(person: Person) -> _Plan:
 def _plan_rise(person: Person) -> _Plan:
     """Plan rising, and the walk after it."""
     timing, duration = person.timing, person.timing.rise_duration_s
-    movements = DrawnRepertoire(person, duration).activity(person.activity.number)
+    rise, walk = person.activity.movements
+    movements = _make(person, rise, duration), _make(person, walk, inf)
     begin = timing.rise_start_s
     if begin is None:
         begin = rise_onset(person, duration)
-    walk = begin + duration - timing.overlap_s
+    start = begin + duration - timing.overlap_s
     if timing.walk_start_s is not None:
-        walk = timing.walk_start_s
-    return _Plan(movements, (0.0, walk - (begin + duration)), begin, walk)
+        start = timing.walk_start_s
+    return _Plan(movements, (0.0, start - (begin + duration)), begin, start)
 
 
 def _plan_stop(person: Person, physique: Physique) -> _Plan:
@@ -189,9 +182,13 @@ def _plan_stop(person: Person, physique: Physique) -> _Plan:
     duration = timing.sit_duration_s
     if person.activity.usual_slug == "walking_to_falling":
         duration = timing.fall_duration_s
-    begin, repertoire = 0.0, DrawnRepertoire(person, duration)
-    walk, second = repertoire.activity(person.activity.number)
-    onset = None
+    walks_s = person.seconds if timing.walk_stop_s is None else timing.walk_stop_s
+    walk: Any = _make(person, person.activity.movements[0], walks_s)
+    walk, second = (
+        replace(walk, from_rest=False),
+        _make(person, person.activity.movements[1], duration),
+    )
+    begin, onset = 0.0, None
     if timing.walk_stop_s is None:  # a walk that begins as long before
         stopped = walk.part(physique, 0.0, person.seconds).end
         onset = stop_onset(person, duration)
@@ -265,12 +262,8 @@ def movement_of(
 ) -> Movement:
     """Movement of a step of a sequence, after the previous ones; what goes on does so that long."""
     duration = _duration_of(step)
-    if step.name in catalogue.MOVEMENTS:
-        mover = SceneMover(person, going_on if duration is None else duration, step.place)
-        return join_on_floor(previous, catalogue.MOVEMENTS[step.name].make(mover))
-    repertoire = DrawnRepertoire(person, duration, step.place)
-    (movement,) = repertoire.sequence([step.name], [going_on if duration is None else duration])
-    return join_on_floor(previous, movement)
+    mover = SceneMover(person, going_on if duration is None else duration, step.place)
+    return join_on_floor(previous, MOVEMENTS[step.name].make(mover))
 
 
 def idle_of_stream(person: Person, physique: Physique, movements: tuple[Movement, ...]) -> Idle:
@@ -284,8 +277,8 @@ def _idle(person: Person, physique: Physique, plan: _Plan) -> Idle:
     motion = person.motion
     idle_s = motion.idle.phase_s
     sway = Sway(
-        low_pass_waves(motion, subject.sway_ahead_m, _SWAY_HZ, 0.0),
-        low_pass_waves(motion, subject.sway_aside_m, _SWAY_HZ, 0.3),
+        low_pass_waves(motion.idle, subject.sway_ahead_m, _SWAY_HZ, 0.0),
+        low_pass_waves(motion.idle, subject.sway_aside_m, _SWAY_HZ, 0.3),
     )
     breathing, pulse = subject.breathing_hz, subject.pulse_hz
     breath = Breath(

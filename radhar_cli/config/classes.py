@@ -7,20 +7,15 @@ from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator, model_validator
 
-from radhar_cli.activities.activity import (
-    ACTIVITIES,
-    MOVEMENTS,
-    NOBODY,
-    Activity,
-    activity_of_movements,
-    is_new_slug,
-)
+from radhar_cli.activities.activity import ACTIVITIES, Activity, activity_of_movements, is_new_slug
 from radhar_cli.config.sequence import BY_ITSELF, SequenceConfig
 from radhar_cli.errors import did_you_mean
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import describe_unknown, may_be_motion
 from radhar_cli.motion.files.recording import LONGEST_NAME
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.schema.number import Choice, uniform, value_error, vary, within
 from radhar_cli.schema.section import N, Section, default_draw
 

@@ -11,8 +11,6 @@ from pydantic import BaseModel, Field, ValidationInfo, field_validator
 
 from radhar_cli.activities.activity import (
     ACTIVITIES,
-    EXERCISES,
-    MOVEMENTS,
     STREAM,
     Activity,
     activity_named,
@@ -44,7 +42,8 @@ from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import TURN, StreamConfig
 from radhar_cli.errors import CaptureError
-from radhar_cli.motion.movements.catalogue import users_of
+from radhar_cli.motion.movements.catalogue import MOVEMENTS, users_of
+from radhar_cli.motion.movements.exercises import EXERCISES
 from radhar_cli.schema.annotations import (
     GIVEN,
     ActsIf,
@@ -673,8 +672,7 @@ def _uses() -> dict[str, dict[str, frozenset[str]]]:
     """{dotted key: {model: who uses it}} of the keys that not everybody uses."""
     uses = dict[str, dict[str, frozenset[str]]]()
     for key, people in of_kind(Request, People):
-        names = " ".join(users_of(key, people)).replace("exercises", " ".join(EXERCISES))
-        uses.setdefault(key, {})["human"] = frozenset(names.split())
+        uses.setdefault(key, {})["human"] = frozenset(users_of(key, people))
     for key, other in of_kind(Request, Paper):
         uses.setdefault(key, {})["paper"] = frozenset(other.names.split())
     return uses

@@ -9,10 +9,7 @@ from math import cos, inf, sin
 import numpy as np
 
 from radhar_cli.motion import skeleton
-from radhar_cli.motion.human.exercises import Exercise
-from radhar_cli.motion.human.gesturing import Clap, Drink, Wave, Write
 from radhar_cli.motion.human.idle import Idle
-from radhar_cli.motion.human.lying import Lying
 from radhar_cli.motion.human.part import (
     LYING,
     SEATED,
@@ -27,9 +24,9 @@ from radhar_cli.motion.human.part import (
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted
 from radhar_cli.motion.human.pose import Pose, feet
-from radhar_cli.motion.human.running import GoRunning
-from radhar_cli.motion.human.transfer import Transfer
-from radhar_cli.motion.human.walking import Walking
+from radhar_cli.motion.movements.lying import Lying
+from radhar_cli.motion.movements.transfer import Transfer
+from radhar_cli.motion.movements.walking import Walking
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Float, Index
 
@@ -72,9 +69,6 @@ class HumanMotion:
     @property
     def highest_frequency(self) -> float:
         """Frequency that the fastest movement counts as, Hz: highest for kicks, runs and hands."""
-        fast = Exercise | GoRunning | Drink | Write | Wave | Clap
-        if any(isinstance(movement, fast) for movement in self.movements):
-            return 4.0
         return max(
             (getattr(one, "fastest_hz", USUAL_HZ) for one in self.movements), default=USUAL_HZ
         )

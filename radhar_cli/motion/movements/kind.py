@@ -63,10 +63,10 @@ class MovementKind:
         rests: Whether it is rest, which need not be seen in a recording.
         uses: Keys of `motion` in sections that several movements share, `repeating.size_jitter`.
         rate: Repetitions per second of somebody who is under way as the recording begins.
-        words: Other words for it.
+        words: Other words for it, with spaces between them, as in the next three.
         manners: What may stand behind or before a word for it, and changes nothing.
         nearby: Words of something that comes near it: suggested, but not taken for the same.
-        with_key: {word: the key that makes the difference, and why}.
+        with_key: {key that makes the difference, and how: words for it}.
     """
 
     name: str
@@ -81,9 +81,9 @@ class MovementKind:
     rests: bool = False
     uses: tuple[str, ...] = ()
     rate: Callable[[Mover], float] | None = None
-    words: tuple[str, ...] = ()
-    manners: tuple[str, ...] = ()
-    nearby: tuple[str, ...] = ()
+    words: str = ""
+    manners: str = ""
+    nearby: str = ""
     with_key: Mapping[str, str] = field(default_factory=dict)
 
     @property

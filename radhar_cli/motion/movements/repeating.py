@@ -17,21 +17,18 @@ EACH = ("repeating.tempo_jitter", "repeating.size_jitter")  # keys by which repe
 PHASE = "repeating.cycle_phase"
 
 
-_OTHERS = "body_rotating exercises drinking writing waving clapping drinking_seated writing_seated"
-
-
 class RepeatingConfig(Section, Generic[B]):
     """How what is done again and again differs from one time to the next."""
 
-    cycle_phase: Annotated[B, ByActivity(SIGNED), People("body_rotating walking", -1, 1)] = (
-        default_draw(uniform(-0.5, 0.5))
+    cycle_phase: Annotated[B, ByActivity(SIGNED), People(None, -1, 1)] = default_draw(
+        uniform(-0.5, 0.5)
     )
     """Initial phase of steady walks, punches, kicks and turns, in cycles."""
     tempo_jitter: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, RATIO),
         People(
-            _OTHERS,
+            None,
             0,
             0.2,
         ),
@@ -42,7 +39,7 @@ class RepeatingConfig(Section, Generic[B]):
         B,
         ByActivity(NOT_NEGATIVE, RATIO),
         People(
-            _OTHERS,
+            None,
             0,
             0.15,
         ),

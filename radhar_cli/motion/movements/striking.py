@@ -98,9 +98,9 @@ MOVEMENTS = (
         in_place=True,
         uses=(PHASE, *EACH),
         rate=lambda mover: mover.numbers(StrikingConfig[float]).punch_hz,
-        words=("boxing", "box", "punch", "shadow_boxing", "boxen"),
-        manners=("in_air",),
-        nearby=("hitting", "striking", "jab", "uppercut", "punch_slap"),
+        words="boxing box punch shadow_boxing boxen",
+        manners="in_air",
+        nearby="hitting striking jab uppercut punch_slap",
     ),
     MovementKind(
         "kicking",
@@ -109,11 +109,9 @@ MOVEMENTS = (
         in_place=True,
         uses=(PHASE, *EACH),
         rate=lambda mover: mover.numbers(StrikingConfig[float]).kick_hz,
-        words=("kick", "front_kick"),
-        nearby=(
-            *("side_kick", "roundhouse", "roundhouse_kick", "kicking_something"),
-            *("kicking_toward_left", "kicking_toward_right"),
-        ),
+        words="kick front_kick",
+        nearby="side_kick roundhouse roundhouse_kick kicking_something kicking_toward_left "
+        "kicking_toward_right",
     ),
 )
 

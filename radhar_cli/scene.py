@@ -12,11 +12,7 @@ import numpy as np
 from radhar_cli.activities.activity import STREAM, Activity
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import AnyConfig, Config
-from radhar_cli.config.motion import (
-    EARLIER_KEYS,
-    MotionConfig,
-    TimingConfig,
-)
+from radhar_cli.config.motion import EARLIER_KEYS, MotionConfig, TimingConfig
 from radhar_cli.config.paths import at, changed, each_number
 from radhar_cli.config.people import PersonConfig, SubjectConfig
 from radhar_cli.config.radar import SceneRadar

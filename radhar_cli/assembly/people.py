@@ -23,15 +23,7 @@ from radhar_cli.assembly.onset import (
 )
 from radhar_cli.assembly.place import start_of
 from radhar_cli.config.sequence import SequenceConfig, SequenceStep
-from radhar_cli.motion.human.idle import (
-    FIDGETS,
-    GOLDEN,
-    SWAY_HZ,
-    Breath,
-    Fidget,
-    Idle,
-    Sway,
-)
+from radhar_cli.motion.human.idle import FIDGETS, GOLDEN, SWAY_HZ, Breath, Fidget, Idle, Sway
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.part import Movement, Place
 from radhar_cli.motion.human.physique import Physique

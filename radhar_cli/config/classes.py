@@ -12,7 +12,6 @@ from radhar_cli.config.sequence import BY_ITSELF, SequenceConfig
 from radhar_cli.errors import did_you_mean
 from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.reading import describe_unknown, may_be_motion
 from radhar_cli.motion.files.recording import LONGEST_NAME
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
@@ -95,6 +94,11 @@ class FilesConfig(Section, Generic[N]):
     @field_validator("files")
     @classmethod
     def _require_motion_files(cls, value: dict[str, str]) -> dict[str, str]:
+        from radhar_cli.motion.files.reading import (  # slow to import
+            describe_unknown,
+            may_be_motion,
+        )
+
         for path in value:
             if not may_be_motion(path):
                 raise value_error(f"{path[:MAX_PATH_LENGTH]}: {describe_unknown(Path(path))}")

@@ -5,13 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal
 from pydantic import Field
 
 from radhar_cli.motion.movements import catalogue
-from radhar_cli.schema.annotations import (
-    ActsIfNull,
-    ByModel,
-    Paper,
-    People,
-    Unless,
-)
+from radhar_cli.schema.annotations import ActsIfNull, ByModel, Paper, People, Unless
 from radhar_cli.schema.number import (
     ANGLE,
     COORDINATE,

@@ -9,17 +9,8 @@ from radhar_cli.motion.human.physique import froude_scale
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.limping import draw_sides, make_limp, slow_down
 from radhar_cli.motion.movements.walking import STANCE, Gait, Walk, make_gait
-from radhar_cli.schema.annotations import (
-    PERSONAL,
-    People,
-)
-from radhar_cli.schema.number import (
-    ANGLE,
-    NOT_NEGATIVE,
-    RATIO,
-    Choice,
-    normal,
-)
+from radhar_cli.schema.annotations import PERSONAL, People
+from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, Choice, normal
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

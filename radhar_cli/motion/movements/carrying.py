@@ -8,15 +8,8 @@ from radhar_cli.motion.human.aids import Load
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.limping import draw_sides, slow_down
 from radhar_cli.motion.movements.walking import Gait, Walk, make_gait
-from radhar_cli.schema.annotations import (
-    People,
-)
-from radhar_cli.schema.number import (
-    NOT_NEGATIVE,
-    RATIO,
-    Choice,
-    normal,
-)
+from radhar_cli.schema.annotations import People
+from radhar_cli.schema.number import NOT_NEGATIVE, RATIO, Choice, normal
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

@@ -30,17 +30,8 @@ from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.kneeling import CRAWLING
 from radhar_cli.motion.movements.words import ON_FLOOR
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.schema.annotations import (
-    UNSTEADY,
-    People,
-)
-from radhar_cli.schema.number import (
-    NOT_NEGATIVE,
-    RATIO,
-    SPEED,
-    normal,
-    uniform,
-)
+from radhar_cli.schema.annotations import UNSTEADY, People
+from radhar_cli.schema.number import NOT_NEGATIVE, RATIO, SPEED, normal, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

@@ -37,14 +37,8 @@ from radhar_cli.motion.movements.repeating import (
     repetitions,
 )
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.schema.annotations import (
-    People,
-)
-from radhar_cli.schema.number import (
-    NOT_NEGATIVE,
-    RATIO,
-    uniform,
-)
+from radhar_cli.schema.annotations import People
+from radhar_cli.schema.number import NOT_NEGATIVE, RATIO, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

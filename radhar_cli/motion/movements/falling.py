@@ -20,14 +20,8 @@ from radhar_cli.motion.human.part import LYING, SEATED, STANDING
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.sitting import SEAT, make_seat
 from radhar_cli.motion.movements.words import OFF_SEATS, ON_FLOOR, joined
-from radhar_cli.schema.annotations import (
-    UNSTEADY,
-    People,
-)
-from radhar_cli.schema.number import (
-    ANGLE,
-    uniform,
-)
+from radhar_cli.schema.annotations import UNSTEADY, People
+from radhar_cli.schema.number import ANGLE, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 FallName = Literal["forward", "backward", "sideways"]

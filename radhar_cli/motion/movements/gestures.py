@@ -37,10 +37,7 @@ from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.repeating import EACH, Repetition, draw_repetitions, repetitions
 from radhar_cli.motion.movements.sitting import SEAT, Seat, make_seat
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.schema.annotations import (
-    PERSONAL,
-    People,
-)
+from radhar_cli.schema.annotations import PERSONAL, People
 from radhar_cli.schema.number import (
     ANGLE,
     FREQUENCY,

@@ -11,15 +11,8 @@ from radhar_cli.motion.human.planted import Planted, resting_channels
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.transitions import draw_lags
 from radhar_cli.motion.movements.words import ON_FLOOR
-from radhar_cli.schema.annotations import (
-    People,
-)
-from radhar_cli.schema.number import (
-    ANGLE,
-    COORDINATE,
-    normal,
-    uniform,
-)
+from radhar_cli.schema.annotations import People
+from radhar_cli.schema.number import ANGLE, COORDINATE, normal, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

@@ -7,17 +7,8 @@ from typing import Annotated, Generic
 import numpy as np
 
 from radhar_cli.motion.human.idle import Waves, spread_phases
-from radhar_cli.schema.annotations import (
-    UNSTEADY,
-    People,
-)
-from radhar_cli.schema.number import (
-    FREQUENCY,
-    NOT_NEGATIVE,
-    RATIO,
-    SECONDS,
-    uniform,
-)
+from radhar_cli.schema.annotations import UNSTEADY, People
+from radhar_cli.schema.number import FREQUENCY, NOT_NEGATIVE, RATIO, SECONDS, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

@@ -16,14 +16,8 @@ from radhar_cli.motion.human.planted import Planted, posture, resting_channels, 
 from radhar_cli.motion.movements.getting_up import GetUp, standing_up_steps
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.words import ON_FLOOR
-from radhar_cli.schema.annotations import (
-    People,
-)
-from radhar_cli.schema.number import (
-    NOT_NEGATIVE,
-    RATIO,
-    Choice,
-)
+from radhar_cli.schema.annotations import People
+from radhar_cli.schema.number import NOT_NEGATIVE, RATIO, Choice
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

@@ -7,17 +7,8 @@ from typing import Annotated, Generic, NamedTuple
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.walking import MAX_LIMP, Gait, Walk, make_gait
-from radhar_cli.schema.annotations import (
-    PERSONAL,
-    People,
-)
-from radhar_cli.schema.number import (
-    ANGLE,
-    NOT_NEGATIVE,
-    RATIO,
-    normal,
-    uniform,
-)
+from radhar_cli.schema.annotations import PERSONAL, People
+from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, normal, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

@@ -32,17 +32,8 @@ from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.words import ON_FLOOR
 from radhar_cli.motion.segments import unit
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.schema.annotations import (
-    People,
-)
-from radhar_cli.schema.number import (
-    ANGLE,
-    NOT_NEGATIVE,
-    RATIO,
-    Choice,
-    normal,
-    uniform,
-)
+from radhar_cli.schema.annotations import People
+from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, Choice, normal, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

@@ -2,16 +2,8 @@
 
 from typing import Annotated, Generic
 
-from radhar_cli.schema.annotations import (
-    PERSONAL,
-    Paper,
-)
-from radhar_cli.schema.number import (
-    ANGLE,
-    FREQUENCY,
-    NOT_NEGATIVE,
-    vary,
-)
+from radhar_cli.schema.annotations import PERSONAL, Paper
+from radhar_cli.schema.number import ANGLE, FREQUENCY, NOT_NEGATIVE, vary
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

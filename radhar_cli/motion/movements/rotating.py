@@ -18,17 +18,8 @@ from radhar_cli.motion.human.two_link import AHEAD, two_link
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.repeating import EACH, PHASE, draw_repetitions, nonzero_tuple
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.schema.annotations import (
-    PERSONAL,
-    Paper,
-    People,
-)
-from radhar_cli.schema.number import (
-    ANGLE,
-    FREQUENCY,
-    NOT_NEGATIVE,
-    vary,
-)
+from radhar_cli.schema.annotations import PERSONAL, Paper, People
+from radhar_cli.schema.number import ANGLE, FREQUENCY, NOT_NEGATIVE, vary
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

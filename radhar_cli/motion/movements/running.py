@@ -35,19 +35,8 @@ from radhar_cli.motion.human.quintics import Quintics
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.numerics.arrays import Float, Index
-from radhar_cli.schema.annotations import (
-    PERSONAL,
-    UNSTEADY,
-    People,
-)
-from radhar_cli.schema.number import (
-    ANGLE,
-    NOT_NEGATIVE,
-    RATIO,
-    SPEED,
-    normal,
-    uniform,
-)
+from radhar_cli.schema.annotations import PERSONAL, UNSTEADY, People
+from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, SPEED, normal, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 RUNNING_SPEED = normal(3.3, 0.7, 2.5, 6.0)

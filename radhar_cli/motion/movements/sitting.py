@@ -23,16 +23,8 @@ from radhar_cli.motion.human.planted import (
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.transitions import draw_lags
 from radhar_cli.motion.movements.words import OFF_SEATS, ONTO_SEATS, joined
-from radhar_cli.schema.annotations import (
-    PERSONAL,
-    People,
-)
-from radhar_cli.schema.number import (
-    ANGLE,
-    NOT_NEGATIVE,
-    RATIO,
-    normal,
-)
+from radhar_cli.schema.annotations import PERSONAL, People
+from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, normal
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

@@ -5,15 +5,8 @@ from typing import Annotated, Generic
 from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.planted import ELBOWS, LEGS_AND_TRUNK, SHOULDERS
 from radhar_cli.motion.movements.kind import Mover
-from radhar_cli.schema.annotations import (
-    UNSTEADY,
-    People,
-)
-from radhar_cli.schema.number import (
-    NOT_NEGATIVE,
-    RATIO,
-    uniform,
-)
+from radhar_cli.schema.annotations import UNSTEADY, People
+from radhar_cli.schema.number import NOT_NEGATIVE, RATIO, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 

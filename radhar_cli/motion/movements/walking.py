@@ -12,22 +12,11 @@ from typing import Annotated, Generic, NamedTuple
 import numpy as np
 
 from radhar_cli.motion.human import boulic_thalmann as curves
-from radhar_cli.motion.human.aids import (
-    Aid,
-    Load,
-    elbow_directions,
-    hands_of_aid,
-    limit_to_reach,
-)
+from radhar_cli.motion.human.aids import Aid, Load, elbow_directions, hands_of_aid, limit_to_reach
 from radhar_cli.motion.human.arms import arm_directions_to_hands, hanging_hands
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
-from radhar_cli.motion.human.lane import (
-    Lane,
-    WalkTimes,
-    place_half_turns,
-    position_along_lane,
-)
+from radhar_cli.motion.human.lane import Lane, WalkTimes, place_half_turns, position_along_lane
 from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import LegBound, hip_height, hip_joints, hip_point_with_sway
@@ -57,15 +46,7 @@ from radhar_cli.schema.annotations import (
     People,
     Unless,
 )
-from radhar_cli.schema.number import (
-    ANGLE,
-    COORDINATE,
-    NOT_NEGATIVE,
-    RATIO,
-    SPEED,
-    normal,
-    uniform,
-)
+from radhar_cli.schema.number import ANGLE, COORDINATE, NOT_NEGATIVE, RATIO, SPEED, normal, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 WALKING_SPEED = normal(1.3, 0.18, 0.7, 2.0)

@@ -6,16 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers.poses import (
-    COCO,
-    RATE,
-    WALKER,
-    c3d_bytes,
-    largest_error,
-    names,
-    npz_bytes,
-    trc_text,
-)
+from helpers.poses import COCO, RATE, WALKER, c3d_bytes, largest_error, names, npz_bytes, trc_text
 from helpers.recorded import frames, write_bvh, write_npz
 
 from radhar_cli.errors import MotionFileError

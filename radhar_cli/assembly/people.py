@@ -37,19 +37,10 @@ from radhar_cli.scene import Person
 SHUFFLE_S = 0.9  # duration of a shuffle
 STEP_S = 0.7  # duration of a step towards or from a seat, without that of its length
 STEP_LIFT = 0.06  # height of its foot, m
-# Shares of the steps before and after the movement that go ahead, the others backwards; None for
-# no step. People feel for the chair, and leave it.
-STEPS = {"sitting_down": (0.0, None), "standing_up": (None, 1.0), "grabbing": (0.8, 0.4)}
+TRANSITIONS = "sitting_down", "standing_up", "grabbing"
 RISING = ("sitting_to_walking", "falling_to_walking")
 STOPPING = ("walking_to_sitting", "walking_to_falling")
 SETTLING = 4  # number of fidgets around the end of such a movement
-# Gestures at a settling of size 1: channel, rad, whether after the movement's end or its beginning,
-# from when on and for how long, s. Who stands up rocks back first; what was picked up is looked at.
-GESTURES = {
-    "sitting_down": (),
-    "standing_up": (("pitch", -0.05, False, -0.6, 0.5), ("pitch", 0.0, False, -0.1, 0.5)),
-    "grabbing": (("right_elbow", 0.4, True, -1.1, 0.8), ("right_elbow", 0.0, True, 0.4, 0.8)),
-}
 # Standard deviation of a fidget of size 1, m or rad; and of a shuffle, m and rad.
 FIDGET_SIZES = {
     "shift": 0.025,
@@ -106,7 +97,7 @@ def _plan(person: Person, physique: Physique) -> _Plan:
     if person.activity.slug in person.config.classes:
         return _plan_sequence(person, physique)
     slug = person.activity.usual_slug
-    if slug in STEPS:
+    if slug in TRANSITIONS:
         return _plan_transition(person)
     if slug in RISING:
         return _plan_rise(person)
@@ -176,10 +167,8 @@ def _plan_stop(person: Person, physique: Physique) -> _Plan:
         duration = timing.fall_duration_s
     walks_s = person.seconds if timing.walk_stop_s is None else timing.walk_stop_s
     walk: Any = _make(person, person.activity.movements[0], walks_s)
-    walk, second = (
-        replace(walk, from_rest=False),
-        _make(person, person.activity.movements[1], duration),
-    )
+    walk = replace(walk, from_rest=False)
+    second = _make(person, person.activity.movements[1], duration)
     begin, onset = 0.0, None
     if timing.walk_stop_s is None:  # a walk that begins as long before
         stopped = walk.part(physique, 0.0, person.seconds).end
@@ -195,7 +184,7 @@ def _add_steps(person: Person, movements: tuple[Movement, ...]) -> tuple[Movemen
     if not length:
         return movements
     steps: list[tuple[Movement, ...]] = []
-    for ahead in STEPS[person.activity.usual_slug]:
+    for ahead in MOVEMENTS[person.activity.usual_slug].steps:
         direction = 1 if rng.random() < (ahead or 0.0) else -1
         sideways = np.clip(rng.normal(), -2, 2)
         place = Place(direction * length, float(SHUFFLE_SIZES.left * sideways))
@@ -305,7 +294,7 @@ def _fidgets(person: Person) -> Iterable[Fidget]:
 def _settling_fidgets(person: Person, plan: _Plan) -> Iterable[Fidget]:
     """Small movements around the end of S4 to S6."""
     motion, slug = person.motion, person.activity.usual_slug
-    if slug not in STEPS:
+    if slug not in TRANSITIONS:
         return
     begin, movements = plan.begin, plan.movements
     if size := motion.transitions.settle_size:
@@ -314,7 +303,7 @@ def _settling_fidgets(person: Person, plan: _Plan) -> Iterable[Fidget]:
             n for n, movement in enumerate(movements, 1) if not isinstance(movement, StepTo)
         )
         end = _time_of_rest(movements[:count], begin)
-        for channel, target, from_end, start, length in GESTURES[slug]:
+        for channel, target, from_end, start, length in MOVEMENTS[slug].gestures:
             yield Fidget(channel, size * target, (end if from_end else begin) + start, length)
         for start_s in sorted(end + rng.uniform(-0.8, 1.2, SETTLING)):
             yield _draw_fidget(rng, size, float(start_s), (0.4, 1.0))

@@ -97,6 +97,11 @@ MOVEMENTS = (
         seconds=2.5,
         in_place=True,
         uses=("transitions.joint_lag",),
+        steps=(0.8, 0.4),
+        gestures=(  # what was picked up is looked at
+            ("right_elbow", 0.4, True, -1.1, 0.8),
+            ("right_elbow", 0.0, True, 0.4, 0.8),
+        ),
         words="picking_up pick_up picking picking_object picking_up_objects picking_up_object "
         "pick_up_object pick_up_an_object picking_up_things pick_up_things grasping grab pickup "
         "pickup_object pick_up_things_from_floor",

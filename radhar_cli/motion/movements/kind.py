@@ -63,6 +63,10 @@ class MovementKind:
         rests: Whether it is rest, which need not be seen in a recording.
         uses: Keys of `motion` in sections that several movements share, `repeating.size_jitter`.
         rate: Repetitions per second of somebody who is under way as the recording begins.
+        steps: Shares of the steps before and after it that go ahead, the others backwards, where
+            such steps are drawn; None for no step.
+        gestures: Fidgets that come with it, of size 1: channel, rad, whether after its end or its
+            beginning, from when on and for how long, s.
         words: Other words for it, with spaces between them, as in the next three.
         manners: What may stand behind or before a word for it, and changes nothing.
         nearby: Words of something that comes near it: suggested, but not taken for the same.
@@ -81,6 +85,8 @@ class MovementKind:
     rests: bool = False
     uses: tuple[str, ...] = ()
     rate: Callable[[Mover], float] | None = None
+    steps: tuple[float | None, float | None] = (None, None)
+    gestures: tuple[tuple[str, float, bool, float, float], ...] = ()
     words: str = ""
     manners: str = ""
     nearby: str = ""

@@ -203,6 +203,7 @@ MOVEMENTS = (
         2.0,
         in_place=True,
         uses=(*SEAT, LEAN, "transitions.joint_lag"),
+        steps=(0.0, None),  # people feel for the chair
         words="sit sit_down stand_to_sit hinsetzen sitdown",
         manners=ONTO_SEATS,
     ),
@@ -215,6 +216,8 @@ MOVEMENTS = (
         1.8,
         in_place=True,
         uses=(*SEAT, LEAN, "transitions.joint_lag"),
+        steps=(None, 1.0),  # and leave it
+        gestures=(("pitch", -0.05, False, -0.6, 0.5), ("pitch", 0.0, False, -0.1, 0.5)),  # back
         words="stand_up rising stand_up_from_chair sit_to_stand aufstehen standup "
         + joined("get_up getting_up rise rising stand standing", OFF_SEATS),
         manners=f"{OFF_SEATS} from_sitting",

@@ -25,21 +25,19 @@ def _modules() -> list[ModuleType]:
     return [import_module(f"{movements.__name__}.{name}") for name in names if name != "catalogue"]
 
 
+def name_of(section: type[Section]) -> str:
+    """Name of a section of `motion`: that of its module."""
+    return section.__module__.rpartition(".")[2]
+
+
 _MODULES = _modules()
 # {name of a section of `motion`: its class}
 SECTIONS: dict[str, type[Section]] = {
-    module.__name__.rpartition(".")[2]: module.SECTION
-    for module in _MODULES
-    if hasattr(module, "SECTION")
+    name_of(module.SECTION): module.SECTION for module in _MODULES if hasattr(module, "SECTION")
 }
 MOVEMENTS: dict[str, MovementKind] = {
     kind.name: kind for module in _MODULES for kind in getattr(module, "MOVEMENTS", ())
 }
-
-
-def name_of(section: type[Section]) -> str:
-    """Name of a section of `motion`: that of its module."""
-    return section.__module__.rpartition(".")[2]
 
 
 def users_of(key: str, people: People) -> tuple[str, ...]:

@@ -10,30 +10,25 @@ from typing import Any, Protocol, cast
 import numpy as np
 
 from radhar_cli.activities.activity import STREAM, Activity
-from radhar_cli.config.annotations import Mark, of_kind
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import AnyConfig, Config
-from radhar_cli.config.motion import (
-    EARLIER_KEYS,
-    FALLS,
-    RUNNING_SPEED,
-    WALKING_SPEED,
-    Falls,
-    MotionConfig,
-    TimingConfig,
-)
-from radhar_cli.config.number import Choice, Number, is_fixed, nominal, quantile, uniform
+from radhar_cli.config.motion import EARLIER_KEYS, MotionConfig, TimingConfig
 from radhar_cli.config.paths import at, changed, each_number
 from radhar_cli.config.people import PersonConfig, SubjectConfig
 from radhar_cli.config.radar import SceneRadar
 from radhar_cli.config.receiver import ReceiverConfig
 from radhar_cli.config.room import RoomConfig, WallConfig
-from radhar_cli.config.section import for_activity
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import draw_stream
 from radhar_cli.motion.human.physique import froude_scale
+from radhar_cli.motion.movements.falling import FALLS, Falls
+from radhar_cli.motion.movements.running import RUNNING_SPEED
+from radhar_cli.motion.movements.walking import WALKING_SPEED
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.numerics.randomness import PERSON, SCENE, stream
+from radhar_cli.schema.annotations import Mark, of_kind
+from radhar_cli.schema.number import Choice, Number, is_fixed, nominal, quantile, uniform
+from radhar_cli.schema.section import for_activity
 
 # The keys of a config whose numbers may be drawn, scene by scene.
 SCENE_KEYS = (

@@ -16,7 +16,12 @@ from annotated_types import Ge, Gt, Le, Lt
 from page_parts import replace_part
 from pydantic import BaseModel
 
-from radhar_cli.config.annotations import (
+from radhar_cli.config.checks.people import HUMAN_LIMITS
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.starting_file import as_text
+from radhar_cli.motion.movements.catalogue import users_of
+from radhar_cli.motion.movements.exercises import EXERCISES
+from radhar_cli.schema.annotations import (
     ByModel,
     Mark,
     Paper,
@@ -25,11 +30,8 @@ from radhar_cli.config.annotations import (
     section,
     sections,
 )
-from radhar_cli.config.checks.people import HUMAN_LIMITS
-from radhar_cli.config.data_set import Config
-from radhar_cli.config.number import MAX_NUMBER, Bounds, Choice, Normal, Uniform, Vary
-from radhar_cli.config.section import PerActivity, Section
-from radhar_cli.config.starting_file import as_text
+from radhar_cli.schema.number import MAX_NUMBER, Bounds, Choice, Normal, Uniform, Vary
+from radhar_cli.schema.section import PerActivity, Section
 
 REFERENCE = Path(__file__).resolve().parents[1] / "docs/reference"
 PAGES = ("config.md", "config_signal.md", "limits.md")
@@ -82,7 +84,7 @@ def _rows(kind: type[Section], prefix: str, left_out: Collection[str] = ()) -> I
         inner, many = section(field), get_origin(field.annotation) is tuple
         if inner is None or many:
             words = " ".join(texts.get(name, "").split())
-            parts = _choices(field.annotation), words, _users(about[name])
+            parts = _choices(field.annotation), words, _users(prefix + name, about[name])
             meaning = " ".join(filter(None, parts))
             default = "" if field.is_required() else _default(field.default, about[name])
             yield f"| `{prefix}{name}` | {default} | {meaning} |"
@@ -96,17 +98,25 @@ def _choices(kind: Any) -> str:
     return ", ".join(found) + "." if len(found) > 1 and get_origin(kind) is not tuple else ""
 
 
-def _users(about: tuple[Any, ...]) -> str:
+def _users(key: str, about: tuple[Any, ...]) -> str:
     """Whether it is a number that may be drawn, who uses it, and how it is drawn, in brackets."""
     number = ["number"] if any(isinstance(one, Bounds) for one in about) else []
     used = [
-        f"{type(one).__name__.lower()}: {', '.join(one.names.split()) or 'all'}"
+        f"{type(one).__name__.lower()}: {', '.join(_names(key, one)) or 'all'}"
         for one in about
         if isinstance(one, People | Paper)
     ]
     marks = [one.value for one in about if isinstance(one, Mark)]
     words = "; ".join((*number, *used, *marks))
     return words and f"({words})"
+
+
+def _names(key: str, users: People | Paper) -> Iterator[str]:
+    """Movements and labels that use a key; exercises together."""
+    names = users_of(key, users) if isinstance(users, People) else users.names.split()
+    exercises = {"exercises"} if {*EXERCISES} <= {*names} else set[str]()
+    yield from (name for name in names if not exercises or name not in EXERCISES)
+    yield from exercises
 
 
 def _default(value: Any, about: tuple[Any, ...]) -> str:

@@ -17,26 +17,21 @@ import numpy as np
 from draw_people import frames
 from PIL import Image, ImageDraw
 
-from radhar_cli.activities.activity import (
-    ACTIVITIES,
-    EXERCISES,
-    MOVEMENTS,
-    NOBODY,
-    Activity,
-    activity_named,
-)
+from radhar_cli.activities.activity import ACTIVITIES, Activity, activity_named
 from radhar_cli.activities.vocabulary import MEANINGS, meaning_of
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
-from radhar_cli.config.annotations import People, of_kind
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.movements.catalogue import MOVEMENTS, users_of
+from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.numerics.arrays import Float, Levels
 from radhar_cli.products.table import plan_images
 from radhar_cli.scene import Scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.schema.annotations import People, of_kind
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE, PICTURES = ROOT / "docs/reference/movements.md", ROOT / "docs/images/movements"
@@ -198,9 +193,9 @@ def _keys(activity: Activity) -> str:
 def _users() -> dict[str, frozenset[str]]:
     """{key: movements and labels that use it} of the keys that not everybody uses."""
     return {
-        key: frozenset(people.names.replace("exercises", " ".join(EXERCISES)).split())
+        key: frozenset(names)
         for key, people in of_kind(Config, People)
-        if people.names
+        if (names := users_of(key, people))
     }
 
 

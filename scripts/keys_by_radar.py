@@ -18,10 +18,21 @@ from typing import Any, Literal, NamedTuple, TypeAlias, get_args, get_origin
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
-from radhar_cli.activities.activity import MOVEMENTS, NOBODY
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.acting import FRAMES
-from radhar_cli.config.annotations import (
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.offered_maps import possible_maps
+from radhar_cli.dataset.build import build
+from radhar_cli.errors import RadharError
+from radhar_cli.motion.human.two_link import OutOfReachError
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.standing import NOBODY
+from radhar_cli.products.run import record
+from radhar_cli.products.table import plan_images, products
+from radhar_cli.scene import draw_scene
+from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene_checks.warnings import config_warnings
+from radhar_cli.schema.annotations import (
     ABOVE_ZERO,
     GIVEN,
     ActsIf,
@@ -33,17 +44,7 @@ from radhar_cli.config.annotations import (
     section,
     sections,
 )
-from radhar_cli.config.data_set import Config
-from radhar_cli.config.offered_maps import possible_maps
-from radhar_cli.config.section import PerActivity
-from radhar_cli.dataset.build import build
-from radhar_cli.errors import RadharError
-from radhar_cli.motion.human.two_link import OutOfReachError
-from radhar_cli.products.run import record
-from radhar_cli.products.table import plan_images, products
-from radhar_cli.scene import draw_scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.scene_checks.warnings import config_warnings
+from radhar_cli.schema.section import PerActivity
 from radhar_cli.single_scene.raw_echo import RAW_ECHO, RAW_PROFILES
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/reference/keys.md"

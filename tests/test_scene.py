@@ -10,15 +10,8 @@ from scipy.stats import kstest
 
 from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
-from radhar_cli.config.number import is_fixed, nominal, support
-from radhar_cli.scene import (
-    PERSONAL,
-    draw_scene,
-    nominal_scene,
-    numbers,
-    scene_numbers,
-    subject_of,
-)
+from radhar_cli.scene import PERSONAL, draw_scene, nominal_scene, numbers, scene_numbers, subject_of
+from radhar_cli.schema.number import is_fixed, nominal, support
 
 WALKING = activity_named("walking")
 FALLING = activity_named("S12")

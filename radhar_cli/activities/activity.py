@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 from zlib import crc32
 
 from radhar_cli.activities.vocabulary import (
@@ -13,103 +13,12 @@ from radhar_cli.activities.vocabulary import (
     plain_word,
 )
 from radhar_cli.extensions import load_extensions
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.standing import NOBODY
+from radhar_cli.schema.twelve import DEFAULT, MOVEMENTS_OF_TWELVE, TWELVE
 
 if TYPE_CHECKING:
     from radhar_cli.motion.protocol import Motion
-
-
-class MovementInfo(NamedTuple):
-    """A movement of people: the states it begins and ends in, and its usual duration (s).
-
-    `like` names another movement, whose numbers of the config it depends on, too; `also` has
-    further states in which it may begin, each with the state in which it then ends; `in_place` says
-    whether it leaves the torso within half a metre of where it was.
-    """
-
-    before: str
-    after: str
-    seconds: float | None  # usual duration, s; None for one that lasts as long as it is asked for
-    like: str | None = None
-    also: tuple[tuple[str, str], ...] = ()
-    in_place: bool = False
-
-    @property
-    def states(self) -> dict[str, str]:
-        """States in which it may begin, the usual one first, and in which it then ends."""
-        return {self.before: self.after, **dict(self.also)}
-
-
-EXERCISES = (
-    "squatting",
-    "jumping",
-    "jumping_jacks",
-    "raising_arms",
-    "raising_arms_ahead",
-    *(
-        name.format(side)
-        for side in ("right", "left")
-        for name in (
-            "{}_lunge",
-            "{}_side_lunge",
-            "raising_{}_arm",
-            "raising_{}_leg",
-            "raising_{}_arm_and_leg",
-        )
-    ),
-)
-# Movements of the arms alone, by the state of rest in which they are made.
-GESTURES_BY_STATE = {
-    "standing": ("drinking", "writing", "waving", "clapping"),
-    "seated": ("drinking_seated", "writing_seated"),
-}
-GESTURES = tuple(name for names in GESTURES_BY_STATE.values() for name in names)
-# The class of recordings in which nobody is. Its radar sees the room alone; who would stand there
-# says how strong the noise of an `snr_db` is, and which ranges a gate follows.
-NOBODY = "nobody"
-# What sequences are made of (`classes:`); each is a class by itself, too.
-MOVEMENTS = {
-    "stationary": MovementInfo("standing", "standing", None, in_place=True),
-    "punching": MovementInfo("standing", "standing", None, in_place=True),
-    "kicking": MovementInfo("standing", "standing", None, in_place=True),
-    "grabbing": MovementInfo("standing", "standing", 2.5, in_place=True),
-    "sitting_down": MovementInfo("standing", "seated", 2.0, in_place=True),
-    "standing_up": MovementInfo("seated", "standing", 1.8, in_place=True),
-    "body_rotating": MovementInfo("standing", "standing", None, in_place=True),
-    "walking": MovementInfo("standing", "standing", None),
-    "falling": MovementInfo("standing", "lying", 1.1),
-    "falling_on_hands": MovementInfo("standing", "lying", 1.1, "falling"),
-    "falling_off_seat": MovementInfo("seated", "lying", 1.0),
-    "falling_on_rising": MovementInfo("seated", "lying", 1.7),
-    "stumbling": MovementInfo("standing", "standing", 1.3),
-    "tripping": MovementInfo("standing", "standing", None, "walking"),
-    "trying_to_get_up": MovementInfo("lying", "lying", 3.0),
-    "getting_up": MovementInfo(
-        "lying", "standing", 3.0, also=(("kneeling", "standing"), ("on_fours", "standing"))
-    ),
-    "turning_around": MovementInfo("standing", "standing", 1.8),
-    "running": MovementInfo("standing", "standing", None),
-    "jogging_in_place": MovementInfo("standing", "standing", None, in_place=True),
-    "limping": MovementInfo("standing", "standing", None, "walking"),
-    "walking_with_stick": MovementInfo("standing", "standing", None, "walking"),
-    "walking_with_walker": MovementInfo("standing", "standing", None, "walking"),
-    "carrying": MovementInfo("standing", "standing", None, "walking"),
-    "sitting": MovementInfo("seated", "seated", None, in_place=True),
-    "kneeling": MovementInfo("kneeling", "kneeling", None, in_place=True),
-    "kneeling_down": MovementInfo("standing", "kneeling", 3.0),
-    "getting_on_fours": MovementInfo("standing", "on_fours", 3.0),
-    "crawling": MovementInfo("on_fours", "on_fours", None),
-    "lying": MovementInfo("lying", "lying", None, also=(("in_bed", "in_bed"),)),
-    "turning_over": MovementInfo("lying", "lying", 5.0, also=(("in_bed", "in_bed"),)),
-    "lying_down": MovementInfo("standing", "in_bed", 6.5),
-    "getting_up_from_bed": MovementInfo("in_bed", "standing", 6.0),
-    **{name: MovementInfo("standing", "standing", None, in_place=True) for name in EXERCISES},
-    **{
-        name: MovementInfo(state, state, None, in_place=True)
-        for state, names in GESTURES_BY_STATE.items()
-        for name in names
-    },
-    NOBODY: MovementInfo("nowhere", "nowhere", None, "stationary", in_place=True),
-}
 
 
 OR = " or "  # between states of which whoever begins a sequence has the choice
@@ -200,23 +109,12 @@ class Activity:
         return 8 <= self.number <= 12
 
 
-ACTIVITIES: tuple[Activity, ...] = (
-    Activity(1, "stationary", ("stationary",)),
-    Activity(2, "punching", ("punching",)),
-    Activity(3, "kicking", ("kicking",)),
-    Activity(4, "grabbing", ("grabbing",)),
-    Activity(5, "sitting_down", ("sitting_down",)),
-    Activity(6, "standing_up", ("standing_up",)),
-    Activity(7, "body_rotating", ("body_rotating",)),
-    Activity(8, "walking", ("walking",)),
-    Activity(9, "sitting_to_walking", ("standing_up", "walking")),
-    Activity(10, "walking_to_sitting", ("walking", "sitting_down")),
-    Activity(11, "falling_to_walking", ("getting_up", "walking")),
-    Activity(12, "walking_to_falling", ("walking", "falling")),
+ACTIVITIES = tuple(
+    Activity(number, slug, movements)
+    for number, (slug, movements) in enumerate(MOVEMENTS_OF_TWELVE.items(), 1)
 )
 
 STREAM = "stream"  # class of recordings of several activities one after the other
-DEFAULT = "default"  # in `per_activity`: what holds for activities that it does not name
 
 
 def _by_name(activities: Iterable[Activity]) -> dict[str, Activity]:
@@ -237,7 +135,6 @@ def activity_of_movements(slug: str, movements: tuple[str, ...], number: int) ->
 
 
 _BY_NAME = _by_name(ACTIVITIES)
-TWELVE = {name: a.slug for name, a in _BY_NAME.items()}  # {slug or label: slug}
 _ADDED: dict[str, Activity] = {}
 
 

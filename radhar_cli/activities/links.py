@@ -7,7 +7,8 @@ movements that MOVEMENTS lists first.
 
 from functools import cache
 
-from radhar_cli.activities.activity import MOVEMENTS, OR, state_after
+from radhar_cli.activities.activity import OR, state_after
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
 
 
 def is_link(name: str) -> bool:

@@ -5,7 +5,7 @@ from math import radians
 
 from radhar_cli.activities.activity import STREAM
 from radhar_cli.bodies.segment_paths import Body
-from radhar_cli.motion.paper.activities import PaperGait, Timing
+from radhar_cli.motion.paper.activities import Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion
 from radhar_cli.motion.segments import landmark_names, segments_between, thickness
@@ -62,7 +62,7 @@ def _stand_still(person: Person) -> Motion:
     from radhar_cli.motion.human.idle import Idle
     from radhar_cli.motion.human.motion import HumanMotion
     from radhar_cli.motion.human.physique import Physique
-    from radhar_cli.motion.human.standing import Stand
+    from radhar_cli.motion.movements.standing import Stand
 
     motion, physique = person.motion, Physique(person.subject.height_m)
     start, heading = person.place, radians(motion.angle_deg)
@@ -77,13 +77,6 @@ def _paper_body(person: Person) -> PaperBody:
         weight=subject.weight_kg,
         start=person.place,
         angle=radians(motion.angle_deg),
-        gait=PaperGait(
-            frequency=motion.paper.gait_hz,
-            thigh=radians(motion.paper.thigh_deg),
-            calf=radians(motion.paper.calf_deg),
-            arm=radians(motion.paper.arm_deg),
-            turn=radians(motion.rotating.turn_deg),
-            speed=motion.walking.speed_mps,
-        ),
+        gait=motion.paper.make_gait(motion.rotating.turn_deg, motion.walking.speed_mps),
         timing=Timing(**{one.name: getattr(timing, f"{one.name}_s") for one in fields(Timing)}),
     )

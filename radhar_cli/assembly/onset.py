@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from math import inf
 from typing import NamedTuple
 
-from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.activities.onset import (
     Onsets,
     Stretch,
@@ -15,9 +14,9 @@ from radhar_cli.activities.onset import (
 )
 from radhar_cli.config.sequence import SequenceStep
 from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.scene import Person
 
-RESTING = ("stationary", "sitting", "lying", "kneeling")  # which need not be seen in a sequence
 TRIP_S = 1.5  # duration of a trip within its walk
 LONGEST_S = 5.0  # of a walk, half way of which people trip
 
@@ -83,8 +82,8 @@ def sequence_onset(person: Person, steps: Sequence[SequenceStep], motion: HumanM
     """
     parts = list[Stretch]()
     for step, (part, _) in zip(steps, motion.parts, strict=False):
-        lasts = MOVEMENTS[step.name].seconds is None
-        parts.append(Stretch(part.begin, part.end, lasts, step.name not in RESTING))
+        kind = MOVEMENTS[step.name]
+        parts.append(Stretch(part.begin, part.end, kind.seconds is None, not kind.rests))
         if step.name == "tripping":
             trips = part.begin + min(part.end - part.begin, LONGEST_S) / 2
             parts.append(Stretch(trips, trips + TRIP_S))

@@ -5,13 +5,13 @@ comes from streams named by (seed, class, index) and in sizes of the config, 0 f
 """
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from math import inf, pi, radians
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.activities.activity import MOVEMENTS
-from radhar_cli.assembly.floor import join_on_floor
+from radhar_cli.assembly.mover import SceneMover
 from radhar_cli.assembly.onset import (
     Bout,
     bout_of,
@@ -22,40 +22,25 @@ from radhar_cli.assembly.onset import (
     stop_onset,
 )
 from radhar_cli.assembly.place import start_of
-from radhar_cli.assembly.repertoire import DrawnRepertoire, low_pass_waves
 from radhar_cli.config.sequence import SequenceConfig, SequenceStep
-from radhar_cli.motion.human.idle import (
-    FIDGETS,
-    GOLDEN,
-    SWAY_HZ,
-    Breath,
-    Fidget,
-    Idle,
-    Sway,
-)
-from radhar_cli.motion.human.motion import HumanMotion, Movement
-from radhar_cli.motion.human.part import Place
+from radhar_cli.motion.human.idle import FIDGETS, GOLDEN, SWAY_HZ, Breath, Fidget, Idle, Sway
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.human.part import Movement, Place
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.standing import Stand
 from radhar_cli.motion.human.stepping import StepTo
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.idle import low_pass_waves
+from radhar_cli.motion.movements.joining import join_on_floor
+from radhar_cli.motion.movements.standing import Stand
 from radhar_cli.scene import Person
 
 SHUFFLE_S = 0.9  # duration of a shuffle
 STEP_S = 0.7  # duration of a step towards or from a seat, without that of its length
 STEP_LIFT = 0.06  # height of its foot, m
-# Shares of the steps before and after the movement that go ahead, the others backwards; None for
-# no step. People feel for the chair, and leave it.
-STEPS = {"sitting_down": (0.0, None), "standing_up": (None, 1.0), "grabbing": (0.8, 0.4)}
+TRANSITIONS = "sitting_down", "standing_up", "grabbing"
 RISING = ("sitting_to_walking", "falling_to_walking")
 STOPPING = ("walking_to_sitting", "walking_to_falling")
 SETTLING = 4  # number of fidgets around the end of such a movement
-# Gestures at a settling of size 1: channel, rad, whether after the movement's end or its beginning,
-# from when on and for how long, s. Who stands up rocks back first; what was picked up is looked at.
-GESTURES = {
-    "sitting_down": (),
-    "standing_up": (("pitch", -0.05, False, -0.6, 0.5), ("pitch", 0.0, False, -0.1, 0.5)),
-    "grabbing": (("right_elbow", 0.4, True, -1.1, 0.8), ("right_elbow", 0.0, True, 0.4, 0.8)),
-}
 # Standard deviation of a fidget of size 1, m or rad; and of a shuffle, m and rad.
 FIDGET_SIZES = {
     "shift": 0.025,
@@ -112,7 +97,7 @@ def _plan(person: Person, physique: Physique) -> _Plan:
     if person.activity.slug in person.config.classes:
         return _plan_sequence(person, physique)
     slug = person.activity.usual_slug
-    if slug in STEPS:
+    if slug in TRANSITIONS:
         return _plan_transition(person)
     if slug in RISING:
         return _plan_rise(person)
@@ -129,18 +114,17 @@ def _plan_bout(person: Person) -> _Plan:
         return _add_shuffles(person, _Plan((Stand(0.0),), onset=bout_onset(person)), 0.0)
     if slug == "walking" and timing.walk_begin_s is not None:
         bout = Bout(timing.walk_begin_s, inf, from_rest=True)
-    begin = bout.begin
-    rates: dict[str, float] = {
-        "punching": motion.striking.punch_hz,
-        "kicking": motion.striking.kick_hz,
-        "body_rotating": motion.rotating.rotation_hz,
-    }
-    if not bout.from_rest and (rate := rates.get(slug)):
-        begin = -(motion.repeating.cycle_phase % 1) / rate
-    repertoire = DrawnRepertoire(person, None)
-    movement = repertoire.bout(slug, bout.end - begin, bout.from_rest)
+    begin, rate = bout.begin, MOVEMENTS[slug].rate
+    if not bout.from_rest and rate is not None and (hz := rate(SceneMover(person, inf))):
+        begin = -(motion.repeating.cycle_phase % 1) / hz
+    movement: Any = _make(person, slug, bout.end - begin)
     onset = begin if bout.from_rest else bout_onset(person)
-    return _Plan((movement,), begin=begin, onset=onset)
+    return _Plan((replace(movement, from_rest=bout.from_rest),), begin=begin, onset=onset)
+
+
+def _make(person: Person, name: str, duration: float) -> Movement:
+    """Make a movement of a person that is alone, or one of two."""
+    return MOVEMENTS[name].make(SceneMover(person, duration))
 
 
 def _plan_transition(person: Person) -> _Plan:
@@ -149,9 +133,8 @@ def _plan_transition(person: Person) -> _Plan:
     duration, start = timing.seat_duration_s, timing.seat_start_s
     if slug == "grabbing":
         duration, start = timing.grab_duration_s, timing.grab_start_s
-    movements = DrawnRepertoire(person, duration).activity(person.activity.number)
-    main = movements[0]
-    movements = _add_steps(person, movements)
+    main = _make(person, slug, duration)
+    movements = _add_steps(person, (main,))
     if start is None:
         before = _time_of_rest(movements[: movements.index(main)], 0.0)
         onset = movement_onset(person, _time_of_rest((main,), 0.0))
@@ -165,14 +148,15 @@ def _plan_transition(person: Person) -> _Plan:
 def _plan_rise(person: Person) -> _Plan:
     """Plan rising, and the walk after it."""
     timing, duration = person.timing, person.timing.rise_duration_s
-    movements = DrawnRepertoire(person, duration).activity(person.activity.number)
+    rise, walk = person.activity.movements
+    movements = _make(person, rise, duration), _make(person, walk, inf)
     begin = timing.rise_start_s
     if begin is None:
         begin = rise_onset(person, duration)
-    walk = begin + duration - timing.overlap_s
+    start = begin + duration - timing.overlap_s
     if timing.walk_start_s is not None:
-        walk = timing.walk_start_s
-    return _Plan(movements, (0.0, walk - (begin + duration)), begin, walk)
+        start = timing.walk_start_s
+    return _Plan(movements, (0.0, start - (begin + duration)), begin, start)
 
 
 def _plan_stop(person: Person, physique: Physique) -> _Plan:
@@ -181,9 +165,11 @@ def _plan_stop(person: Person, physique: Physique) -> _Plan:
     duration = timing.sit_duration_s
     if person.activity.usual_slug == "walking_to_falling":
         duration = timing.fall_duration_s
-    begin, repertoire = 0.0, DrawnRepertoire(person, duration)
-    walk, second = repertoire.activity(person.activity.number)
-    onset = None
+    walks_s = person.seconds if timing.walk_stop_s is None else timing.walk_stop_s
+    walk: Any = _make(person, person.activity.movements[0], walks_s)
+    walk = replace(walk, from_rest=False)
+    second = _make(person, person.activity.movements[1], duration)
+    begin, onset = 0.0, None
     if timing.walk_stop_s is None:  # a walk that begins as long before
         stopped = walk.part(physique, 0.0, person.seconds).end
         onset = stop_onset(person, duration)
@@ -198,7 +184,7 @@ def _add_steps(person: Person, movements: tuple[Movement, ...]) -> tuple[Movemen
     if not length:
         return movements
     steps: list[tuple[Movement, ...]] = []
-    for ahead in STEPS[person.activity.usual_slug]:
+    for ahead in MOVEMENTS[person.activity.usual_slug].steps:
         direction = 1 if rng.random() < (ahead or 0.0) else -1
         sideways = np.clip(rng.normal(), -2, 2)
         place = Place(direction * length, float(SHUFFLE_SIZES.left * sideways))
@@ -257,9 +243,8 @@ def movement_of(
 ) -> Movement:
     """Movement of a step of a sequence, after the previous ones; what goes on does so that long."""
     duration = _duration_of(step)
-    repertoire = DrawnRepertoire(person, duration, step.place)
-    (movement,) = repertoire.sequence([step.name], [going_on if duration is None else duration])
-    return join_on_floor(previous, movement)
+    mover = SceneMover(person, going_on if duration is None else duration, step.place)
+    return join_on_floor(previous, MOVEMENTS[step.name].make(mover))
 
 
 def idle_of_stream(person: Person, physique: Physique, movements: tuple[Movement, ...]) -> Idle:
@@ -273,8 +258,8 @@ def _idle(person: Person, physique: Physique, plan: _Plan) -> Idle:
     motion = person.motion
     idle_s = motion.idle.phase_s
     sway = Sway(
-        low_pass_waves(motion, subject.sway_ahead_m, _SWAY_HZ, 0.0),
-        low_pass_waves(motion, subject.sway_aside_m, _SWAY_HZ, 0.3),
+        low_pass_waves(motion.idle, subject.sway_ahead_m, _SWAY_HZ, 0.0),
+        low_pass_waves(motion.idle, subject.sway_aside_m, _SWAY_HZ, 0.3),
     )
     breathing, pulse = subject.breathing_hz, subject.pulse_hz
     breath = Breath(
@@ -309,7 +294,7 @@ def _fidgets(person: Person) -> Iterable[Fidget]:
 def _settling_fidgets(person: Person, plan: _Plan) -> Iterable[Fidget]:
     """Small movements around the end of S4 to S6."""
     motion, slug = person.motion, person.activity.usual_slug
-    if slug not in STEPS:
+    if slug not in TRANSITIONS:
         return
     begin, movements = plan.begin, plan.movements
     if size := motion.transitions.settle_size:
@@ -318,7 +303,7 @@ def _settling_fidgets(person: Person, plan: _Plan) -> Iterable[Fidget]:
             n for n, movement in enumerate(movements, 1) if not isinstance(movement, StepTo)
         )
         end = _time_of_rest(movements[:count], begin)
-        for channel, target, from_end, start, length in GESTURES[slug]:
+        for channel, target, from_end, start, length in MOVEMENTS[slug].gestures:
             yield Fidget(channel, size * target, (end if from_end else begin) + start, length)
         for start_s in sorted(end + rng.uniform(-0.8, 1.2, SETTLING)):
             yield _draw_fidget(rng, size, float(start_s), (0.4, 1.0))

@@ -1,13 +1,13 @@
 """Canceller, gate, windows and detector that a config asks for."""
 
 from radhar_cli.config.data_set import AnyConfig
-from radhar_cli.config.number import nominal, support
 from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.numerics.rounding import half_up
 from radhar_cli.processing import canceller
 from radhar_cli.processing.cfar import CellAveraging
 from radhar_cli.processing.frames import Frames
 from radhar_cli.radar.chirp_window import ChirpWindow
+from radhar_cli.schema.number import nominal, support
 
 
 def canceller_of(config: AnyConfig, prf: float) -> canceller.Canceller:

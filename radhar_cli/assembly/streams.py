@@ -11,17 +11,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.activities.activity import MOVEMENTS
 from radhar_cli.assembly.people import idle_of_stream, movement_of
 from radhar_cli.config.sequence import SequenceConfig, SequenceStep
 from radhar_cli.config.stream import LEAD_S, TRANSITION, TURN, ZoneConfig, label_of_pause
 from radhar_cli.motion.human.idle import NO_SWAY, Idle
 from radhar_cli.motion.human.lane import Lane
-from radhar_cli.motion.human.motion import HumanMotion, Movement
-from radhar_cli.motion.human.part import STANDING, Place, kind_of_rest, place_after
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.human.part import STANDING, Movement, Place, kind_of_rest, place_after
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.repertoire import AROUND
-from radhar_cli.motion.human.walking import Gait
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.turning_around import make_turn
+from radhar_cli.motion.movements.walking import Gait
 from radhar_cli.scene import Person
 
 HEADINGS = 16  # that are tried for a bout
@@ -126,15 +126,6 @@ def zone_of(person: Person) -> ZoneConfig:
     return stream.zone.strips(1 + len(person.config.people))[0]
 
 
-def turn_by(angle: float) -> Movement:
-    """Turn on the spot through an angle, rad, at the pace of turning around."""
-    share = abs(angle) / pi
-    steps = max(2, round(share * AROUND.steps))
-    return replace(
-        AROUND, duration=max(0.8, share * AROUND.duration), place=Place(turn=angle), steps=steps
-    )
-
-
 @dataclass
 class _Planner:
     """Plans the movements of a person one bout after the other."""
@@ -161,7 +152,7 @@ class _Planner:
             situation = situation._replace(time=situation.time + pause)
             bout = self._plan_bout(steps, situation, turns, movements)
             if bout.turn:
-                movements.append(turn_by(bout.turn))
+                movements.append(make_turn(bout.turn))
                 pauses.append(pause)
                 labels.append(TRANSITION)
                 pause = 0.0
@@ -219,7 +210,7 @@ class _Planner:
         place, time = situation
         if turn:
             place = place._replace(turn=place.turn + turn)
-            time += turn_by(turn).part(self.physique, time, time).end - time
+            time += make_turn(turn).part(self.physique, time, time).end - time
         placed, end_place, end = list[Movement](), place, time
         for movement, step in zip(movements, steps, strict=True):
             end += step.pause if placed else 0.0

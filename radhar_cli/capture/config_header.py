@@ -8,7 +8,6 @@ from radhar_cli.capture.ti_header import read_cfg_settings, settings_of_frames
 from radhar_cli.config.data_set import Config, ConfigOfRecordings
 from radhar_cli.config.documents import BASE, read_document
 from radhar_cli.config.identity import resolved
-from radhar_cli.config.number import nominal
 from radhar_cli.config.radar import (
     BoardRadar,
     CwRadar,
@@ -20,6 +19,7 @@ from radhar_cli.config.radar import (
 from radhar_cli.config.reading import load_config
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.rounding import half_up
+from radhar_cli.schema.number import nominal
 
 
 def read_yaml_settings(path: Path) -> dict[int, dict[str, Any]]:

@@ -20,7 +20,6 @@ from radhar_cli.capture.content import (
 )
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.number import nominal
 from radhar_cli.config.radar import (
     RADARS,
     AnyRadar,
@@ -33,6 +32,7 @@ from radhar_cli.errors import CaptureError, did_you_mean
 from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.pulse_times import PulseTimes
+from radhar_cli.schema.number import nominal
 
 TOLERANCE = 1e-3  # relative difference of the numbers of one radar, as clocks differ
 KEYS = frozenset(key for kind in RADARS for key in kind.model_fields)

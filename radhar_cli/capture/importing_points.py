@@ -27,12 +27,12 @@ from radhar_cli.capture.uart_packets import PROBED, Dump, Packet, is_dump, open_
 from radhar_cli.capture.visualizer_json import Replay, is_replay, read_replay
 from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
-from radhar_cli.config.section import Section
 from radhar_cli.dataset.formats.uart import DETECTED_POINTS
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import regular_size, text_of
 from radhar_cli.radar.frame_header import FrameHeader
 from radhar_cli.radar.ti_cfg import MAX_CFG, parse_frames, parse_ti_cfg
+from radhar_cli.schema.section import Section
 
 SEARCHED = 2**16  # bytes in which the first magic word of a dump lies
 RATIOS = ("people", "3d tracking", "vital")  # words of demos whose SNR is a ratio of powers

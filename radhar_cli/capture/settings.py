@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BeforeValidator, Field
 
-from radhar_cli.config.number import require
-from radhar_cli.config.section import Section
+from radhar_cli.schema.number import require
+from radhar_cli.schema.section import Section
 
 Count: TypeAlias = Annotated[int, Field(ge=1, le=2**24, strict=True)]
 Above: TypeAlias = Annotated[float, Field(gt=0, le=1e15, strict=True)]

@@ -11,11 +11,11 @@ from pydantic import AliasPath, BeforeValidator, ConfigDict, Field
 
 from radhar_cli.capture.lvds_format import LvdsFormat
 from radhar_cli.config.reading import validated
-from radhar_cli.config.section import Section
 from radhar_cli.errors import CaptureError, ConfigError
 from radhar_cli.files.untrusted import read_json
 from radhar_cli.radar.frame_header import ChirpProfile, FrameHeader, Sampling
 from radhar_cli.radar.ti_cfg import ChirpRange, FrameTiming, make_frame_header
+from radhar_cli.schema.section import Section
 
 
 def _parse_hexadecimal(value: object) -> object:

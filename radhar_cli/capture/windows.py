@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.activities.activity import TWELVE
 from radhar_cli.capture.board_frames import OF_FRAMES, frames_of_recording
 from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.content import (
@@ -50,6 +49,7 @@ from radhar_cli.processing.power_map import MapImage, PowerMap
 from radhar_cli.products.images import draw_measured_map, level_scale_of
 from radhar_cli.products.maps import image_name
 from radhar_cli.scene import nominal_scene
+from radhar_cli.schema.twelve import TWELVE
 
 MAX_MANIFEST = 2**20  # bytes
 MAX_CONFIG = 2**19  # characters of the resolved config: two of it lie beside the data set

@@ -1,9 +1,9 @@
 """Conditions under which a key acts that several sections share."""
 
-from radhar_cli.config.annotations import OfRadar, OnlyMaps, Unless
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, RANGE
 from radhar_cli.processing.map_kind import CADENCE_KINDS, MAP_KINDS, RTM, Transform
+from radhar_cli.schema.annotations import OfRadar, OnlyMaps, Unless
 
 FRAMES = "board", "frames", "sfcw_frames", "cw_frames"  # kinds of radars with frames
 BOARD = OfRadar(*FRAMES)

@@ -13,9 +13,9 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from radhar_cli.config.annotations import Paper, People, annotations, value_text
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.section import PerActivity, for_activity
+from radhar_cli.schema.annotations import Paper, People, annotations, value_text
+from radhar_cli.schema.section import PerActivity, for_activity
 
 # Names of keys of `timing` that say when, not how long; and when the movement began of each sample.
 INSTANT = re.compile(r"timing\.(\w+_(start|begin|stop)_s|onset)$|movement_onset_s$")
@@ -36,7 +36,7 @@ def is_of_movement(key: str) -> bool:
     if key.startswith("classes."):  # durations of parts, or which file is followed
         return True
     about = annotations(Config).get(key, ())
-    return any(isinstance(mark, People | Paper) and mark.names for mark in about)
+    return any(isinstance(mark, People | Paper) and mark.names != "" for mark in about)
 
 
 def laws_by_class(config: Config) -> list[str]:

@@ -13,7 +13,7 @@ from radhar_cli.config.checks.data_set import (
     problems_of_recordings,
 )
 from radhar_cli.config.request import MeasuredRequest, Request
-from radhar_cli.config.section import Problem
+from radhar_cli.schema.section import Problem
 
 R = TypeVar("R", bound=Request | MeasuredRequest)
 

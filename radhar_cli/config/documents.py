@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from radhar_cli.config.motion import EARLIER_KEYS
-from radhar_cli.config.number import FORMS
 from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.files.untrusted import read_text, text_of
 from radhar_cli.radar.board import plain_name
+from radhar_cli.schema.number import FORMS
 
 Document: TypeAlias = dict[str, Any]
 Places: TypeAlias = dict[str, str]  # {dotted key: file:line}

@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from radhar_cli.config.acting import NO_IMPULSE
-from radhar_cli.config.annotations import ActsIf
-from radhar_cli.config.section import Flag, Section
+from radhar_cli.schema.annotations import ActsIf
+from radhar_cli.schema.section import Flag, Section
 
 MAX_TOLERANCE_DB = -6.0
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from radhar_cli.config.data_set import AnyConfig
-from radhar_cli.config.section import Section
 from radhar_cli.config.several_radars import NAME_KEY, OTHERS_KEY, OWN_SECTIONS, RADARS_KEY
+from radhar_cli.schema.section import Section
 
 NOT_IDENTITY = ("output.png", "output.license")
 

@@ -5,10 +5,10 @@ from typing import Annotated, Generic, Literal, TypeAlias
 from pydantic import BeforeValidator, Discriminator, Field, Tag, field_validator
 
 from radhar_cli.config.acting import CADENCES, OVER_RANGE, RANGES, SPECTRA
-from radhar_cli.config.annotations import ActsIf
-from radhar_cli.config.number import DECIBEL, POSITIVE, Real, require, uniform, value_error, within
-from radhar_cli.config.section import N, Section, default_draw, defaults_of
 from radhar_cli.errors import did_you_mean
+from radhar_cli.schema.annotations import ActsIf
+from radhar_cli.schema.number import DECIBEL, POSITIVE, Real, require, uniform, value_error, within
+from radhar_cli.schema.section import N, Section, default_draw, defaults_of
 
 DEFAULT_COLOUR_MAP = "viridis"
 

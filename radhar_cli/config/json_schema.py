@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from radhar_cli.config.documents import BASE
-from radhar_cli.config.section import Section
+from radhar_cli.schema.section import Section
 
 
 def json_schema(kind: type[Section]) -> dict[str, Any]:

@@ -5,11 +5,11 @@ from typing import Annotated
 
 from pydantic import AfterValidator
 
-from radhar_cli.config.number import value_error
 from radhar_cli.extensions import is_known, own_products
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import CADENCE_KINDS, MAP_KINDS
+from radhar_cli.schema.number import value_error
 
 MAP_NAMES = tuple(MAP_KINDS)
 

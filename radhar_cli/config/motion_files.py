@@ -9,7 +9,6 @@ from radhar_cli.config.classes import MAX_FILES, MAX_PATH_LENGTH, FilesConfig
 from radhar_cli.config.data_set import Config
 from radhar_cli.errors import ConfigError, FolderError, MotionFileError
 from radhar_cli.files.untrusted import refuse_outside
-from radhar_cli.motion.files.reading import read_motion
 
 Refuse = Callable[[str, object, str], ConfigError]
 
@@ -51,6 +50,8 @@ def resolve_files(config: Config, folder: Path, refuse: Refuse) -> Config:
 
 def _resolve_class(slug: str, files_config: FilesConfig, root: Path, refuse: Refuse) -> FilesConfig:
     """Class of files with every path and its SHA-256."""
+    from radhar_cli.motion.files.reading import read_motion  # slow to import
+
     key = f"classes.{slug}.files"
     skeleton = None if files_config.skeleton is None else root / files_config.skeleton
     files: dict[str, str] = {}

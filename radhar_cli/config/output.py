@@ -4,8 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from radhar_cli.config.number import Share, value_error
-from radhar_cli.config.section import Flag, Section
+from radhar_cli.schema.number import Share, value_error
+from radhar_cli.schema.section import Flag, Section
 
 Level = Annotated[int, Field(ge=0, le=9, strict=True)]
 

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar, cast
 
-from radhar_cli.config.annotations import at as at
-from radhar_cli.config.section import Section
+from radhar_cli.schema.annotations import at as at
+from radhar_cli.schema.section import Section
 
 T = TypeVar("T")
 

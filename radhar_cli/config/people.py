@@ -4,7 +4,9 @@ from typing import Annotated, Any, ClassVar, Generic, Literal
 
 from pydantic import BeforeValidator, Field
 
-from radhar_cli.config.annotations import (
+from radhar_cli.config.classes import ClassConfig
+from radhar_cli.config.motion import MotionConfig, TimingConfig
+from radhar_cli.schema.annotations import (
     GIVEN,
     PERSONAL,
     ActsIf,
@@ -12,9 +14,7 @@ from radhar_cli.config.annotations import (
     Limits,
     People,
 )
-from radhar_cli.config.classes import ClassConfig
-from radhar_cli.config.motion import MotionConfig, TimingConfig
-from radhar_cli.config.number import (
+from radhar_cli.schema.number import (
     METRES,
     NOT_NEGATIVE,
     POSITIVE,
@@ -25,7 +25,7 @@ from radhar_cli.config.number import (
     value_error,
     within,
 )
-from radhar_cli.config.section import Filled, Flag, N, Section, default_draw, defaults_of
+from radhar_cli.schema.section import Filled, Flag, N, Section, default_draw, defaults_of
 
 
 class SubjectConfig(Section, Generic[N]):

@@ -16,14 +16,14 @@ from radhar_cli.config.acting import (
     SPECTRA,
     STFTS,
 )
-from radhar_cli.config.annotations import ActsIf, ByModel
-from radhar_cli.config.number import value_error
 from radhar_cli.config.radar import MIN_WINDOW
-from radhar_cli.config.section import Flag, Section, defaults_of
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import half_up
 from radhar_cli.radar.chirp_window import WindowName
 from radhar_cli.radar.detection import Chain
+from radhar_cli.schema.annotations import ActsIf, ByModel
+from radhar_cli.schema.number import value_error
+from radhar_cli.schema.section import Flag, Section, defaults_of
 
 
 class SavgolConfig(Section):

@@ -28,20 +28,7 @@ from pydantic import (
     model_validator,
 )
 
-from radhar_cli.config.annotations import GIVEN, ActsIf, ActsIfAny, ByModel
 from radhar_cli.config.maps import MIN_LOOPS
-from radhar_cli.config.number import (
-    ANGLE,
-    DECIBEL,
-    NOT_NEGATIVE,
-    POSITIVE,
-    Number,
-    Real,
-    support,
-    value_error,
-    within,
-)
-from radhar_cli.config.section import Filled, Flag, N, Section, VectorOf, default_draw
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, RANGE
@@ -61,6 +48,19 @@ from radhar_cli.radar.board import (
 from radhar_cli.radar.detection import Chain, Firmware
 from radhar_cli.radar.frame_header import FrameHeader
 from radhar_cli.radar.written_frames import WrittenFrames
+from radhar_cli.schema.annotations import GIVEN, ActsIf, ActsIfAny, ByModel
+from radhar_cli.schema.number import (
+    ANGLE,
+    DECIBEL,
+    NOT_NEGATIVE,
+    POSITIVE,
+    Number,
+    Real,
+    support,
+    value_error,
+    within,
+)
+from radhar_cli.schema.section import Filled, Flag, N, Section, VectorOf, default_draw
 
 if TYPE_CHECKING:
     from radhar_cli.radar.ti_cfg import BoardHeader

@@ -7,9 +7,9 @@ from math import ceil, cos, hypot, pi, radians
 from typing import TYPE_CHECKING, Any
 
 from radhar_cli.activities.activity import Activity
-from radhar_cli.config.annotations import People, at, of_kind
-from radhar_cli.config.number import nominal, support
-from radhar_cli.config.section import for_activity
+from radhar_cli.schema.annotations import People, at, of_kind
+from radhar_cli.schema.number import nominal, support
+from radhar_cli.schema.section import for_activity
 
 if TYPE_CHECKING:
     from radhar_cli.config.request import Request

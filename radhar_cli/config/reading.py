@@ -11,7 +11,6 @@ from typing import Any, NamedTuple, TypeAlias, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from radhar_cli.config.annotations import range_of, sections
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import Config, ConfigOfRecordings
 from radhar_cli.config.documents import (
@@ -26,7 +25,6 @@ from radhar_cli.config.documents import (
 )
 from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.motion_files import resolve_files
-from radhar_cli.config.number import FORMS
 from radhar_cli.config.radar import (
     KINDS_WITH_FRAMES,
     RADARS,
@@ -35,7 +33,6 @@ from radhar_cli.config.radar import (
     FmcwRadar,
     class_of_radar,
 )
-from radhar_cli.config.section import PerActivity, Problem, Section
 from radhar_cli.config.sequence import PART_TAGS, SequenceConfig
 from radhar_cli.config.several_radars import (
     NAME_KEY,
@@ -56,6 +53,9 @@ from radhar_cli.config.units import (
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import escaped
+from radhar_cli.schema.annotations import range_of, sections
+from radhar_cli.schema.number import FORMS
+from radhar_cli.schema.section import PerActivity, Problem, Section
 
 S = TypeVar("S", bound=Section)
 

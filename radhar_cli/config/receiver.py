@@ -5,9 +5,9 @@ from typing import Annotated, Generic, Literal
 from pydantic import Field
 
 from radhar_cli.config.acting import BOARD
-from radhar_cli.config.annotations import ABOVE_ZERO, ActsIf, ActsIfAny
-from radhar_cli.config.number import DECIBEL, NOT_NEGATIVE, POSITIVE, within
-from radhar_cli.config.section import Flag, N, Section, default_draw
+from radhar_cli.schema.annotations import ABOVE_ZERO, ActsIf, ActsIfAny
+from radhar_cli.schema.number import DECIBEL, NOT_NEGATIVE, POSITIVE, within
+from radhar_cli.schema.section import Flag, N, Section, default_draw
 
 
 class ToneConfig(Section, Generic[N]):

@@ -7,8 +7,8 @@ from typing import Annotated
 
 from pydantic import Field, field_validator, model_validator
 
-from radhar_cli.config.number import value_error
-from radhar_cli.config.section import Flag, Section
+from radhar_cli.schema.number import value_error
+from radhar_cli.schema.section import Flag, Section
 
 MAX_WINDOWS = 1_000_000
 

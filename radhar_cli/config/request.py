@@ -11,11 +11,7 @@ from pydantic import BaseModel, Field, ValidationInfo, field_validator
 
 from radhar_cli.activities.activity import (
     ACTIVITIES,
-    DEFAULT,
-    EXERCISES,
-    MOVEMENTS,
     STREAM,
-    TWELVE,
     Activity,
     activity_named,
     class_called,
@@ -24,7 +20,31 @@ from radhar_cli.activities.activity import (
 from radhar_cli.activities.links import links_between
 from radhar_cli.activities.vocabulary import is_other_word, plain_word
 from radhar_cli.config.acting import BOARD
-from radhar_cli.config.annotations import (
+from radhar_cli.config.classes import (
+    ClassConfig,
+    Classes,
+    FilesConfig,
+    class_activities,
+    movement_class,
+)
+from radhar_cli.config.engine import EngineConfig
+from radhar_cli.config.image import ImageConfig
+from radhar_cli.config.maps import CADENCE_MAPS, FRAME_MAPS, MAP_NAMES, OF_FRAMES, OF_POINTS, Maps
+from radhar_cli.config.motion import MotionConfig, TimingConfig
+from radhar_cli.config.output import OutputConfig, SplitConfig
+from radhar_cli.config.people import BodyConfig, OneOf, PersonConfig, SubjectConfig
+from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
+from radhar_cli.config.radar import ArrayRadar, FmcwRadar, Radar
+from radhar_cli.config.range_zone import range_zone
+from radhar_cli.config.receiver import ReceiverConfig
+from radhar_cli.config.recordings import RecordingsConfig
+from radhar_cli.config.room import RoomConfig, WallConfig
+from radhar_cli.config.sequence import SequenceConfig
+from radhar_cli.config.stream import TURN, StreamConfig
+from radhar_cli.errors import CaptureError
+from radhar_cli.motion.movements.catalogue import MOVEMENTS, users_of
+from radhar_cli.motion.movements.exercises import EXERCISES
+from radhar_cli.schema.annotations import (
     GIVEN,
     ActsIf,
     ActsIfAny,
@@ -39,30 +59,9 @@ from radhar_cli.config.annotations import (
     of_kind,
     section,
 )
-from radhar_cli.config.classes import (
-    ClassConfig,
-    Classes,
-    FilesConfig,
-    class_activities,
-    movement_class,
-)
-from radhar_cli.config.engine import EngineConfig
-from radhar_cli.config.image import ImageConfig
-from radhar_cli.config.maps import CADENCE_MAPS, FRAME_MAPS, MAP_NAMES, OF_FRAMES, OF_POINTS, Maps
-from radhar_cli.config.motion import MotionConfig, TimingConfig
-from radhar_cli.config.number import Decibel, Positive, nominal, uniform, value_error, within
-from radhar_cli.config.output import OutputConfig, SplitConfig
-from radhar_cli.config.people import BodyConfig, OneOf, PersonConfig, SubjectConfig
-from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
-from radhar_cli.config.radar import ArrayRadar, FmcwRadar, Radar
-from radhar_cli.config.range_zone import range_zone
-from radhar_cli.config.receiver import ReceiverConfig
-from radhar_cli.config.recordings import RecordingsConfig
-from radhar_cli.config.room import RoomConfig, WallConfig
-from radhar_cli.config.section import By, PerActivity, S, Section, defaults_of, for_activity
-from radhar_cli.config.sequence import SequenceConfig
-from radhar_cli.config.stream import TURN, StreamConfig
-from radhar_cli.errors import CaptureError
+from radhar_cli.schema.number import Decibel, Positive, nominal, uniform, value_error, within
+from radhar_cli.schema.section import By, PerActivity, S, Section, defaults_of, for_activity
+from radhar_cli.schema.twelve import DEFAULT, TWELVE
 
 Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
 
@@ -673,8 +672,7 @@ def _uses() -> dict[str, dict[str, frozenset[str]]]:
     """{dotted key: {model: who uses it}} of the keys that not everybody uses."""
     uses = dict[str, dict[str, frozenset[str]]]()
     for key, people in of_kind(Request, People):
-        names = people.names.replace("exercises", " ".join(EXERCISES)).split()
-        uses.setdefault(key, {})["human"] = frozenset(names)
+        uses.setdefault(key, {})["human"] = frozenset(users_of(key, people))
     for key, other in of_kind(Request, Paper):
         uses.setdefault(key, {})["paper"] = frozenset(other.names.split())
     return uses

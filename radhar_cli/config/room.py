@@ -5,16 +5,16 @@ from typing import Annotated, Any, Generic, Literal
 from pydantic import Discriminator, Field, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema
 
-from radhar_cli.config.annotations import GIVEN, ActsIf, ByModel
-from radhar_cli.config.number import (
+from radhar_cli.radar.materials import Material
+from radhar_cli.schema.annotations import GIVEN, ActsIf, ByModel
+from radhar_cli.schema.number import (
     AT_LEAST_ONE,
     NOT_NEGATIVE,
     POSITIVE,
     uniform,
     within,
 )
-from radhar_cli.config.section import Filled, N, Section, VectorOf, default_draw
-from radhar_cli.radar.materials import Material
+from radhar_cli.schema.section import Filled, N, Section, VectorOf, default_draw
 
 SIZE = within(1e-6, 1e6, "m")
 

@@ -14,8 +14,8 @@ from typing import Any
 from radhar_cli.config.documents import FILE_OF_CFG, ONE_VALUE, Document, Places, lay_over
 from radhar_cli.config.radar import RADARS, ArrayRadar, FmcwRadar, class_of_radar
 from radhar_cli.config.request import Request
-from radhar_cli.config.section import Problem
 from radhar_cli.errors import did_you_mean
+from radhar_cli.schema.section import Problem
 
 RADARS_KEY, NAME_KEY, OTHERS_KEY = "radars", "radar_name", "other_radars"
 ASPECT = "aspect"

@@ -14,7 +14,6 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic import ValidationError
 
-from radhar_cli.config.annotations import ByModel, annotations, section
 from radhar_cli.config.built_in_radars import device_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.documents import (
@@ -27,7 +26,6 @@ from radhar_cli.config.documents import (
 )
 from radhar_cli.config.identity import yaml_text
 from radhar_cli.config.offered_maps import possible_maps
-from radhar_cli.config.section import Section
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.radar.board import DEVICES
@@ -36,6 +34,8 @@ from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
 from radhar_cli.radar.ti_elements import fitting_devices
 from radhar_cli.radar.ti_family import Family
 from radhar_cli.radar.ti_l_sdk import IWRL6844
+from radhar_cli.schema.annotations import ByModel, annotations, section
+from radhar_cli.schema.section import Section
 
 WIDTH = 100
 PEOPLE_CHAINS = "people_tracking", "people_counting"

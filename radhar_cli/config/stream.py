@@ -8,10 +8,12 @@ from typing import Annotated, Generic, Literal, Protocol, cast
 
 from pydantic import Field, model_validator
 
-from radhar_cli.activities.activity import MOVEMENTS, Activity, first_states, state_after
+from radhar_cli.activities.activity import Activity, first_states, state_after
 from radhar_cli.activities.links import links_between
 from radhar_cli.config.classes import ClassConfig
-from radhar_cli.config.number import (
+from radhar_cli.config.sequence import MIN_MOVEMENT_S, Chance, SequenceConfig, SequenceStep
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.schema.number import (
     NOT_NEGATIVE,
     RATIO,
     SECONDS,
@@ -21,8 +23,7 @@ from radhar_cli.config.number import (
     value_error,
     within,
 )
-from radhar_cli.config.section import N, Section, default_draw, defaults_of
-from radhar_cli.config.sequence import MIN_MOVEMENT_S, Chance, SequenceConfig, SequenceStep
+from radhar_cli.schema.section import N, Section, default_draw, defaults_of
 
 Metres = Annotated[float, Field(ge=-1000, le=1000, strict=True)]
 MIN_ZONE_M = 2.5  # side of a zone, for each person: a walker turns within 1.5 m

@@ -10,7 +10,6 @@ import yaml
 from PIL import Image, ImageDraw, ImageFont
 
 from radhar_cli.config.data_set import Config, MeasuredConfig
-from radhar_cli.config.number import nominal
 from radhar_cli.config.radar import BoardRadar, FramesRadar
 from radhar_cli.dataset.card_contents import (
     describe_arrays,
@@ -26,6 +25,7 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.stream_files import draw_streams
 from radhar_cli.files.table_text import markdown_table
+from radhar_cli.schema.number import nominal
 
 _WAVEFORMS = {
     "fmcw": "an FMCW",

@@ -7,7 +7,6 @@ import h5py
 import numpy as np
 
 from radhar_cli.assembly.room import kinds_of
-from radhar_cli.config.annotations import value_text
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.config.image import AbsoluteReference, ImageConfig
@@ -23,6 +22,7 @@ from radhar_cli.processing.points import COLUMNS
 from radhar_cli.processing.scale import NOISE_PLACE
 from radhar_cli.products.segments import SEGMENT_COLUMNS
 from radhar_cli.products.segments import label_names as stream_label_names
+from radhar_cli.schema.annotations import value_text
 
 BLOCK = 4096  # rows of a column read at once
 CFAR_TEXT = (

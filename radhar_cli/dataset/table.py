@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from radhar_cli.config.data_set import AnyConfig, Config
-from radhar_cli.config.number import support
-from radhar_cli.config.section import for_activity
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.scene import FALL, numbers
+from radhar_cli.schema.number import support
+from radhar_cli.schema.section import for_activity
 
 BLOCK = 256  # indices whose numbers are read at once
 

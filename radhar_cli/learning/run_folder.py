@@ -19,8 +19,6 @@ from safetensors.torch import save as safetensors_bytes
 from torch import Tensor, nn
 from typing_extensions import TypedDict
 
-from radhar_cli.config.number import require, value_error
-from radhar_cli.config.section import Section
 from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
 from radhar_cli.errors import ModelError
@@ -43,6 +41,8 @@ from radhar_cli.learning.run_files import (
 )
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tasks.task import Task, create_task
+from radhar_cli.schema.number import require, value_error
+from radhar_cli.schema.section import Section
 
 MAX_CLASSES = 10_000
 MAX_HEADER = 2**24  # bytes

@@ -12,10 +12,10 @@ from pydantic import (
     model_validator,
 )
 
-from radhar_cli.config.number import value_error
-from radhar_cli.config.section import Section
 from radhar_cli.extensions import load_extensions
 from radhar_cli.learning.choices import NETWORKS, TASKS, Kind, sequences_of
+from radhar_cli.schema.number import value_error
+from radhar_cli.schema.section import Section
 
 
 def _auto_or(least: int) -> BeforeValidator:

@@ -1,13 +1,13 @@
 """What compiled code does for the samples of a config, or would do if it were installed."""
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.number import support
 from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.echo.compiled import MIN_TERMS
 from radhar_cli.errors import how_to_install
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.accelerators import installed
 from radhar_cli.processing.map_kind import kind_of
+from radhar_cli.schema.number import support
 
 
 def describe_acceleration(config: Config) -> str | None:

@@ -8,7 +8,6 @@ from typing import TypeAlias
 from radhar_cli.assembly.processing import cfar_of
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.config.image import AbsoluteReference
-from radhar_cli.config.number import nominal
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.doppler_power import DopplerPower
 from radhar_cli.processing.image import (
@@ -22,6 +21,7 @@ from radhar_cli.processing.image import (
 from radhar_cli.processing.power_map import MapImage, PowerMap
 from radhar_cli.processing.scale import CfarMask, DecibelScale, Reference, Scale
 from radhar_cli.scene import Scene
+from radhar_cli.schema.number import nominal
 
 # Resizes a function of the power, or for None the power itself.
 Resize: TypeAlias = Callable[[Callable[[Float], Float] | None], Reduced]

@@ -5,13 +5,13 @@ from functools import partial
 
 from radhar_cli.assembly.receiver import noise_stream
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.number import nominal
 from radhar_cli.errors import SceneError
 from radhar_cli.products.plan import Product
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.receiver.noise_law import NoiseLaw, Silent, Snr, Thermal
 from radhar_cli.scene import Scene
+from radhar_cli.schema.number import nominal
 
 
 def noise_law_of(config: Config) -> NoiseLaw:

@@ -7,8 +7,13 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from radhar_cli.activities.activity import DEFAULT, Activity
-from radhar_cli.config.annotations import (
+from radhar_cli.activities.activity import Activity
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.motion import MotionConfig
+from radhar_cli.config.range_zone import range_zone
+from radhar_cli.config.room import WallConfig
+from radhar_cli.scene import FALL, USUAL_SPEEDS, numbers
+from radhar_cli.schema.annotations import (
     OnlyMaps,
     annotations,
     at,
@@ -16,13 +21,9 @@ from radhar_cli.config.annotations import (
     entry,
     of_kind,
 )
-from radhar_cli.config.data_set import Config
-from radhar_cli.config.motion import MotionConfig
-from radhar_cli.config.number import support
-from radhar_cli.config.range_zone import range_zone
-from radhar_cli.config.room import WallConfig
-from radhar_cli.config.section import PerActivity
-from radhar_cli.scene import FALL, USUAL_SPEEDS, numbers
+from radhar_cli.schema.number import support
+from radhar_cli.schema.section import PerActivity
+from radhar_cli.schema.twelve import DEFAULT
 
 _OF_PEOPLE = ("subject.", "motion.", "timing.")
 

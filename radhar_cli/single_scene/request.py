@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from typing import Literal
 
-from radhar_cli.activities.activity import MOVEMENTS, Activity, activity_named
+from radhar_cli.activities.activity import Activity, activity_named
 from radhar_cli.config.checks.signal import problems_of_maps
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.engine import EngineConfig
@@ -13,6 +13,7 @@ from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.config.reading import ABSENT
 from radhar_cli.errors import ConfigError, did_you_mean
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.protocol import Motion, ScattererSubset
 from radhar_cli.processing.map_kind import MAP_KINDS, TREATMENTS, UNTREATED
 from radhar_cli.products.signal import signal_name

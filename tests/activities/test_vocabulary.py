@@ -2,7 +2,7 @@
 
 import pytest
 
-from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, Activity, activity_named
+from radhar_cli.activities.activity import ACTIVITIES, Activity, activity_named
 from radhar_cli.activities.vocabulary import (
     FROM_FILES,
     MEANINGS,
@@ -13,6 +13,7 @@ from radhar_cli.activities.vocabulary import (
 )
 from radhar_cli.config import load_config
 from radhar_cli.errors import ConfigError
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
 
 SLUGS = [activity.slug for activity in ACTIVITIES]
 

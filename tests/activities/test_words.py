@@ -2,8 +2,9 @@
 
 import pytest
 
-from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.activities.vocabulary import FROM_FILES, USUAL, advice_on, meaning_of
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
 
 KNOWN = sorted({activity.slug for activity in ACTIVITIES} | set(MOVEMENTS) | {"nobody"})
 NONE = "no such word"

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from helpers.bodies import links_of
 
-from radhar_cli.activities.activity import MOVEMENTS, activity_named
+from radhar_cli.activities.activity import activity_named
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.config.checks.people import HUMAN_LIMITS
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.physique import Physique, froude_scale
-from radhar_cli.motion.human.walking import Gait, Walk
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.scene import Scene, draw_scene, nominal_scene, scene_numbers
 

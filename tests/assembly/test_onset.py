@@ -8,11 +8,13 @@ from helpers.slow import examples
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, NOBODY, Activity, activity_named
+from radhar_cli.activities.activity import ACTIVITIES, Activity, activity_named
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.dataset.scene_fields import movement_onset
 from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO, links
 from radhar_cli.scene import Scene, draw_scene, nominal_scene
 

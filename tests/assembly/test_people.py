@@ -9,15 +9,18 @@ import pytest
 from helpers.bodies import links_of
 from helpers.movements import in_groups
 
-from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, NOBODY, activity_named
+from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.checks.people import HUMAN_LIMITS
-from radhar_cli.config.motion import EARLIER_KEYS, FALLS
+from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.physique import froude_scale
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.falling import FALLS
+from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.products.run import record
 from radhar_cli.scene import PERSONAL, UNSTEADY, Scene, draw_scene, nominal_scene, scene_numbers

@@ -10,13 +10,15 @@ from helpers.slow import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, NOBODY
+from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.assembly.streams import StreamMotion, segments_of
 from radhar_cli.config import Config, resolved
 from radhar_cli.config.reading import validated
 from radhar_cli.config.stream import PAUSE, TRANSITION, frame_classes
 from radhar_cli.errors import ConfigError
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.scene import Scene, draw_scene, nominal_scene
 
 CHOSEN = ("walking", "sitting_down", "grabbing", "punching", "walking_to_falling")

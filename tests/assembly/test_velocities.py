@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
-from radhar_cli.activities.activity import ACTIVITIES, MOVEMENTS, NOBODY, activity_named
+from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.scene import draw_scene

@@ -13,8 +13,8 @@ from radhar_cli.audit.scene_numbers import (
     sentences_on_cue,
 )
 from radhar_cli.config import Config
-from radhar_cli.config.annotations import annotations
 from radhar_cli.dataset.scene_fields import ONSET
+from radhar_cli.schema.annotations import annotations
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,10 @@ import yaml
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.documents import MAX_CHAIN
 from radhar_cli.config.identity import as_yaml, config_hash
-from radhar_cli.config.number import Choice, Normal, Uniform, Vary
 from radhar_cli.config.reading import load_section
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.schema.number import Choice, Normal, Uniform, Vary
 
 
 def write(folder: Path, **texts: str) -> None:

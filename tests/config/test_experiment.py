@@ -20,15 +20,15 @@ from radhar_cli.config import (
     timing_warnings,
 )
 from radhar_cli.config.motion import EARLIER_KEYS
-from radhar_cli.config.number import Uniform
 from radhar_cli.config.people import PersonConfig, SubjectConfig
 from radhar_cli.config.radar import ArrayConfig, BeamConfig
 from radhar_cli.config.receiver import ToneConfig
 from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import BoxConfig, FacesConfig, LayerConfig, ReflectorConfig
-from radhar_cli.config.section import Section
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import StreamConfig
+from radhar_cli.schema.number import Uniform
+from radhar_cli.schema.section import Section
 
 
 def test_the_defaults_of_the_paper_are_its_free_space_data_set() -> None:

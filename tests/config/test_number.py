@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pydantic import TypeAdapter, ValidationError
 from scipy.stats import truncnorm
 
-from radhar_cli.config.number import Number, is_fixed, nominal, quantile, support
+from radhar_cli.schema.number import Number, is_fixed, nominal, quantile, support
 
 NUMBER: TypeAdapter[Any] = TypeAdapter(Number)
 VALUES = st.floats(-1e6, 1e6)

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from radhar_cli.config.documents import PRESETS, RADARS, WRITTEN_RADARS, read_on_bases
-from radhar_cli.config.section import DEFAULT
 from radhar_cli.config.starting_file import MINIMAL, of_board, of_preset
 from radhar_cli.config.yaml_reader import parse_yaml
+from radhar_cli.schema.twelve import DEFAULT
 
 ROOT = Path(__file__).parents[2]
 # Keys of what is not the movement, and of where it begins in the recording.

@@ -8,8 +8,8 @@ from helpers.command_line import ROOT
 
 from radhar_cli.config import load_radars
 from radhar_cli.config.reading import load_section
-from radhar_cli.config.section import Section
 from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.schema.section import Section
 
 FOLDER = ROOT / "configs"
 FILES = sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.yaml"))

@@ -15,12 +15,12 @@ from radhar_cli.config.built_in_radars import device_of
 from radhar_cli.config.documents import PRESETS, RADARS
 from radhar_cli.config.reading import load_section, load_sections
 from radhar_cli.config.room import WallConfig
-from radhar_cli.config.section import Section
 from radhar_cli.config.starting_file import WIDTH, as_commented_yaml, of_board, of_preset
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.radar.board import DEVICES
+from radhar_cli.schema.section import Section
 from radhar_cli.single_scene.simulate import simulate
 
 KINDS = pytest.mark.parametrize("kind", [Config, TrainConfig], ids=["data", "train"])

@@ -3,9 +3,9 @@
 import pytest
 
 from radhar_cli.config import Config, load_config
-from radhar_cli.config.annotations import annotations
 from radhar_cli.config.units import UNITS, factor_of, key_in_our_unit, unit_of, value_with_unit
 from radhar_cli.errors import ConfigError
+from radhar_cli.schema.annotations import annotations
 
 KEYS = {unit_of(key): key for key in annotations(Config) if unit_of(key)}
 

@@ -196,11 +196,13 @@ def test_every_class_has_a_meaning_if_only_its_name() -> None:
 
 
 def test_every_movement_has_a_meaning_of_the_posture_in_which_it_is_made() -> None:
-    from radhar_cli.activities.activity import GESTURES_BY_STATE, MOVEMENTS, activity_named
+    from radhar_cli.activities.activity import activity_named
     from radhar_cli.activities.meanings import meaning_of_class
+    from radhar_cli.motion.movements import gestures
+    from radhar_cli.motion.movements.catalogue import MOVEMENTS
 
     meanings = {name: meaning_of_class(activity_named(name)) for name in MOVEMENTS}
     assert not [name for name, meaning in meanings.items() if meaning == name.replace("_", " ")]
     verbs = {"standing": "stands and ", "seated": "sits and "}
-    for state, names in GESTURES_BY_STATE.items():
-        assert all(meanings[name].startswith(verbs[state]) for name in names)
+    for kind in gestures.MOVEMENTS:
+        assert meanings[kind.name].startswith(verbs[kind.before])

@@ -10,6 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+import yaml
 from helpers import command_line
 from helpers.listener import Listener
 from helpers.signals import signal
@@ -31,11 +32,6 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import ConfigError, RadharError, SceneError
-from radhar_cli.motion.human import repertoire
-from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import Phase
-from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.planted import Planted, resting_channels
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.look import Look
@@ -504,45 +500,118 @@ def test_the_commands_import_modules_of_ones_own(
     assert "my_radar cannot be imported (SyntaxError: invalid syntax" in broken.stderr
 
 
-@dataclass(frozen=True)
-class Wave:
-    """Raises the right arm within half a second, holds it, and lets it down; a file of its own."""
+GREETING = '''
+"""Greets: the right arm is raised, held, and let down."""
 
-    seconds: float
+from dataclasses import dataclass
+from math import radians
+from typing import Annotated, Generic
+
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import Phase
+from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.planted import Planted, resting_channels
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.repeating import draw_repetitions
+from radhar_cli.schema.annotations import People
+from radhar_cli.schema.number import ANGLE, uniform
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+class GreetingConfig(Section, Generic[B]):
+    """How people greet."""
+
+    raised_deg: Annotated[B, ByActivity(ANGLE), People("greeting", 60, 175)] = default_draw(
+        uniform(140.0, 170.0)
+    )
+    """Angle by which the arm of somebody who greets is raised."""
+
+SECTION = GreetingConfig
+
+@dataclass(frozen=True)
+class Greet:
+    """Raises the right arm by an angle (rad) within half a second, and lets it down."""
+
+    duration: float
+    angle: float
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        rest, end = resting_channels(person), begin + self.seconds
+        rest, end = resting_channels(person), begin + self.duration
         steps = [
-            Step("right_shoulder", 2.8, begin, 0.5),
-            Step("right_shoulder", -2.8, end - 0.5, 0.5),
+            Step("right_shoulder", self.angle, begin, 0.5),
+            Step("right_shoulder", -self.angle, end - 0.5, 0.5),
         ]
         phases = (Phase(begin, "raising"), Phase(end, "standing"))
         return Planted(person, Course.of(rest, steps), begin, end, phases)
 
+def make_greeting(mover: Mover) -> Greet:
+    size = draw_repetitions(mover)[1][0]
+    angle = size * radians(mover.numbers(GreetingConfig[float]).raised_deg)
+    return Greet(mover.duration, angle)
 
-def test_a_movement_of_people_is_a_file_and_its_line_in_both_tables(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """A class of one's own names it beside others; a config then simulates it."""
-    usual = activity.MovementInfo("standing", "standing", 2.0)
-    monkeypatch.setitem(activity.MOVEMENTS, "waving", usual)
-    monkeypatch.setitem(repertoire.MOVEMENTS, "waving", lambda person, duration: Wave(duration))
-    config = Config.model_validate(
-        {
-            "classes": {"waves": {"sequence": ["waving", "sitting_down"]}},
-            "activities": ["waves"],
-            "duration_s": 5.0,
-            "radar": RADAR,
-            "image": {"size_px": 32},
-        }
+MOVEMENTS = (
+    MovementKind(
+        "greeting",
+        "stands and greets",
+        make_greeting,
+        seconds=2.0,
+        in_place=True,
+        uses=("repeating.size_jitter",),
+        words="saying_hello",
+    ),
+)
+'''
+WITH_GREETING = """
+import sys
+from radhar_cli.motion import movements
+movements.__path__.append(sys.argv.pop(1))
+from radhar_cli.cli import main
+main()
+"""
+
+
+def test_a_movement_of_people_is_one_file(tmp_path: Path) -> None:
+    """Its keys, classes, words and columns are known once it lies beside the others."""
+    folder = tmp_path / "movements"
+    folder.mkdir()
+    (folder / "greeting.py").write_text(GREETING)
+
+    def ran(*arguments: object) -> str:
+        done = command_line.process("-c", WITH_GREETING, folder, *arguments)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    config = tmp_path / "greeting.yaml"
+    config.write_text(
+        yaml.safe_dump(
+            {
+                "classes": {"both": {"sequence": ["greeting", "sitting_down"]}},
+                "activities": ["saying_hello", "both"],
+                "samples_per_class": 2,
+                "duration_s": 3.0,
+                "radar": RADAR,
+                "image": {"size_px": 32},
+                "motion": {"greeting": {"raised_deg": {"uniform": [80, 90]}}},
+            }
+        )
     )
-    scene = nominal_scene(config, config.chosen_activities[0])
-    motion = motion_of(scene.people[0])
-    t = np.arange(0, 5, 0.01)
-    hand = motion.positions(t)[2, motion.names.index("right_hand")]
-    assert hand.max() > hand[0] + 0.8
-    assert [name for _, name in motion.phases][1:3] == ["raising", "sitting down"]
-    assert record(scene, ["image:stft"])["image:stft"].levels.any()
+    shown = yaml.safe_load(ran("config", "show", config))
+    assert shown["motion"]["greeting"] == {"raised_deg": {"uniform": [80.0, 90.0]}}
+    assert shown["motion"]["kneeling"]
+    ran("config", "init", tmp_path / "all.yaml")
+    text = (tmp_path / "all.yaml").read_text()
+    assert "Angle by which the arm of somebody who greets is raised." in text
+    assert '"GreetingConfig"' in ran("config", "schema")
+    ran("generate", config, "-o", tmp_path / "set", "--jobs", 1)
+    with h5py.File(tmp_path / "set/dataset.h5") as file:
+        angles = np.degrees(file["scene/raised"][:])
+    assert ((angles >= 80) & (angles <= 90)).all()
+    refused = command_line.process(
+        *("-c", WITH_GREETING, folder, "config", "show", config),
+        *("--set", "motion.greeting.raised_deg=20"),
+    )
+    assert refused.returncode == 2
+    assert "motion.greeting.raised_deg = 20" in refused.stderr
+    assert "from 60 to 175" in refused.stderr
 
 
 FAN = """

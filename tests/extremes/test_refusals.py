@@ -9,11 +9,11 @@ import pytest
 from helpers.boards import CFG
 
 from radhar_cli.config import Config
-from radhar_cli.config.annotations import ByModel, annotations, of_kind
-from radhar_cli.config.number import Bounds
 from radhar_cli.config.radar import FmcwRadar
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError
+from radhar_cli.schema.annotations import ByModel, annotations, of_kind
+from radhar_cli.schema.number import Bounds
 
 WALL = ("wall.center_m", "wall.size_m")
 Limits = dict[str, tuple[Any, Any, Any, Any]]

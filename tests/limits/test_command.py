@@ -8,8 +8,8 @@ from helpers.command_line import radhar
 from helpers.slow import slow
 
 from radhar_cli.config import Config, load_config
-from radhar_cli.config.number import MAX_NUMBER
 from radhar_cli.config.reading import config_of_values, read_values
+from radhar_cli.schema.number import MAX_NUMBER
 from radhar_cli.study.limits.keys import PEOPLE, acting_numbers, with_number
 from radhar_cli.study.limits.limit import (
     CLEAN,

@@ -24,7 +24,7 @@ from radhar_cli.config.checks.streams import stream_problems
 from radhar_cli.config.maps import MAPS_OF_SAMPLES, without_cadences
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.config.request import MeasuredRequest, Request
-from radhar_cli.config.section import Problem
+from radhar_cli.schema.section import Problem
 
 
 def problems_of_recordings(c: Request) -> Iterator[Problem]:

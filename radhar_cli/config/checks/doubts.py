@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable
 
-from radhar_cli.activities.activity import NOBODY, Activity
-from radhar_cli.config.number import nominal, support
+from radhar_cli.activities.activity import Activity
 from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.config.request import Request
-from radhar_cli.config.section import for_activity
+from radhar_cli.motion.movements.standing import NOBODY
+from radhar_cli.schema.number import nominal, support
+from radhar_cli.schema.section import for_activity
 
 MIDDLES = 7.29e9, 8.748e9  # Hz, as data sheets of Novelda's X4 name its two bands
 

@@ -2,22 +2,16 @@
 
 from collections.abc import Iterator
 
-from radhar_cli.activities.activity import (
-    ACTIVITIES,
-    DEFAULT,
-    MOVEMENTS,
-    NOBODY,
-    STREAM,
-    TWELVE,
-    activity_named,
-    own_activities,
-)
-from radhar_cli.config.annotations import Limits, People, annotations, at, of_kind
-from radhar_cli.config.number import MAX_NUMBER, support
+from radhar_cli.activities.activity import ACTIVITIES, STREAM, activity_named, own_activities
 from radhar_cli.config.request import Request
-from radhar_cli.config.section import PerActivity, Problem, for_activity
 from radhar_cli.config.sequence import SequenceConfig
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.numerics.rounding import show_beside
+from radhar_cli.schema.annotations import Limits, People, annotations, at, of_kind
+from radhar_cli.schema.number import MAX_NUMBER, support
+from radhar_cli.schema.section import PerActivity, Problem, for_activity
+from radhar_cli.schema.twelve import DEFAULT, TWELVE
 
 
 def people_problems(c: Request) -> Iterator[Problem]:

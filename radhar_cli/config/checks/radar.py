@@ -4,10 +4,8 @@ from collections.abc import Iterator
 from math import ceil
 from typing import Any, assert_never
 
-from radhar_cli.config.annotations import at
 from radhar_cli.config.checks.smallest_waveform import ENDS, waveform_at
 from radhar_cli.config.maps import FRAME_MAPS, OF_FRAMES, OF_POINTS
-from radhar_cli.config.number import support
 from radhar_cli.config.offered_maps import why_no_map
 from radhar_cli.config.radar import (
     AnyRadar,
@@ -22,11 +20,13 @@ from radhar_cli.config.radar import (
     StepFramesRadar,
 )
 from radhar_cli.config.request import AnyRequest, Request
-from radhar_cli.config.section import Problem
 from radhar_cli.numerics.rounding import half_up, show_beside
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.impulse import impulse
 from radhar_cli.radar.ti_family import Family
+from radhar_cli.schema.annotations import at
+from radhar_cli.schema.number import support
+from radhar_cli.schema.section import Problem
 
 MAX_CUBE = 2**27  # samples of all channels
 MAX_PADDING = 64

@@ -19,14 +19,14 @@ from radhar_cli.config.maps import (
     MAPS_OF_SAMPLES,
     without_cadences,
 )
-from radhar_cli.config.number import support
 from radhar_cli.config.offered_maps import why_no_map
 from radhar_cli.config.radar import MIN_WINDOW, ArrayRadar
 from radhar_cli.config.request import AnyRequest, Request
-from radhar_cli.config.section import Problem
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import show_beside
 from radhar_cli.processing.map_kind import treatment_of
+from radhar_cli.schema.number import support
+from radhar_cli.schema.section import Problem
 
 MAX_PULSES = 2**24
 MAX_BIN_SAMPLES = 2**27  # of range bins in memory, 16 bytes each

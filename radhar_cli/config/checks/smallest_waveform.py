@@ -1,11 +1,11 @@
 """Waveforms at the ends of what a config draws."""
 
-from radhar_cli.config.number import support
 from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.config.request import AnyRequest
 from radhar_cli.processing.frames import Frames
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import Waveform
+from radhar_cli.schema.number import support
 
 ENDS = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz", "prf_hz", "duration_s")
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from radhar_cli.activities.activity import NOBODY
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.tasks.categories import Classifier
+from radhar_cli.motion.movements.standing import NOBODY
 
 
 class Count(Classifier):

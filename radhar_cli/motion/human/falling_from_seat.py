@@ -20,7 +20,7 @@ from radhar_cli.motion.human.planted import (
     scale_steps,
     steps_of_both_sides,
 )
-from radhar_cli.motion.human.sitting import Seat
+from radhar_cli.motion.movements.sitting import Seat
 
 # Steps from the seat to the floor: channel, share of its change, start and length in units of the
 # duration, and whether the step is late.

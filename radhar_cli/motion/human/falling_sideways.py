@@ -13,8 +13,8 @@ from radhar_cli.motion.human.part import SEATED, STANDING, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import HAND, scale_steps
 from radhar_cli.motion.human.pose import SIDES, Pose, axes, shoulder_points
-from radhar_cli.motion.human.sitting import Seat
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.motion.movements.sitting import Seat
 from radhar_cli.numerics.arrays import Float
 
 ON_SIDE = "lying on the side"

@@ -7,13 +7,15 @@ the walker is at a (int cos(pi S), int sin(pi S)) from its beginning; after it a
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.polynomial import Chebyshev
 
 from radhar_cli.motion.human.minimum_jerk import minimum_jerk
 from radhar_cli.numerics.arrays import Float
+
+if TYPE_CHECKING:
+    from numpy.polynomial import Chebyshev
 
 DEGREE = 40  # of the integrals, which then hold to 1e-15
 
@@ -66,8 +68,10 @@ def place_half_turns(lane: Lane, speed: float, arc: float, walk: WalkTimes) -> F
 
 
 @lru_cache(maxsize=1)
-def _arc() -> tuple[Chebyshev, Chebyshev]:
+def _arc() -> "tuple[Chebyshev, Chebyshev]":
     """Integrals of cos and sin of pi S(x) from 0 to x."""
+    from numpy.polynomial import Chebyshev  # slow to import
+
     forth, across = (
         Chebyshev.interpolate(
             lambda x, f=f: f(np.pi * minimum_jerk(x)),  # type: ignore[misc]

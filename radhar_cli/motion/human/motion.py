@@ -5,20 +5,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from math import cos, inf, sin
-from typing import Protocol
 
 import numpy as np
 
 from radhar_cli.motion import skeleton
-from radhar_cli.motion.human.exercises import Exercise
-from radhar_cli.motion.human.gesturing import Clap, Drink, Wave, Write
 from radhar_cli.motion.human.idle import Idle
-from radhar_cli.motion.human.kicking import Kick
-from radhar_cli.motion.human.lying import Lying
 from radhar_cli.motion.human.part import (
     LYING,
     SEATED,
     STANDING,
+    Movement,
     Part,
     Phase,
     Place,
@@ -28,29 +24,16 @@ from radhar_cli.motion.human.part import (
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted
 from radhar_cli.motion.human.pose import Pose, feet
-from radhar_cli.motion.human.running import GoRunning
-from radhar_cli.motion.human.transfer import Transfer
-from radhar_cli.motion.human.walking import Walking
+from radhar_cli.motion.movements.lying import Lying
+from radhar_cli.motion.movements.transfer import Transfer
+from radhar_cli.motion.movements.walking import Walking
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Float, Index
 
 HIPS, TOES = ("right_hip", "left_hip"), ("right_toes", "left_toes")
 KNOWS_TOES = (Lying, Transfer)  # parts that say where the toes are
+USUAL_HZ = 3.0  # frequency that a movement counts as which has no `fastest_hz`
 BLOCK = 4096  # instants at once: what a block needs stays in the cache
-
-
-class Movement(Protocol):
-    """A dataclass of how a person makes one movement, such as `sitting.SitDown`."""
-
-    def part(self, person: Physique, begin: float, horizon: float) -> Part:
-        """Place the movement of a person in time.
-
-        Args:
-            person: Body that moves.
-            begin: When the movement begins, s.
-            horizon: Until when a movement that goes on is worked out, s.
-        """
-        ...
 
 
 @dataclass(frozen=True)
@@ -86,8 +69,9 @@ class HumanMotion:
     @property
     def highest_frequency(self) -> float:
         """Frequency that the fastest movement counts as, Hz: highest for kicks, runs and hands."""
-        fast = Kick | Exercise | GoRunning | Drink | Write | Wave | Clap
-        return 4.0 if any(isinstance(movement, fast) for movement in self.movements) else 3.0
+        return max(
+            (getattr(one, "fastest_hz", USUAL_HZ) for one in self.movements), default=USUAL_HZ
+        )
 
     @cached_property
     def parts(self) -> tuple[tuple[Part, Place], ...]:

@@ -4,6 +4,7 @@ from math import cos, sin
 from typing import NamedTuple, Protocol
 
 from radhar_cli.motion.human.idle import IdleState
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import Pose
 from radhar_cli.numerics.arrays import Float
 
@@ -84,4 +85,21 @@ class Part(Protocol):
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """Pose of the body at times t [M] (s), its own movements `idle` [M] included."""
+        ...
+
+
+class Movement(Protocol):
+    """A dataclass of how a person makes one movement, such as `sitting.SitDown`.
+
+    One that is faster than others has `fastest_hz`, the frequency that it counts as.
+    """
+
+    def part(self, person: Physique, begin: float, horizon: float) -> Part:
+        """Place the movement of a person in time.
+
+        Args:
+            person: Body that moves.
+            begin: When the movement begins, s.
+            horizon: Until when a movement that goes on is worked out, s.
+        """
         ...

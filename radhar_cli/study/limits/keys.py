@@ -7,11 +7,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from radhar_cli.config.annotations import OnlyMaps, annotations, at, conditions, of_kind
 from radhar_cli.config.checks.people import HUMAN_LIMITS
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.number import MAX_NUMBER, Bounds, Distribution, nominal, support
-from radhar_cli.config.section import PerActivity, Section
+from radhar_cli.schema.annotations import OnlyMaps, annotations, at, conditions, of_kind
+from radhar_cli.schema.number import MAX_NUMBER, Bounds, Distribution, nominal, support
+from radhar_cli.schema.section import PerActivity, Section
 
 # What counts, names or stores samples, and is of no sample.
 NOT_OF_A_SAMPLE = ("seed", "samples_per_class", "stream.count", "split.", "output.", "recordings.")

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.number import nominal
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.numerics.arrays import Bool, Complex, Float
@@ -24,6 +23,7 @@ from radhar_cli.products.plan import plan
 from radhar_cli.products.run import record
 from radhar_cli.products.table import products
 from radhar_cli.scene import Scene
+from radhar_cli.schema.number import nominal
 from radhar_cli.study.tradeoff.scenes import Scenes, SweepSample
 from radhar_cli.study.tradeoff.setting import Overrides
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.number import nominal
 from radhar_cli.config.radar import (
     ArrayRadar,
     BoardRadar,
@@ -14,6 +13,7 @@ from radhar_cli.config.radar import (
 )
 from radhar_cli.config.room import WallConfig
 from radhar_cli.processing.map_kind import kind_of
+from radhar_cli.schema.number import nominal
 from radhar_cli.study.tradeoff.board_settings import (
     board_settings,
     frame_settings,

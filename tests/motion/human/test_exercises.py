@@ -4,14 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers.movers import usual_movement
 
-from radhar_cli.activities.activity import EXERCISES as NAMES
-from radhar_cli.motion.human.exercises import EXERCISES
 from radhar_cli.motion.human.idle import Idle, motionless
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.repertoire import Repertoire
-from radhar_cli.motion.human.walking import Gait
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.exercises import EXERCISES
 from radhar_cli.motion.skeleton import JOINTS
 
 G = 9.81
@@ -31,9 +30,9 @@ def joint(motion: HumanMotion, name: str, t: np.ndarray) -> np.ndarray:
 
 
 def test_a_config_can_name_every_exercise() -> None:
-    assert set(NAMES) == set(EXERCISES)
-    for name in NAMES:
-        (one,) = Repertoire(Gait(1.2)).sequence([name], [2.0])
+    assert {*EXERCISES} <= {*MOVEMENTS}
+    for name in EXERCISES:
+        one = usual_movement(name, 2.0)
         assert one.part(Physique(1.7), 0.0, 4.0).phases[0].name == EXERCISES[name].name
 
 
@@ -60,7 +59,7 @@ def test_feet_stay(name: str) -> None:
     assert np.ptp(feet, axis=2).max() < 1e-6
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if "lunge" in name])
+@pytest.mark.parametrize("name", [name for name in tuple(EXERCISES) if "lunge" in name])
 def test_the_other_foot_carries_who_lunges(name: str) -> None:
     """Its toes stay: the heel alone rises, and no foot slides along the floor."""
     feet = moving(name).positions(np.arange(0, 8, 0.01))[:, FEET]
@@ -100,7 +99,7 @@ def test_depths() -> None:
     assert hand.max() > head[0] + 0.3
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if "right" in name])
+@pytest.mark.parametrize("name", [name for name in tuple(EXERCISES) if "right" in name])
 def test_left_is_right_in_a_mirror(name: str) -> None:
     t = np.arange(0, 4, 0.05)
     right, left = (moving(one).positions(t) for one in (name, name.replace("right", "left")))

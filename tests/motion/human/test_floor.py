@@ -8,18 +8,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import MOVEMENTS, first_states, state_after
+from radhar_cli.activities.activity import first_states, state_after
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
-from radhar_cli.motion.human.crawling import Crawl, Crawling
-from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
-from radhar_cli.motion.human.kneeling import Kneel
-from radhar_cli.motion.human.lying import Lie, Rest, TurnOver
-from radhar_cli.motion.human.motion import HumanMotion, Movement
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.human.part import Movement
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.sitting import Seat, Sit
-from radhar_cli.motion.human.transfer import EDGE, GoToBed, LeaveBed
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.crawling import Crawl, Crawling
+from radhar_cli.motion.movements.getting_up import GetUp, TryToGetUp
+from radhar_cli.motion.movements.kneeling import Kneel
+from radhar_cli.motion.movements.lying import Lie, Rest, TurnOver
+from radhar_cli.motion.movements.sitting import Seat, Sit
+from radhar_cli.motion.movements.transfer import EDGE, GoToBed, LeaveBed
 from radhar_cli.motion.segments import segment_positions, segments_between, thickness
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.scene import draw_scene

@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.config import Config
-from radhar_cli.motion.human.gesturing import AT_TABLE, Clap, Drink, Gesture, Wave, Write
 from radhar_cli.motion.human.idle import Idle, Waves
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.sitting import Seat, SitDown, StandUp
-from radhar_cli.motion.human.standing import Stand
+from radhar_cli.motion.movements.gestures import AT_TABLE, Clap, Drink, Gesture, Wave, Write
+from radhar_cli.motion.movements.sitting import Seat, SitDown, StandUp
+from radhar_cli.motion.movements.standing import Stand
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.single_scene.simulate import simulate

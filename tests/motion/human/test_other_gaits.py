@@ -11,17 +11,11 @@ from hypothesis import strategies as st
 from radhar_cli.motion.human.idle import motionless
 from radhar_cli.motion.human.lane import Lane
 from radhar_cli.motion.human.motion import HumanMotion
-from radhar_cli.motion.human.other_gaits import (
-    OTHER_GAITS,
-    carrying,
-    largest_limp,
-    limping,
-    usual_gaits,
-    walking_with_stick,
-    walking_with_walker,
-)
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.walking import Gait, Walk
+from radhar_cli.motion.movements.aids import walking_with_stick, walking_with_walker
+from radhar_cli.motion.movements.carrying import carrying
+from radhar_cli.motion.movements.limping import largest_limp, limping
+from radhar_cli.motion.movements.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS
 
 DT = 2e-3
@@ -142,7 +136,7 @@ def test_hands_with_a_load_do_not_swing(bag: int | None) -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(
-    name=st.sampled_from(OTHER_GAITS),
+    name=st.sampled_from(("limping", "walking_with_stick", "walking_with_walker", "carrying")),
     stature=st.floats(1.0, 2.1),
     speed=st.floats(0.15, 1.8),
     share=st.floats(0.0, 0.25),
@@ -192,7 +186,3 @@ def test_who_goes_fast_limps_less() -> None:
     assert largest_limp(1.5, 1.75) == pytest.approx(0.19, abs=0.01)
     assert largest_limp(1.3, 1.0) < 0.25
     assert largest_limp(2.8, 2.1) == 0
-
-
-def test_usual_gaits_are_those_of_the_names() -> None:
-    assert tuple(usual_gaits()) == OTHER_GAITS

@@ -12,8 +12,8 @@ from radhar_cli.motion.human.idle import Fidget, Idle, Sway, Waves, motionless, 
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.quintics import Quintics
-from radhar_cli.motion.human.running import GoRunning, RunningGait, step_times
-from radhar_cli.motion.human.standing import Stand
+from radhar_cli.motion.movements.running import GoRunning, RunningGait, step_times
+from radhar_cli.motion.movements.standing import Stand
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 
 G, DT = 9.81, 1e-3

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf, isinf, pi, radians
+from typing import Annotated, Generic
 
 import numpy as np
 
@@ -14,7 +15,28 @@ from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.repeating import EACH, PHASE, draw_repetitions, nonzero_tuple
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.schema.annotations import PERSONAL, Paper, People
+from radhar_cli.schema.number import ANGLE, FREQUENCY, NOT_NEGATIVE, vary
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+
+class RotatingConfig(Section, Generic[B]):
+    """How a body rotates on the spot (S7)."""
+
+    turn_deg: Annotated[
+        B, ByActivity(ANGLE), People("body_rotating", -90, 90), Paper("S7"), PERSONAL
+    ] = default_draw(vary(45.0, 0.2))
+    """Angle through which a rotating body (S7) turns to each side."""
+    rotation_hz: Annotated[
+        B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("body_rotating", 0, 1)
+    ] = default_draw(vary(0.45, 0.2))
+    """Turns of a rotating body (S7), to both sides, per second."""
+
+
+SECTION = RotatingConfig
 
 
 @dataclass(frozen=True)
@@ -123,3 +145,30 @@ class Turning:
         swing = -SIDES * drive * turn.arms * np.sin(phase - turn.lag)
         upper, fore = arm_directions(trunk, swing + idle.shoulders, body.elbow + idle.elbows)
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
+
+
+def make_turns(mover: Mover) -> Turn:
+    """Make a person turn the trunk to and fro, from rest."""
+    rotating, (paces, sizes) = mover.numbers(RotatingConfig[float]), draw_repetitions(mover)
+    return Turn(
+        duration=mover.duration,
+        frequency=rotating.rotation_hz,
+        angle=radians(rotating.turn_deg),
+        from_rest=True,
+        paces=nonzero_tuple(paces),
+        sizes=nonzero_tuple(sizes),
+    )
+
+
+MOVEMENTS = (
+    MovementKind(
+        "body_rotating",
+        "stands and turns the trunk to and fro",
+        make_turns,
+        in_place=True,
+        uses=(PHASE, *EACH),
+        rate=lambda mover: mover.numbers(RotatingConfig[float]).rotation_hz,
+        words="rotating twisting body_rotation",
+        nearby="turning turn twist turn_left turn_right twist_left twist_right spin rotate",
+    ),
+)

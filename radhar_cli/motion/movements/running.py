@@ -19,8 +19,8 @@ Other statures have the same gait at equal Froude numbers v^2/(g H) (Alexander, 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isinf, pi, radians, sqrt
-from typing import NamedTuple
+from math import ceil, inf, isinf, pi, radians, sqrt
+from typing import Annotated, Generic, NamedTuple
 
 import numpy as np
 
@@ -33,7 +33,52 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.quintics import Quintics
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.numerics.arrays import Float, Index
+from radhar_cli.schema.annotations import PERSONAL, UNSTEADY, People
+from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, SPEED, normal, uniform
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+RUNNING_SPEED = normal(3.3, 0.7, 2.5, 6.0)
+RUNS = "running jogging_in_place"
+
+
+class RunningConfig(Section, Generic[B]):
+    """How people run, and jog on the spot."""
+
+    speed_mps: Annotated[
+        B, ByActivity(NOT_NEGATIVE, SPEED), People("running", 1.0, 7.0), PERSONAL
+    ] = default_draw(RUNNING_SPEED)
+    """Speed of a run. The default is that of people of 1.7 m; of others at the same Froude
+    number."""
+    cadence: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0.85, 1.15), PERSONAL] = (
+        default_draw(normal(1.0, 0.05, 0.9, 1.1))
+    )
+    """Steps per second of a run, relative to the usual ones at its speed."""
+    trunk_pitch_deg: Annotated[B, ByActivity(ANGLE), People(RUNS, -5, 25), PERSONAL] = default_draw(
+        normal(7.0, 3.0, 1.0, 15.0)
+    )
+    """Forward pitch of a runner's trunk."""
+    arm_swing: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0, 1.6), PERSONAL] = (
+        default_draw(uniform(0.7, 1.3))
+    )
+    """Arm swing of a runner, relative to the usual one."""
+    elbow_deg: Annotated[B, ByActivity(ANGLE), People(RUNS, 40, 120), PERSONAL] = default_draw(
+        normal(90.0, 12.0, 65.0, 115.0)
+    )
+    """Mean flexion of a runner's elbows."""
+    knee_deg: Annotated[B, ByActivity(ANGLE), People("jogging_in_place", 45, 115), PERSONAL] = (
+        default_draw(uniform(60.0, 105.0))
+    )
+    """Largest flexion of the knees in jogging on the spot."""
+    variation: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(RUNS, 0, 0.05), UNSTEADY] = (
+        default_draw(uniform(0.0, 0.03))
+    )
+    """Relative standard deviation of the time and of the speed of a runner's steps."""
+
+
+SECTION = RunningConfig
+
 
 G = 9.81  # m/s^2
 REFERENCE_STATURE = 1.75  # m, of the people whose steps are known
@@ -103,6 +148,8 @@ class GoRunning:
     gait: RunningGait
     duration: float = inf
     from_rest: bool = True
+
+    fastest_hz = 4.0
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Running":
         """Place a run in time: from `begin` (s) on, with steps until `horizon` (s)."""
@@ -626,3 +673,64 @@ def _before(end: Float, duration: Float) -> Float:
     earlier, change = SETTLING * velocity, (1 - SETTLING) * velocity / duration
     value = value - duration * (earlier + velocity) / 2 + duration**2 * (acceleration - change) / 12
     return np.stack([value, earlier, change], axis=1)
+
+
+SHORTEST_STEP_S = 0.2
+
+
+def _make_gait(mover: Mover, speed: float, knee: float | None = None) -> RunningGait:
+    """Gait of a run, whose steps differ in time and speed.
+
+    Args:
+        mover: Person who runs.
+        speed: m/s.
+        knee: Largest flexion of the swinging knee, rad; None for the usual one.
+    """
+    running = mover.numbers(RunningConfig[float])
+    count = ceil(mover.seconds / SHORTEST_STEP_S) + 8
+    rng = mover.stream(f"motion.running.variation/{mover.place}")
+    paces, speeds = 1 + np.clip(running.variation * rng.standard_normal((2, count)), -0.08, 0.08)
+    return RunningGait(
+        speed=speed,
+        cadence=running.cadence,
+        arm_swing=running.arm_swing,
+        trunk_pitch=radians(running.trunk_pitch_deg),
+        elbow=radians(running.elbow_deg),
+        knee=knee,
+        paces=tuple(paces.tolist()) if running.variation else (),
+        speeds=tuple(speeds.tolist()) if running.variation else (),
+    )
+
+
+def make_run(mover: Mover) -> GoRunning:
+    """Make a run of a person, from rest."""
+    speed = mover.numbers(RunningConfig[float]).speed_mps
+    return GoRunning(_make_gait(mover, speed), mover.duration)
+
+
+def make_jogging_in_place(mover: Mover) -> GoRunning:
+    """Make a person jog on the spot, from rest."""
+    knee = radians(mover.numbers(RunningConfig[float]).knee_deg)
+    return GoRunning(_make_gait(mover, 0.0, knee), mover.duration)
+
+
+MOVEMENTS = (
+    MovementKind(
+        "running",
+        "runs, with a flight in each step",
+        make_run,
+        words="run jogging jog sprinting sprint rennen",
+        manners="around straight",
+    ),
+    MovementKind(
+        "jogging_in_place",
+        "jogs on the spot",
+        make_jogging_in_place,
+        in_place=True,
+        words="run_in_place run_on_the_spot run_on_spot running_in_place running_on_the_spot "
+        "running_on_spot jog_in_place jog_on_the_spot jog_on_spot jogging_on_the_spot "
+        "jogging_on_spot",
+        nearby="mark_time stepping_in_place marching_in_place high_knees stepping "
+        "walking_in_place marching_on_the_spot",
+    ),
+)

@@ -6,13 +6,32 @@ buttocks on the heels: guesses. The trunk is upright on the knees, and slightly 
 
 from dataclasses import dataclass
 from math import acos, inf, radians
+from typing import Annotated, Generic
 
 from radhar_cli.motion.human.falling import OnFours
-from radhar_cli.motion.human.getting_up import GetUp, standing_up_steps
 from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
 from radhar_cli.motion.human.part import KNEELING, ON_FOURS, STANDING, Phase
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted, posture, resting_channels, scale_steps
+from radhar_cli.motion.movements.getting_up import GetUp, standing_up_steps
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.words import ON_FLOOR
+from radhar_cli.schema.annotations import People
+from radhar_cli.schema.number import NOT_NEGATIVE, RATIO, Choice
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+
+class KneelingConfig(Section, Generic[B]):
+    """How people kneel."""
+
+    sit_back: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("kneeling kneeling_down", 0, 1)
+    ] = default_draw(Choice(choice=(0.0, 1.0)))
+    """How far who kneels sits back: 0 is upright on the knees, 1 on the heels."""
+
+
+SECTION = KneelingConfig
+
 
 KNEE, ON_HEELS = 0.034, 0.115  # heights of knee and hip over the stature
 PITCH = radians(2), radians(6)  # of the trunk, upright and on the heels
@@ -98,3 +117,47 @@ class GetDown:
         phases = (Phase(begin, "getting down"), Phase(end, KNEELING))
         after = ON_FOURS if self.kneel is None else KNEELING
         return Planted(person, course, begin, end, phases, STANDING, after)
+
+
+def make_kneeling(mover: Mover) -> Kneel:
+    """Make a person kneel still."""
+    return Kneel(mover.numbers(KneelingConfig[float]).sit_back, mover.duration)
+
+
+def make_kneeling_down(mover: Mover) -> GetDown:
+    """Make a person kneel down."""
+    return GetDown(Kneel(mover.numbers(KneelingConfig[float]).sit_back), mover.duration)
+
+
+MOVEMENTS = (
+    MovementKind(
+        "kneeling",
+        "kneels still",
+        make_kneeling,
+        "kneeling",
+        "kneeling",
+        in_place=True,
+        rests=True,
+        words="kneel on_knees knien",
+        manners=f"{ON_FLOOR} on_knees",
+    ),
+    MovementKind(
+        "kneeling_down",
+        "kneels down",
+        make_kneeling_down,
+        STANDING,
+        "kneeling",
+        3.0,
+        words="kneel_down go_on_knees",
+        manners=f"{ON_FLOOR} on_knees",
+    ),
+    MovementKind(
+        "getting_on_fours",
+        "gets on hands and knees",
+        lambda mover: GetDown(None, mover.duration),
+        STANDING,
+        "on_fours",
+        3.0,
+        words="get_on_all_fours getting_on_all_fours go_on_all_fours going_on_all_fours",
+    ),
+)

@@ -24,7 +24,7 @@ from radhar_cli.motion.human.falling import (
     Supine,
 )
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import STANDING, Phase
+from radhar_cli.motion.human.part import LYING, STANDING, Phase
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import (
     ELBOWS,
@@ -34,6 +34,8 @@ from radhar_cli.motion.human.planted import (
     scale_steps,
     steps_of_both_sides,
 )
+from radhar_cli.motion.movements.kind import MovementKind
+from radhar_cli.motion.movements.words import ON_FLOOR as FLOOR
 
 LYING_POSTURES: dict[str, Callable[[Physique], dict[str, float]]] = {
     PRONE: Prone().posture,
@@ -197,3 +199,28 @@ class TryToGetUp:
         end = begin + self.duration
         phases = (Phase(begin, "getting up"), Phase(end, "lying"))
         return Planted(person, course, begin, end, phases, self.before, self.before)
+
+
+MOVEMENTS = (
+    MovementKind(
+        "trying_to_get_up",
+        "lies and tries in vain to get up",
+        lambda mover: TryToGetUp(mover.duration),
+        LYING,
+        LYING,
+        3.0,
+    ),
+    MovementKind(
+        "getting_up",
+        "gets up from the floor",
+        lambda mover: GetUp(duration=mover.duration),
+        LYING,
+        STANDING,
+        3.0,
+        also=(("kneeling", STANDING), ("on_fours", STANDING)),
+        words="stand_up_from_floor get_up rising_from_floor getting_up_from_floor "
+        "get_up_from_floor",
+        manners=f"{FLOOR} from_lying",
+        nearby="lie_to_stand",
+    ),
+)

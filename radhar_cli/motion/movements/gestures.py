@@ -13,10 +13,11 @@ Welbergen and Ruttkay, Gesture Workshop 2007). Places, rates of waving and writi
 all angles are guesses.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import inf, isinf, radians
-from typing import ClassVar, Generic, Protocol, TypeVar
+from math import inf, isinf, pi, radians
+from typing import Annotated, ClassVar, Generic, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -28,13 +29,77 @@ from radhar_cli.motion.human.arms import (
 )
 from radhar_cli.motion.human.idle import IdleState, Waves
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import SEATED, STANDING, Phase, Place
+from radhar_cli.motion.human.part import SEATED, STANDING, Movement, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted, resting_channels, scale_steps
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose
-from radhar_cli.motion.human.repetitions import Repetition, repetitions
-from radhar_cli.motion.human.sitting import Seat
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.repeating import EACH, Repetition, draw_repetitions, repetitions
+from radhar_cli.motion.movements.sitting import SEAT, Seat, make_seat
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.schema.annotations import PERSONAL, People
+from radhar_cli.schema.number import (
+    ANGLE,
+    FREQUENCY,
+    NOT_NEGATIVE,
+    RATIO,
+    SECONDS,
+    Choice,
+    normal,
+    uniform,
+)
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+
+class GesturesConfig(Section, Generic[B]):
+    """How arms are moved: drinking, writing, waving, clapping."""
+
+    left_handed: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, RATIO),
+        People("drinking drinking_seated writing writing_seated waving clapping", 0, 1),
+        PERSONAL,
+    ] = default_draw(Choice(choice=(0,) * 9 + (1,)))
+    """Hand that is used: 1 is the left one, 0 the right one."""
+    drink_s: Annotated[
+        B, ByActivity(NOT_NEGATIVE, SECONDS), People("drinking drinking_seated", 3, 60)
+    ] = default_draw(normal(5.9, 1.2, 3.5, 9.0))
+    """Duration of a drink at a table, from reaching for the cup to returning; the next one follows.
+    Who stands has the cup in the hand, and takes 0.65 of that."""
+    cup_held: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("drinking", 0, 1)] = (
+        default_draw(Choice(choice=(0, 1)))
+    )
+    """Place of the cup between drinks of who stands: 1 holds it ahead, 0 lets the arm hang."""
+    strokes_hz: Annotated[
+        B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("writing writing_seated", 1, 6)
+    ] = default_draw(normal(4.0, 0.8, 2.5, 5.5))
+    """Strokes up and down of handwriting per second; at a board there are 0.7 of that."""
+    waving_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("waving", 0.5, 2.5)] = (
+        default_draw(normal(1.5, 0.3, 0.9, 2.2))
+    )
+    """Swings of a waving forearm, to both sides, per second."""
+    raise_deg: Annotated[B, ByActivity(ANGLE), People("waving", 30, 100)] = default_draw(
+        normal(60.0, 12.0, 38.0, 85.0)
+    )
+    """Angle of a waving upper arm ahead of the vertical."""
+    both_hands: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("waving", 0, 1)] = (
+        default_draw(Choice(choice=(0, 0, 0, 1)))
+    )
+    """Whether both arms wave: 1 for both, 0 for one."""
+    clapping_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("clapping", 1, 5)] = (
+        default_draw(normal(3.0, 0.6, 1.8, 4.5))
+    )
+    """Claps per second."""
+    size: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, RATIO),
+        People("writing writing_seated waving clapping", 0.4, 1.3),
+    ] = default_draw(uniform(0.6, 1.15))
+    """Extent of waves, claps and letters, relative to the usual one."""
+
+
+SECTION = GesturesConfig
+
 
 REFERENCE_STATURE = 1.75  # of the places below
 SIDE = ("right", "left")
@@ -241,6 +306,8 @@ class Drink:
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
+    fastest_hz = 4.0
+
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Drinking":
         return Drinking(person, self, begin, horizon)
 
@@ -318,6 +385,8 @@ class Write:
     across: Waves = field(default_factory=Waves)
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
+
+    fastest_hz = 4.0
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Writing":
         return Writing(person, self, begin, horizon)
@@ -399,6 +468,8 @@ class Clap:
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
+    fastest_hz = 4.0
+
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Clapping":
         return Clapping(person, self, begin, horizon)
 
@@ -453,6 +524,8 @@ class Wave:
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
+    fastest_hz = 4.0
+
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Waving":
         return Waving(person, self, begin, horizon)
 
@@ -488,3 +561,168 @@ class Waving(Gesturing[Wave]):
             np.cos(out) * upper + np.sin(out) * beside,
             np.cos(aside) * fore + np.sin(aside) * beside,
         )
+
+
+# Rates of strokes up and across over the usual one, of no common measure; letters are no sines.
+STROKES_UP, STROKES_ACROSS = (0.53, 1.0, 1.27), (0.41, 0.79, 1.11)
+# Duration of a drink from a cup in the hand over that from one on a table: without reaching for the
+# cup and returning, medians of de los Reyes-Guzman et al. (2010).
+CUP_IN_HAND = 0.65
+ON_BOARD = 0.7  # rate of strokes at a board, where letters are larger, over that on paper
+
+
+Repeated: TypeAlias = tuple[tuple[float, ...], tuple[float, ...]]
+
+
+def _numbers(mover: Mover) -> tuple[GesturesConfig[float], bool, Repeated]:
+    """Numbers of a person's gestures, whether the left hand makes them, paces and sizes."""
+    gestures, (paces, sizes) = mover.numbers(GesturesConfig[float]), draw_repetitions(mover)
+    is_left = gestures.left_handed >= 0.5
+    return gestures, is_left, (tuple(paces.tolist()), tuple(sizes.tolist()))
+
+
+def make_drinks(mover: Mover) -> Drink:
+    """Make a person who stands drink, again and again."""
+    gestures, is_left, (paces, sizes) = _numbers(mover)
+    return Drink(
+        mover.duration,
+        period=CUP_IN_HAND * gestures.drink_s,
+        left=is_left,
+        held=gestures.cup_held >= 0.5,
+        paces=paces,
+        sizes=sizes,
+    )
+
+
+def make_seated_drinks(mover: Mover) -> Drink:
+    """Make a person who sits drink, again and again."""
+    period = mover.numbers(GesturesConfig[float]).drink_s
+    return replace(make_drinks(mover), seat=make_seat(mover), period=period)
+
+
+def _make_writing(mover: Mover, usual: Write, rate: float) -> Write:
+    """Make a person write as usual, by `rate` times the usual strokes a second."""
+    gestures, is_left, (paces, sizes) = _numbers(mover)
+    rng = mover.stream(f"motion.gestures.strokes/{mover.place}")
+    up, across = (2 * pi * rng.random((2, len(STROKES_UP)))).tolist()
+    return replace(
+        usual,
+        duration=mover.duration,
+        left=is_left,
+        stroke=gestures.size * usual.stroke,
+        word=gestures.size * usual.word,
+        up=_strokes(rate * gestures.strokes_hz, STROKES_UP, up),
+        across=_strokes(rate * gestures.strokes_hz, STROKES_ACROSS, across),
+        paces=paces,
+        sizes=sizes,
+    )
+
+
+def make_writing(mover: Mover) -> Write:
+    """Make a person write on a board."""
+    return _make_writing(mover, Write(), ON_BOARD)
+
+
+def make_seated_writing(mover: Mover) -> Write:
+    """Make a person write at a table."""
+    return replace(_make_writing(mover, AT_TABLE, 1.0), seat=make_seat(mover))
+
+
+def make_waves(mover: Mover) -> Wave:
+    """Make a person wave."""
+    gestures, is_left, (paces, sizes) = _numbers(mover)
+    return Wave(
+        mover.duration,
+        period=1 / gestures.waving_hz,
+        left=is_left,
+        both=gestures.both_hands >= 0.5,
+        flexion=radians(gestures.raise_deg),
+        swing=gestures.size * Wave.swing,
+        bend=gestures.size * Wave.bend,
+        paces=paces,
+        sizes=sizes,
+    )
+
+
+def make_claps(mover: Mover) -> Clap:
+    """Make a person clap."""
+    gestures, is_left, (paces, sizes) = _numbers(mover)
+    return Clap(
+        mover.duration,
+        period=1 / gestures.clapping_hz,
+        left=is_left,
+        opening=gestures.size * Clap.opening,
+        paces=paces,
+        sizes=sizes,
+    )
+
+
+def _strokes(rate: float, rates: tuple[float, ...], phases: list[float]) -> Waves:
+    """Strokes of standard deviation 1, about `rate` a second, with phases in rad."""
+    amplitude = (2 / len(rates)) ** 0.5
+    return Waves((amplitude,) * len(rates), tuple((rate * np.array(rates)).tolist()), tuple(phases))
+
+
+def _kind(
+    name: str,
+    meaning: str,
+    make: Callable[[Mover], Movement],
+    words: str = "",
+    manners: str = "",
+    nearby: str = "",
+) -> MovementKind:
+    """Describe a gesture to configs."""
+    is_seated = name.endswith("_seated")
+    state = SEATED if is_seated else STANDING
+    return MovementKind(
+        name,
+        meaning,
+        make,
+        state,
+        state,
+        in_place=True,
+        uses=(*EACH, *SEAT) if is_seated else EACH,
+        words=words,
+        manners=manners,
+        nearby=nearby,
+    )
+
+
+MOVEMENTS = (
+    _kind(
+        "drinking",
+        "stands and drinks",
+        make_drinks,
+        "drinking_standing drink drinking_water drink_water drinking_from_cup trinken",
+        manners="standing from_bottle from_glass from_cup",
+        nearby="eat eating sipping",
+    ),
+    _kind(
+        "writing",
+        "stands and writes on a board",
+        make_writing,
+        "write writing_on_board schreiben",
+    ),
+    _kind(
+        "waving",
+        "stands and waves",
+        make_waves,
+        "wave hand_waving waving_hand hand_wave wave_hello wave_hand winken waving_hand_left "
+        "waving_hand_right single_hand_waving",
+        manners="hello goodbye",
+    ),
+    _kind(
+        "clapping",
+        "stands and claps",
+        make_claps,
+        "clap clapping_hands hand_clapping applauding clap_hands klatschen",
+    ),
+    _kind("drinking_seated", "sits and drinks", make_seated_drinks),
+    _kind(
+        "writing_seated",
+        "sits and writes at a table",
+        make_seated_writing,
+        "writing_at_table",
+        nearby="drawing",
+    ),
+)

@@ -1,20 +1,41 @@
 """The twelve activities and sequences of movements."""
 
+from collections.abc import Sequence
 from math import inf
 
 import numpy as np
 import pytest
+from helpers.movers import usual_movement
 
 from radhar_cli.motion.human.falling import FallBackward
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.human.part import Movement
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.repertoire import Repertoire
-from radhar_cli.motion.human.walking import Gait
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.getting_up import GetUp
+from radhar_cli.motion.movements.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.schema.twelve import MOVEMENTS_OF_TWELVE
 
 PERSON = Physique(1.7)
-REPERTOIRE = Repertoire(Gait(1.1))
+ACTIVITIES = dict(enumerate(MOVEMENTS_OF_TWELVE.values(), 1))
+
+
+def sequence(names: Sequence[str], durations: Sequence[float]) -> tuple[Movement, ...]:
+    """Movements one after the other, walks at 1.1 m/s; infinity is the usual duration."""
+    return tuple(
+        Walk(Gait(1.1), duration)
+        if name == "walking"
+        else usual_movement(name, None if MOVEMENTS[name].seconds else duration)
+        for name, duration in zip(names, durations, strict=True)
+    )
+
+
+def activity(number: int) -> tuple[Movement, ...]:
+    """Movements of one of the twelve; a walk before another movement lasts 2 s."""
+    names = ACTIVITIES[number]
+    return sequence(names, [2.0] * (len(names) - 1) + [inf])
 
 
 def motion(movements: tuple, pauses: tuple[float, ...] = ()) -> HumanMotion:  # type: ignore[type-arg]
@@ -23,7 +44,7 @@ def motion(movements: tuple, pauses: tuple[float, ...] = ()) -> HumanMotion:  # 
 
 @pytest.mark.parametrize("number", range(1, 13))
 def test_every_activity_moves_as_a_motion_does(number: int) -> None:
-    body = motion(REPERTOIRE.activity(number))
+    body = motion(activity(number))
     p = body.positions(np.linspace(-0.5, 6.5, 701))
     assert p.shape == (3, 13, 701)
     assert p.dtype == float
@@ -37,13 +58,13 @@ def test_every_activity_moves_as_a_motion_does(number: int) -> None:
 
 
 def test_activities_of_two_parts_end_as_they_should() -> None:
-    ends = {n: motion(REPERTOIRE.activity(n)).phases[-1].name for n in (9, 10, 11, 12)}
+    ends = {n: motion(activity(n)).phases[-1].name for n in (9, 10, 11, 12)}
     assert ends == {9: "walking", 10: "seated", 11: "walking", 12: "lying"}
 
 
 def test_a_sequence_waits_at_rest() -> None:
     names = ("walking", "sitting_down", "standing_up", "kicking", "walking", "falling")
-    movements = REPERTOIRE.sequence(names, (1.0, inf, inf, 1.0, 0.8, inf))
+    movements = sequence(names, (1.0, inf, inf, 1.0, 0.8, inf))
     body = motion(movements, (0.0, 0.4, 1.5))
     parts = [part for part, _ in body.parts]
     assert parts[1].begin - parts[0].end == pytest.approx(0.4)
@@ -54,21 +75,14 @@ def test_a_sequence_waits_at_rest() -> None:
 
 
 def test_getting_up_from_a_backward_fall_is_refused() -> None:
-    movements = Repertoire(Gait(1.0), fall=FallBackward()).sequence(
-        ("falling", "getting_up"), (inf, inf)
-    )
+    movements = FallBackward(), GetUp()
     with pytest.raises(ValueError, match=r"begins lying prone, but .* ends lying on the back"):
         motion(movements).positions(np.zeros(1))
 
 
-def test_an_unknown_movement_is_named() -> None:
-    with pytest.raises(ValueError, match="'swimming' is not a movement"):
-        REPERTOIRE.sequence(("swimming",), (1.0,))
-
-
 def test_a_turn_carries_over_to_the_next_movement() -> None:
     """Who walks ahead, turns around and walks as far again is back, facing the other way."""
-    body = motion(REPERTOIRE.sequence(("walking", "turning_around", "walking"), (1.0, inf, 1.0)))
+    body = motion(sequence(("walking", "turning_around", "walking"), (1.0, inf, 1.0)))
     end = body.parts[-1][0].end
     first, last = body.positions(np.array([0.0, end + 0.1])).transpose(2, 0, 1)
     feet = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]

@@ -18,6 +18,7 @@ surface, so the back rises; that it does so as far as a chest is a guess.
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import cos, inf, pi, radians, sin
+from typing import Annotated, Generic
 
 import numpy as np
 
@@ -27,8 +28,49 @@ from radhar_cli.motion.human.part import LYING, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import scale_steps
 from radhar_cli.motion.human.pose import Axes, Pose, shoulder_points
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.words import ON_FLOOR
 from radhar_cli.motion.segments import unit
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.schema.annotations import People
+from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, Choice, normal, uniform
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+
+class LyingConfig(Section, Generic[B]):
+    """How people lie, on the floor or in bed, lie down, turn over and get up from bed."""
+
+    roll_deg: Annotated[B, ByActivity(ANGLE), People(None, -180, 180)] = default_draw(
+        Choice(choice=(0.0, 0.0, 0.0, 90.0, 90.0, -90.0, -90.0, 180.0))
+    )
+    """How who lies is turned: 0 on the back, 90 on the left side, -90 on the right, 180 on the
+    belly."""
+    turn_deg: Annotated[B, ByActivity(ANGLE), People("turning_over", -180, 180)] = default_draw(
+        Choice(choice=(90.0, -90.0, 180.0, -180.0))
+    )
+    """How far who turns over rolls, to the left or, below 0, to the right."""
+    bed: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("lying turning_over", 0, 1)] = (
+        default_draw(Choice(choice=(0.0, 1.0)))
+    )
+    """Whether who lies at first lies in bed: above 0.5 in bed, else on the floor."""
+    bed_height: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0.19, 0.3)] = (
+        default_draw(normal(0.25, 0.02, 0.2, 0.29))
+    )
+    """Height of the mattress under a person, relative to the stature."""
+    head_deg: Annotated[B, ByActivity(ANGLE), People("lying turning_over", -360, 360)] = (
+        default_draw(uniform(-180.0, 180.0))
+    )
+    """Direction of the head of who lies at first, from where people head (angle_deg)."""
+    hands: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0, 1)] = default_draw(
+        uniform(0.0, 1.0)
+    )
+    """Place of the hands of who lies on the back: 0 is beside the body, 1 on the belly."""
+
+
+SECTION = LyingConfig
+# Keys of who lies, in bed or on the floor.
+REST = ("lying.roll_deg", "lying.bed_height", "lying.hands")
+
 
 IN_BED = "in bed"
 LEFT_SIDE = pi / 2
@@ -395,3 +437,56 @@ class TurnOver:
 def wrap_angle(angle: float) -> float:
     """Return the same angle between -pi and pi, rad."""
     return float(np.arctan2(sin(angle), cos(angle)))
+
+
+def make_rest(mover: Mover) -> Rest:
+    """Make the way in which a person lies in bed."""
+    lying = mover.numbers(LyingConfig[float])
+    return Rest(radians(lying.roll_deg), lying.bed_height, lying.hands, bed=True)
+
+
+def _make_first_rest(mover: Mover) -> Rest:
+    """Make the way in which a person lies at first, in bed or on the floor."""
+    rest = make_rest(mover)
+    return rest if mover.is_in_bed else replace(rest, surface=0.0, bed=False)
+
+
+def make_lying(mover: Mover) -> Lie:
+    """Make a person lie still."""
+    head = radians(mover.numbers(LyingConfig[float]).head_deg)
+    return Lie(_make_first_rest(mover), mover.duration, head)
+
+
+def make_turn_over(mover: Mover) -> TurnOver:
+    """Make a person who lies turn over."""
+    lying, rest = mover.numbers(LyingConfig[float]), _make_first_rest(mover)
+    return TurnOver(rest, radians(lying.turn_deg), mover.duration, radians(lying.head_deg))
+
+
+MOVEMENTS = (
+    MovementKind(
+        "lying",
+        "lies still",
+        make_lying,
+        LYING,
+        LYING,
+        also=(("in_bed", "in_bed"),),
+        rests=True,
+        uses=REST,
+        words="sleeping sleep lying_still laying resting lie liegen",
+        manners=f"{ON_FLOOR} on_bed in_bed still flat",
+        nearby="fallen",
+    ),
+    MovementKind(
+        "turning_over",
+        "lies and turns over",
+        make_turn_over,
+        LYING,
+        LYING,
+        5.0,
+        also=(("in_bed", "in_bed"),),
+        uses=REST,
+        words="turn_over rolling_over rolling roll_over turn_over_in_bed rolling_in_bed",
+        nearby="roll",
+    ),
+)

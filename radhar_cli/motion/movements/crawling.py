@@ -15,18 +15,45 @@ rises and sinks with each stride, and rolls as a knee is lifted. Feet trail behi
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf, sqrt
+from typing import Annotated, Generic
 
 import numpy as np
 
 from radhar_cli.motion.human.arms import UPWARDS, arm_directions_to_hands
 from radhar_cli.motion.human.idle import IdleState, motionless
-from radhar_cli.motion.human.kneeling import CRAWLING
 from radhar_cli.motion.human.minimum_jerk import Course, minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.human.part import ON_FOURS, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, shoulder_points
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.kneeling import CRAWLING
+from radhar_cli.motion.movements.words import ON_FLOOR
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.schema.annotations import UNSTEADY, People
+from radhar_cli.schema.number import NOT_NEGATIVE, RATIO, SPEED, normal, uniform
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+
+class CrawlingConfig(Section, Generic[B]):
+    """How people crawl on hands and knees."""
+
+    speed_mps: Annotated[B, ByActivity(NOT_NEGATIVE, SPEED), People("crawling", 0.2, 1.0)] = (
+        default_draw(normal(0.5, 0.12, 0.28, 0.9))
+    )
+    """Speed of crawling."""
+    stride: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("crawling", 0.8, 1.2)] = (
+        default_draw(normal(1.0, 0.07, 0.85, 1.15))
+    )
+    """Length of a crawling stride, relative to the usual one of the speed and stature."""
+    variation: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("crawling", 0, 0.05), UNSTEADY
+    ] = default_draw(uniform(0.0, 0.04))
+    """Standard deviation of where hands and knees are put down, relative to the stride."""
+
+
+SECTION = CrawlingConfig
+
 
 # Length of a stride at 0.5 m/s of who is 1.75 m tall, and the longest that thighs allow, over the
 # stature.
@@ -259,3 +286,32 @@ class Swings:
         return np.array(
             [self.places[swing] + self.changes[swing] * share, self.lifts[swing] * height]
         )
+
+
+MISSES = 397  # how many footholds of who crawls are drawn, before they come again
+
+
+def make_crawl(mover: Mover) -> Crawl:
+    """Make a person crawl."""
+    crawling = mover.numbers(CrawlingConfig[float])
+    misses = mover.stream(f"motion.crawling.variation/{mover.place}").standard_normal(MISSES)
+    misses = crawling.variation * np.clip(misses, -1.6, 1.6)
+    return Crawl(
+        crawling.speed_mps,
+        mover.duration,
+        crawling.stride,
+        tuple(misses.tolist()) if crawling.variation else (),
+    )
+
+
+MOVEMENTS = (
+    MovementKind(
+        "crawling",
+        "crawls on hands and knees",
+        make_crawl,
+        "on_fours",
+        "on_fours",
+        words="crawl creeping kriechen",
+        manners=f"{ON_FLOOR} on_hands_and_knees on_all_fours army baby",
+    ),
+)

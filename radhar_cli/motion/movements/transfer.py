@@ -16,27 +16,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from radhar_cli.motion.human.falling import PRONE
-from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.idle import IdleState, motionless
-from radhar_cli.motion.human.lying import (
-    ARM,
-    CLENCH,
-    FIDGET,
-    GESTURES,
-    LEFT_SIDE,
-    Limbs,
-    Rest,
-    Surface,
-    blend_limbs,
-    body_pose,
-    hip_height,
-    in_room,
-    lying_limbs,
-    rolled_axes,
-    trunk_lift,
-    with_gestures,
-    wrap_angle,
-)
 from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
 from radhar_cli.motion.human.part import (
     HERE,
@@ -50,7 +30,30 @@ from radhar_cli.motion.human.part import (
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import scale_steps
 from radhar_cli.motion.human.pose import Axes, Pose, feet
-from radhar_cli.motion.human.sitting import Rise, Seat, SitDown, StandUp
+from radhar_cli.motion.movements.getting_up import GetUp, TryToGetUp
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.lying import (
+    ARM,
+    CLENCH,
+    FIDGET,
+    GESTURES,
+    LEFT_SIDE,
+    REST,
+    Limbs,
+    Rest,
+    Surface,
+    blend_limbs,
+    body_pose,
+    hip_height,
+    in_room,
+    lying_limbs,
+    make_rest,
+    rolled_axes,
+    trunk_lift,
+    with_gestures,
+    wrap_angle,
+)
+from radhar_cli.motion.movements.sitting import LEAN, Rise, Seat, SitDown, StandUp, make_rise
 from radhar_cli.motion.segments import unit
 from radhar_cli.numerics.arrays import Float
 
@@ -511,3 +514,45 @@ class RiseFromRest:
             place=place_after(origin, rising.place),
             origin=origin,
         )
+
+
+def _draw_side(mover: Mover) -> float:
+    """Draw the side on which the pillow is, seen by somebody who sits on the bed."""
+    return 1.0 if mover.stream("motion.lying/side").random() < 0.5 else -1.0
+
+
+def make_going_to_bed(mover: Mover) -> GoToBed:
+    """Make a person go to bed."""
+    return GoToBed(make_rest(mover), _draw_side(mover), mover.duration, make_rise(mover))
+
+
+def make_leaving_bed(mover: Mover) -> LeaveBed:
+    """Make a person get up from a bed."""
+    return LeaveBed(make_rest(mover), _draw_side(mover), mover.duration, make_rise(mover))
+
+
+MOVEMENTS = (
+    MovementKind(
+        "lying_down",
+        "goes to bed: sits down on it and lies down",
+        make_going_to_bed,
+        STANDING,
+        "in_bed",
+        6.5,
+        uses=(*REST, LEAN),
+        words="lie_down going_to_bed go_to_bed laying_down lay_down hinlegen liedown stand_to_lie",
+        manners="on_bed in_bed onto_bed to_bed",
+        nearby="sit_to_lie",
+    ),
+    MovementKind(
+        "getting_up_from_bed",
+        "gets up from a bed",
+        make_leaving_bed,
+        "in_bed",
+        STANDING,
+        6.0,
+        uses=(*REST, LEAN),
+        words="get_out_of_bed leaving_bed getting_out_of_bed get_up_from_bed rise_from_bed",
+        nearby="lie_to_sit sitting_up_in_bed",
+    ),
+)

@@ -13,7 +13,7 @@ from typing import Any, Literal, TypeAlias, TypeGuard, TypeVar, get_args, get_or
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from radhar_cli.config.number import MAX_NUMBER, Bounds, support
+from radhar_cli.schema.number import MAX_NUMBER, Bounds, support
 
 A = TypeVar("A")
 
@@ -43,10 +43,11 @@ class Limits:
 class People:
     """Movements, or S labels of classes, that use a number under motion.model: human; "": all.
 
-    Other models make no use of it. Every draw lies from low to high.
+    Other models make no use of it. Every draw lies from low to high. Names are None for a key that
+    movements of several files share: each says so itself (`MovementKind.uses`).
     """
 
-    names: str
+    names: str | None
     low: float = -MAX_NUMBER
     high: float = MAX_NUMBER
 

@@ -8,10 +8,10 @@ An and Ogras 2021), jumps 0.9 s and jumping jacks 1.2 to 1.8 s (RadHAR, Singh et
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from math import inf, isinf, radians
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Generic, NamedTuple
 
 import numpy as np
 
@@ -27,9 +27,36 @@ from radhar_cli.motion.human.pelvis import (
 )
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
-from radhar_cli.motion.human.repetitions import Repetition, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.repeating import (
+    EACH,
+    Repetition,
+    draw_repetitions,
+    nonzero_tuple,
+    repetitions,
+)
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.schema.annotations import People
+from radhar_cli.schema.number import NOT_NEGATIVE, RATIO, uniform
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+
+class ExercisesConfig(Section, Generic[B]):
+    """How exercises are done: squats, jumps, lunges and the like."""
+
+    period: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0.6, 1.8)] = default_draw(
+        uniform(0.8, 1.3)
+    )
+    """Duration of a repetition of an exercise, relative to the usual one."""
+    size: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0.5, 1.1)] = default_draw(
+        uniform(0.75, 1.05)
+    )
+    """Extent of the movements of an exercise, relative to the usual one."""
+
+
+SECTION = ExercisesConfig
+
 
 if TYPE_CHECKING:
     from scipy.interpolate import BPoly
@@ -89,6 +116,8 @@ class Exercise:
     # paces, sizes: time and size of each repetition, over the usual ones
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
+
+    fastest_hz = 4.0
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Exercising":
         return Exercising(person, self, begin, horizon)
@@ -325,3 +354,91 @@ EXERCISES = {
         for name, exercise in (*_lunging_exercises(side), *_raising_exercises(side))
     },
 }
+
+
+def _make_exercise(mover: Mover, name: str) -> Exercise:
+    """Make the exercise of a name of a person, from rest."""
+    exercises, (paces, sizes) = mover.numbers(ExercisesConfig[float]), draw_repetitions(mover)
+    return replace(
+        EXERCISES[name],
+        duration=mover.duration,
+        period=exercises.period * EXERCISES[name].period,
+        paces=nonzero_tuple(paces),
+        sizes=nonzero_tuple(exercises.size * np.minimum(sizes, 1.05)),
+    )
+
+
+def _kind(
+    name: str, meaning: str, words: str = "", nearby: str = "", manners: str = ""
+) -> MovementKind:
+    """Describe an exercise to configs."""
+    return MovementKind(
+        name,
+        meaning,
+        partial(_make_exercise, name=name),
+        in_place=True,
+        uses=(*EACH, "exercises.period", "exercises.size"),
+        words=words,
+        nearby=nearby,
+        manners=manners,
+    )
+
+
+def _kinds_of_side(side: str) -> Iterator[MovementKind]:
+    """Describe the exercises of one side."""
+    yield _kind(
+        f"{side}_lunge",
+        f"lunges forward with the {side} leg, again and again",
+        f"{side}_front_lunge lunge_{side} lunge_toward_{side}_front",
+        "lunge lunges lunging" * (side == "right"),
+    )
+    yield _kind(
+        f"{side}_side_lunge", f"lunges to the {side}, again and again", f"lunge_toward_{side}_side"
+    )
+    hands = "raise_arm arm_raise raise_hand raising_hand hand_raising" * (side == "right")
+    yield _kind(
+        f"raising_{side}_arm",
+        f"raises the {side} arm, again and again",
+        f"raise_{side}_arm raising_{side}_hand raise_{side}_hand raising_hand_{side}",
+        f"{hands} {side}_upper_limb_extension",
+    )
+    yield _kind(f"raising_{side}_leg", f"raises the {side} leg, again and again")
+    yield _kind(
+        f"raising_{side}_arm_and_leg",
+        f"raises the {side} arm and leg, again and again",
+        nearby=f"{side}_limb_extension limb_extension_{side}",
+    )
+
+
+MOVEMENTS = (
+    _kind(
+        "squatting",
+        "squats, again and again",
+        "squat squats squat_down",
+        "crouch crouching",
+        "exercise",
+    ),
+    _kind(
+        "jumping",
+        "jumps, again and again",
+        "jump jumps jump_up jumping_up springen",
+        "hopping hop leaping leap jump_rope rope_skipping skipping_rope",
+        "exercise up_and_down",
+    ),
+    _kind(
+        "jumping_jacks",
+        "jumps with arms and legs apart, and together again",
+        "jumping_jack star_jumps star_jump jumping_jacks_exercise",
+        "jack jacks",
+        "exercise",
+    ),
+    _kind(
+        "raising_arms",
+        "raises both arms to the sides, again and again",
+        "arms_up raising_both_arms both_hands_up hands_up",
+        "both_upper_limb_extension hand_up",
+    ),
+    _kind("raising_arms_ahead", "raises both arms ahead, again and again"),
+    *_kinds_of_side("right"),
+    *_kinds_of_side("left"),
+)

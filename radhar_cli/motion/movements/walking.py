@@ -6,28 +6,17 @@ can reach, trunk and arms follow Boulic and Thalmann's curves.
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import inf, isinf, pi, radians
-from typing import NamedTuple
+from math import ceil, inf, isinf, pi, radians
+from typing import Annotated, Generic, NamedTuple
 
 import numpy as np
 
 from radhar_cli.motion.human import boulic_thalmann as curves
-from radhar_cli.motion.human.aids import (
-    Aid,
-    Load,
-    elbow_directions,
-    hands_of_aid,
-    limit_to_reach,
-)
+from radhar_cli.motion.human.aids import Aid, Load, elbow_directions, hands_of_aid, limit_to_reach
 from radhar_cli.motion.human.arms import arm_directions_to_hands, hanging_hands
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
-from radhar_cli.motion.human.lane import (
-    Lane,
-    WalkTimes,
-    place_half_turns,
-    position_along_lane,
-)
+from radhar_cli.motion.human.lane import Lane, WalkTimes, place_half_turns, position_along_lane
 from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import LegBound, hip_height, hip_joints, hip_point_with_sway
@@ -43,7 +32,82 @@ from radhar_cli.motion.human.planted import (
 )
 from radhar_cli.motion.human.pose import Axes, Pose, axes, shoulder_points, turned
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+from radhar_cli.motion.movements.idle import IdleConfig, low_pass_waves
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.repeating import PHASE, RepeatingConfig, nonzero_tuple
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.schema.annotations import (
+    ABOVE_ZERO,
+    PERSONAL,
+    UNSTEADY,
+    ActsIf,
+    ByModel,
+    Paper,
+    People,
+    Unless,
+)
+from radhar_cli.schema.number import ANGLE, COORDINATE, NOT_NEGATIVE, RATIO, SPEED, normal, uniform
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+WALKING_SPEED = normal(1.3, 0.18, 0.7, 2.0)
+
+
+class WalkingConfig(Section, Generic[B]):
+    """How people walk (motion.model: human); the paper's gait takes the speed alone."""
+
+    speed_mps: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SPEED, null=True),
+        People("walking", 0.3, 2.8),
+        Paper("S8 S9 S10 S11 S12"),
+        PERSONAL,
+        ByModel(human=WALKING_SPEED, paper=1.5),
+    ] = default_draw(None)
+    """Walking speed. The default is that of people of 1.7 m; of others at the same Froude
+    number."""
+    period_scale: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0.85, 1.05), PERSONAL
+    ] = default_draw(normal(0.95, 0.04, 0.85, 1.05))
+    """Stride time relative to Boulic and Thalmann's."""
+    arm_swing: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0, 2), PERSONAL] = (
+        default_draw(uniform(0.6, 1.3))
+    )
+    """Arm swing of a walker, relative to Boulic and Thalmann's."""
+    trunk_pitch_deg: Annotated[B, ByActivity(ANGLE), People("walking", -5, 15), PERSONAL] = (
+        default_draw(normal(3.0, 2.0, -2.0, 8.0))
+    )
+    """Forward pitch of a walker's trunk."""
+    step_width: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0.02, 0.1), PERSONAL
+    ] = default_draw(normal(0.063, 0.011, 0.03, 0.1))
+    """Distance across between a walker's feet, relative to the stature."""
+    speed_variation: Annotated[
+        B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0, 0.06), UNSTEADY
+    ] = default_draw(uniform(0.0, 0.06))
+    """Standard deviation of a walker's speed over time, relative to the speed; that of the stride
+    times is half as much, that of the step width a third, in metres."""
+    lane_m: Annotated[
+        B,
+        Unless("places_people", "stream, whose zone says where people are"),
+        ByActivity(COORDINATE),
+        People("walking", 0, 1000),
+    ] = default_draw(0.0)
+    """Length of the lane after which walkers turn round, again and again; 0 is never."""
+    lane_start: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, RATIO),
+        People("walking", 0, 1),
+        ActsIf("motion.walking.lane_m", ABOVE_ZERO),
+    ] = default_draw(uniform(0.0, 1.0))
+    """Share of the first lane that lies behind a walker at 0 s."""
+    speed_up: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0.4, 2)] = (
+        default_draw(0.6)
+    )
+    """Strides in which a walker gains speed from rest; more above half of gravity."""
+
+
+SECTION = WalkingConfig
+
 
 START_PHASE = 0.5  # of the stride: the right foot goes first
 EARLIEST_SWING = 0.3
@@ -772,3 +836,68 @@ def blend(walk: BodyChannels, stance: Stance) -> BodyChannels:
         elbows=walk.elbows + stance.elbows,
         hands=stance.hands,
     )
+
+
+RAGGED_HZ = (0.1, 0.25, 0.4)
+MIN_STRIDE_S = 0.5  # no stride is shorter
+
+
+def make_gait(mover: Mover) -> Gait:
+    """Make the usual gait of a person, whose strides differ."""
+    walking = mover.numbers(WalkingConfig[float])
+    variation = walking.speed_variation
+    strides = ceil(mover.seconds / MIN_STRIDE_S) + 8
+    rng = mover.stream(f"motion.speed_variation/{mover.place}")
+    # The duration of a stride is the difference of two deviations.
+    jitter, widths = (
+        share * variation * rng.standard_normal(strides) for share in (8**-0.5, 1 / 3)
+    )
+    return Gait(
+        speed=walking.speed_mps,
+        period_scale=walking.period_scale,
+        phase=mover.numbers(RepeatingConfig[float]).cycle_phase,
+        arm_swing=walking.arm_swing,
+        trunk_pitch=radians(walking.trunk_pitch_deg),
+        half_width=walking.step_width / 2,
+        start=walking.speed_up,
+        ragged=low_pass_waves(mover.numbers(IdleConfig[float]), variation, RAGGED_HZ, 0.7),
+        jitter=nonzero_tuple(np.clip(jitter, -0.03, 0.03)),
+        widths=nonzero_tuple(np.clip(widths, -0.02, 0.03)),
+        lane=_draw_lane(mover, walking),
+    )
+
+
+def _draw_lane(mover: Mover, walking: WalkingConfig[float]) -> Lane | None:
+    """Lane of a walker who turns round, a part of which may lie behind them; or None."""
+    if not (length := walking.lane_m):
+        return None
+    to_left = mover.stream(f"motion.lane_m/side/{mover.place}").random() < 0.5
+    first = (1 - walking.lane_start) * length
+    return Lane(length, first, side=1.0 if to_left else -1.0)
+
+
+def make_walk(mover: Mover) -> Walk:
+    """Make a walk of a person, from rest."""
+    return Walk(make_gait(mover), mover.duration)
+
+
+MOVEMENTS = (
+    MovementKind(
+        "walking",
+        "walks",
+        make_walk,
+        uses=(PHASE,),
+        words="walk strolling pacing normal_walking gehen",
+        manners="around about in_room indoors normally straight free regular",
+        nearby="marching short_steps walking_slowly walking_fast laufen walking_slow slow_walking "
+        "fast_walking brisk_walking march treadmill short_step ambulation back_and_forth",
+        with_key={
+            "motion.angle_deg: 180, towards the radar": "walking_towards walk_towards towards_walk "
+            "walking_towards_radar approaching",
+            "motion.angle_deg: 0, away from the radar": "walking_away walk_away "
+            "walking_away_from_radar departing",
+            "motion.angle_deg: 90, across the line of sight": "walking_sideways walking_across "
+            "walking_tangentially",
+        },
+    ),
+)

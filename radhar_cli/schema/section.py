@@ -10,7 +10,7 @@ import inspect
 from dataclasses import dataclass
 from itertools import pairwise
 from textwrap import dedent
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, NamedTuple, Protocol, TypeAlias
 
 from pydantic import (
     AfterValidator,
@@ -24,8 +24,8 @@ from pydantic import (
 from pydantic_core import CoreSchema
 from typing_extensions import TypeVar
 
-from radhar_cli.activities.activity import DEFAULT, TWELVE, Activity
-from radhar_cli.config.number import COORDINATE, Bounds, Number, value_error
+from radhar_cli.schema.number import COORDINATE, Bounds, Number, value_error
+from radhar_cli.schema.twelve import DEFAULT, TWELVE
 
 Flag: TypeAlias = Annotated[bool, Field(strict=True)]
 T = TypeVar("T")
@@ -174,7 +174,24 @@ def by_activity(default: Number, **others: Number) -> PerActivity[Number]:
     return PerActivity({DEFAULT: default, **others})
 
 
-def for_activity(value: Any, activity: Activity) -> Any:
+class ClassOfPeople(Protocol):
+    """A class as numbers that differ by activity see it (`activities.activity.Activity`).
+
+    Attributes:
+        slug: Name of the class.
+        movements: Movements that it consists of.
+        is_movement: Whether it is one movement.
+    """
+
+    @property
+    def slug(self) -> str: ...
+    @property
+    def movements(self) -> tuple[str, ...]: ...
+    @property
+    def is_movement(self) -> bool: ...
+
+
+def for_activity(value: Any, activity: ClassOfPeople) -> Any:
     """Return the number that holds for one activity; None where it has none and no default."""
     if isinstance(value, PerActivity):
         numbers = value.per_activity

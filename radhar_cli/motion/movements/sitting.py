@@ -6,6 +6,7 @@ through a posture on the way: Yamasaki et al., 2014.
 
 from dataclasses import dataclass, field, replace
 from math import acos, cos, inf, radians
+from typing import Annotated, Generic
 
 from radhar_cli.motion.human.minimum_jerk import Course, Lags, Step, mirrored
 from radhar_cli.motion.human.part import SEATED, STANDING, Phase
@@ -19,6 +20,40 @@ from radhar_cli.motion.human.planted import (
     scale_steps,
     steps_of_both_sides,
 )
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.transitions import draw_lags
+from radhar_cli.motion.movements.words import OFF_SEATS, ONTO_SEATS, joined
+from radhar_cli.schema.annotations import PERSONAL, People
+from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, normal
+from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+
+
+class SittingConfig(Section, Generic[B]):
+    """How people sit down, sit, and stand up."""
+
+    seat_height: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0.24, 0.33)] = (
+        default_draw(normal(0.285, 0.015, 0.25, 0.32))
+    )
+    """Height of the seated hip, relative to the stature."""
+    lean_deg: Annotated[
+        B,
+        ByActivity(ANGLE),
+        People(None, 0, 60),
+        PERSONAL,
+    ] = default_draw(normal(42.0, 8.0, 25.0, 58.0))
+    """Forward pitch of the trunk while sitting down or rising."""
+    recline_deg: Annotated[B, ByActivity(ANGLE), People(None, -10, 45)] = default_draw(0.0)
+    """Backward pitch of the trunk in the seat."""
+    hands_on_lap: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0, 1)] = default_draw(
+        1.0
+    )
+    """Place of a seated person's hands: 0 is beside the seat, 1 on the lap."""
+
+
+SECTION = SittingConfig
+# Keys of who sits, and of who comes from a seat or goes to it.
+SEAT = ("sitting.seat_height", "sitting.recline_deg", "sitting.hands_on_lap")
+LEAN = "sitting.lean_deg"
 
 
 @dataclass(frozen=True)
@@ -124,3 +159,79 @@ class SitDown:
         course = Course.of(resting_channels(person), steps)
         phases = (Phase(begin, "sitting down"), Phase(end, "seated"))
         return Planted(person, course, begin, end, phases, STANDING, SEATED)
+
+
+def make_seat(mover: Mover) -> Seat:
+    """Make the seat of a person."""
+    sitting = mover.numbers(SittingConfig[float])
+    return Seat(
+        height=sitting.seat_height,
+        recline=radians(sitting.recline_deg),
+        lap=sitting.hands_on_lap,
+    )
+
+
+def make_rise(mover: Mover) -> Rise:
+    """Make the way in which a person stands up."""
+    return Rise(lean=radians(mover.numbers(SittingConfig[float]).lean_deg))
+
+
+def make_sitting(mover: Mover) -> Sit:
+    """Make a person sit still."""
+    return Sit(mover.duration, make_seat(mover))
+
+
+def make_sitting_down(mover: Mover) -> SitDown:
+    """Make a person sit down."""
+    lowering, _ = draw_lags(mover)
+    return SitDown(mover.duration, make_seat(mover), make_rise(mover), lags=lowering)
+
+
+def make_standing_up(mover: Mover) -> StandUp:
+    """Make a person stand up."""
+    _, rising = draw_lags(mover)
+    return StandUp(mover.duration, make_seat(mover), make_rise(mover), rising)
+
+
+MOVEMENTS = (
+    MovementKind(
+        "sitting_down",
+        "sits down on a chair",
+        make_sitting_down,
+        STANDING,
+        SEATED,
+        2.0,
+        in_place=True,
+        uses=(*SEAT, LEAN, "transitions.joint_lag"),
+        steps=(0.0, None),  # people feel for the chair
+        words="sit sit_down stand_to_sit hinsetzen sitdown",
+        manners=ONTO_SEATS,
+    ),
+    MovementKind(
+        "standing_up",
+        "stands up from a chair",
+        make_standing_up,
+        SEATED,
+        STANDING,
+        1.8,
+        in_place=True,
+        uses=(*SEAT, LEAN, "transitions.joint_lag"),
+        steps=(None, 1.0),  # and leave it
+        gestures=(("pitch", -0.05, False, -0.6, 0.5), ("pitch", 0.0, False, -0.1, 0.5)),  # back
+        words="stand_up rising stand_up_from_chair sit_to_stand aufstehen standup "
+        + joined("get_up getting_up rise rising stand standing", OFF_SEATS),
+        manners=f"{OFF_SEATS} from_sitting",
+    ),
+    MovementKind(
+        "sitting",
+        "sits still",
+        make_sitting,
+        SEATED,
+        SEATED,
+        in_place=True,
+        rests=True,
+        uses=SEAT,
+        words="seated sitting_still sitzen",
+        manners=f"{ONTO_SEATS} still quietly",
+    ),
+)

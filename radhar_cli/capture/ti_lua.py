@@ -1,30 +1,22 @@
 """The header of a capture in a script of mmWave Studio (Lua).
 
 Order and units of arguments: mmWave Studio User's Guide, calls `ar1.ProfileConfig`, `ChirpConfig`,
-`FrameConfig`, `ChanNAdcConfig`, `LVDSLaneConfig` and `DataFmtConfig`. The script is followed
-(`lua_script.py`); it reaches nothing outside itself.
+`FrameConfig`, `ChanNAdcConfig`, `LVDSLaneConfig` and `DataFmtConfig`. The script is read, not run
+(`lua_calls.py`): calls that differ, and arguments that are no numbers there, are asked for.
 """
 
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from radhar_cli.capture.lua_script import (
-    DeviceCall,
-    Script,
-    Table,
-    Unknown,
-    Value,
-    are_alike,
-)
-from radhar_cli.capture.lua_syntax import parse_lua
+from radhar_cli.capture.lua_calls import DeviceCall, read_device_calls
 from radhar_cli.capture.lvds_format import LvdsFormat
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import text_of
 from radhar_cli.radar.frame_header import ChirpProfile, FrameHeader, Sampling
 from radhar_cli.radar.ti_cfg import ChirpRange, FrameTiming, make_frame_header
 
-MAX_LUA = 2**20  # bytes
+MAX_LUA = 2**18  # bytes
 NEEDED = ("ChanNAdcConfig", "ProfileConfig", "ChirpConfig", "FrameConfig")
 FEWEST = {
     "ChanNAdcConfig": 10,
@@ -37,7 +29,6 @@ FEWEST = {
 NAMES = {name.lower(): name for name in FEWEST}
 UNREAD = {"advanceframeconfig", "advancedframeconfig"}
 TRANSMITTERS, RECEIVERS = 3, 4
-LARGEST = 1e12
 KEYS = "carrier_hz, bandwidth_hz, adc_rate_hz, prf_hz, samples, receivers, frame_pulses, frame_s"
 
 
@@ -72,15 +63,12 @@ class Call(NamedTuple):
 def read_lua(path: Path) -> tuple[FrameHeader, LvdsFormat]:
     """Read a header from a script of mmWave Studio.
 
-    Args:
-        path: the script.
-
     Returns:
         Chirps, frames and samples, and the order of words in the capture.
 
     Raises:
-        CaptureError: a call is missing, depends on what the script does not say, or asks for what
-            is not read; names line and argument.
+        CaptureError: A call is missing, differs from another, has an argument that is no number, or
+            asks for what is not read; names line and argument.
     """
     calls = _calls(text_of(path, MAX_LUA, CaptureError), path)
     missing = [f"ar1.{name}" for name in NEEDED if not _calls_of(name, calls)]
@@ -117,117 +105,83 @@ def read_lua(path: Path) -> tuple[FrameHeader, LvdsFormat]:
     return header, LvdsFormat(count, is_interleaved, is_q_first)
 
 
-class _Record:
-    """Calls of a script that hold: the last of a name, of a profile, or of chirps.
-
-    Args:
-        path: the script.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.calls, self.starts = Table(), Table()  # {name and number: its arguments}
-        self.lines = dict[Value, list[int]]()
-
-    def __call__(self, script: Script, call: DeviceCall) -> None:
-        """Store a call of the radar if it is read.
-
-        Raises:
-            CaptureError: it sets what is not read.
-        """
-        name, arguments = call.name.lower(), call.arguments
-        if name in UNREAD:
-            raise CaptureError(
-                f"{self.path}:{call.line}: {call.name}: frames of subframes are not read from "
-                "scripts; --radar should name the .mmwave.json that mmWave Studio exports"
-            )
-        if name.startswith("startframe"):
-            self._start(script, call.line)
-        if name.endswith("_mult"):  # of cascades: a mask of devices comes first
-            name, arguments = name.removesuffix("_mult"), arguments[1:]
-            if name in NAMES and call.arguments[:1] != (1.0,):
-                raise CaptureError(
-                    f"{self.path}:{call.line}: {call.name}: device 1 alone is read; of cascades of "
-                    f"several chips give the keys by --set: {KEYS}"
-                )
-        if name in NAMES:
-            numbers = {"profileconfig": 1, "chirpconfig": 2}.get(name, 0)
-            words = [f"{v:g}" for v in arguments[:numbers] if isinstance(v, float)]
-            key = " ".join([NAMES[name], *words])
-            self.lines.setdefault(key, []).append(call.line)
-            script.write(
-                self.calls, key, Table({float(n): value for n, value in enumerate(arguments)})
-            )
-
-    def _start(self, script: Script, line: int) -> None:
-        """Note the calls that hold when frames are started.
-
-        Raises:
-            CaptureError: frames were started before, with other calls.
-        """
-        calls = Table({**self.calls.entries})
-        before = self.starts.entries.get("calls", calls)
-        if not are_alike(before, calls):
-            raise CaptureError(
-                f"{self.path}:{line}: StartFrame: starts frames again, with other settings; "
-                "--radar should name a copy of the script with those of this capture alone"
-            )
-        script.write(self.starts, "calls", calls)
-
-    def effective_calls(self) -> list[Call]:
-        """Calls that hold at the start of the frames, or at the end of a script without.
-
-        Raises:
-            CaptureError: a call depends on what the script does not say.
-        """
-        started = self.starts.entries.get("calls")
-        calls = (started if isinstance(started, Table) else self.calls).entries
-        return [self._call(str(key), arguments) for key, arguments in calls.items()]
-
-    def _call(self, key: str, arguments: Value) -> Call:
-        """Call of a name with its arguments, all numbers.
-
-        Raises:
-            CaptureError: an argument is none, or depends on what the script does not say.
-        """
-        name, line = key.partition(" ")[0], self.lines[key][-1]
-        place = f"{self.path}:{line}"
-        if isinstance(arguments, Unknown):
-            raise self._refusal(name, self.lines[key][0], arguments.cause)
-        values = [*arguments.entries.values()] if isinstance(arguments, Table) else []
-        if len(values) < FEWEST[name]:
-            raise CaptureError(
-                f"{place}: {name}: has {len(values)} arguments; should have {FEWEST[name]} or more"
-            )
-        for index, value in enumerate(values):
-            argument = f"{name} argument {index + 1}"
-            if isinstance(value, Unknown):
-                raise self._refusal(argument, line, value.cause)
-            if not isinstance(value, float | bool) or not abs(value) < LARGEST:
-                raise CaptureError(
-                    f"{place}: {argument}: should be a number, or a name that is set to one"
-                )
-        numbers = [float(value) for value in values if isinstance(value, float | bool)]
-        return Call(place, name, tuple(numbers))
-
-    def _refusal(self, argument: str, line: int, cause: str) -> CaptureError:
-        """Error of what depends on something that is unknown."""
-        mend = f"`{cause} = ...` before it" if cause.isidentifier() else "the number in its place"
-        return CaptureError(
-            f"{self.path}:{line}: {argument} depends on {cause}, which is known to no reader of "
-            f"the script: --radar should name a copy with {mend}, or --set give {KEYS}"
-        )
-
-
 def _calls(text: str, path: Path) -> list[Call]:
-    """Calls that hold, with their numbers.
+    """Calls that hold when frames are started: one of each name, of each profile and of each chirp.
 
     Raises:
-        CaptureError: the text is no Lua, or a call is not of numbers that the script says.
+        CaptureError: Two of them differ, or one is not of numbers that the script says.
     """
-    record = _Record(path)
-    Script(str(path), record).follow(parse_lua(text.removeprefix("\ufeff"), str(path)))
-    return record.effective_calls()
+    calls, is_started, is_changed = dict[tuple[object, ...], DeviceCall](), False, False
+    for device_call in read_device_calls(text.removeprefix("\ufeff")):
+        call = _of_first_device(device_call, path)
+        place = f"{path}:{call.line}: {call.name}"
+        if call.name.lower().startswith("startframe"):
+            if is_changed:
+                raise CaptureError(
+                    f"{place}: starts frames again, with other settings; --radar should name a "
+                    "copy of the script with those of this capture alone"
+                )
+            is_started = True
+        if call.name.lower() not in NAMES:
+            continue
+        name = NAMES[call.name.lower()]
+        count = {"ProfileConfig": 1, "ChirpConfig": 2}.get(name, 0)
+        before = calls.setdefault((name, *call.arguments[:count]), call)
+        if is_started:
+            is_changed |= before.arguments != call.arguments or before.line == call.line
+        elif before.arguments != call.arguments:
+            raise CaptureError(
+                f"{place}: differs from line {before.line}, and conditions are not followed; "
+                "--radar should name a copy of the script with one of them"
+            )
+    return [_numbers_of(NAMES[call.name.lower()], call, path) for call in calls.values()]
+
+
+def _of_first_device(call: DeviceCall, path: Path) -> DeviceCall:
+    """Return a call with the name and the arguments that it has of a single chip.
+
+    Raises:
+        CaptureError: It sets what is not read.
+    """
+    name = call.name.lower()
+    if name in UNREAD:
+        raise CaptureError(
+            f"{path}:{call.line}: {call.name}: frames of subframes are not read from "
+            "scripts; --radar should name the .mmwave.json that mmWave Studio exports"
+        )
+    single = name.removesuffix("_mult")  # of cascades: a mask of devices comes first
+    if single == name or single not in NAMES:
+        return call
+    if call.arguments[:1] != (1.0,):
+        raise CaptureError(
+            f"{path}:{call.line}: {call.name}: device 1 alone is read; of cascades of "
+            f"several chips give the keys by --set: {KEYS}"
+        )
+    return DeviceCall(call.line, single, call.arguments[1:])
+
+
+def _numbers_of(name: str, call: DeviceCall, path: Path) -> Call:
+    """Return a call whose arguments are all numbers.
+
+    Raises:
+        CaptureError: An argument is none in the script, or there are too few.
+    """
+    place = f"{path}:{call.line}"
+    numbers = [argument for argument in call.arguments if isinstance(argument, float)]
+    for index, argument in enumerate(call.arguments):
+        if isinstance(argument, str):
+            cause = argument[:60] or "nothing"
+            is_name = cause.isidentifier() and cause not in ("nil", "true", "false")
+            mend = f"`{cause} = ...` before it" if is_name else "the number in its place"
+            raise CaptureError(
+                f"{place}: {name} argument {index + 1} depends on {cause}, which is no number in "
+                f"the script: --radar should name a copy with {mend}, or --set give {KEYS}"
+            )
+    if len(numbers) < FEWEST[name]:
+        raise CaptureError(
+            f"{place}: {name}: has {len(numbers)} arguments; should have {FEWEST[name]} or more"
+        )
+    return Call(place, name, tuple(numbers))
 
 
 def _calls_of(name: str, calls: Sequence[Call]) -> list[Call]:

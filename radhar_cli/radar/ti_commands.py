@@ -1,8 +1,6 @@
 """Commands of the .cfg of a TI board: their arguments, and what radhar makes of each.
 
-The names are TI's. Sources: mmWave SDK user guide, "Configuration (.cfg) File Format"; the command
-lines of TI's demos, SDK 1 to 4 and MMWAVE-L-SDK, and of its people counting and tracking. The page
-docs/reference/ti_commands.md is made of this table.
+The table of them is ti_commands.txt, of which docs/reference/ti_commands.md is made, too.
 """
 
 import re
@@ -10,7 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
+from itertools import chain
 from math import isfinite
+from pathlib import Path
 from types import MappingProxyType
 
 from radhar_cli.errors import CaptureError
@@ -305,653 +305,74 @@ def find_family(lines: Sequence[CfgLine]) -> Family:
     return by_count.get(counts.get("cfarCfg", 0), Family.ANY)
 
 
-def _wholes(*names: str, low: float = 0, high: float = COUNT) -> tuple[Argument, ...]:
-    return tuple(Argument(name, low, high, is_whole=True) for name in names)
-
-
-def _flags(*names: str) -> tuple[Argument, ...]:
-    return _wholes(*names, high=1)
-
-
-def _optional(*names: str) -> tuple[Argument, ...]:
-    return tuple(Argument(name, is_optional=True) for name in names)
-
-
-def _positive(name: str, meaning: str) -> Argument:
-    return Argument(name, 1e-3, 1e6, meaning=meaning)
-
-
-def _places(antenna: str, count: int, more: str = "") -> tuple[Argument, ...]:
-    """Arguments of the places of so many antennas or fewer, of which two numbers may follow."""
-    meaning = f"row and column of each {antenna}{more}"
-    first = Argument("number1", 0, LARGEST, meaning=meaning)
-    others = range(2, 2 * count + (3 if more else 1))
-    return first, *(Argument(f"number{n}", 0, LARGEST, is_optional=True) for n in others)
-
-
-_MIMO_PATTERNS = (0, 1, 4)
 CHIRP_VARIATIONS = "startFreqVar", "freqSlopeVar", "idleTimeVar", "adcStartTimeVar"
-PROFILE_ID = _wholes("profileId")[0]
+PROFILE_ID = Argument("profileId", 0, COUNT, is_whole=True)
 SUBFRAME = Argument("subFrameIdx", -1, 3, True, "-1 for all subframes")
-_SIGNAL = (
-    Command(
-        "dfeDataOutputMode",
-        Effect.SIGNAL,
-        (
-            Argument(
-                "modeType",
-                meaning="frames of frameCfg, of advFrameCfg; others are not read",
-                choices=(1, 3),
-            ),
-        ),
-    ),
-    Command(
-        "channelCfg",
-        Effect.SIGNAL,
-        (
-            Argument("rxChannelEn", 0, COUNT, True, "a mask of receivers"),
-            Argument("txChannelEn", 0, COUNT, True, "a mask of transmitters"),
-            Argument("cascading", 0, 0, True, "a single device; cascades are not read"),
-            *_optional("ethOscClkEn", "driveStrength"),
-        ),
-    ),
-    Command(
-        "adcCfg",
-        Effect.SIGNAL,
-        (
-            Argument("numADCBits", 0, 2, True, "12, 14 and 16 bits"),
-            Argument("adcOutputFmt", 0, 2, True, "real, complex 1x and complex 2x"),
-        ),
-    ),
-    Command(
-        "profileCfg",
-        Effect.SIGNAL,
-        (
-            PROFILE_ID,
-            _positive("startFreq", "GHz"),
-            Argument("idleTime", 0, 1e6, meaning="us"),
-            Argument("adcStartTime", 0, 1e6, meaning="us"),
-            _positive("rampEndTime", "us"),
-            Argument("txOutPower", 0, COUNT, True, "dB less, a byte a transmitter"),
-            *_wholes("txPhaseShifter"),
-            _positive("freqSlopeConst", "MHz/us"),
-            Argument("txStartTime", meaning="us"),
-            *_wholes("numAdcSamples", low=2, high=2**16),
-            _positive("digOutSampleRate", "ksps"),
-            *(Argument(name) for name in ("hpfCornerFreq1", "hpfCornerFreq2", "rxGain")),
-        ),
-    ),
-    Command(
-        "chirpCfg",
-        Effect.SIGNAL,
-        (
-            *_wholes("startIdx", "endIdx", "profileId"),
-            *(Argument(name, meaning="0 of chirps in use") for name in CHIRP_VARIATIONS),
-            Argument("txEnable", 0, COUNT, True, "a mask of transmitters, not 0 of chirps in use"),
-        ),
-    ),
-    Command(
-        "frameCfg",
-        Effect.SIGNAL,
-        (
-            *_wholes("chirpStartIdx", "chirpEndIdx"),
-            *_wholes("numLoops", low=1),
-            *_wholes("numFrames"),
-            _positive("framePeriodicity", "ms"),
-            Argument("triggerSelect"),
-            *_optional("frameTriggerDelay"),
-        ),
-        Family.SDK_1_TO_3,
-    ),
-    Command(
-        "frameCfg",
-        Effect.SIGNAL,
-        (
-            *_wholes("chirpStartIdx", "chirpEndIdx"),
-            *_wholes("numLoops", low=1),
-            *_wholes("numFrames"),
-            *_wholes("numAdcSamples", low=2, high=2**16),
-            _positive("framePeriodicity", "ms"),
-            Argument("triggerSelect"),
-            Argument("frameTriggerDelay"),
-        ),
-        Family.MCU_PLUS,
-    ),
-    Command(
-        "advFrameCfg",
-        Effect.SIGNAL,
-        (
-            *_wholes("numOfSubFrames", low=1, high=4),
-            Argument(
-                "forceProfile", 0, 0, meaning="profiles of chirpCfg; forced ones are not read"
-            ),
-            *_wholes("numFrames"),
-            Argument("triggerSelect"),
-            Argument("frameTrigDelay"),
-        ),
-    ),
-    Command(
-        "subFrameCfg",
-        Effect.SIGNAL,
-        (
-            *_wholes("subFrameNum", high=3),
-            *_wholes("forceProfileIdx", "chirpStartIdx"),
-            *_wholes("numOfChirps", "numLoops", low=1),
-            _positive("burstPeriodicity", "ms"),
-            Argument("chirpStartIdxOffset"),
-            *(
-                Argument(name, 1, 1, meaning="a burst; several are not read")
-                for name in ("numOfBurst", "numOfBurstLoops")
-            ),
-            _positive("subFramePeriodicity", "ms"),
-        ),
-    ),
-    Command(
-        "bpmCfg",
-        Effect.SIGNAL,
-        (*_flags("enabled"), *_wholes("chirp0Idx", "chirp1Idx", high=511)),
-        subframe=Subframe.ALWAYS,
-    ),
-)
-_SIGNAL_OF_L_SDK = (
-    Command(
-        "channelCfg",
-        Effect.SIGNAL,
-        (
-            Argument("rxChCtrlBitMask", 1, 255, True, "a mask of receivers"),
-            Argument("txChCtrlBitMask", 1, 255, True, "a mask of transmitters"),
-            Argument("miscCtrl"),
-        ),
-        Family.L_SDK,
-    ),
-    Command(
-        "chirpComnCfg",
-        Effect.SIGNAL,
-        (
-            *_wholes("digOutputSampRate", low=1, high=1000),
-            *_wholes("digOutputBitsSel", "dfeFirSel"),
-            *_wholes("numOfAdcSamples", low=2, high=2**16),
-            Argument(
-                "chirpTxMimoPatSel",
-                meaning="0, 1: in turns; 4: two together",
-                choices=_MIMO_PATTERNS,
-            ),
-            _positive("chirpRampEndTime", "us"),
-            *_wholes("chirpRxHpfSel"),
-        ),
-        Family.L_SDK,
-    ),
-    Command(
-        "chirpTimingCfg",
-        Effect.SIGNAL,
-        (
-            Argument("chirpIdleTime", 0, 1e6, meaning="us"),
-            *_wholes("chirpAdcSkipSamples", high=2**16),
-            Argument("chirpTxStartTime", meaning="us"),
-            _positive("chirpRfFreqSlope", "MHz/us"),
-            _positive("chirpRfFreqStart", "GHz"),
-        ),
-        Family.L_SDK,
-    ),
-    Command(
-        "frameCfg",
-        Effect.SIGNAL,
-        (
-            *_wholes("numOfChirpsInBurst", low=1, high=2**16),
-            *_wholes("numOfChirpsAccum", high=2**10),
-            _positive("burstPeriodicity", "us"),
-            *_wholes("numOfBurstsInFrame", low=1, high=2**16),
-            _positive("framePeriodicity", "ms"),
-            *_wholes("numOfFrames"),
-        ),
-        Family.L_SDK,
-    ),
-    Command(
-        "factoryCalibCfg",
-        Effect.SIGNAL,
-        (
-            *_flags("saveEnable", "restoreEnable"),
-            Argument("rxGain"),
-            Argument("txBackoff", 0, 255, meaning="dB less of all transmitters"),
-            Argument("flashOffset"),
-        ),
-        Family.L_SDK,
-    ),
-)
-_CFAR = (
-    *_flags("procDirection"),
-    Argument("averageMode", 0, 2, True, "CA, CAGO and CASO"),
-    *_wholes("winLen", low=1, high=1024),
-    *_wholes("guardLen", high=1024),
-    *_wholes("noiseDiv"),
-    *_flags("cyclicMode"),
-    Argument("thresholdScale", 0, 1e6),
-)
-CELLS = 1024  # most cells of a window, a guard, or an end that is left out
-_CFAR_OF_PEOPLE = (
-    Argument("cfarMethod", 6, 6, meaning="two passes along range and angle"),
-    *_wholes("cfarDiscardRangeLeft", "cfarDiscardRangeRight", high=CELLS),
-    *_wholes("cfarDiscardAngleLeft", "cfarDiscardAngleRight", high=CELLS),
-    *_wholes("refWinSize0", "refWinSize1", low=1, high=CELLS),
-    *_wholes("guardWinSize0", "guardWinSize1", high=CELLS),
-    Argument("rangeThre", 0, 1e6, meaning="tenths of a power ratio"),
-    Argument("azimuthThre", 0, 1e6, meaning="tenths of a power ratio"),
-    *_wholes("log2MagFlag"),
-    *_optional("inputScaleDown"),
-)
-_CFAR_OF_TRACKING = (
-    *_wholes("leftSkipSize", "rightSkipSize", high=CELLS),
-    *_wholes("leftSkipSizeAzimuth", "rightSkipSizeAngle", high=CELLS),
-    *_wholes("searchWinSizeRange", "searchWinSizeAngle", low=1, high=CELLS),
-    *_wholes("guardSizeRange", "guardSizeAngle", high=CELLS),
-    *(
-        Argument(name, 0, 1e6, meaning="a power ratio")
-        for name in ("threRange", "threAngle", "threSidelob")
-    ),
-    *_flags("enSecondPass"),
-    *_optional("dynamicFlag"),
-)
-_CFAR_OF_OCCUPANTS = (  # with a window of its own up to rangeRefIndex
-    *_CFAR_OF_TRACKING[:6],
-    *_wholes("searchWinSizeNear", high=CELLS),
-    *_CFAR_OF_TRACKING[6:8],
-    *_wholes("guardSizeNear", high=CELLS),
-    *_CFAR_OF_TRACKING[8:12],
-    *_wholes("rangeRefIndex", high=CELLS),
-)
-_CFAR_OF_OBSTACLES = (
-    Argument("detectMethod", 1, 2, True),
-    *_wholes("leftSkipBin", "closeInRangeBin", high=CELLS),
-    *_wholes("searchWinSizeRange", "guardSizeRange", high=CELLS),
-    *_wholes("searchWinSizeSpreading", "guardSizeSpreading", high=CELLS),
-    Argument("rangeThresh", meaning="tenths"),
-    Argument("fftSpreadingThresh", meaning="1e-5"),
-    *_wholes("noiseCalcType", high=2),
-    *_wholes("localPeakEnable", "peakAngleDiffThresh"),
-    Argument("maxRangeForDetection", meaning="tenths of a m"),
-    *_optional("secondPeakThresh"),
-)
-_CFAR_OF_L_SDK = tuple(
-    Argument(name)
-    for name in (
-        *("averageMode", "winLen", "guardLen", "noiseDivShift", "cyclicMode", "threshold"),
-        *("peakGroupingEn", "sideLobeThreshold", "enableLocalMaxRange", "enableLocalMaxAzimuth"),
-        *("enableInterpRangeDom", "enableInterpAzimuthDom"),
-    )
-)
-_CFAR_OF_MCU_PLUS = (
-    *_CFAR,
-    *_flags("peakGroupingEn"),
-    *(Argument(name) for name in ("osKvalue", "osEdgeKscaleEn", "isEnabled")),
-    *_optional("variableThresholdMode"),
-)
-CHANNELS = 16  # most virtual channels of compRangeBiasAndRxChanPhase
-_POINTS = (
-    Command("cfarCfg", Effect.POINTS, _CFAR, Family.SDK_1),
-    Command("cfarCfg", Effect.POINTS, _CFAR, Family.SDK_2, Subframe.ALWAYS),
-    Command(
-        "cfarCfg", Effect.POINTS, (*_CFAR, *_flags("peakGroupingEn")), Family.SDK_3, Subframe.ALWAYS
-    ),
-    Command("cfarCfg", Effect.POINTS, _CFAR_OF_PEOPLE, Family.PEOPLE),
-    Command("cfarCfg", Effect.WARNING, _CFAR_OF_OBSTACLES, Family.OBSTACLES),
-    Command("cfarCfg", Effect.WARNING, _CFAR_OF_L_SDK, Family.L_SDK),
-    Command("cfarCfg", Effect.POINTS, _CFAR_OF_MCU_PLUS, Family.MCU_PLUS, Subframe.ALWAYS),
-    Command(
-        "peakGrouping",
-        Effect.POINTS,
-        (
-            *_wholes("groupingMode"),
-            *_flags("rangeDimEn", "dopplerDimEn"),
-            *_wholes("startRangeIdx", "endRangeIdx", high=2**16),
-        ),
-        subframe=Subframe.OPTIONAL,
-    ),
-    Command(
-        "multiObjBeamForming",
-        Effect.POINTS,
-        (*_flags("enabled"), Argument("threshold", 0, 1)),
-        subframe=Subframe.OPTIONAL,
-    ),
-    Command("clutterRemoval", Effect.POINTS, _flags("enabled"), subframe=Subframe.OPTIONAL),
-    Command(
-        "compRangeBiasAndRxChanPhase",
-        Effect.POINTS,
-        (
-            Argument("rangeBias", -100, 100, meaning="m"),
-            Argument("Re1"),
-            Argument("Im1"),
-            *_optional(*(f"{part}{n}" for n in range(2, CHANNELS + 1) for part in ("Re", "Im"))),
-        ),
-    ),
-    Command(
-        "aoaFovCfg",
-        Effect.POINTS,
-        tuple(
-            Argument(name, -180, 180, meaning="degree")
-            for name in ("minAzimuthDeg", "maxAzimuthDeg", "minElevationDeg", "maxElevationDeg")
-        ),
-        subframe=Subframe.OPTIONAL,
-    ),
-    Command(
-        "cfarFovCfg",
-        Effect.POINTS,
-        (
-            Argument("procDirection", 0, 1, True, "range in m, speed in m/s"),
-            Argument("min"),
-            Argument("max"),
-        ),
-        subframe=Subframe.OPTIONAL,
-    ),
-    Command(
-        "rangeSelCfg",
-        Effect.POINTS,
-        (Argument("min", meaning="m"), Argument("max", meaning="m")),
-        Family.L_SDK,
-    ),
-)
-_GAMMA = Argument("mvdr_alpha", 1e-6, 1, meaning="loading over the mean power")
-_RATIOS = tuple(
-    Argument(name, 0, 1e6, meaning="a power ratio") for name in ("peakExpRelThr", "peakExpSNRThr")
-)
-_PEOPLE_TRACKING = (
-    *(
-        Command(name, Effect.POINTS, _CFAR_OF_TRACKING, Family.PEOPLE_3D, Subframe.ALWAYS)
-        for name in ("dynamicRACfarCfg", "staticRACfarCfg")
-    ),
-    Command(
-        "dynamicRACfarCfg",
-        Effect.WARNING,
-        _CFAR_OF_OCCUPANTS,
-        Family.PEOPLE_3D,
-        Subframe.ALWAYS,
-    ),
-    Command(
-        "dynamicRangeAngleCfg",
-        Effect.POINTS,
-        (
-            Argument("searchStep", 0.05, 45, meaning="degree"),
-            _GAMMA,
-            Argument("detectionMethod", 1, 2, True, "azimuth then elevation, or both then a zoom"),
-            Argument("dopplerEstMethod", 0, 0, meaning="the largest peak"),
-        ),
-        Family.PEOPLE_3D,
-        Subframe.ALWAYS,
-    ),
-    Command(
-        "dynamic2DAngleCfg",
-        Effect.POINTS,
-        (
-            Argument("elevSearchStep", 0.05, 45, meaning="degree"),
-            _GAMMA,
-            *(
-                Argument(name)
-                for name in ("maxNpeak2Search", "peakExpSamples", "elevOnly", "sideLobThr")
-            ),
-            *_RATIOS,
-        ),
-        Family.PEOPLE_3D,
-        Subframe.ALWAYS,
-    ),
-    Command(
-        "dynamic2DAngleCfg",
-        Effect.POINTS,
-        (
-            *_wholes("zoominFactor", low=1, high=32),
-            Argument("zoominNn8bors"),
-            *_wholes("peakExpSamples", high=32),
-            *_RATIOS,
-            *_wholes("localMaxCheckFlag", high=2),
-        ),
-        Family.PEOPLE_3D,
-        Subframe.ALWAYS,
-    ),
-    Command(
-        "staticRangeAngleCfg",
-        Effect.POINTS,
-        (
-            *_flags("staticProcEnabled"),
-            *_wholes("staticAzimStepDeciFactor", "staticElevStepDeciFactor", low=1, high=CELLS),
-        ),
-        Family.PEOPLE_3D,
-        Subframe.ALWAYS,
-    ),
-    Command(
-        "fineMotionCfg",
-        Effect.POINTS,
-        (
-            *_flags("fineMotionProcEnabled"),
-            Argument("fineMotionObservationTime", 1e-3, 1e3, False, "s", True),
-            Argument("fineMotionProcCycle", 1, CELLS, True, "frames", True),
-            Argument("fineMotionDopplerThrIdx", 0, CELLS, True, "Doppler bins", True),
-        ),
-        Family.PEOPLE_3D,
-        Subframe.ALWAYS,
-    ),
-    Command(
-        "fovCfg",
-        Effect.POINTS,
-        tuple(Argument(name, 1, 90, meaning="degree, half") for name in ("azimFoV", "elevFoV")),
-        Family.PEOPLE_3D,
-        Subframe.ALWAYS,
-    ),
-    *(
-        Command(
-            name,
-            Effect.POINTS,
-            tuple(
-                Argument(f"antenna{n}", -high, high, meaning=meaning, is_optional=n > 1)
-                for n in range(1, CHANNELS + 1)
-            ),
-            Family.PEOPLE_3D,
-        )
-        for name, high, meaning in (
-            ("antGeometry0", 100, "half wavelengths to the right"),
-            ("antGeometry1", 100, "half wavelengths upwards"),
-            ("antPhaseRot", 1, "1 or -1"),
-        )
-    ),
-)
-_DOA = Command(
-    "doaCfg",
-    Effect.POINTS,
-    (
-        Argument("estAngleRange", 10, 900, meaning="tenths of a degree"),
-        Argument("estAngleResolution", 50, 45000, meaning="thousandths of a degree"),
-        Argument("gamma", 1e-3, 1000, meaning="thousandths"),
-        *_flags("clutterRemovalFlag"),
-        *_optional(*(f"argument{number}" for number in range(5, 11))),
-    ),
-    Family.PEOPLE,
-)
 THIRD_TILT = "thirdTilt"  # of sensorPosition of in-cabin demos
-_POSE = (
-    Command(
-        "sensorPosition",
-        Effect.POSE,
-        (
-            Argument("height", 0, 1000, meaning="m above the floor"),
-            Argument("azimuthTilt", -360, 360, meaning="degree to the right"),
-            Argument("elevationTilt", -360, 360, meaning="degree down"),
-        ),
-        Family.PEOPLE_3D,
-    ),
-    *(
-        Command(
-            "sensorPosition",
-            Effect.POSE,
-            (
-                *(
-                    Argument(name, -1000, 1000, meaning="m")
-                    for name in ("xOffset", "yOffset", "zOffset")
-                ),
-                Argument("azimuthTilt", -360, 360, meaning="degree to the right"),
-                Argument("elevationTilt", -360, 360, meaning="degree down"),
-                Argument(THIRD_TILT, -360, 360, meaning="degree", is_optional=True),
-            ),
-            family,
-        )
-        for family in (Family.PEOPLE_3D, Family.L_SDK)
-    ),
-)
-_BOX = (
-    Command(
-        "boundaryBox",
-        Effect.BOX,
-        tuple(
-            Argument(name, -1000, 1000, meaning="m")
-            for name in ("Xmin", "Xmax", "Ymin", "Ymax", "Zmin", "Zmax")
-        ),
-    ),
-    Command(
-        "SceneryParam",
-        Effect.BOX,
-        tuple(
-            Argument(name, -1000, 1000, meaning="m") for name in ("left", "right", "near", "far")
-        ),
-        Family.PEOPLE,
-    ),
-)
-_ELEMENTS = (
-    *(
-        Command(
-            "antGeometryCfg",
-            Effect.ELEMENTS,
-            _places("virtual element", CHANNELS, f", then their spacings, {unit}"),
-            family,
-        )
-        for family, unit in ((Family.L_SDK, "mm"), (Family.MCU_PLUS, "wavelengths"))
-    ),
-    *(
-        Command(name, Effect.ELEMENTS, _places(antenna, 4), Family.L_SDK)
-        for name, antenna in (("antGeometryTX", "transmitter"), ("antGeometryRx", "receiver"))
-    ),
-    Command(
-        "antGeometryDist",
-        Effect.ELEMENTS,
-        tuple(Argument(name, 1e-3, 1000, meaning="mm") for name in ("dX", "dZ")),
-        Family.L_SDK,
-    ),
-)
-_WITH_WARNING = (
-    Command("extendedMaxVelocity", Effect.WARNING, _wholes("enabled"), subframe=Subframe.OPTIONAL),
-    Command(
-        "nearFieldCfg",
-        Effect.WARNING,
-        _wholes("enabled", "startRangeIdx", "endRangeIdx"),
-        subframe=Subframe.OPTIONAL,
-    ),
-    Command(
-        "calibDcRangeSig",
-        Effect.WARNING,
-        (
-            *_wholes("enabled"),
-            Argument("negativeBinIdx"),
-            *_wholes("positiveBinIdx", "numAvgFrames"),
-        ),
-        subframe=Subframe.OPTIONAL,
-    ),
-    *(
-        Command(name, Effect.WARNING, family=Family.L_SDK)
-        for name in ("sigProcChainCfg", "cfarProcCfg", "aoaProcCfg")
-    ),
-    Command(
-        "measureRangeBiasAndRxChanPhase",
-        Effect.WARNING,
-        (*_wholes("enabled"), Argument("targetDistance"), Argument("searchWin")),
-    ),
-)
-# Control of the demo, tracker, presence, vital signs: nothing of them is in a cube or its points.
-_SILENT = {
-    Family.ANY: (
-        *("sensorStart", "sensorStop", "flushCfg", "lowPower", "guiMonitor", "dataLogger"),
-        *("analogMonitor", "CQRxSatMonitor", "CQSigImgMonitor", "calibData", "configDataPort"),
-        *("baudRate", "queryDemoStatus", "pmicCfg", "idlePowerCycle", "adcDataDitherCfg"),
-        *("gpAdcMeasConfig", "apllFreqShiftEn", "runtimeCalibCfg", "adcDataSource", "adcLogging"),
-        *("lowPowerCfg", "compressionCfg", "intfMitigCfg", "localMaxCfg", "rangeProcCfg"),
-        *("antennaCalibParams", "enetStreamCfg", "spreadSpectrumConfig", "subDataFrameCfg"),
-        POWER_MEASUREMENT,
-    ),
-    Family.L_SDK: ("antGeometryBoard",),
-    Family.OBSTACLES: ("dbscanCfg",),
-    Family.PEOPLE: (
-        *("GatingParam", "StateParam", "AllocationParam", "VariationParam"),
-        *("AccelerationParam", "PointCloudEn"),
-    ),
-    Family.PEOPLE_3D: (
-        *("staticBoundaryBox", "presenceBoundaryBox", "gatingParam", "stateParam"),
-        *("allocationParam", "maxAcceleration", "trackingCfg", "classifierCfg", "vitalsign"),
-        *("VSRangeIdxCfg", "VSTargetId", "mpdBoundaryBox", "clusterCfg", "majorStateCfg"),
-        *("minorStateCfg", "microDopplerCfg", "profileSwitchCfg"),
-        "dopplerCfarCfg",  # of a search for Doppler that is not the largest peak's
-    ),
-}
-_DDMA = "DDMA is not simulated; should be one transmitter a chirp (the TDM demo's profile)"
-_REFUSED = (
-    *(
-        Command(
-            name, Effect.NOT_READ, reason="is not read; should be profileCfg, chirpCfg, frameCfg"
-        )
-        for name in ("contModeCfg", "advChirpCfg", "LUTDataCfg")
-    ),
-    Command("ddmPhaseShiftAntOrder", Effect.NOT_SIMULATED, family=Family.MCU_PLUS, reason=_DDMA),
-    Command(
-        "bpmCfgAdvanced",
-        Effect.NOT_SIMULATED,
-        reason="is not simulated; should be one transmitter a chirp",
-    ),
-)
-_PROCESSING = tuple(
-    Command(
-        name,
-        Effect.NOT_SIMULATED,
-        (
-            Argument("procChain", 0, 0, meaning="TDM; DDMA is not simulated"),
-            *_optional(*(f"argument{number}" for number in range(2, 9))),
-        ),
-        Family.MCU_PLUS,
-    )
-    for name in ("procChain", "procChainCfg")
-)
-_CAPTURES = (  # of the words of a raw capture
-    Command(
-        "adcbufCfg",
-        Effect.SILENT,
-        _wholes("adcOutputFmt", "SampleSwap", "ChanInterleave", "ChirpThreshold"),
-        subframe=Subframe.OPTIONAL,
-    ),
-    Command(
-        "lvdsStreamCfg",
-        Effect.SILENT,
-        _wholes("enableHeader", "dataFmt", "enableSW"),
-        subframe=Subframe.ALWAYS,
-    ),
+TABLE = Path(__file__).with_name("ti_commands.txt")
+_HEADER = re.compile(
+    r"(?P<names>[^\[(:]*?)(?P<subframe>\[subFrameIdx\]|subFrameIdx)?\s*"
+    r"(?:\((?P<families>[^)]*)\))?(?:: (?P<reason>.*))?"
 )
 
 
-def _by_name() -> Mapping[str, tuple[Command, ...]]:
-    """The table: {name: the command as each family has it}."""
-    silent = (
-        Command(name, Effect.SILENT, family=family)
-        for family, names in _SILENT.items()
-        for name in names
-    )
+def _read_table(text: str) -> Mapping[str, tuple[Command, ...]]:
+    """Read the table of commands, whose form its first lines describe.
+
+    Returns:
+        {name: the command as each family has it}.
+    """
+    effect, blocks = Effect.SILENT, list[tuple[list[Command], list[Argument]]]()
+    for line in text.splitlines():
+        if line.startswith("["):
+            effect = Effect[line.strip("[]")]
+        elif line.startswith("  "):
+            blocks[-1][1].extend(_read_arguments(line))
+        elif line and not line.startswith("#"):
+            blocks.append(([*_read_header(line, effect)], []))
     commands = dict[str, tuple[Command, ...]]()
-    points = *_POINTS, *_PEOPLE_TRACKING, _DOA
-    signal = *_SIGNAL, *_SIGNAL_OF_L_SDK
-    for command in (
-        *signal,
-        *points,
-        *_POSE,
-        *_BOX,
-        *_ELEMENTS,
-        *_WITH_WARNING,
-        *_CAPTURES,
-        *silent,
-        *_REFUSED,
-        *_PROCESSING,
-    ):
-        commands[command.name] = (*commands.get(command.name, ()), command)
+    for of_block, arguments in blocks:
+        for command in of_block:
+            new = replace(command, arguments=tuple(arguments))
+            commands[command.name] = (*commands.get(command.name, ()), new)
     return MappingProxyType(commands)
 
 
-COMMANDS = _by_name()
+def _read_header(line: str, effect: Effect) -> Iterator[Command]:
+    """Yield the commands of a line of their names, without arguments."""
+    header = _HEADER.fullmatch(line)
+    assert header is not None, line
+    families = [Family[name] for name in (header["families"] or "ANY").split(", ")]
+    subframe = Subframe(header["subframe"] or "")
+    for name in header["names"].split():
+        for family in families:
+            yield Command(name, effect, (), family, subframe, header["reason"] or "")
+
+
+def _read_arguments(line: str) -> Iterator[Argument]:
+    """Yield the arguments of a line, all of which have the same limits."""
+    words, _, meaning = line.partition("  # ")
+    names, _, limits = words.partition(": ")
+    is_whole = limits.startswith("whole")
+    low, high = (0.0, float(COUNT)) if is_whole else (-LARGEST, LARGEST)
+    choices: tuple[int, ...] = ()
+    if ".." in limits:
+        first, last = limits.removeprefix("whole ").split("..")
+        low, high = float(first or low), float(last or high)
+    elif limits and not is_whole:
+        choices = tuple(map(int, limits.split(", ")))
+    for name in chain.from_iterable(map(_numbered_names, names.split())):
+        is_optional = name.endswith("?")
+        yield Argument(name.rstrip("?"), low, high, is_whole, meaning, is_optional, choices)
+
+
+def _numbered_names(word: str) -> list[str]:
+    """List the names that a word stands for: antenna2..4? are antenna2?, antenna3?, antenna4?."""
+    numbers = re.fullmatch(r"(\D+)(\d+)\.\.(\d+)(\??)", word)
+    if not numbers:
+        return [word]
+    first, last = int(numbers[2]), int(numbers[3])
+    return [f"{numbers[1]}{number}{numbers[4]}" for number in range(first, last + 1)]
+
+
+COMMANDS = _read_table(TABLE.read_text(encoding="utf-8"))

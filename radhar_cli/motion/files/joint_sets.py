@@ -18,11 +18,13 @@ class JointSet:
         title: Name of the set in messages and tables.
         names: Names of the joints in the set's own order; "Hip|Pelvis" is called either.
         sources: {joint of ours: the joints whose mean it is} where names alone would mislead.
+        is_by_axis: Whether its maker's columns are all x, then all y, then all z.
     """
 
     title: str
     names: tuple[str, ...]
     sources: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    is_by_axis: bool = False
 
     @property
     def spellings(self) -> tuple[frozenset[str], ...]:
@@ -181,7 +183,7 @@ JOINT_SETS: dict[str, JointSet] = {
         ),
     ),
     "ntu25": JointSet("NTU RGB+D", tuple(_NTU.split()), {"hip": ("base_spine",)}),
-    "mars19": JointSet("MARS", tuple(_KINECT.format(left="", right="").split())),
+    "mars19": JointSet("MARS", tuple(_KINECT.format(left="", right="").split()), is_by_axis=True),
     "azure32": JointSet("Azure Kinect", tuple(_AZURE.split())),
     "smpl24": JointSet("SMPL", (*_SMPL.split(), "left_hand", "right_hand")),
     "smpl22": JointSet("SMPL without hands, HumanML3D", tuple(_SMPL.split())),

@@ -33,6 +33,16 @@ NORMALISED = (
     "pose_world_landmarks, which are in m"
 )
 MAX_BODIES = 50  # in a frame
+# {(key of the joints, their number): the set whose maker writes so}
+_MAKERS = {
+    ("pose_keypoints_3d", 18): "openpose18",
+    ("pose_keypoints_3d", 25): "openpose25",
+    ("joints19", 19): "panoptic19",
+    ("keypoint", 18): "openpose18",
+    ("keypoint", 34): "zed34",
+    ("keypoint", 38): "zed38",
+    ("joint_positions", 32): "azure32",
+}
 _TIMES = ("time", "timestamp", "t", "times", "timestamps", "univtime", "relativetime", "ts")
 _MORE_UNITS = {"usec": "us", "nsec": "ns", "msec": "ms", "sec": "s", "seconds": "s"}
 _IDENTITIES: tuple[str, ...] = (
@@ -181,8 +191,8 @@ def _read_body(body: Any, place: str) -> JsonBody | None:
     joints, names = _read_joints(value, place, width)
     if joints is None:
         return None
-    if key == "pose_keypoints_3d" and len(joints) == len(JOINT_SETS["openpose25"].names):
-        names = [*JOINT_SETS["openpose25"].names]
+    if (maker := _MAKERS.get((key or "", len(joints)))) and names is None:
+        names = [name.split("|")[0] for name in JOINT_SETS[maker].names]
     confidence = next((keys[name] for name in _CONFIDENCES if name in keys), None)
     if isinstance(confidence, list) and len(confidence) == len(joints):
         is_lost = [is_real(c) and c <= 0 for c in confidence]

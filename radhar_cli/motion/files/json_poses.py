@@ -27,8 +27,7 @@ from radhar_cli.motion.files.json_bodies import (
     lower_keys,
     read_frame,
 )
-from radhar_cli.motion.files.keypoints import TIME_UNITS, Keypoints, make_from_readings
-from radhar_cli.motion.files.position_arrays import find_readings
+from radhar_cli.motion.files.keypoints import TIME_UNITS, Keypoints, make_keypoints
 from radhar_cli.motion.files.recording import MAX_FRAMES, MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.motion.files.text_cells import decode_text
 from radhar_cli.numerics.arrays import Float
@@ -162,8 +161,7 @@ def _recording(
         names = None
     unit = next((frame.time_unit for frame in frames if frame.time_unit), None)
     seconds = None if rate is not None else _seconds(times, frames, unit, where)
-    readings = find_readings(values, names, where)
-    return make_from_readings(where, names, readings, rate, seconds, remarks)
+    return make_keypoints(where, names, values, rate, seconds, None, remarks)
 
 
 def _choose_body(

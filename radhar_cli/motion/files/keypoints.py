@@ -1,15 +1,13 @@
 """Poses of pose estimation, cameras and markers: positions of joints over frames, no bones."""
 
 from collections.abc import Sequence
-from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.gaps import Bridged, bridge_gaps
 from radhar_cli.motion.files.plain_names import canonical_name, own_names
 from radhar_cli.motion.files.position_arrays import refuse_images
@@ -48,7 +46,7 @@ class Keypoints:
         is_named: Whether the names are the file's own.
         unit: Length of a unit, m; None where the file does not say.
         remarks: What the reader has to say of the file, in words.
-        others: The same file read in other ways, of which a body decides.
+        are_columns: Whether the numbers of a frame are a row of columns, in an order of its maker.
     """
 
     where: str
@@ -59,7 +57,7 @@ class Keypoints:
     is_named: bool = True
     unit: float | None = None
     remarks: tuple[str, ...] = field(default=())
-    others: tuple["Keypoints", ...] = field(default=())
+    are_columns: bool = False
 
     rest, at_bone_ends = None, False
 
@@ -186,38 +184,6 @@ def make_keypoints(
     labels = names if names is not None else [str(n) for n in range(values.shape[1])]
     clean = tuple("".join(c if c.isprintable() else "?" for c in name) for name in labels)
     return Keypoints(where, clean, values, rate, times, names is not None, unit, tuple(remarks))
-
-
-def make_from_readings(
-    where: str,
-    names: Sequence[str] | None,
-    readings: Sequence[NDArray[Any]],
-    rate: float | None = None,
-    times: Float | None = None,
-    remarks: Sequence[str] = (),
-) -> Keypoints:
-    """Make a recording of an array that can be read in several ways: the first, with the others.
-
-    Args:
-        where: Name of the file in messages.
-        names: Names of the joints; None where the file has none.
-        readings: Positions [frames, J, 3 or 4], as `make_keypoints` takes them, the likeliest
-            first; those that have not as many frames as there are times are left out.
-        rate: Frames per second, or None.
-        times: Instants of the frames [frames] in any usual unit; None where the file has none.
-        remarks: What there is to say of the file.
-
-    Raises:
-        MotionFileError: The first reading is no recording.
-    """
-    timed = [values for values in readings if times is None or len(values) == len(times)]
-    first, *rest = timed or readings
-    others = list[Keypoints]()
-    for values in rest:
-        with suppress(MotionFileError):
-            others.append(make_keypoints(where, names, values, rate, times, None, remarks))
-    file = make_keypoints(where, names, first, rate, times, None, remarks)
-    return replace(file, others=tuple(others))
 
 
 def describe_array(array: NDArray[Any]) -> str:

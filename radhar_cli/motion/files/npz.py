@@ -9,6 +9,7 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from math import prod
 from typing import Any
 
@@ -17,35 +18,26 @@ from numpy.typing import NDArray
 
 from radhar_cli.errors import MotionFileError
 from radhar_cli.files.clocks import seconds_of_texts
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
 from radhar_cli.motion.files.keypoints import (
     TIME_UNITS,
     Keypoints,
     describe_array,
-    make_from_readings,
+    make_keypoints,
 )
-from radhar_cli.motion.files.plain_names import canonical_name, own_names, text_of_names
-from radhar_cli.motion.files.position_arrays import SIZES, find_readings
+from radhar_cli.motion.files.plain_names import text_of_names
+from radhar_cli.motion.files.position_arrays import arrange_positions
 from radhar_cli.motion.files.recording import MAX_BYTES, MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.numerics.arrays import Float
 
 MAX_NAMES_BYTES = 2**20
-_PARTS = frozenset(
-    part.removeprefix("left").removeprefix("right")
-    for joint_set in JOINT_SETS.values()
-    for spellings in joint_set.spellings
-    for part in spellings
-)
 _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # as NumPy writes; others can ask for memory
 _DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, struct.error, RuntimeError),
     *(EOFError, ValueError, OSError, NotImplementedError),
 )
 _POSITIONS = (
-    *("positions", "keypoints", "keypoints_3d", "keypoints3d", "joints", "joints_3d", "joints3d"),
-    *("poses_3d", "poses3d", "pose_3d", "pose3d", "points", "xyz", "skeleton", "skeletons"),
-    *("landmarks", "world_landmarks", "pose_world_landmarks", "positions_3d", "joint_positions"),
-    "data",
+    *("positions", "keypoints", "keypoints_3d", "joints", "joints_3d", "joint_positions"),
+    *("landmarks", "world_landmarks", "pose_world_landmarks", "skeleton"),
 )
 _NAMES = ("names", "joint_names", "keypoint_names")
 _RATES = (
@@ -89,74 +81,66 @@ def read_npy(data: bytes, where: str) -> Keypoints:
     Raises:
         MotionFileError: Names the file and what is odd.
     """
-    positions = parse_array(data, "it", where)
-    return make_from_readings(where, None, find_readings(positions, None, where))
+    return _make(parse_array(data, "it", where), None, where)
+
+
+def _make(
+    array: NDArray[Any],
+    names: Sequence[str] | None,
+    where: str,
+    rate: float | None = None,
+    times: Float | None = None,
+) -> Keypoints:
+    """Make a recording of an array of positions."""
+    values = arrange_positions(array, names, where)
+    are_columns = sum(size != 1 for size in array.shape) < 3
+    return replace(make_keypoints(where, names, values, rate, times), are_columns=are_columns)
 
 
 def _read_archive(archive: zipfile.ZipFile, where: str) -> Keypoints:
     """Read the arrays of an npz file."""
     members = [name.removesuffix(".npy") for name in archive.namelist() if name.endswith(".npy")]
-    names = _find_names(archive, members, where)
-    positions, names = _find_positions(archive, members, names, where)
+    key = _first_of(_NAMES, members)
+    texts = None if key is None else _read_array(archive, key, MAX_NAMES_BYTES, where)
+    names = None if texts is None else _names(texts, str(key), where)
+    array = _find_positions(archive, members, where)
     times, rate = _times(archive, members, where), _rate(archive, members, where)
-    readings = find_readings(positions, names, where)
     confidence_key = _first_of(_CONFIDENCES, members)
     if confidence_key is not None:
         confidence = _read_array(archive, confidence_key, MAX_BYTES, where).squeeze()
-        fitting = [values for values in readings if values.shape[:2] == confidence.shape]
-        if fitting and confidence.dtype.kind in "iufb":
+        array = arrange_positions(array, names, where)
+        if array.shape[:2] == confidence.shape and confidence.dtype.kind in "iufb":
             is_lost = (confidence == 0)[..., None]
-            readings = [np.where(is_lost, np.nan, v[..., :3].astype(float)) for v in fitting]
-    return make_from_readings(where, names, readings, rate, None if rate else times)
+            array = np.where(is_lost, np.nan, array[..., :3].astype(float))
+    return _make(array, names, where, rate, None if rate else times)
 
 
-def _find_names(archive: zipfile.ZipFile, members: Sequence[str], where: str) -> list[str] | None:
-    """Names of joints: texts under one of the usual names, or texts of which most are joints."""
-    key = _first_of(_NAMES, members)
-    if key is not None:
-        return _names(_read_array(archive, key, MAX_NAMES_BYTES, where), key, where)
-    for member in members:
-        if archive.getinfo(f"{member}.npy").file_size > MAX_NAMES_BYTES:
-            continue
-        texts = _try_array(archive, member, where)
-        if texts is None or texts.dtype.kind not in "US" or texts.ndim != 1:
-            continue
-        names = _names(texts, member, where) if 0 < texts.size <= MAX_JOINTS else []
-        if sum(map(_is_joint, own_names(names))) >= 5:
-            return names
-    return None
-
-
-def _find_positions(
-    archive: zipfile.ZipFile, members: Sequence[str], names: list[str] | None, where: str
-) -> tuple[NDArray[Any], list[str] | None]:
-    """Array of positions, and names of its joints where it has them.
+def _find_positions(archive: zipfile.ZipFile, members: Sequence[str], where: str) -> NDArray[Any]:
+    """Array of positions: of a usual name, or the only one of numbers in two axes or more.
 
     Raises:
-        MotionFileError: Nothing is an array of positions, or several arrays may be.
+        MotionFileError: There is none, or several arrays may be.
     """
-    is_body_model = bool(_BODY_MODEL & {name.lower() for name in members})
-    key = members[0] if members == ["arr_0"] else _first_of(_POSITIONS, members)
-    if key is not None and _read_array(archive, key, MAX_BYTES, where).dtype.kind in "US":
-        key = _first_of([name for name in _POSITIONS if name != key], members)
-    if key is not None:
-        return _read_array(archive, key, MAX_BYTES, where), names
-    stacked = _stack_arrays(archive, members, names, where)
-    if stacked is not None:
-        return stacked
-    possible = [name for name in members if _may_be_positions(archive, name, names, where)]
-    only_poses = [name.lower() for name in possible] == ["poses"] and not (
-        {"betas", "trans"} & {name.lower() for name in members}
-    )
-    if is_body_model and not only_poses:
+    key = _first_of(_POSITIONS, members)
+    is_body_model = len(_BODY_MODEL & {name.lower() for name in members}) > 1
+    if key is None and is_body_model:
         raise motion_file_error(where, _describe_body_model(archive, members, where))
+    arrays = {name: _try_array(archive, name, where) for name in members if key is None}
+    possible = [
+        array
+        for array in arrays.values()
+        if array is not None and array.dtype.kind in "iuf" and array.ndim > 1
+    ]
+    if key is not None:
+        return _read_array(archive, key, MAX_BYTES, where)
     if len(possible) == 1:
-        return _read_array(archive, possible[0], MAX_BYTES, where), names
+        return possible[0]
     listed = ", ".join(name[:30] for name in members[:10]) or "nothing"
     raise motion_file_error(
         where,
         "has no array 'positions'; should have names [J], positions [frames, J, 3] and rate "
-        f"(or times); it has {listed}",
+        f"(or times); it has {listed}: np.savez('clip.npz', names=[...], positions=p['NAME'], "
+        "rate=30) names them, with p = np.load(FILE)",
     )
 
 
@@ -179,48 +163,6 @@ def _describe_body_model(archive: zipfile.ZipFile, members: Sequence[str], where
         + (f"p['{rate}']" if rate else "HZ")
         + ") (docs/guide/poses.md)"
     )
-
-
-def _stack_arrays(
-    archive: zipfile.ZipFile, members: Sequence[str], names: list[str] | None, where: str
-) -> tuple[NDArray[Any], list[str] | None] | None:
-    """Positions of an array [frames, 3] a joint, or of arrays x, y and z [frames, J], if so."""
-    of_joints = [
-        name for name, own in zip(members, own_names(members), strict=True) if _is_joint(own)
-    ]
-    by_axis = [axis for axis in (_first_of((axis,), members) for axis in "xyz") if axis]
-    if names is None and len(of_joints) >= 5:
-        keys, axis, labels = of_joints, 1, of_joints
-    elif len(by_axis) == 3:
-        keys, axis, labels = by_axis, 2, names or []
-    else:
-        return None
-    arrays = [_read_array(archive, key, MAX_BYTES // len(keys), where) for key in keys]
-    if any(array.shape != arrays[0].shape or array.ndim != 2 for array in arrays):
-        return None
-    return np.stack(arrays, axis=axis), labels or None
-
-
-def _may_be_positions(
-    archive: zipfile.ZipFile, name: str, names: list[str] | None, where: str
-) -> bool:
-    """Whether an array has an axis of three coordinates and one of as many joints as are usual.
-
-    Both may be one axis, of the columns of a table.
-    """
-    array = _try_array(archive, name, where)
-    if array is None or array.dtype.kind not in "iuf" or array.ndim not in (2, 3, 4):
-        return False
-    sizes = SIZES if names is None else {len(names)}
-    if array.ndim == 2:
-        return name.lower() not in _BODY_MODEL and array.shape[1] in {3 * size for size in sizes}
-    return (3 in array.shape and bool(sizes & set(array.shape))) or array.shape[-1] in (4, 5)
-
-
-def _is_joint(name: str) -> bool:
-    """Whether a name is one of a joint: a part of the body, with its side."""
-    plain = canonical_name(name)
-    return plain.removeprefix("left").removeprefix("right") in _PARTS
 
 
 def _try_array(archive: zipfile.ZipFile, name: str, where: str) -> NDArray[Any] | None:

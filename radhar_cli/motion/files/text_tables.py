@@ -1,5 +1,6 @@
 """Tables of positions as text: `.csv`, `.tsv` and `.txt`; `.trc` of OpenSim and Pose2Sim."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -8,11 +9,10 @@ from radhar_cli.files.clocks import seconds_of_texts
 from radhar_cli.motion.files.keypoints import (
     TIME_UNITS,
     Keypoints,
-    make_from_readings,
     make_keypoints,
 )
 from radhar_cli.motion.files.long_tables import find_long_heading, read_long
-from radhar_cli.motion.files.position_arrays import find_readings
+from radhar_cli.motion.files.position_arrays import arrange_positions
 from radhar_cli.motion.files.recording import MAX_JOINTS, motion_file_error
 from radhar_cli.motion.files.table_headings import (
     UNITS,
@@ -204,4 +204,5 @@ def _without_names(table: CellTable) -> Keypoints:
             where, f"has {width} columns without names; should have x, y, z of each joint"
         )
     rate = None if times is not None else rate_above(table, begin)
-    return make_from_readings(where, None, find_readings(numbers, None, where), rate, times)
+    values = arrange_positions(numbers, None, where)
+    return replace(make_keypoints(where, None, values, rate, times), are_columns=True)

@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
-from itertools import chain
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
 
 from radhar_cli.errors import CaptureError
+from radhar_cli.files.numbered_words import expand_words
 from radhar_cli.radar.ti_family import Family
 
 ALL_SUBFRAMES = -1
@@ -361,18 +361,9 @@ def _read_arguments(line: str) -> Iterator[Argument]:
         low, high = float(first or low), float(last or high)
     elif limits and not is_whole:
         choices = tuple(map(int, limits.split(", ")))
-    for name in chain.from_iterable(map(_numbered_names, names.split())):
+    for name in expand_words(names):
         is_optional = name.endswith("?")
         yield Argument(name.rstrip("?"), low, high, is_whole, meaning, is_optional, choices)
-
-
-def _numbered_names(word: str) -> list[str]:
-    """List the names that a word stands for: antenna2..4? are antenna2?, antenna3?, antenna4?."""
-    numbers = re.fullmatch(r"(\D+)(\d+)\.\.(\d+)(\??)", word)
-    if not numbers:
-        return [word]
-    first, last = int(numbers[2]), int(numbers[3])
-    return [f"{numbers[1]}{number}{numbers[4]}" for number in range(first, last + 1)]
 
 
 COMMANDS = _read_table(TABLE.read_text(encoding="utf-8"))

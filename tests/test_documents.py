@@ -114,7 +114,9 @@ def data_set(path: Path) -> None:
 def data_set_of_three_parts(path: Path) -> None:
     document = yaml.safe_load(Path("configs/quickstart.yaml").read_text())
     third = {"train": 0.34, "validation": 0.33, "test": 0.33}
-    Path("parts.yaml").write_text(yaml.safe_dump({**document, "samples_per_class": 3, "split": third}))
+    Path("parts.yaml").write_text(
+        yaml.safe_dump({**document, "samples_per_class": 3, "split": third})
+    )
     ran("generate", "parts.yaml", "-o", path, "--jobs", "1")
 
 

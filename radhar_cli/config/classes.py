@@ -19,10 +19,10 @@ from radhar_cli.config.number import Choice, uniform, value_error, vary, within
 from radhar_cli.config.section import N, Section, default_draw
 from radhar_cli.config.sequence import BY_ITSELF, SequenceConfig
 from radhar_cli.errors import did_you_mean
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.reading import describe_unknown, may_be_motion
-from radhar_cli.motion.files.recording import LONGEST_NAME
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.names import WANTED
+from radhar_cli.motion.recorded.recording import LONGEST_NAME
+from radhar_cli.readers.motion.reading import describe_unknown, may_be_motion
 
 FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
 

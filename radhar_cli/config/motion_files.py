@@ -9,7 +9,7 @@ from radhar_cli.config.classes import MAX_FILES, MAX_PATH_LENGTH, FilesConfig
 from radhar_cli.config.data_set import Config
 from radhar_cli.errors import ConfigError, FolderError, MotionFileError
 from radhar_cli.files.untrusted import refuse_outside
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.readers.motion.reading import read_motion
 
 Refuse = Callable[[str, object, str], ConfigError]
 

@@ -35,7 +35,7 @@ from radhar_cli.config.radar import (
     FmcwRadar,
     class_of_radar,
 )
-from radhar_cli.config.section import PerActivity, Problem, Section
+from radhar_cli.config.section import PerActivity, Problem
 from radhar_cli.config.sequence import PART_TAGS, SequenceConfig
 from radhar_cli.config.several_radars import (
     NAME_KEY,
@@ -57,7 +57,7 @@ from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import escaped
 
-S = TypeVar("S", bound=Section)
+S = TypeVar("S", bound=BaseModel)
 
 _UNION_TAGS = {
     *("<same>", "<per_activity>"),

@@ -12,7 +12,7 @@ from math import log10
 
 from radhar_cli.config.built_in_radars import RADARS, device_of
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
-from radhar_cli.radar.ti_cfg import parse_frames
+from radhar_cli.readers.ti.ti_cfg import parse_frames
 
 CORNERS_HZ = {
     "hpfCornerFreq1": (175e3, 235e3, 350e3, 700e3),

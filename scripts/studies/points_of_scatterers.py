@@ -24,9 +24,9 @@ from radhar_cli.processing.people_tracking.counting import count_people
 from radhar_cli.processing.people_tracking.spectrum import decode_bpm, range_bins
 from radhar_cli.processing.points import Cloud, board_points
 from radhar_cli.radar.board import DEVICES, Board
-from radhar_cli.radar.ti_commands import split_lines
-from radhar_cli.radar.ti_detection import read_detection
-from radhar_cli.radar.ti_people import (
+from radhar_cli.readers.ti.ti_commands import split_lines
+from radhar_cli.readers.ti.ti_detection import read_detection
+from radhar_cli.readers.ti.ti_people import (
     last_lines,
     read_people_counting,
     read_people_tracking,

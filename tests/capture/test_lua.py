@@ -4,8 +4,8 @@ import time
 
 import pytest
 
-from radhar_cli.capture.ti_lua import read_lua
 from radhar_cli.errors import CaptureError
+from radhar_cli.readers.ti.ti_lua import read_lua
 
 PROFILE = "0, 77, 100, 6, 60, 0, 0, 0, 0, 0, 0, 29.982, 0, N, 10000, 0, 0, 30"
 PLAIN = f"""

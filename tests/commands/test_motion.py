@@ -10,9 +10,9 @@ from helpers.poses import BLAZE
 from helpers.recorded import frames, write_npz
 
 from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.names import WANTED
+from radhar_cli.readers.motion.reading import read_motion
 
 SMALL = """
 duration_s: 1.5

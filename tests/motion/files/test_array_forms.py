@@ -21,7 +21,7 @@ from helpers.poses import (
 )
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
 from radhar_cli.numerics.arrays import Float
 
 CERTAIN = np.concatenate([COCO, np.full((*COCO.shape[:2], 1), 0.9)], axis=2)

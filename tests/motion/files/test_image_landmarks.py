@@ -23,9 +23,9 @@ from helpers.poses import (
 )
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.keypoints import make_keypoints
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.keypoints import make_keypoints
 from radhar_cli.numerics.arrays import Float
 
 SETS = ("blazepose33", "coco17", "h36m17")

@@ -8,9 +8,9 @@ import pytest
 from helpers.poses import RATE, WALKER, clip_of, npy_bytes, npz_bytes
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.names import WANTED
+from radhar_cli.motion.recorded.clip import Clip
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 

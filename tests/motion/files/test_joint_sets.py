@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.keypoints import make_keypoints
-from radhar_cli.motion.files.names import TORSO_SHARE
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.keypoints import make_keypoints
+from radhar_cli.motion.recorded.names import TORSO_SHARE
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 

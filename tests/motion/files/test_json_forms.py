@@ -22,8 +22,8 @@ from helpers.poses import (
 )
 
 from radhar_cli.errors import FolderError, MotionFileError
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.readers.motion.reading import read_motion
 
 SETS = ("coco17", "h36m17", "kinect2_25", "azure32", "zed38", "blazepose33")
 PIXELS = (500 + 300 * camera(COCO)[..., :2]).round(1)

@@ -31,7 +31,7 @@ from helpers.recorded import frames, write_bvh
 from helpers.tables import long_form, vicon
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
 from radhar_cli.numerics.arrays import Float
 
 PREFIXES = ["Character1_", "Bob.", "actor-01 ", "Skel|", "person2", "Left", "hip_"]
@@ -286,7 +286,7 @@ def test_short_gaps_are_bridged_and_counted(lost: float, tmp_path: Path) -> None
 
 
 def test_long_gaps_are_refused_with_the_seconds_that_are_usable(tmp_path: Path) -> None:
-    from radhar_cli.motion.files.clip import require_complete
+    from radhar_cli.motion.recorded.clip import require_complete
 
     p = COCO.copy()
     p[30:60, HIP] = np.nan

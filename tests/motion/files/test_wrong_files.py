@@ -9,8 +9,8 @@ import pytest
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.readers.motion.reading import read_motion
 
 FIRST = 100  # line of the first frame in our BVH files
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.files.clocks import TIME_UNITS
 from radhar_cli.motion.recorded.gaps import Bridged, bridge_gaps
 from radhar_cli.motion.recorded.image_landmarks import refuse_images
 from radhar_cli.motion.recorded.plain_names import canonical_name, own_names
@@ -27,8 +28,6 @@ LARGEST = 1e9  # units of the file
 SENTINELS = (-1.0, -999.0, -9999.0, 999.0, 9999.0, 99999.0, 1e6, -1e6)
 ROOTS = frozenset({"hip", "hips", "pelvis", "root", "midhip", "spinebase", "basespine"})
 ROOTS |= frozenset({"hipcenter", "hipscenter"})
-# Seconds of the units in which instants are written; ticks are of 100 ns, as the Kinect's.
-TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ticks": 1e-7, "ns": 1e-9}
 USUAL_RATES = (8.0, 400.0)  # frames per second of cameras
 TICKS_RATES = (10.0, 100.0)  # of those whose unit may be us or ticks of 100 ns
 

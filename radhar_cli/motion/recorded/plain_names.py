@@ -20,14 +20,6 @@ _SIDED = (
 )
 
 
-def text_of_names(data: bytes) -> str:
-    """Text in UTF-8, or else in Latin-1, as older programs of Windows write names."""
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
-
-
 def own_names(names: Sequence[str]) -> tuple[str, ...]:
     """Names without what all of them begin and end with, but for one: Character1_Hips is Hips.
 

@@ -3,6 +3,8 @@
 import re
 from collections.abc import Iterable, Sequence
 
+from radhar_cli.files.clocks import TIME_WORDS
+
 # In lower case and without words that say nothing: in phase, and in quadrature.
 PAIRS = (
     ("i", "q"),
@@ -90,9 +92,7 @@ def find_times(names: Iterable[str]) -> str | None:
 
 def unit_of_times(name: str) -> str | None:
     """Unit in the name of times, such as `time_ms` or `Time [ms]`; None without."""
-    return _known_unit(
-        name, {unit: unit for unit in ("s", "sec", "seconds", "ms", "us", "µs", "ns")}
-    )
+    return _known_unit(name, TIME_WORDS)
 
 
 def unit_of_angle(name: str) -> str | None:

@@ -3,10 +3,10 @@
 import numpy as np
 
 from radhar_cli.errors import CaptureError
+from radhar_cli.files.clocks import TIME_UNITS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.captures.named_parts import unit_of_times
 
-SECONDS = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
 # Times since 1970 from about 1973 on, by their size: nanoseconds, microseconds, milliseconds.
 EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"))
 
@@ -33,4 +33,4 @@ def seconds_of(values: Float, name: str, where: str) -> tuple[Float, str | None]
             f"{where}: {name} counts in whole numbers, without a unit: name it with one, such as "
             f"{name}_ms or '{name} [us]', or leave it out by --set times=none and give prf_hz"
         )
-    return (values - values[0]) * SECONDS[unit or "s"], note
+    return (values - values[0]) * TIME_UNITS[unit or "s"], note

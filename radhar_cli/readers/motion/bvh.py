@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.motion.recorded.plain_names import END_SITE, text_of_names
+from radhar_cli.files.plain_text import decode_text
+from radhar_cli.motion.recorded.plain_names import END_SITE
 from radhar_cli.motion.recorded.recording import (
     LONGEST_NAME,
     MAX_FRAMES,
@@ -136,7 +137,11 @@ def read_bvh(data: bytes, where: str) -> Bvh:
     if motion is None:
         problem = "has no line MOTION" if b"HIERARCHY" in data[:MAX_HEADER] else "is not a BVH file"
         raise motion_file_error(where, f"{problem} in its first MiB")
-    joints = _hierarchy(text_of_names(data[: motion.start()]), where)
+    try:
+        header = decode_text(data[: motion.start()])
+    except ValueError as error:
+        raise motion_file_error(where, str(error)) from None
+    joints = _hierarchy(header, where)
     line = data.count(b"\n", 0, motion.start()) + 1
     head = _FRAMES.match(data, motion.end())
     if head is None:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from radhar_cli.files.plain_text import decode_text
 from radhar_cli.motion.recorded.keypoints import Keypoints, make_keypoints
-from radhar_cli.motion.recorded.plain_names import text_of_names
 from radhar_cli.motion.recorded.recording import MAX_FRAMES, MAX_JOINTS, motion_file_error
 
 BLOCK = 512
@@ -125,7 +125,7 @@ def _texts(parameter: _Parameter | None) -> list[str]:
         return []
     size = parameter.shape[0]
     pieces = (parameter.data[n : n + size] for n in range(0, len(parameter.data), size))
-    return [text_of_names(piece).strip(" \0") for piece in pieces]
+    return [decode_text(piece.replace(b"\0", b" ")).strip() for piece in pieces]
 
 
 def _labels(parameters: Mapping[str, _Parameter], points: int) -> list[str]:

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from radhar_cli.files.clocks import TIME_WORDS
 from radhar_cli.motion.recorded.image_landmarks import two_dimensional
 from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
-from radhar_cli.motion.recorded.keypoints import TIME_UNITS
 from radhar_cli.motion.recorded.recording import MAX_JOINTS, motion_file_error
 from radhar_cli.numerics.arrays import Float
 
@@ -44,7 +44,6 @@ _MAKERS = {
     ("joint_positions", 32): "azure32",
 }
 _TIMES = ("time", "timestamp", "t", "times", "timestamps", "univtime", "relativetime", "ts")
-_MORE_UNITS = {"usec": "us", "nsec": "ns", "msec": "ms", "sec": "s", "seconds": "s"}
 _IDENTITIES: tuple[str, ...] = (
     "body_id",
     "bodyid",
@@ -97,7 +96,7 @@ class JsonFrame(NamedTuple):
 
     bodies: list[JsonBody]
     instant: float | str | None
-    time_unit: str | None  # key of TIME_UNITS
+    time_unit: str | None  # key of clocks.TIME_UNITS
 
 
 def lower_keys(document: Mapping[str, Any]) -> dict[str, Any]:
@@ -136,8 +135,7 @@ def read_frame(frame: Any, place: str) -> JsonFrame:
 
 def _instant_of(keys: Mapping[str, Any]) -> tuple[float | str | None, str | None]:
     """Instant of a frame, a number or a text, and the unit that its key names."""
-    endings = {"": None, **{f"_{unit}": unit for unit in TIME_UNITS}}
-    endings |= {f"_{word}": unit for word, unit in _MORE_UNITS.items()}
+    endings = {"": None, **{f"_{word}": unit for word, unit in TIME_WORDS.items()}}
     for key in _TIMES:
         for ending, unit in endings.items():
             value = keys.get(key + ending)

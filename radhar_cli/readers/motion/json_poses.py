@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.files.clocks import seconds_of_texts
+from radhar_cli.files.clocks import TIME_UNITS, seconds_of_texts
 from radhar_cli.motion.recorded.image_landmarks import share_in_picture
-from radhar_cli.motion.recorded.keypoints import TIME_UNITS, Keypoints, make_keypoints
+from radhar_cli.motion.recorded.keypoints import Keypoints, make_keypoints
 from radhar_cli.motion.recorded.recording import MAX_FRAMES, MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.motion.json_bodies import (

@@ -17,14 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.files.clocks import seconds_of_texts
+from radhar_cli.files.clocks import TIME_UNITS, seconds_of_texts
+from radhar_cli.files.plain_text import decode_text
 from radhar_cli.motion.recorded.keypoints import (
-    TIME_UNITS,
     Keypoints,
     describe_array,
     make_keypoints,
 )
-from radhar_cli.motion.recorded.plain_names import text_of_names
 from radhar_cli.motion.recorded.recording import MAX_BYTES, MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.motion.position_arrays import arrange_positions
@@ -179,7 +178,7 @@ def _names(names: NDArray[Any], key: str, where: str) -> list[str]:
         raise motion_file_error(
             where, f"{key} should be 1 to {MAX_JOINTS} texts, not {describe_array(names)}"
         )
-    return [text_of_names(n) if isinstance(n, bytes) else n for n in names.tolist()]
+    return [decode_text(n) if isinstance(n, bytes) else n for n in names.tolist()]
 
 
 def _rate(archive: zipfile.ZipFile, members: Iterable[str], where: str) -> float | None:

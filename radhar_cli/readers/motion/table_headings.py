@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from radhar_cli.files.clocks import TIME_WORDS
 from radhar_cli.motion.recorded.image_landmarks import two_dimensional
 from radhar_cli.motion.recorded.recording import MAX_JOINTS, RATES, motion_file_error
 from radhar_cli.readers.motion.text_cells import LOST, CellTable, is_number
@@ -38,7 +39,6 @@ _TIME = re.compile(
     r"[)\]]?)?$",
     re.I,
 )
-TIME_WORDS = {"µs": "us", "usec": "us", "msec": "ms", "milliseconds": "ms", "microseconds": "us"}
 _RATE = re.compile(
     r"(?:export|capture|camera|data)?[ _]*(?:frame[ _]*rate|fps|frequency|sampl(?:e|ing)[ _]*"
     r"(?:rate|frequency)|data[ _]*rate|^rate)(?:[ _(\[]*hz[)\]]?)?[\s:=,;\t\"]+"
@@ -136,7 +136,7 @@ def find_time(names: Sequence[str]) -> tuple[int | None, str | None]:
         match = _TIME.match(name)
         if match:
             time, unit = number, match["unit"] and match["unit"].lower()
-    return time, TIME_WORDS.get(unit or "", unit)
+    return time, TIME_WORDS.get(unit or "")
 
 
 def _clean(cell: str) -> str:

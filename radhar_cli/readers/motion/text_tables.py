@@ -5,9 +5,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from radhar_cli.files.clocks import seconds_of_texts
+from radhar_cli.files.clocks import TIME_UNITS, seconds_of_texts
 from radhar_cli.motion.recorded.keypoints import (
-    TIME_UNITS,
     Keypoints,
     make_keypoints,
 )

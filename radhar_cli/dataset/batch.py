@@ -119,12 +119,14 @@ def _write_batch(batch: Batch) -> int:
 
 
 def _flags_of_sample(sample: StoredSample) -> Flags:
-    """Flags that are known of a sample once it is made: the cube made it, a map is black."""
+    """Flags that are known of a sample once it is made: by the cube, with a map of one level."""
     flags = Flags(0)
     if sample.fell_back:
         flags |= Flags.FALLBACK
     if not all(image.levels.any() for image in sample.images.values()):
         flags |= Flags.BLACK
+    if any(image.levels.min() == 255 for image in sample.images.values()):
+        flags |= Flags.WHITE
     return flags
 
 

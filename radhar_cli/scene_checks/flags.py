@@ -35,11 +35,12 @@ class Flags(IntFlag):
     BRIDGED = 4096
     MARCHES = 8192
     REDRAWN = 16384
+    WHITE = 32768
 
 
 BLACK = (
     "a map is black: nothing is left of the echo (after canceller, wall and distance), or nothing "
-    "above the CFAR's threshold, or a cloud has no point"
+    "above the CFAR's threshold or level 0 (image.reference.dbm), or a cloud has no point"
 )
 ANGLES_ALIAS = (
     "; transmitters take turns, so that its angles are wrong, too, by the phase of the wrong speed"
@@ -56,6 +57,8 @@ WORDING = {
     Flags.SEAM: f"the motion file is repeated though its end is unlike its beginning: joints slide "
     f"more than {SEAM:g} m from one to the other (past_end: rest; section_s)",
     Flags.BLACK: BLACK,
+    Flags.WHITE: "a map is white: all its powers exceed level 255; image.reference.dbm should be "
+    "larger",
     Flags.RADAR: "a person walks through the radar: the torso comes within "
     f"{BODY_RADIUS_M:g} m of an antenna (motion.range_m, motion.angle_deg, duration_s)",
     Flags.BEHIND: f"a person walks past the radar, to more than {BEHIND_M:g} m behind it "

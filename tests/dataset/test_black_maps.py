@@ -64,6 +64,16 @@ def test_black_maps_are_counted(engine, more, tmp_path):
         assert sum(said["message"] in message for message in listener.messages) == 1
 
 
+@pytest.mark.parametrize(("dbm", "kind"), [(100, "black"), (-300, "white")])
+def test_maps_whose_powers_all_lie_beyond_an_absolute_scale_are_counted(dbm, kind, tmp_path):
+    listener = Listener()
+    image = {"size_px": 32, "reference": {"dbm": dbm}}
+    done = build(config_of("direct", snr_db=20, image=image), tmp_path, 1, listener)
+    (said,) = [one for one in done.warnings if one["kind"] == kind]
+    assert said["recordings"] == 2
+    assert "image.reference.dbm" in said["message"]
+
+
 @ENGINES
 def test_a_black_map_of_one_scene_is_named(engine):
     warnings = simulate(config_of(engine), "stationary", maps=("rtm", "stft")).warnings

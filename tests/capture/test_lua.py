@@ -71,6 +71,27 @@ def test_of_two_calls_that_differ_one_is_asked_for(tmp_path):
         header_of(tmp_path, other)
 
 
+def test_conditions_on_names_that_have_numbers_choose_a_branch(tmp_path):
+    """As TI's own demo has them, of a chip that is written into a copy."""
+    other = DEMO.replace("    ar1.ChanNAdcConfig(1, 1, 1,", "    ar1.ChanNAdcConfig(1, 1, 0,")
+    lanes = """
+if((partId == 1642) or (partId == 1843) or (partId == 6843)) then
+    if (ar1.LVDSLaneConfig(0, 1, 1, 0, 0, 1, 0, 0) == 0) then print("end") else print(0) end
+elseif ((partId == 1243) or (partId == 1443)) then
+    if (ar1.LVDSLaneConfig(0, 1, 1, 1, 1, 1, 0, 0) == 0) then N = 64 end
+end
+if partId == 1843 then lanes = 2 else N = 64 end
+assert("""
+    other = other.replace("assert(", lanes, 1)
+    path = tmp_path / "capture.lua"
+    for part, lane_count, samples in ((1843, 2, 256), (1443, 4, 64)):
+        path.write_text(other.replace("--[[ chosen", f"partId = {part}\n--[[ chosen"))
+        header, stream = read_lua(path)
+        assert (stream.lanes, header.samples) == (lane_count, samples)
+    with pytest.raises(CaptureError, match="ChanNAdcConfig: differs from line"):
+        header_of(tmp_path, other.replace("--[[ chosen", "partId = chip or 1843\n--[[ chosen"))
+
+
 @pytest.mark.parametrize(
     "script",
     [
@@ -91,7 +112,14 @@ def test_a_name_whose_value_depends_on_the_way_through_the_script_has_none(tmp_p
 
 
 @pytest.mark.parametrize(
-    "text", ["a," * 130_000, "ar1.FrameConfig((" * 16_000, "--[[" * 60_000, "{" * 260_000]
+    "text",
+    [
+        "a," * 130_000,
+        "ar1.FrameConfig((" * 16_000,
+        "--[[" * 60_000,
+        "{" * 260_000,
+        "if a == 1 then " * 17_000,
+    ],
 )
 def test_a_long_script_takes_time_by_its_length(tmp_path, text):
     started = time.process_time()

@@ -1,7 +1,8 @@
 """Calls of the radar in a script of mmWave Studio (Lua), as they stand in its text.
 
-Nothing is run or followed: a script is read from top to bottom. Names that are set to numbers, or
-to sums of such, have those values in the calls below them. A name that is set within a condition, a
+Nothing is run: a script is read from top to bottom. Names that are set to numbers, or to sums of
+such, have those values in the calls below them, and blocks whose condition compares them, such as
+`if (partId == 1843) then`, are read or left out. A name that is set within another condition, a
 loop or a function has no value after that, and a call within them reads only names that are set
 once in the whole script. Any other argument stays text, which whoever reads the calls refuses.
 """
@@ -10,12 +11,14 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from operator import add, mul, neg, pos, pow, sub, truediv
 from types import MappingProxyType
 from typing import NamedTuple, TypeAlias
 
 LONGEST_ARGUMENTS = 1000  # characters between the parentheses of a call
 LARGEST = 1e12
+DEEPEST = 200  # blocks within each other, as in Lua
 
 _NAME = r"[A-Za-z_]\w*"
 _NAMES = rf"{_NAME}(?:\s*,\s*{_NAME}){{0,20}}"
@@ -27,7 +30,7 @@ _UNREAD = re.compile(
 )
 _TOKEN = re.compile(
     rf"""(?<![.:\w])(?:
-        (?P<opening>then|do|repeat)\b | (?P<closing>end|until|elseif)\b
+        (?P<word>if|then|elseif|else|do|repeat|end|until)\b
         | (?P<function>function)\b[^()\n]{{0,200}}\((?P<parameters>[^()]{{0,1000}})\)
         | for\s+(?P<counters>{_NAMES})\s*(?:=|in\b)
         | (?P<names>{_NAMES})\s*=(?!=)
@@ -53,6 +56,9 @@ _OPERATIONS: Mapping[type, Callable[..., float]] = MappingProxyType(
     }
 )
 
+_NO_PARENTHESES = str.maketrans("()", "  ")
+_COMPARISON = re.compile(rf"\s*({_NAME})\s*==\s*([\w.]+)\s*")
+
 Argument: TypeAlias = float | str
 
 
@@ -70,28 +76,84 @@ class DeviceCall(NamedTuple):
     arguments: tuple[Argument, ...]
 
 
+@dataclass
+class _Block:
+    """Block of a condition, a loop or a function.
+
+    Attributes:
+        is_read: Whether its statements may be reached.
+        is_sure: Whether they certainly are, once.
+        is_done: Whether a branch of its condition certainly holds.
+        may_be_done: Whether another branch may hold.
+    """
+
+    is_read: bool = True
+    is_sure: bool = False
+    is_done: bool = False
+    may_be_done: bool = False
+
+    def begin_branch(self, holds: bool | None) -> None:
+        """Begin a branch whose condition holds, does not, or cannot be told."""
+        self.is_read = not self.is_done and holds is not False
+        self.is_sure = self.is_read and holds is True and not self.may_be_done
+        self.is_done |= holds is True
+        self.may_be_done |= holds is None
+
+
 def read_device_calls(text: str) -> Iterator[DeviceCall]:
     """Yield the calls of a script in the order in which they stand.
 
-    Time and memory are proportional to the length of the text.
+    Time and memory are proportional to the length of the text; what blocks deeper than DEEPEST hold
+    is not read.
     """
     text = _UNREAD.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     set_once = _names_set_once(text)
-    values = dict[str, float]()
-    depth = braces = end = 0
+    values, blocks = dict[str, float](), list[_Block]()
+    braces = end = condition = 0
     line = 1
     for token in _TOKEN.finditer(text):
         line, end = line + text.count("\n", end, token.start()), token.start()
-        depth += bool(token["opening"] or token["function"]) - bool(token["closing"])
+        around = blocks[:-1] if token["word"] == "then" else blocks  # what its condition stands in
+        is_sure = all(block.is_sure for block in around)
+        known = values if is_sure else {n: v for n, v in values.items() if n in set_once}
+        match token["word"] or ("do" if token["function"] else ""):
+            case "if":
+                blocks.append(_Block())
+                condition = token.end()
+            case "elseif":
+                condition = token.end()
+            case "then" if blocks:
+                blocks[-1].begin_branch(_holds(text[condition : token.start()], known))
+            case "else" if blocks:
+                blocks[-1].begin_branch(True)
+            case "do" | "repeat":
+                blocks.append(_Block())
+            case "end" | "until" if blocks:
+                blocks.pop()
         braces += {"{": 1, "}": -1}.get(token["brace"], 0)
+        if len(blocks) > DEEPEST:
+            return
+        if not all(block.is_read for block in blocks):
+            continue
         if token["names"] and not braces:
-            _assign(token, text, values, is_sure=not depth)
+            _assign(token, text, values, is_sure)
         for name in _split_names(token["parameters"] or token["counters"] or token["declared"]):
             values.pop(name, None)
         if name := token["call"]:
-            known = values if not depth else {n: v for n, v in values.items() if n in set_once}
             arguments = _split_arguments(text, token.end())
             yield DeviceCall(line, name, tuple(_argument(word, known) for word in arguments))
+
+
+def _holds(condition: str, values: Mapping[str, float]) -> bool | None:
+    """Whether a condition holds that compares names with numbers; None of any other."""
+    parts = re.split(r"\bor\b", condition[:LONGEST_ARGUMENTS].translate(_NO_PARENTHESES))
+    verdicts = list[bool | None]()
+    for part in parts:
+        comparison = _COMPARISON.fullmatch(part)
+        number = _argument(comparison[2], values) if comparison else ""
+        is_known = comparison and comparison[1] in values and isinstance(number, float)
+        verdicts.append(values[comparison[1]] == number if comparison and is_known else None)
+    return True if True in verdicts else None if None in verdicts else False
 
 
 def _split_names(text: str | None) -> list[str]:

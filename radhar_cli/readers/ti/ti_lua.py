@@ -131,8 +131,8 @@ def _calls(text: str, path: Path) -> list[Call]:
             is_changed |= before.arguments != call.arguments or before.line == call.line
         elif before.arguments != call.arguments:
             raise CaptureError(
-                f"{place}: differs from line {before.line}, and conditions are not followed; "
-                "--radar should name a copy of the script with one of them"
+                f"{place}: differs from line {before.line}, and the script does not tell which "
+                "holds; --radar should name a copy with one of them"
             )
     return [_numbers_of(NAMES[call.name.lower()], call, path) for call in calls.values()]
 

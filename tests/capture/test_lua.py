@@ -47,6 +47,9 @@ f = assert(io.open("timestamp.txt", 'w')); f:write(socket.gettime()); f:close()
 """
 
 
+NAMES = "".join(f"a{n}={n} " for n in range(9000)) + "do " + "ar1.FrameConfig(a1) " * 5000
+
+
 def header_of(tmp_path, text):
     path = tmp_path / "capture.lua"
     path.write_text(text)
@@ -119,6 +122,7 @@ def test_a_name_whose_value_depends_on_the_way_through_the_script_has_none(tmp_p
         "--[[" * 60_000,
         "{" * 260_000,
         "if a == 1 then " * 17_000,
+        NAMES,
     ],
 )
 def test_a_long_script_takes_time_by_its_length(tmp_path, text):

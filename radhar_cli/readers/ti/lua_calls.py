@@ -108,14 +108,15 @@ def read_device_calls(text: str) -> Iterator[DeviceCall]:
     """
     text = _UNREAD.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     set_once = _names_set_once(text)
-    values, blocks = dict[str, float](), list[_Block]()
+    values, constants = dict[str, float](), dict[str, float]()  # constants are set once
+    blocks = list[_Block]()
     braces = end = condition = 0
     line = 1
     for token in _TOKEN.finditer(text):
         line, end = line + text.count("\n", end, token.start()), token.start()
         around = blocks[:-1] if token["word"] == "then" else blocks  # what its condition stands in
         is_sure = all(block.is_sure for block in around)
-        known = values if is_sure else {n: v for n, v in values.items() if n in set_once}
+        known = values if is_sure else constants
         match token["word"] or ("do" if token["function"] else ""):
             case "if":
                 blocks.append(_Block())
@@ -137,6 +138,10 @@ def read_device_calls(text: str) -> Iterator[DeviceCall]:
             continue
         if token["names"] and not braces:
             _assign(token, text, values, is_sure)
+            names = {
+                name for name in _split_names(token["names"]) if name in set_once and name in values
+            }
+            constants |= {name: values[name] for name in names}
         for name in _split_names(token["parameters"] or token["counters"] or token["declared"]):
             values.pop(name, None)
         if name := token["call"]:

@@ -59,7 +59,7 @@ def _only_set(file: Keypoints) -> str:
     possible = "no set that is known has so many"
     if keys:
         titles = (f"{key} ({JOINT_SETS[key].title})" for key in keys)
-        possible = f"so many has {' or '.join(titles)}"
+        possible = f"sets of so many are {' and '.join(titles)}"
     raise motion_file_error(
         file.where,
         f"has {count} joints without names; {possible}: joints: SET of its class says in whose "

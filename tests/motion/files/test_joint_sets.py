@@ -82,7 +82,8 @@ def test_order_alone_tells_the_only_set_of_so_many(key: str, walker: Float) -> N
     assert not of_set.remarks
     if SIZES.count(p.shape[1]) > 1:
         with pytest.raises(
-            MotionFileError, match=rf"joints without names; so many has .*{ALIKE.get(key, key)}"
+            MotionFileError,
+            match=rf"joints without names; sets of so many are .*{ALIKE.get(key, key)}",
         ):
             make_clip(make_keypoints("x", None, p, 30.0))
         return
@@ -94,7 +95,8 @@ def test_order_alone_tells_the_only_set_of_so_many(key: str, walker: Float) -> N
 def test_joints_of_no_set_are_asked_for(walker: Float) -> None:
     p = joint_set_errors.poses_of(JOINT_SETS["coco17"], walker)
     with pytest.raises(
-        MotionFileError, match=r"17 joints without names; so many has coco17 \(COCO\) or h36m17"
+        MotionFileError,
+        match=r"17 joints without names; sets of so many are coco17 \(COCO\) and h36m17",
     ):
         make_clip(make_keypoints("x", None, p, 30.0))
     with pytest.raises(MotionFileError, match=r"13 joints without names; no set .*--joints SET"):

@@ -91,8 +91,8 @@ def find_times(names: Iterable[str]) -> str | None:
 
 
 def unit_of_times(name: str) -> str | None:
-    """Unit in the name of times, such as `time_ms` or `Time [ms]`; None without."""
-    return _known_unit(name, TIME_WORDS)
+    """Unit in the name of times, such as `time_ms` or `Time [ms]`; None of ticks, or without."""
+    return _known_unit(name, {w: unit for w, unit in TIME_WORDS.items() if unit != "ticks"})
 
 
 def unit_of_angle(name: str) -> str | None:

@@ -22,8 +22,8 @@ from radhar_cli.motion.skeleton import PARENTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.points import Cloud, board_points
 from radhar_cli.products.run import record
-from radhar_cli.radar.ti_commands import split_lines
-from radhar_cli.radar.ti_detection import read_detection
+from radhar_cli.readers.ti.ti_commands import split_lines
+from radhar_cli.readers.ti.ti_detection import read_detection
 from radhar_cli.scene import draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -13,11 +13,11 @@ import numpy as np
 from radhar_cli.activities.activity import activity_named
 from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.joint_sets import JOINT_SETS, JointSet
-from radhar_cli.motion.files.keypoints import make_keypoints
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.plain_names import canonical_name
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS, JointSet
+from radhar_cli.motion.recorded.keypoints import make_keypoints
+from radhar_cli.motion.recorded.names import WANTED
+from radhar_cli.motion.recorded.plain_names import canonical_name
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene import nominal_scene

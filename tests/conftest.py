@@ -42,7 +42,7 @@ def restore_signal_handlers() -> Iterator[None]:
 @pytest.fixture(scope="session", autouse=True)
 def checks_of_hdf5_in_forks() -> Iterator[None]:
     """Try HDF5 files in forks; where a test starts the program, it does so as for a user."""
-    from radhar_cli.dataset import untrusted_hdf5
+    from radhar_cli.readers import untrusted_hdf5
 
     forks = ForkServer()
     with pytest.MonkeyPatch.context() as patch:

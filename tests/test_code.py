@@ -26,6 +26,7 @@ PACKAGES = (
     "activities",
     "radar",
     "processing",
+    "readers",
     "config",
     "scene",
     "receiver",
@@ -148,7 +149,7 @@ def test_the_page_has_the_imports_between_packages() -> None:
 
 LIBRARIES: dict[str, set[str]] = {
     "typer": {"commands", "cli"},
-    "h5py": {"files", "dataset", "single_scene"},
+    "h5py": {"files", "readers", "dataset", "single_scene"},
     "tqdm": {"commands"},
     "joblib": {"dataset"},
     "distributed": {"dataset"},
@@ -170,7 +171,7 @@ def test_libraries_stay_in_their_packages() -> None:
 
 def test_physics_reads_no_config_objects() -> None:
     for path in files():
-        if package(path) in ("motion", "radar", "echo", "processing", "receiver"):
+        if package(path) in ("motion", "radar", "readers", "echo", "processing", "receiver"):
             mine = {m for m in imports(path) if m.startswith("radhar_cli.config")}
             assert mine <= {"radhar_cli.numerics.rounding"}, path
 
@@ -215,11 +216,11 @@ ONE_PLACE = [
     (
         "zipfile",
         {
-            "motion/files/npz.py",
+            "readers/motion/npz.py",
             "learning/run_folder.py",
-            "capture/array_files.py",
+            "readers/captures/array_files.py",
             "capture/images.py",
-            "capture/packed_files.py",
+            "readers/captures/packed_files.py",
         },
         {"ZIP_STORED", "BadZipFile"},
     ),
@@ -253,9 +254,10 @@ ARRAYS = {"np.load", "np.memmap", "np.fromfile", "loadmat"}
 
 def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
     users = {str(p.relative_to(PACKAGE)) for p in files() if ARRAYS & calls(p)}
-    assert users == {
-        f"capture/{name}.py" for name in ("matlab_files", "xethru_files", "dca1000", "images")
+    readers = {
+        f"readers/captures/{name}.py" for name in ("matlab_files", "xethru_files", "dca1000")
     }
+    assert users == {*readers, "capture/images.py"}
 
 
 def test_noise_is_made_by_the_receiver_alone() -> None:
@@ -263,7 +265,9 @@ def test_noise_is_made_by_the_receiver_alone() -> None:
     # Movements draw from streams that the person of a scene names; their physics draws nothing.
     physics = [p for p in files() if p.parent != PACKAGE / "motion/movements"]
     draw = {package(p) for p in physics if any(c.startswith("rng.") for c in calls(p))}
-    assert not draw & {"motion", "radar", "echo", "processing", "single_scene", "capture"}
+    assert not draw & {
+        *("motion", "radar", "readers", "echo", "processing", "single_scene", "capture")
+    }
 
 
 def test_only_one_module_prints() -> None:
@@ -272,7 +276,7 @@ def test_only_one_module_prints() -> None:
 
 
 def test_hdf5_is_opened_for_reading_in_one_place_and_for_writing_in_two() -> None:
-    doors, in_memory = ("dataset/untrusted_hdf5.py", "dataset/hdf5_check.py"), "dataset/shards.py"
+    doors, in_memory = ("readers/untrusted_hdf5.py", "readers/hdf5_check.py"), "dataset/shards.py"
     fillers = {"dataset/column_writers.py", "dataset/file_description.py"}
     fillers |= {"single_scene/board_file.py", "single_scene/scene_file.py"}
     for path in files():

@@ -50,7 +50,7 @@ def test_the_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
         licences = [name for name in file.namelist() if name.endswith("licenses/LICENSE")]
     found = (
         path
-        for suffix in ("py", "cfg", "html")
+        for suffix in ("py", "cfg", "html", "txt")
         for path in PACKAGE.rglob(f"*.{suffix}")
         if "presets" not in path.parts
     )

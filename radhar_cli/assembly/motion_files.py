@@ -9,10 +9,10 @@ from typing import Any
 from radhar_cli.assembly.place import start_of
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip, require_complete
-from radhar_cli.motion.files.cycle import find_cycle
-from radhar_cli.motion.files.motion import FileMotion
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.clip import Clip, make_clip, require_complete
+from radhar_cli.motion.recorded.cycle import find_cycle
+from radhar_cli.motion.recorded.motion import FileMotion
+from radhar_cli.readers.motion.reading import read_motion
 from radhar_cli.scene import Person
 
 CACHE_BYTES = 2**26  # size of the cache of clips in a process

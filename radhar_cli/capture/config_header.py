@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Any, assert_never
 
-from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.ti_header import read_cfg_settings, settings_of_frames
 from radhar_cli.config.data_set import Config, ConfigOfRecordings
 from radhar_cli.config.documents import BASE, read_document
@@ -19,6 +18,7 @@ from radhar_cli.config.radar import (
 from radhar_cli.config.reading import load_config
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.rounding import half_up
+from radhar_cli.readers.captures.settings import CaptureSettings
 from radhar_cli.schema.number import nominal
 
 

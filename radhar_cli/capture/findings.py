@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.capture.source import Parts, Source
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Bool, Float
+from radhar_cli.readers.captures.source import Parts, Source
 
 PROBES, PROBED = 16, 64  # places that are examined, and pulses of each
 SURE = 0.65  # share of the energy in one half of the spectrum that decides

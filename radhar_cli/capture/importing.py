@@ -11,7 +11,6 @@ import numpy as np
 
 from radhar_cli.capture import findings
 from radhar_cli.capture.content import Beat, Content, RangeProfiles, SlowTime
-from radhar_cli.capture.formats import open_capture
 from radhar_cli.capture.recording import (
     MAX_PULSE,
     Label,
@@ -20,8 +19,6 @@ from radhar_cli.capture.recording import (
     SourceNote,
     write_recording,
 )
-from radhar_cli.capture.settings import CaptureSettings
-from radhar_cli.capture.source import CaptureFiles, MissingKeysError, Parts, Source
 from radhar_cli.capture.subframes import read_subframes
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import CaptureError
@@ -32,6 +29,9 @@ from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
+from radhar_cli.readers.captures.formats import open_capture
+from radhar_cli.readers.captures.settings import CaptureSettings
+from radhar_cli.readers.captures.source import CaptureFiles, MissingKeysError, Parts, Source
 
 GAP = 0.5  # shortest gap between frames, in pulse intervals
 MAX_HZ = 1e15

@@ -9,12 +9,6 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from radhar_cli.capture.point_frames import PointFrame, RadarSteps, tracks_of
-from radhar_cli.capture.point_messages import (
-    MessageError,
-    MessageReader,
-    is_q_format,
-)
 from radhar_cli.capture.point_recording import (
     LONGEST_CFG,
     PointRecordingDraft,
@@ -22,16 +16,22 @@ from radhar_cli.capture.point_recording import (
     write_point_recording,
 )
 from radhar_cli.capture.recording import Label, SourceNote
-from radhar_cli.capture.settings import Above, Text
-from radhar_cli.capture.uart_packets import PROBED, Dump, Packet, is_dump, open_dump
-from radhar_cli.capture.visualizer_json import Replay, is_replay, read_replay
 from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
-from radhar_cli.dataset.formats.uart import DETECTED_POINTS
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import regular_size, text_of
 from radhar_cli.radar.frame_header import FrameHeader
-from radhar_cli.radar.ti_cfg import MAX_CFG, parse_frames, parse_ti_cfg
+from radhar_cli.readers.captures.settings import Above, Text
+from radhar_cli.readers.points.point_frames import PointFrame, RadarSteps, tracks_of
+from radhar_cli.readers.points.point_messages import (
+    DETECTED_POINTS,
+    MessageError,
+    MessageReader,
+    is_q_format,
+)
+from radhar_cli.readers.points.uart_packets import PROBED, Dump, Packet, is_dump, open_dump
+from radhar_cli.readers.points.visualizer_json import Replay, is_replay, read_replay
+from radhar_cli.readers.ti.ti_cfg import MAX_CFG, parse_frames, parse_ti_cfg
 from radhar_cli.schema.section import Section
 
 SEARCHED = 2**16  # bytes in which the first magic word of a dump lies

@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from radhar_cli import __version__
-from radhar_cli.capture.point_frames import NO_TRACK, TARGET_COLUMNS, PointFrame
 from radhar_cli.capture.recording import KIND_OF_POINTS, Label, SourceNote, is_of_kind
-from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError, describe_schema
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.files.untrusted import Closing
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.processing.points import COLUMNS, Cloud
+from radhar_cli.readers.points.point_frames import NO_TRACK, TARGET_COLUMNS, PointFrame
+from radhar_cli.readers.untrusted_hdf5 import UntrustedFile
 
 SCHEMA_VERSION = 1
 CHUNK = 8192  # rows

@@ -24,8 +24,6 @@ from radhar_cli.capture.content import (
     numbers_of,
 )
 from radhar_cli.capture.findings import CLIPPED, LOST, Damage, checked
-from radhar_cli.capture.source import Parts
-from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError, describe_schema
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
@@ -34,6 +32,8 @@ from radhar_cli.numerics.arrays import Complex
 from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
+from radhar_cli.readers.captures.source import Parts
+from radhar_cli.readers.untrusted_hdf5 import UntrustedFile
 
 KIND, SCHEMA_VERSION = "radhar recording", 1
 KIND_OF_POINTS = "radhar recording of points"  # `point_recording.py`

@@ -10,10 +10,10 @@ from typing import Any
 
 from radhar_cli.capture.config_header import read_yaml_settings
 from radhar_cli.capture.fitted_radar import require_known_keys
-from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.ti_header import read_ti_settings
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.errors import CaptureError
+from radhar_cli.readers.captures.settings import CaptureSettings
 
 TI_HEADERS = (".json", ".cfg", ".lua")
 

@@ -5,16 +5,16 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from radhar_cli.capture.infineon_header import is_infineon, read_infineon
-from radhar_cli.capture.lvds_format import LvdsFormat, read_lvds_format, sends_samples
-from radhar_cli.capture.ti_lua import read_lua
-from radhar_cli.capture.ti_studio import read_studio
 from radhar_cli.config.built_in_radars import device_of
 from radhar_cli.config.documents import RADARS
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import read_json, text_of
 from radhar_cli.radar.frame_header import FrameHeader, Sampling
-from radhar_cli.radar.ti_cfg import MAX_CFG, parse_frames
+from radhar_cli.readers.captures.infineon_header import is_infineon, read_infineon
+from radhar_cli.readers.ti.lvds_format import LvdsFormat, read_lvds_format, sends_samples
+from radhar_cli.readers.ti.ti_cfg import MAX_CFG, parse_frames
+from radhar_cli.readers.ti.ti_lua import read_lua
+from radhar_cli.readers.ti.ti_studio import read_studio
 
 
 def read_ti_settings(path: Path) -> dict[int, dict[str, Any]]:

@@ -140,7 +140,7 @@ def _files_of(capture: Path) -> list[Path]:
     Raises:
         FolderError: a folder has no files, or those of several kinds.
     """
-    from radhar_cli.capture.packed_files import order_by_number
+    from radhar_cli.readers.captures.packed_files import order_by_number
 
     if not capture.is_dir():
         return [capture]

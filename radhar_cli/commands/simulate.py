@@ -217,7 +217,7 @@ def _motion_file_overrides(motion: Path, slug: str) -> list["Override"]:
 
     from radhar_cli.config.reading import Override
     from radhar_cli.errors import ConfigError
-    from radhar_cli.motion.files.reading import describe_unknown, may_be_motion
+    from radhar_cli.readers.motion.reading import describe_unknown, may_be_motion
 
     is_folder = motion.is_dir()
     if not (may_be_motion(str(motion)) or is_folder):
@@ -255,7 +255,7 @@ def _reader_overrides(slug: str, reading: "Mapping[str, str | float | Path]") ->
 def _joints_of(text: str) -> object:
     """Joints that --joints says: a joint set, or what a YAML file has."""
     from radhar_cli.config.documents import read_document
-    from radhar_cli.motion.files.joint_sets import JOINT_SETS
+    from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
 
     is_set = text in JOINT_SETS or not (Path(text).suffix or Path(text).exists())
     return text if is_set else read_document(Path(text))[0]

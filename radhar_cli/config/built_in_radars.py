@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from radhar_cli.config.documents import RADARS
 from radhar_cli.files.untrusted import read_text
 from radhar_cli.radar.detection import Chain
-from radhar_cli.radar.ti_cfg import MAX_CFG, BoardHeader, parse_ti_cfg
+from radhar_cli.readers.ti.ti_cfg import MAX_CFG, BoardHeader, parse_ti_cfg
 
 
 @dataclass(frozen=True)

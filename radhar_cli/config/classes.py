@@ -10,11 +10,11 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator,
 from radhar_cli.activities.activity import ACTIVITIES, Activity, activity_of_movements, is_new_slug
 from radhar_cli.config.sequence import BY_ITSELF, SequenceConfig
 from radhar_cli.errors import did_you_mean
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.recording import LONGEST_NAME
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.names import WANTED
+from radhar_cli.motion.recorded.recording import LONGEST_NAME
 from radhar_cli.schema.number import Choice, uniform, value_error, vary, within
 from radhar_cli.schema.section import N, Section, default_draw
 
@@ -94,7 +94,7 @@ class FilesConfig(Section, Generic[N]):
     @field_validator("files")
     @classmethod
     def _require_motion_files(cls, value: dict[str, str]) -> dict[str, str]:
-        from radhar_cli.motion.files.reading import (  # slow to import
+        from radhar_cli.readers.motion.reading import (  # slow to import
             describe_unknown,
             may_be_motion,
         )

@@ -50,7 +50,7 @@ def resolve_files(config: Config, folder: Path, refuse: Refuse) -> Config:
 
 def _resolve_class(slug: str, files_config: FilesConfig, root: Path, refuse: Refuse) -> FilesConfig:
     """Class of files with every path and its SHA-256."""
-    from radhar_cli.motion.files.reading import read_motion  # slow to import
+    from radhar_cli.readers.motion.reading import read_motion  # slow to import
 
     key = f"classes.{slug}.files"
     skeleton = None if files_config.skeleton is None else root / files_config.skeleton

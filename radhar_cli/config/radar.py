@@ -63,7 +63,7 @@ from radhar_cli.schema.number import (
 from radhar_cli.schema.section import Filled, Flag, N, Section, VectorOf, default_draw
 
 if TYPE_CHECKING:
-    from radhar_cli.radar.ti_cfg import BoardHeader
+    from radhar_cli.readers.ti.ti_cfg import BoardHeader
 
 BOOST = "IWR1443BOOST"
 NO_RANGE = "radar.waveform: cw has no range"
@@ -578,7 +578,7 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
         Raises:
             CaptureError: `cfg` cannot be read.
         """
-        from radhar_cli.radar.ti_cfg import parse_ti_cfg  # slow to import, and of boards alone
+        from radhar_cli.readers.ti.ti_cfg import parse_ti_cfg  # slow to import, and of boards alone
 
         return parse_ti_cfg(self.cfg, device=self.device, subframe=self.subframe)
 

@@ -55,9 +55,9 @@ from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import escaped
 from radhar_cli.schema.annotations import range_of, sections
 from radhar_cli.schema.number import FORMS
-from radhar_cli.schema.section import PerActivity, Problem, Section
+from radhar_cli.schema.section import PerActivity, Problem
 
-S = TypeVar("S", bound=Section)
+S = TypeVar("S", bound=BaseModel)
 
 _UNION_TAGS = {
     *("<same>", "<per_activity>"),

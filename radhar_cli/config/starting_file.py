@@ -30,10 +30,10 @@ from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.detection import Chain
-from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
-from radhar_cli.radar.ti_elements import fitting_devices
 from radhar_cli.radar.ti_family import Family
-from radhar_cli.radar.ti_l_sdk import IWRL6844
+from radhar_cli.readers.ti.ti_cfg import BoardHeader, parse_ti_cfg
+from radhar_cli.readers.ti.ti_elements import fitting_devices
+from radhar_cli.readers.ti.ti_l_sdk import IWRL6844
 from radhar_cli.schema.annotations import ByModel, annotations, section
 from radhar_cli.schema.section import Section
 

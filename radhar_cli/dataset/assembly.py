@@ -23,11 +23,11 @@ from radhar_cli.dataset.files import digest_of, unfinished_path, write_whole
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.shards import Runs, Shard, ShardError, check_shards, require_tiling
-from radhar_cli.dataset.untrusted_hdf5 import DIGESTS, UntrustedFile, attribute_digests, remember
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.processes.progress import Progress
+from radhar_cli.readers.untrusted_hdf5 import DIGESTS, UntrustedFile, attribute_digests, remember
 from radhar_cli.scene_checks.flags import describe_flags
 from radhar_cli.scene_checks.warnings import collect_warnings
 

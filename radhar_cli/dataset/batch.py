@@ -18,7 +18,6 @@ from radhar_cli.dataset.layout import IDENTITY, WORK, Rows
 from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.sample import RowFactory, SampleRow, StoredSample, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
-from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.dataset.workers import NO_PARENT
 from radhar_cli.errors import MachineError
 from radhar_cli.numerics.arrays import Levels
@@ -26,6 +25,7 @@ from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processes.time_limit import time_limit
 from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.products.table import plan_images
+from radhar_cli.readers.untrusted_hdf5 import UntrustedFile
 from radhar_cli.scene import Scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 from radhar_cli.scene_checks.flags import Flags

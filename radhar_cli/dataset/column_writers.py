@@ -21,8 +21,8 @@ from radhar_cli.dataset import layout, scene_fields
 from radhar_cli.dataset.layout import SPLITS, Rows
 from radhar_cli.dataset.shards import chunked_dataset
 from radhar_cli.dataset.split import persons, split_rows
-from radhar_cli.dataset.untrusted_hdf5 import NumberColumn, UntrustedFile
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.untrusted_hdf5 import NumberColumn, UntrustedFile
 from radhar_cli.scene_checks.flags import FLAG_TYPE, Flags
 
 RUN, RUN_BYTES = 128, 2**28

@@ -160,7 +160,7 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
     """
     path = folder / layout.DATASET
     if path.exists():
-        from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
+        from radhar_cli.readers.untrusted_hdf5 import UntrustedFile
 
         try:
             with UntrustedFile(path) as file:

@@ -15,9 +15,9 @@ from radhar_cli.dataset.layout import PARTS, Rows
 from radhar_cli.dataset.parts import DataSetPart, rows_by_part
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.dataset.shards import Runs, Shard, list_shards, require_tiling
-from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.errors import FolderError
 from radhar_cli.processes.progress import Progress
+from radhar_cli.readers.untrusted_hdf5 import try_files
 
 
 class _Place(NamedTuple):

@@ -18,11 +18,11 @@ from radhar_cli.dataset.radar_folders import (
     folder_of_all_radars,
     refuse_several_radars,
 )
-from radhar_cli.dataset.untrusted_hdf5 import Column, NumberColumn, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, describe_schema, did_you_mean
 from radhar_cli.extensions import any_name
 from radhar_cli.files.untrusted import Closing
 from radhar_cli.numerics.arrays import Float, Index, Levels
+from radhar_cli.readers.untrusted_hdf5 import Column, NumberColumn, UntrustedFile
 
 MAX_ENTROPY_BITS = 64.0
 BLOCK = 4096  # rows of a column read at once

@@ -12,8 +12,8 @@ from radhar_cli.dataset.identity import identity_hash
 from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
 from radhar_cli.dataset.reading import Dataset, open_dataset, stored_config
 from radhar_cli.dataset.shards import check_shards, list_shards
-from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
 from radhar_cli.errors import FolderError
+from radhar_cli.readers.untrusted_hdf5 import Column, UntrustedFile
 
 MAX_VALUE = 1e30
 SCENE_FILE = "scene.h5"

@@ -23,12 +23,12 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.sample import StoredSample, synthesise
 from radhar_cli.dataset.split import persons, split_rows
-from radhar_cli.dataset.untrusted_hdf5 import DIGESTS
 from radhar_cli.errors import FolderError
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.products.table import plan_images
+from radhar_cli.readers.untrusted_hdf5 import DIGESTS
 from radhar_cli.scene import Scene
 from radhar_cli.scene_checks.drawing import draw_valid_scene
 

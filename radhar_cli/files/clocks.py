@@ -1,4 +1,4 @@
-"""Instants in texts: dates with times, and times of a clock, as seconds from the first."""
+"""Instants: dates with times and times of a clock as seconds from the first; units of numbers."""
 
 import re
 from collections.abc import Sequence
@@ -9,6 +9,15 @@ import numpy as np
 from radhar_cli.numerics.arrays import Float
 
 DAY_S, HOUR_S = 86400, 3600
+# Seconds of the units in which instants are written; ticks are of 100 ns, as the Kinect's.
+TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ticks": 1e-7, "ns": 1e-9}
+# {other words for them: the unit}
+TIME_WORDS = {unit: unit for unit in TIME_UNITS} | {
+    **dict.fromkeys(("sec", "secs", "seconds"), "s"),
+    **dict.fromkeys(("msec", "milliseconds"), "ms"),
+    **dict.fromkeys(("µs", "usec", "microseconds"), "us"),
+    **dict.fromkeys(("nsec", "nanoseconds"), "ns"),
+}
 READ_CLOCKS = "2026-05-01 12:00:00.033, 27/10/2026 12:00:00.033, 12:00:00.033 and 03:12.5"
 _DATE = r"(?:(\d{4})[-/.](\d\d?)[-/.](\d\d?)|(\d\d?)([-/.])(\d\d?)[-/.](\d{4}))"
 _HALF = r"(?:\s*([AaPp])\.?[Mm]\b\.?)?"

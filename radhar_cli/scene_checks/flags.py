@@ -8,8 +8,8 @@ import numpy as np
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar
-from radhar_cli.motion.files.gaps import BRIDGED_S
-from radhar_cli.motion.files.motion import SEAM
+from radhar_cli.motion.recorded.gaps import BRIDGED_S
+from radhar_cli.motion.recorded.motion import SEAM
 from radhar_cli.scene_checks.sweep import describe_slow_sweep
 
 BODY_RADIUS_M = 0.2  # of the upper body about the torso, horizontally

@@ -35,7 +35,7 @@ from radhar_cli.scene_checks.validity import check_scene
 from radhar_cli.scene_checks.visibility import chest_point, looks_away, noise_alone
 
 if TYPE_CHECKING:
-    from radhar_cli.radar.ti_cfg import BoardHeader
+    from radhar_cli.readers.ti.ti_cfg import BoardHeader
 
 SPARSE = 1.5  # half wavelengths, from which a row of elements by hand is said to be sparse
 MAX_COMMANDS = 20  # of a .cfg, in a warning
@@ -121,7 +121,10 @@ def _header_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
 
 def _elements_warnings(config: Config, radar: BoardRadar) -> Iterator[str]:
     """Say that the file has other elements than the board, which count; in one line."""
-    from radhar_cli.radar.ti_elements import compare_elements, fitting_devices  # of boards alone
+    from radhar_cli.readers.ti.ti_elements import (  # of boards alone
+        compare_elements,
+        fitting_devices,
+    )
 
     header, array = radar.header, radar.elements
     assert array is not None

@@ -9,11 +9,11 @@ from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import as_config
 from radhar_cli.errors import ConfigError
-from radhar_cli.motion.files.motion import FileMotion
-from radhar_cli.motion.files.recording import MAX_FRAMES
-from radhar_cli.motion.files.writing import bvh_text
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.motion.recorded.motion import FileMotion
+from radhar_cli.motion.recorded.recording import MAX_FRAMES
+from radhar_cli.motion.recorded.writing import bvh_text
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.single_scene.request import activity_of, scene_of

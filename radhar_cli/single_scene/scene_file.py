@@ -15,8 +15,8 @@ from radhar_cli.echo.accuracy import error_as_stored
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing, write_text
-from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.motion.recorded.motion import FileMotion
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.scene import scene_numbers
 from radhar_cli.single_scene.board_file import write_frames

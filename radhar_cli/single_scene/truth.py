@@ -8,10 +8,10 @@ import numpy as np
 
 from radhar_cli.assembly.bodies import OwnedPaths
 from radhar_cli.bodies.motion_paths import point_delay
-from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.phases import phase_numbers
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.motion.recorded.motion import FileMotion
 from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Leg, names_of

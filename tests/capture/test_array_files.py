@@ -17,13 +17,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
-from radhar_cli.capture.array_axes import as_source
 from radhar_cli.capture.content import SlowTime
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording
-from radhar_cli.capture.settings import CaptureSettings
-from radhar_cli.capture.stored_arrays import StoredArray
 from radhar_cli.errors import CaptureError, FolderError, RadharError
+from radhar_cli.readers.captures.array_axes import as_source
+from radhar_cli.readers.captures.settings import CaptureSettings
+from radhar_cli.readers.captures.stored_arrays import StoredArray
 
 RADAR = ["carrier_hz=77e9", "bandwidth_hz=1e9", "adc_rate_hz=1e6", "prf_hz=1000"]
 RECEIVERS, SAMPLES, PULSES = 3, 16, 40

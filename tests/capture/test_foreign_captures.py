@@ -14,12 +14,12 @@ from helpers.foreign_targets import LUA, RATE, frame, profiles, tone
 from scipy.io import savemat, wavfile
 
 from radhar_cli.capture.importing import import_capture, read_settings
-from radhar_cli.capture.named_parts import find_pair
-from radhar_cli.capture.packed_files import unpack_file
 from radhar_cli.capture.recording import Recording
-from radhar_cli.capture.ti_lua import read_lua
 from radhar_cli.config import load_config
 from radhar_cli.errors import CaptureError, ConfigError
+from radhar_cli.readers.captures.named_parts import find_pair
+from radhar_cli.readers.captures.packed_files import unpack_file
+from radhar_cli.readers.ti.ti_lua import read_lua
 
 CARRIER = ["carrier_hz=24e9"]
 

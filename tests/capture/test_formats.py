@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from radhar_cli.capture import formats
 from radhar_cli.capture.content import (
     Beat,
     Content,
@@ -16,10 +15,11 @@ from radhar_cli.capture.content import (
 )
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording
-from radhar_cli.capture.source import CaptureFiles, CaptureFormat, Parts, Source
 from radhar_cli.config import load_config, resolved
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.fmcw_timing import FmcwTiming
+from radhar_cli.readers.captures import formats
+from radhar_cli.readers.captures.source import CaptureFiles, CaptureFormat, Parts, Source
 
 
 def open_text(capture: CaptureFiles) -> Source:

@@ -11,9 +11,9 @@ from helpers.recorded import frames, write_npz
 from helpers.slow import slow_but
 
 from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.names import WANTED
+from radhar_cli.readers.motion.reading import read_motion
 
 SMALL = """
 duration_s: 1.5

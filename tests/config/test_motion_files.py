@@ -13,9 +13,9 @@ from radhar_cli.assembly.motion_files import file_motion
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.identity import config_hash, flat_document
 from radhar_cli.errors import ConfigError, MotionFileError
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.keypoints import make_keypoints
-from radhar_cli.motion.files.names import WANTED
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.keypoints import make_keypoints
+from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.scene import draw_scene, nominal_scene
 
 TEXT = """

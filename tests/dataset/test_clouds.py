@@ -22,7 +22,7 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.radar.ti_cfg import parse_ti_cfg
+from radhar_cli.readers.ti.ti_cfg import parse_ti_cfg
 
 
 @pytest.fixture(scope="module", params=["board", "best"])

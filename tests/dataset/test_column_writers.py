@@ -12,9 +12,9 @@ from radhar_cli.dataset.assembly import merge_shards
 from radhar_cli.dataset.column_writers import FlagCounter
 from radhar_cli.dataset.sample import SampleRow, StoredSample
 from radhar_cli.dataset.shards import Shard, ShardError, encode_shard, write_shard
-from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.processes.progress import NO_PROGRESS
 from radhar_cli.processing.power_map import MapImage
+from radhar_cli.readers.untrusted_hdf5 import UntrustedFile
 from radhar_cli.scene_checks.flags import Flags
 
 OWNER = "0" * 64

@@ -14,11 +14,11 @@ from PIL import ImageFont
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import build as build_module
-from radhar_cli.dataset import hdf5_check
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table
-from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.errors import FolderError, UnfinishedError
+from radhar_cli.readers import hdf5_check
+from radhar_cli.readers.untrusted_hdf5 import try_files
 
 ROWS, MANY, FEW, SIZE, BATCH = 150_000, 15_000, 9_000, 16, 32
 BYTES_A_ROW = 16
@@ -85,7 +85,7 @@ hdf5_check.walk = endless_walk
 
 def allow_a_second(folder, monkeypatch, more=""):
     """Try HDF5 files within a second of CPU time."""
-    program = "from radhar_cli.dataset import hdf5_check\nhdf5_check.SECONDS = 1\n"
+    program = "from radhar_cli.readers import hdf5_check\nhdf5_check.SECONDS = 1\n"
     (folder / "check.py").write_text(f"{program}{more}\nhdf5_check.main()\n")
     monkeypatch.setattr(hdf5_check, "__file__", str(folder / "check.py"))
     monkeypatch.setattr(hdf5_check, "SECONDS", 1)

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from radhar_cli.capture.point_frames import RadarSteps
-from radhar_cli.capture.point_messages import MessageReader
-from radhar_cli.capture.uart_packets import open_dump
 from radhar_cli.dataset.formats.uart import counting_frames, demo_frames, old_demo_frames
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.points.point_frames import RadarSteps
+from radhar_cli.readers.points.point_messages import MessageReader
+from radhar_cli.readers.points.uart_packets import open_dump
 
 RANGE_M, SPEED_MPS = 0.05, 0.1
 COUNTS = (3, 0, 64, 1)  # points of a frame

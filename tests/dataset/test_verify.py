@@ -21,9 +21,9 @@ from radhar_cli.config.identity import config_hash
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.summary import summarise
-from radhar_cli.dataset.untrusted_hdf5 import DIGESTS, attribute_digests
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError
+from radhar_cli.readers.untrusted_hdf5 import DIGESTS, attribute_digests
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """Python programs in forks of a small process that has loaded h5py already.
 
-`radhar_cli/dataset/hdf5_check.py` runs in a process of its own for every HDF5 file that is opened.
+`radhar_cli/readers/hdf5_check.py` runs in a process of its own for every HDF5 file that is opened.
 A fork has the same limits, and may crash as freely, for a hundredth of the processor time.
 """
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import joint_set_errors
 import numpy as np
 
-from radhar_cli.motion.files.clip import Clip, make_clip
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.clip import Clip, make_clip
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.motion.reading import read_motion
 
 RATE = 30.0
 WALKER = joint_set_errors.walker()

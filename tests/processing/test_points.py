@@ -22,8 +22,8 @@ from radhar_cli.radar.detection import (
     demo_of_sdk3,
     ti_threshold_db,
 )
-from radhar_cli.radar.ti_commands import split_lines
-from radhar_cli.radar.ti_detection import read_detection
+from radhar_cli.readers.ti.ti_commands import split_lines
+from radhar_cli.readers.ti.ti_detection import read_detection
 
 DETECTION = Detection(
     Cfar(CASO, 8, 4, False, ti_threshold_db(1130, 12)),

@@ -9,8 +9,8 @@ from helpers.scatterers import ISK_CFG
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.detection import CA, CASO, Cfar
-from radhar_cli.radar.ti_cfg import BoardPose, parse_ti_cfg
 from radhar_cli.radar.ti_family import Family
+from radhar_cli.readers.ti.ti_cfg import BoardPose, parse_ti_cfg
 
 PEOPLE = CFG.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0")
 PEOPLE = PEOPLE.replace("clutterRemoval 1", "doaCfg 600 1875 30 1")

@@ -10,9 +10,9 @@ from helpers.boards import CFG
 from helpers.scatterers import ISK_CFG
 
 from radhar_cli.errors import CaptureError
-from radhar_cli.radar.ti_cfg import parse_ti_cfg
-from radhar_cli.radar.ti_commands import COMMANDS
 from radhar_cli.radar.ti_family import Family
+from radhar_cli.readers.ti.ti_cfg import parse_ti_cfg
+from radhar_cli.readers.ti.ti_commands import COMMANDS
 
 SDK_3 = CFG.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg -1 0 2 8 4 3 0 15.0 1")
 MCU_PLUS = SDK_3.replace("frameCfg 0 2 32 0 100 1 0", "frameCfg 0 2 32 0 80 100 1 0")

@@ -7,8 +7,8 @@ from radhar_cli.config import Config
 from radhar_cli.config.built_in_radars import BuiltInRadar, read_radars
 from radhar_cli.config.documents import RADARS
 from radhar_cli.radar.board import DEVICES
-from radhar_cli.radar.ti_cfg import parse_ti_cfg
-from radhar_cli.radar.ti_elements import compare_elements, fitting_devices
+from radhar_cli.readers.ti.ti_cfg import parse_ti_cfg
+from radhar_cli.readers.ti.ti_elements import compare_elements, fitting_devices
 from radhar_cli.scene_checks.warnings import config_warnings
 
 BUILT_IN = {radar.name: radar for radar in read_radars()}

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from radhar_cli.config.documents import RADARS
-from radhar_cli.radar.ti_cfg import BoardHeader, parse_ti_cfg
+from radhar_cli.readers.ti.ti_cfg import BoardHeader, parse_ti_cfg
 
 FOLDERS = Path(__file__).with_name("cfg"), Path(__file__).parents[2] / "configs/boards"
 PATHS = [*RADARS.values(), *(path for folder in FOLDERS for path in sorted(folder.glob("*.cfg")))]

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.errors import CaptureError
-from radhar_cli.radar.ti_cfg import parse_frames, parse_ti_cfg
-from radhar_cli.radar.ti_commands import COMMANDS
+from radhar_cli.readers.ti.ti_cfg import parse_frames, parse_ti_cfg
+from radhar_cli.readers.ti.ti_commands import COMMANDS
 
 NUMBERS = ("-1", "0", "1", "3", "511", "4294967295", "4294967296", "1e308", "-1e308", "5e-324")
 OTHERS = ("0x", "0xFFFFFFFFFF", "0x" + "F" * 300, "nan", "inf", "1_0", "\u0661", "\x1b[2J", "%")

@@ -15,9 +15,9 @@ import pytest
 from security.bounded import Answer, answers, refused
 
 from radhar_cli.code_identity.build_version import build_version
-from radhar_cli.dataset import hdf5_check
-from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import FolderError
+from radhar_cli.readers import hdf5_check
+from radhar_cli.readers.untrusted_hdf5 import UntrustedFile
 
 Change = Callable[[h5py.File, Path], None]
 COMMANDS = ("inspect", "preview", "view", "verify", "eval")

@@ -17,9 +17,9 @@ from security.bounded import answers, limited, refused
 from security.mutations import mutate_file
 
 from radhar_cli.errors import MotionFileError, RadharError
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.reading import read_motion
-from radhar_cli.motion.files.recording import MAX_BYTES
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.recording import MAX_BYTES
+from radhar_cli.readers.motion.reading import read_motion
 
 HEAD = b"HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n"
 

@@ -13,17 +13,15 @@ from radhar_cli.processing.people_tracking.compressed_points import (
     encode_points,
     pack_points,
 )
+from radhar_cli.readers.points.point_messages import DETECTED_POINTS, Q_POINT, SIDE_INFO
+from radhar_cli.readers.points.uart_packets import ALIGNED, MAGIC
 
-MAGIC = bytes((2, 1, 4, 3, 6, 5, 8, 7))
 VERSION, PLATFORM = 0x03060000, 0xA6843
 HEADER = 40  # bytes, with the magic word
-ALIGNED = 32  # bytes of which a frame is a multiple
-DETECTED_POINTS, SIDE_INFO = 1, 7  # messages of the out-of-box demo of SDK 3
 TENTHS = 10  # of a decibel, in which SNR and noise are sent
 LEAST = 1e-9  # amplitude whose decibels are finite
 OLD_VERSION, OLD_PLATFORM, OLD_HEADER = 0x01020000, 0xA1443, 36  # of SDK 1
 Q_FORMAT = 10  # binary places of the coordinates of SDK 1, m
-Q_POINT = np.dtype([("range", "<u2"), ("doppler", "<i2"), ("peak", "<u2"), ("place", "<i2", (3,))])
 COUNTED_POINTS, COUNTING_HEADER, COUNTING_PLATFORM = 6, 52, 0xA1642  # of people counting
 TYPE_AND_LENGTH = 8  # bytes before a message
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from radhar_cli.motion.files.amc import read_amc
-from radhar_cli.motion.files.bvh import read_bvh
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.motion.amc import read_amc
+from radhar_cli.readers.motion.bvh import read_bvh
 
 ASF = """:version 1.10
 :units

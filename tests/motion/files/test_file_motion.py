@@ -8,14 +8,14 @@ import pytest
 from helpers.recorded import frames, write_npz
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip
-from radhar_cli.motion.files.cycle import find_cycle
-from radhar_cli.motion.files.keypoints import Keypoints
-from radhar_cli.motion.files.motion import FileMotion
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.clip import Clip, make_clip
+from radhar_cli.motion.recorded.cycle import find_cycle
+from radhar_cli.motion.recorded.keypoints import Keypoints
+from radhar_cli.motion.recorded.motion import FileMotion
+from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.motion.skeleton import ANKLE_HEIGHT, JOINTS, PARENTS, leg_length
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.motion.reading import read_motion
 
 ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
 HIP, HEAD = JOINTS.index("hip"), JOINTS.index("head")

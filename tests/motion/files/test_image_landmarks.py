@@ -23,9 +23,9 @@ from helpers.poses import (
 )
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.keypoints import make_keypoints
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.keypoints import make_keypoints
 from radhar_cli.numerics.arrays import Float
 
 SETS = ("blazepose33", "coco17", "h36m17")
@@ -75,14 +75,15 @@ def test_landmarks_of_a_picture_are_refused(
 ) -> None:
     p = picture_of(joint_set_errors.poses_of(JOINT_SETS[key], WALKER), key, picture)
     name, write = FILES[file]
+    how = {"rate": RATE, "joints": key} if file == "npy" else {}
     with pytest.raises(MotionFileError) as refused:
-        clip_of(tmp_path / name, write(p, names(key)), **({"rate": RATE} if file == "npy" else {}))
+        clip_of(tmp_path / name, write(p, names(key)), **how)
     message = str(refused.value)
     assert message.startswith(name)
     if PICTURES[picture][1] is None:
         assert "has x and y from 0 to 1, as landmarks of an image have" in message
         assert "pose_world_landmarks" in message
-    elif "legs of" not in message and "make a body" not in message:
+    elif "legs of" not in message and "as no body has" not in message:
         assert "hips without depth at other places than the origin, as pixels" in message
 
 

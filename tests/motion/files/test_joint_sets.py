@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.keypoints import make_keypoints
-from radhar_cli.motion.files.names import TORSO_SHARE
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.keypoints import make_keypoints
+from radhar_cli.motion.recorded.names import TORSO_SHARE
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 
 MEAN_M, LARGEST_M = 0.03, 0.07
-SAME_ORDER = {"ntu25": "kinect2_25"}  # in the set of the value's order, under other names
+ALIKE = {"ntu25": "kinect2_25"}  # in the order of the other set, under other names
 
 
 @pytest.fixture(scope="module")
@@ -68,30 +68,42 @@ def test_axes_and_units_are_found(key: str, walker: Float) -> None:
         assert found.max() < LARGEST_M
 
 
+SIZES = [len(joint_set.names) for joint_set in JOINT_SETS.values()]
+
+
 @pytest.mark.parametrize("key", JOINT_SETS)
-def test_order_alone_tells_the_set_where_one_makes_a_body(key: str, walker: Float) -> None:
-    """Never another set in silence: the same joints as by their names, and a remark."""
+def test_order_alone_tells_the_only_set_of_so_many(key: str, walker: Float) -> None:
+    """Never one of several in silence: the same joints as by their names, and a remark."""
     p = joint_set_errors.poses_of(JOINT_SETS[key], walker)
     p = p + np.random.default_rng(1).normal(0, 0.01, p.shape)
     by_name = make_clip(make_keypoints("x", named(key), p, 30.0))
+    of_set = make_clip(make_keypoints("x", None, p, 30.0), key)
+    assert np.array_equal(by_name.positions, of_set.positions)
+    assert not of_set.remarks
+    if SIZES.count(p.shape[1]) > 1:
+        with pytest.raises(
+            MotionFileError,
+            match=rf"joints without names; sets of so many are .*{ALIKE.get(key, key)}",
+        ):
+            make_clip(make_keypoints("x", None, p, 30.0))
+        return
     by_order = make_clip(make_keypoints("x", None, p, 30.0))
     assert np.array_equal(by_name.positions, by_order.positions)
-    title = JOINT_SETS[SAME_ORDER.get(key, key)].title
-    assert title in by_order.remarks[0]
-    assert not by_name.remarks
+    assert JOINT_SETS[key].title in by_order.remarks[0]
 
 
-def test_an_order_that_makes_no_body_is_refused(walker: Float) -> None:
+def test_joints_of_no_set_are_asked_for(walker: Float) -> None:
     p = joint_set_errors.poses_of(JOINT_SETS["coco17"], walker)
-    shuffled = p[:, np.random.default_rng(0).permutation(17)]
     with pytest.raises(
-        MotionFileError, match=r"17 joints without names; coco17, h36m17, mpi_inf17 \(in none"
+        MotionFileError,
+        match=r"17 joints without names; sets of so many are coco17 \(COCO\) and h36m17",
     ):
-        make_clip(make_keypoints("x", None, shuffled, 30.0))
+        make_clip(make_keypoints("x", None, p, 30.0))
     with pytest.raises(MotionFileError, match=r"13 joints without names; no set .*--joints SET"):
         make_clip(make_keypoints("x", None, p[:, :13], 30.0))
-    clip = make_clip(make_keypoints("x", None, p, 30.0), "coco17")
-    assert not clip.remarks
+    shuffled = p[:, np.random.default_rng(0).permutation(17)]
+    with pytest.raises(MotionFileError, match=r"as no body has; .*--joints SET"):
+        make_clip(make_keypoints("x", None, shuffled, 30.0), "coco17")
     with pytest.raises(MotionFileError, match=r"has 17 joints; smpl24 \(SMPL\) has 24"):
         make_clip(make_keypoints("x", None, p, 30.0), "smpl24")
 
@@ -128,30 +140,6 @@ def test_other_spellings_of_a_set(walker: Float) -> None:
         p = joint_set_errors.poses_of(JOINT_SETS[key], walker)
         clip = make_clip(make_keypoints("x", names, p, 30.0))
         assert joint_set_errors.joint_errors(walker[:, :13], clip.positions[:, :13]).max() < 0.05
-
-
-@pytest.mark.parametrize("key", JOINT_SETS)
-def test_columns_by_axis_are_told_from_columns_by_joint(key: str, walker: Float) -> None:
-    """All x, then all y, then all z, as MARS has them: with names, a set or neither of them."""
-    p = joint_set_errors.poses_of(JOINT_SETS[key], walker)
-    p = p + np.random.default_rng(2).normal(0, 0.01, p.shape)
-    own = make_clip(make_keypoints("x", named(key), p, 30.0)).positions
-    by_axis = np.swapaxes(p, 1, 2).reshape(p.shape)
-    for names, joints in ((None, None), (None, key), (named(key), None)):
-        clip = make_clip(make_keypoints("x", names, by_axis, 30.0), joints)
-        assert np.array_equal(clip.positions, own)
-        assert clip.remarks[0] == "its columns are all x, then all y, then all z"
-
-
-def test_a_mapping_of_columns_by_axis(walker: Float) -> None:
-    p = joint_set_errors.poses_of(JOINT_SETS["mars19"], walker)
-    by_axis = np.swapaxes(p, 1, 2).reshape(p.shape)
-    numbers = {"hip": "0", "head": "3", "left_shoulder": "4", "left_elbow": "5", "left_hand": "6"}
-    numbers |= {"right_shoulder": "7", "right_elbow": "8", "right_hand": "9"}
-    numbers |= {"left_hip_joint": "10", "left_knee": "11", "left_ankle": "12"}
-    numbers |= {"right_hip_joint": "14", "right_knee": "15", "right_ankle": "16"}
-    clip = make_clip(make_keypoints("x", None, by_axis, 30.0), numbers)
-    assert joint_set_errors.joint_errors(walker[:, :13], clip.positions[:, :13]).max() < 0.01
 
 
 @pytest.mark.parametrize("unit", [None, 0.3, 1.0, 2.0])

@@ -22,8 +22,8 @@ from helpers.poses import (
 )
 
 from radhar_cli.errors import FolderError, MotionFileError
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.readers.motion.reading import read_motion
 
 SETS = ("coco17", "h36m17", "kinect2_25", "azure32", "zed38", "blazepose33")
 PIXELS = (500 + 300 * camera(COCO)[..., :2]).round(1)
@@ -35,14 +35,14 @@ OPENPOSE = joint_set_errors.poses_of(JOINT_SETS["openpose25"], WALKER)
 def test_the_walker_comes_back_from_every_json(form: str, key: str, tmp_path: Path) -> None:
     suffix, write = JSON_FORMS[form]
     p = joint_set_errors.poses_of(JOINT_SETS[key], WALKER)
-    clip = clip_of(tmp_path / f"x{suffix}", write(p, names(key)))
+    said = {"joints": key} if form == "ZED" else {}  # whose objects have any of its sets
+    clip = clip_of(tmp_path / f"x{suffix}", write(p, names(key)), **said)
     errors = joint_errors(clip)
     assert errors.mean() < 0.03
     assert errors.max() < 0.07
     assert clip.rate == pytest.approx(RATE, rel=2e-3)
     assert not clip.bridged
-    remarks = [r for r in clip.remarks if "have no names" not in r or form != "ZED"]
-    assert [r.startswith("of 2 bodies") for r in remarks] == [True] * (form == "Azure Kinect")
+    assert [r.startswith("of 2 bodies") for r in clip.remarks] == [True] * (form == "Azure Kinect")
 
 
 def test_two_bodies_that_stay_are_refused(tmp_path: Path) -> None:
@@ -162,4 +162,5 @@ def test_joints_by_number_are_ordered_by_it(tmp_path: Path) -> None:
         {"t": t, "joints": [{"JointType": int(n), "Position": body[n]} for n in order]}
         for t, body in zip(T.tolist(), COCO.tolist(), strict=True)
     ]
-    assert largest_error(clip_of(tmp_path / "x.json", json.dumps(frames).encode())) < 0.01
+    data = json.dumps(frames).encode()
+    assert largest_error(clip_of(tmp_path / "x.json", data, joints="coco17")) < 0.01

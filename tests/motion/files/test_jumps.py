@@ -10,13 +10,13 @@ from helpers.poses import COCO, RATE, WALKER, c3d_bytes, largest_error, names, n
 from helpers.recorded import frames, write_bvh, write_npz
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip, require_complete
-from radhar_cli.motion.files.jumps import bridge_jumps, find_poses_apart
-from radhar_cli.motion.files.keypoints import make_keypoints
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.recorded.clip import Clip, make_clip, require_complete
+from radhar_cli.motion.recorded.jumps import bridge_jumps, find_poses_apart
+from radhar_cli.motion.recorded.keypoints import make_keypoints
+from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.motion.reading import read_motion
 
 WRIST = names("coco17").index("left_wrist")
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pytest
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.names import TORSO_SHARE, WANTED, JointNames, joint_means
+from radhar_cli.motion.recorded.names import TORSO_SHARE, WANTED, JointNames, joint_means
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 

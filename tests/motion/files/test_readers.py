@@ -10,13 +10,13 @@ from helpers.recorded import frames, write_amc, write_bvh, write_npz
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import radhar_cli.motion.files.frames
-from radhar_cli.motion.files.bvh import read_bvh
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.names import WANTED, joint_means
-from radhar_cli.motion.files.reading import read_motion
-from radhar_cli.motion.files.recording import MotionRecording
+import radhar_cli.readers.motion.frames
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.names import WANTED, joint_means
+from radhar_cli.motion.recorded.recording import MotionRecording
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.motion.bvh import read_bvh
+from radhar_cli.readers.motion.reading import read_motion
 
 AXES = np.eye(3)
 
@@ -101,7 +101,7 @@ def test_bvh_and_amc_round_trips(activity: str, tmp_path: Path) -> None:
 
 def test_block_borders_do_not_matter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Pieces of text are read as one; empty lines and CR LF do not matter."""
-    monkeypatch.setattr(radhar_cli.motion.files.frames, "BLOCK", 5000)
+    monkeypatch.setattr(radhar_cli.readers.motion.frames, "BLOCK", 5000)
     p = frames(seconds=0.5)
     bvh, amc = write_bvh(tmp_path / "x.bvh", p), write_amc(tmp_path / "x.amc", p)
     assert np.abs(in_metres(read_motion(bvh).recording(), 0.01) - p).max() < 1e-6

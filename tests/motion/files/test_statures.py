@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from helpers.poses import clip_of, npz_bytes
 
-from radhar_cli.motion.files.motion import FileMotion
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.writing import bvh_text
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.movements.walking import Gait, Walk
+from radhar_cli.motion.recorded.motion import FileMotion
+from radhar_cli.motion.recorded.names import WANTED
+from radhar_cli.motion.recorded.writing import bvh_text
 from radhar_cli.motion.skeleton import JOINTS, leg_length, stature_of_leg
 from radhar_cli.numerics.arrays import Float
 

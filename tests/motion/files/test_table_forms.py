@@ -12,11 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.joint_sets import JOINT_SETS
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.text_cells import decode_text
-from radhar_cli.motion.files.text_tables import read_table
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.names import WANTED
+from radhar_cli.readers.motion.text_cells import decode_text
+from radhar_cli.readers.motion.text_tables import read_table
 
 SETS = ("coco17", "openpose25", "h36m17", "kinect2_25", "smpl24", "blazepose33", "azure32")
 

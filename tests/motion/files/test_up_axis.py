@@ -9,11 +9,11 @@ import pytest
 from helpers.recorded import frames
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import Clip, make_clip
-from radhar_cli.motion.files.keypoints import Keypoints
-from radhar_cli.motion.files.names import WANTED
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.clip import Clip, make_clip
+from radhar_cli.motion.recorded.keypoints import Keypoints
+from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.motion.reading import read_motion
 
 RATE = 30.0
 AXES: dict[str, Callable[[Float], Float]] = {

@@ -9,8 +9,8 @@ import pytest
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.files.clip import make_clip
-from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.recorded.clip import make_clip
+from radhar_cli.readers.motion.reading import read_motion
 
 FIRST = 100  # line of the first frame in our BVH files
 
@@ -178,7 +178,7 @@ def test_broken_npz_is_refused(tmp_path: Path) -> None:
         (
             p[:, :13],
             {},
-            r"positions should be numbers \[frames, 15, 3\], not float64 \[61, 13, 3\]",
+            r"positions should be \[frames, 15, 3\] of one person, not float64 \[61, 13, 3\]",
         ),
         (p * 0, {}, r"torso is lost \(NaN or 0, 0, 0\) in every frame"),
         (p * 0 + 1, {}, r"has legs of 0 units"),
@@ -193,7 +193,7 @@ def test_broken_npz_is_refused(tmp_path: Path) -> None:
         np.savez(path, allow_pickle=True, **arrays)
         with pytest.raises(MotionFileError, match=message):
             make_clip(read_motion(path).recording("x.npz"))
-    np.savez(path, places=p[:, :13])
+    np.savez(path, places=p[:, :13], others=p)
     with pytest.raises(MotionFileError, match=r"has no array 'positions'; .* it has places"):
         read_motion(path).recording()
     np.savez(path, positions=p[:, :13])

@@ -12,8 +12,8 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.people_tracking.counting import count_people, order_of_angles
 from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.people_tracking import PeopleCounting
-from radhar_cli.radar.ti_commands import split_lines
-from radhar_cli.radar.ti_people import last_lines, read_people_counting
+from radhar_cli.readers.ti.ti_commands import split_lines
+from radhar_cli.readers.ti.ti_people import last_lines, read_people_counting
 
 IWR1642 = Board(
     array=DEVICES["IWR1642BOOST"].array,

@@ -13,8 +13,8 @@ from radhar_cli.processing.people_tracking.chain import track_people
 from radhar_cli.processing.points import Cloud
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.people_tracking import PeopleTracking
-from radhar_cli.radar.ti_commands import split_lines
-from radhar_cli.radar.ti_people import last_lines, read_people_tracking
+from radhar_cli.readers.ti.ti_commands import split_lines
+from radhar_cli.readers.ti.ti_people import last_lines, read_people_tracking
 
 BPM = (0, 2)
 BPM_MASKS = (5, 2, 5)

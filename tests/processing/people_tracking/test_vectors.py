@@ -29,8 +29,8 @@ from radhar_cli.processing.people_tracking.two_pass_cfar import (
 )
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.people_tracking import PeopleTracking
-from radhar_cli.radar.ti_commands import split_lines
-from radhar_cli.radar.ti_people import last_lines, read_people_tracking
+from radhar_cli.readers.ti.ti_commands import split_lines
+from radhar_cli.readers.ti.ti_people import last_lines, read_people_tracking
 
 VECTORS = json.loads((Path(__file__).parent / "vectors.json").read_text())
 CASES: Mapping[str, Any] = {case["name"]: case for case in VECTORS["cases"]}

@@ -1,0 +1,1 @@
+"""Recordings of radars, and the headers that say what their samples are."""

@@ -1,0 +1,207 @@
+"""Tables of positions as text: `.csv`, `.tsv` and `.txt`; `.trc` of OpenSim and Pose2Sim."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from radhar_cli.files.clocks import TIME_UNITS, seconds_of_texts
+from radhar_cli.motion.recorded.keypoints import (
+    Keypoints,
+    make_keypoints,
+)
+from radhar_cli.motion.recorded.recording import MAX_JOINTS, motion_file_error
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.motion.long_tables import find_long_heading, read_long
+from radhar_cli.readers.motion.position_arrays import arrange_positions
+from radhar_cli.readers.motion.table_headings import (
+    UNITS,
+    Heading,
+    find_heading,
+    rate_above,
+    unit_above,
+)
+from radhar_cli.readers.motion.text_cells import (
+    CellTable,
+    decode_text,
+    is_number,
+    number_of,
+    numbers_of,
+    rows_of,
+    split_cells,
+)
+
+# Parts of a table of Vicon Nexus, each below a line with its name and one with its rate.
+NEXUS_PARTS = {
+    name.lower(): name
+    for name in ("Devices", "Joints", "Segments", "Model Outputs", "Events", "Trajectories")
+}
+
+
+def read_table(data: bytes, where: str) -> Keypoints:
+    """Read a table of a row a frame, whose lines above name its columns, or of a row a joint.
+
+    Args:
+        data: Bytes of the file; columns are separated by commas, semicolons, tabs or spaces.
+        where: Name of the file in messages.
+
+    Raises:
+        MotionFileError: Names the line and what is odd.
+    """
+    table = split_cells(decode_text(data, where), where)
+    table = _trajectories(table)
+    long_heading = find_long_heading(table)
+    if long_heading is not None:
+        return _read_long(table, *long_heading)
+    heading = find_heading(table)
+    if heading is None:
+        return _without_names(table)
+    columns = [column for place in heading.places for column in place]
+    numbers = numbers_of(table, heading.begin, columns, heading.width)
+    values = numbers.reshape(len(numbers), len(heading.places), 3)
+    lost = [column for column in heading.confidences if column is not None]
+    if lost:
+        certain = iter(numbers_of(table, heading.begin, lost, heading.width).T)
+        for joint, column in enumerate(heading.confidences):
+            if column is not None:
+                values[next(certain) <= 0, joint] = np.nan
+    times = _times_of(table, heading)
+    return make_keypoints(
+        where,
+        heading.names,
+        values,
+        None if times is not None else heading.rate,
+        times,
+        heading.unit,
+    )
+
+
+def _trajectories(table: CellTable) -> CellTable:
+    """Part of a table of Vicon Nexus that has trajectories; the table itself if of another program.
+
+    Raises:
+        MotionFileError: It has other parts of Nexus alone.
+    """
+    words = [_only_word(row) for row in table.rows]
+    begins = [
+        number
+        for number, (word, rate) in enumerate(zip(words, [*words[1:], ""], strict=True))
+        if word in NEXUS_PARTS and (word == "trajectories" or is_number(rate))
+    ]
+    if not begins:
+        return table
+    parts = {words[a]: (a, b) for a, b in pairwise([*begins, len(words)])}
+    if "trajectories" not in parts:
+        listed = " and ".join(NEXUS_PARTS[word] for word in parts)
+        raise motion_file_error(
+            table.where,
+            f"has {listed} of Vicon Nexus, which are no positions of joints; export Trajectories, "
+            "too (Export ASCII: Trajectories), or C3D",
+        )
+    begin, end = parts["trajectories"]
+    return CellTable(table.rows[begin:end], table.first + begin, table.where)
+
+
+def _only_word(row: list[str]) -> str:
+    """First cell of a row in lower case; "" where others are filled."""
+    return "" if not row or any(map(str.strip, row[1:])) else row[0].strip().lower()
+
+
+def _read_long(table: CellTable, heading: int, xyz: tuple[int, int, int], joint: int) -> Keypoints:
+    """Recording of a table of a row for each joint of each frame."""
+    long = read_long(table, heading, xyz, joint)
+    times = (
+        None if long.instants is None else _instants(long.instants, long.time_unit, table, heading)
+    )
+    return make_keypoints(
+        table.where,
+        long.names,
+        long.values,
+        None if times is not None else rate_above(table, heading),
+        times,
+        unit_above(table, heading),
+        long.remarks,
+    )
+
+
+def _times_of(table: CellTable, heading: Heading) -> Float | None:
+    """Instants of the rows of a table; None where it has none, or nothing stands in the column."""
+    if heading.time is None:
+        return None
+    rows = rows_of(table, heading.begin, heading.width)
+    texts = [row[heading.time] for _, row in rows]
+    return _instants(texts, heading.time_unit, table, heading.begin)
+
+
+def _instants(texts: list[str], unit: str | None, table: CellTable, begin: int) -> Float | None:
+    """Instants of texts: numbers in a unit, dates with times, or times of a clock."""
+    if not any(text.strip() for text in texts):
+        return None
+    if not is_number(texts[0]):
+        seconds = seconds_of_texts(texts)
+        if seconds is not None:
+            return seconds
+    times = np.array([number_of(text, table.place(begin + n)) for n, text in enumerate(texts)])
+    return times * TIME_UNITS[unit] if unit else times
+
+
+def read_trc(data: bytes, where: str) -> Keypoints:
+    """Read a TRC file: its rate and units, names of joints, and their positions.
+
+    Args:
+        data: Bytes of the file.
+        where: Name of the file in messages.
+
+    Raises:
+        MotionFileError: Names the line and what is odd.
+    """
+    lines = decode_text(data, where).splitlines()
+    if len(lines) < 6 or not lines[0].startswith("PathFileType"):
+        raise motion_file_error(where, "is not a TRC file: it should begin with PathFileType")
+    keys, texts = lines[1].split(), lines[2].split()
+    header = dict(zip(keys, texts, strict=False))
+    rate, unit = header.get("DataRate", ""), header.get("Units", "").lower()
+    if not is_number(rate):
+        raise motion_file_error(f"{where}:3", f"DataRate {rate[:30]!r} should be a number")
+    if unit not in UNITS:
+        raise motion_file_error(f"{where}:3", f"Units {unit[:30]!r} should be m, cm, mm or in")
+    names = [name.strip() for name in lines[3].split("\t")[2:] if name.strip()]
+    if not 0 < len(names) <= MAX_JOINTS:
+        raise motion_file_error(
+            f"{where}:4", f"has {len(names)} names; should have 1 to {MAX_JOINTS}"
+        )
+    first = 5
+    rows = [line.rstrip("\r\n").split("\t") for line in lines[first:]]
+    width = 2 + 3 * len(names)
+    rows = [[*row[:width], *[""] * (width - len(row))] for row in rows]
+    numbers = numbers_of(CellTable(rows, first + 1, where), 0, range(2, width), width)
+    values = numbers.reshape(len(numbers), len(names), 3)
+    return make_keypoints(where, names, values, float(rate), unit=UNITS[unit])
+
+
+def _without_names(table: CellTable) -> Keypoints:
+    """Recording of a table without a line of names: columns are x, y, z of each joint."""
+    where = table.where
+    begin = next(
+        n
+        for n, row in enumerate(table.rows)
+        if any(c.strip() for c in row) and not row[0].startswith(("#", "%"))
+    )
+    width = len(table.rows[begin])
+    numbers = numbers_of(table, begin, range(width), width)
+    columns = width - width % 3
+    if np.array_equal(numbers[0, -columns:], np.arange(columns)):  # as pandas names columns
+        numbers = numbers[1:]
+    if width % 3 == 1:  # the first column is time, or the number of the frame
+        first, numbers = numbers[:, 0], numbers[:, 1:]
+        is_time = len(first) > 1 and not (np.diff(first) == 1).all()
+        times = first if is_time else None
+    elif width % 3 == 0:
+        times = None
+    else:
+        raise motion_file_error(
+            where, f"has {width} columns without names; should have x, y, z of each joint"
+        )
+    rate = None if times is not None else rate_above(table, begin)
+    values = arrange_positions(numbers, None, where)
+    return replace(make_keypoints(where, None, values, rate, times), are_columns=True)

@@ -23,7 +23,7 @@ BEYOND_M, BEYOND_WIDTH_M = 0.06, 0.03  # where a shadow begins behind a person, 
 WIDTHS = 25.0  # of those softnesses beyond which nothing is left of a shadow, 1e-11
 FLOOR_M = 0.02  # height over the floor within which a box is taken to stand on it
 SHORTEST_M = 1e-3  # horizontal length of a leg, of which a vertical one has none
-MOST = 1e4  # Fresnel number of an edge beyond which the field stays as it is
+MOST = 1e3  # Fresnel number of an edge beyond which the field stays as it is
 MIN_LEGS = 2000  # legs at instants; with fewer, machine code takes longer to load than it saves
 
 

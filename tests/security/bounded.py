@@ -19,7 +19,7 @@ import contextlib, io, json, resource, signal, sys, time, traceback
 from pathlib import Path
 from helpers.forks import ForkServer
 from radhar_cli.cli import main
-from radhar_cli.dataset import hdf5_check, untrusted_hdf5
+from radhar_cli.readers import hdf5_check, untrusted_hdf5
 
 task, result = map(Path, sys.argv[1:])
 seconds, most, warm_up, cases = json.loads(task.read_text())
@@ -48,7 +48,7 @@ def answer(words):
 check = task.with_name("check.py")
 hdf5_check.SECONDS = 2
 check.write_text(
-    "from radhar_cli.dataset import hdf5_check; hdf5_check.SECONDS = 2; hdf5_check.main()"
+    "from radhar_cli.readers import hdf5_check; hdf5_check.SECONDS = 2; hdf5_check.main()"
 )
 hdf5_check.__file__ = str(check)
 untrusted_hdf5.subprocess = ForkServer()

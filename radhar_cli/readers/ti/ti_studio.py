@@ -4,6 +4,7 @@ Keys and units: the JSON schema of mmWave Studio, as its rawDataReader.m reads i
 Interface Control Document.
 """
 
+import json
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
@@ -149,7 +150,7 @@ def _first_mistake(error: ValidationError) -> str:
         return f"{key}: is required"
     if isinstance(value, dict | list | tuple):
         return f"{key}: {right}"
-    return f"{key} = {value!r:.60}: {right}"
+    return f"{key} = {json.dumps(value, default=str):.60}: {right}"
 
 
 def _read_document(path: Path) -> Any:

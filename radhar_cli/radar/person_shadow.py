@@ -17,7 +17,7 @@ from radhar_cli.numerics.arrays import Bool, Float
 
 Real: TypeAlias = Any  # a number, or an array of them
 
-LEAST = 0.03  # two-offset field that gets around a person
+LEAST = 0.03  # two-way field that gets around a person
 LEAST_POWER = 1e-6  # of the field that gets around a box
 BEYOND_M, BEYOND_WIDTH_M = 0.06, 0.03  # where a shadow begins behind a person, and how softly
 WIDTHS = 25.0  # of those softnesses beyond which nothing is left of a shadow, 1e-11
@@ -40,7 +40,7 @@ class BodyBox(NamedTuple):
 
 
 def box_about(lines: Sequence[tuple[Float, Float]], radius: float) -> BodyBox:
-    """BodyBox about lines from [3, M] to [3, M] (m), which are as thick as a radius (m)."""
+    """Box about lines from [3, M] to [3, M] (m), which are as thick as a radius (m)."""
     middles = [0.5 * (start + end) for start, end in lines]
     centre: Float = sum(middles[1:], start=middles[0]) / len(lines)
     spread = np.zeros((6, centre.shape[1]))
@@ -268,7 +268,7 @@ def _fresnel_scale(before: Real, after: Real, wavelength: float) -> Any:
 
 
 def _past_edge(inside: Real, v: Real) -> Any:
-    """Mean power, and real and imaginary part of the mean field, some offset (m) inside an edge."""
+    """Mean power, and real and imaginary part of the mean field, some way (m) inside an edge."""
     t = np.minimum(v * inside, MOST)
     q = 0.5 * (t + np.sqrt(t * t + 0.65 + (0.03 * v) ** 2))
     square = q * q

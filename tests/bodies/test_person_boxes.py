@@ -6,7 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from radhar_cli.bodies.person_boxes import JOINTS, box_of_stature, boxes_of_body
+from radhar_cli.numerics.accelerators import installed
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.radar import person_shadow
 from radhar_cli.radar.person_shadow import BodyBox, field_behind_person
 
 C = 299_792_458.0
@@ -84,6 +86,23 @@ def test_who_sits_lets_pass_what_is_above() -> None:
 )
 def test_who_is_not_between_hides_nothing(p: Float, x: float, why: str) -> None:
     assert past(standing(x), p) == pytest.approx(1, abs=3e-3), why
+
+
+@pytest.mark.skipif(installed("numba") is None, reason="needs radhar[fast]")
+@pytest.mark.parametrize("wavelength", [0.004, 0.0125, 0.15])
+def test_machine_code_computes_the_same(wavelength: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(4)
+    ends = np.array([[-1.0], [-3.0], [0.0]])[..., None] + rng.uniform(0, 6, (3, 13, 400))
+    moving = {
+        name: p + np.array([[0.0], [1.0], [0.0]]) * np.linspace(-2, 2, 400)
+        for name, p in standing().items()
+    }
+    boxes = boxes_of_body(moving, STATURE, 1.0)
+    compiled = field_behind_person(ends, ANTENNA, boxes, wavelength)
+    monkeypatch.setattr(person_shadow, "installed", lambda library: None)
+    interpreted = field_behind_person(ends, ANTENNA, boxes, wavelength)
+    assert np.abs(compiled - interpreted).max() < 1e-12
+    assert compiled.min() < 0.8
 
 
 def test_boxes_that_overlap_hide_once() -> None:

@@ -8,6 +8,7 @@ what lies in no section. What stands around them is written by hand.
 
 import inspect
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
@@ -145,7 +146,10 @@ def _shown(value: Any) -> str:
         case Vary():
             return f"{as_text(value.vary[0])} +-{100 * value.vary[1]:g} %"
         case Choice():
-            return " or ".join(map(_shown, value.choice))
+            shown = Counter(map(_shown, value.choice))
+            if len(set(shown.values())) == 1:
+                return " or ".join(shown)
+            return " or ".join(f"{one} ({n / shown.total():.0%})" for one, n in shown.items())
         case tuple() | list():
             return f"[{', '.join(map(_shown, value))}]"
         case BaseModel():

@@ -48,7 +48,7 @@ class Owners(NamedTuple):
 
 
 def locate_skeletons(scene: Scene, motions: tuple[Motion, ...], board: Board) -> Skeletons:
-    """Locate the joints of everybody; NaN of who is absent, and of joints that one lacks.
+    """Locate the joints of everybody; NaN of a person who is absent, and of joints that one lacks.
 
     In an empty scene all are NaN.
 

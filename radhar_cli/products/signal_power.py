@@ -63,7 +63,7 @@ def power_product(config: Config, of_echo: PowerSource, of_paths: PowerSource) -
 def power_unless_empty(
     of_echo: PowerSource, of_paths: PowerSource, scene: Scene, *products: Any
 ) -> float:
-    """P_s of the simulated echo; in an empty scene that of who would stand there.
+    """P_s of the simulated echo; in an empty scene that of a person who would stand there.
 
     Args:
         of_echo: P_s of the simulated echo.
@@ -125,7 +125,7 @@ def make_snr_paths(
 ) -> PathSource:
     """Make the paths whose power is P_s: of the sample's own person, straight there and back.
 
-    In an empty scene they are those of who would stand there.
+    In an empty scene they are those of a person who would stand there.
 
     Args:
         scene: what is simulated; its `snr_reference` counts.

@@ -141,7 +141,7 @@ def truth_of_nobody(truth: Truth, slug: str) -> Truth:
     """Truth of an empty scene: every number is NaN, and the one phase that of its class.
 
     Args:
-        truth: truth of who would be there, of which times and shapes are kept.
+        truth: truth of a person who would be there, of which times and shapes are kept.
         slug: name of the class.
     """
     return replace(

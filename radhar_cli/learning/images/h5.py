@@ -178,7 +178,7 @@ def _recordings(data: Dataset) -> Objects | None:
 
 
 def _scenes(data: Dataset, slugs: list[str]) -> list[str]:
-    """A fingerprint of who moved and how, in SI units; radar, wall and noise do not enter.
+    """A fingerprint of a person who moved and how, in SI units; radar, wall and noise do not enter.
 
     Numbers enter with their dotted keys where they apply, so that a scene has the same fingerprint
     in a data set that has further classes or people in other scenes, or another radar, whose keys

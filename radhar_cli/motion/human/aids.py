@@ -11,7 +11,7 @@ from radhar_cli.motion.human.arms import UPWARDS
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.numerics.arrays import Float
 
-# Elbows of who holds a box: down and outwards; in the trunk's axes, right and left [3, 2].
+# Elbows of a person who holds a box: down and outwards; in the trunk's axes, right and left [3, 2].
 DOWNWARDS = np.array([[-0.3, -0.3], [-0.35, 0.35], [-1.0, -1.0]])
 STRETCHED, SOFTNESS = 0.97, 60.0  # of arms: of their length at most; of that bound, 1/m
 TILT = 0.75  # of how far a hand is from above the tip of its stick, how far it is beside that

@@ -31,7 +31,7 @@ RIGHT, LEFT = 0, 1
 # Both hands below a box, and one beside the thigh with a bag, in lengths of the stretched arm.
 BOX = Load((RIGHT, LEFT), (0.48, -0.12, -0.62))
 BAG = (0.02, 0.05, -0.98)
-LEAN_BACK = radians(4)  # of who carries a box
+LEAN_BACK = radians(4)  # of a person who carries a box
 
 
 def carrying(gait: Gait, bag_side: int | None) -> Gait:

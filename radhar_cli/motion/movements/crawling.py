@@ -119,7 +119,7 @@ class Crawling:
 
     @property
     def end(self) -> float:
-        """When the last limb has come down, s; infinity for who goes on."""
+        """When the last limb has come down, s; infinity for a person who goes on."""
         if self.crawl.duration == inf:
             return inf
         return max(swings.end for swings in self.swings.values())
@@ -288,7 +288,7 @@ class Swings:
         )
 
 
-MISSES = 397  # how many footholds of who crawls are drawn, before they come again
+MISSES = 397  # how many footholds of a person who crawls are drawn, before they come again
 
 
 def make_crawl(mover: Mover) -> Crawl:

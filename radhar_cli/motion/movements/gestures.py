@@ -69,7 +69,7 @@ class GesturesConfig(Section, Generic[B]):
     cup_held: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("drinking", 0, 1)] = (
         default_draw(Choice(choice=(0, 1)))
     )
-    """Place of the cup between drinks of who stands: 1 holds it ahead, 0 lets the arm hang."""
+    """Where a standing person has the cup between drinks: 1 ahead, 0 at the hanging arm."""
     strokes_hz: Annotated[
         B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("writing writing_seated", 1, 6)
     ] = default_draw(normal(4.0, 0.8, 2.5, 5.5))

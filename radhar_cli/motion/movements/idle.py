@@ -26,7 +26,7 @@ class IdleConfig(Section, Generic[B]):
     shuffle_hz: Annotated[
         B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("S1 S4", 0, 0.5), UNSTEADY
     ] = default_draw(uniform(0.0, 0.2))
-    """Steps of some centimetres per second, of who stands (S1, and S4 afterwards)."""
+    """Steps of some centimetres a second of a standing person (S1, and S4 afterwards)."""
     phase_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("")] = default_draw(
         uniform(0.0, 1000.0)
     )

@@ -44,7 +44,7 @@ def join_on_floor(before: Sequence[Movement], movement: Movement) -> Movement:
 
 
 def _after_lying(last: Lies, movement: Movement) -> Movement:
-    """Movement of who lies as at the end of the last one."""
+    """Movement of a person who lies as at the end of the last one."""
     rest = last.after if isinstance(last, TurnOver) else last.rest
     if isinstance(movement, Lie | TurnOver):
         return replace(movement, rest=rest, head=0.0)

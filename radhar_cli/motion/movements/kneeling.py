@@ -61,7 +61,7 @@ class Kneel:
         return Planted(person, course, begin, end, phases, KNEELING, KNEELING)
 
 
-# Posture on hands and knees of who is about to crawl, on nearly straight arms.
+# Posture on hands and knees of a person who is about to crawl, on nearly straight arms.
 CRAWLING = OnFours(knee_height=KNEE, trunk=radians(79))
 HANDS = "hands_ahead", "hands_beside"
 TO_FOURS = 0.3  # share of getting up from the knees in which the hands go to the floor

@@ -23,7 +23,7 @@ class LimpingConfig(Section, Generic[B]):
         B, ByActivity(NOT_NEGATIVE, RATIO), People("limping", 0, 0.25), PERSONAL
     ] = default_draw(uniform(0.05, 0.2))
     """Share by which the painful leg stands shorter on the floor, and the other one longer; less
-    of who goes fast: 0.25 at most at 1.3 m/s of a person of 1.75 m, and none from 2 m/s on."""
+    of a fast walker: 0.25 at most at 1.3 m/s of a person of 1.75 m, and none from 2 m/s on."""
     lean_deg: Annotated[B, ByActivity(ANGLE), People("limping", 0, 15), PERSONAL] = default_draw(
         uniform(1.0, 8.0)
     )
@@ -39,7 +39,7 @@ G = 9.81  # m/s^2
 
 
 def largest_limp(speed: float, stature: float) -> float:
-    """Share of its time on the floor by which a leg can be spared: less of who goes fast.
+    """Share of its time on the floor by which a leg can be spared: less of a fast walker.
 
     Args:
         speed: m/s.

@@ -43,8 +43,7 @@ class LyingConfig(Section, Generic[B]):
     roll_deg: Annotated[B, ByActivity(ANGLE), People(None, -180, 180)] = default_draw(
         Choice(choice=(0.0, 0.0, 0.0, 90.0, 90.0, -90.0, -90.0, 180.0))
     )
-    """How who lies is turned: 0 on the back, 90 on the left side, -90 on the right, 180 on the
-    belly."""
+    """Side that a lying person rests on: 0 the back, 90 the left, -90 the right, 180 the belly."""
     turn_deg: Annotated[B, ByActivity(ANGLE), People("turning_over", -180, 180)] = default_draw(
         Choice(choice=(90.0, -90.0, 180.0, -180.0))
     )
@@ -52,7 +51,7 @@ class LyingConfig(Section, Generic[B]):
     bed: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("lying turning_over", 0, 1)] = (
         default_draw(Choice(choice=(0.0, 1.0)))
     )
-    """Whether who lies at first lies in bed: above 0.5 in bed, else on the floor."""
+    """Whether a person who lies at first is in bed: above 0.5 in bed, else on the floor."""
     bed_height: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0.19, 0.3)] = (
         default_draw(normal(0.25, 0.02, 0.2, 0.29))
     )
@@ -60,15 +59,15 @@ class LyingConfig(Section, Generic[B]):
     head_deg: Annotated[B, ByActivity(ANGLE), People("lying turning_over", -360, 360)] = (
         default_draw(uniform(-180.0, 180.0))
     )
-    """Direction of the head of who lies at first, from where people head (angle_deg)."""
+    """Direction of a lying person's head at first, from where people head (angle_deg)."""
     hands: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0, 1)] = default_draw(
         uniform(0.0, 1.0)
     )
-    """Place of the hands of who lies on the back: 0 is beside the body, 1 on the belly."""
+    """Where the hands of a person on the back are: 0 beside the body, 1 on the belly."""
 
 
 SECTION = LyingConfig
-# Keys of who lies, in bed or on the floor.
+# Keys of a person who lies, in bed or on the floor.
 REST = ("lying.roll_deg", "lying.bed_height", "lying.hands")
 
 
@@ -95,7 +94,7 @@ REACH = (0.9, 0.45, 0.15), (0.7, 0.7, 0.2)
 LOWEST = {"thigh": 0.035, "shank": 0.030, "arm": 0.026, "forearm": 0.024}
 HAND = 1.5  # length of a forearm with the hand over that of the forearm
 TOES, TOES_HEIGHT = 0.12, 0.02
-DROP = radians(35)  # by how much the feet of who lies hang from a right angle to the shank
+DROP = radians(35)  # by how much the feet of a person who lies hang from a right angle to the shank
 EDGE = {"thigh": 0.04, "shank": 0.04, "arm": 0.12, "forearm": 0.12}  # rounds those bounds, rad
 FIDGET = 0.5  # share of a standing person's turns of the trunk that who lies makes
 # z of the direction ahead of a chest at which its rising becomes that of the back, and how fast.
@@ -193,7 +192,7 @@ Limbs = dict[str, Float]  # directions of thigh, shank, arm, forearm in a body's
 
 
 def lying_limbs(hands: float, trunk_roll: Float, pelvis_roll: Float) -> Limbs:
-    """Limbs of who lies, at rolls [M] (rad) of trunk and pelvis; `hands` as of `Rest`."""
+    """Limbs of a lying person, at rolls [M] (rad) of trunk and pelvis; `hands` as of `Rest`."""
     arms = {name: _CURVES[name] + hands * (_ON_BELLY[name] - _CURVES[name]) for name in ARM}
     return {
         **{name: unit(_at_roll(_CURVES[name], pelvis_roll)) for name in LEG},
@@ -303,7 +302,7 @@ def body_pose(
 def _toes(person: Physique, pelvis: Axes, shank: Float, ankles: Float, surface: Surface) -> Float:
     """Directions [3, 2, M] from ankles to toes that hang, or lie on the surface."""
     left = np.broadcast_to(pelvis.left[:, None], shank.shape)
-    ahead = np.cross(shank, left, axis=0)  # up, of who lies on the back
+    ahead = np.cross(shank, left, axis=0)  # up, of a person who lies on the back
     hanging = cos(DROP) * ahead + sin(DROP) * shank
     lowest = surface.height + TOES_HEIGHT * person.stature - ankles[2]
     return _level(hanging, lowest / (TOES * person.stature), np.ones_like(surface.legs))
@@ -331,7 +330,7 @@ def resting_channels(rest: Rest) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Lying:
-    """The `part.Part` of who lies or turns over.
+    """The `part.Part` of a person who lies or turns over.
 
     Local axes: x from the hip to the head, the origin on the floor below the hip.
     """
@@ -388,7 +387,7 @@ def with_gestures(limbs: Limbs, gestures: Float, pelvis_roll: Float) -> Limbs:
     Args:
         limbs: Limbs without that.
         gestures: Share of the right and left knee, then of the right and left arm [4, M]; less of
-            both of who lies on the belly.
+            both of a person who lies on the belly.
         pelvis_roll: [M], rad.
     """
     knees, arms = 0.5 * (1 + np.cos(pelvis_roll)) * gestures.reshape(2, 2, -1)

@@ -51,7 +51,7 @@ class SittingConfig(Section, Generic[B]):
 
 
 SECTION = SittingConfig
-# Keys of who sits, and of who comes from a seat or goes to it.
+# Keys of a person who sits, and of a person who comes from a seat or goes to it.
 SEAT = ("sitting.seat_height", "sitting.recline_deg", "sitting.hands_on_lap")
 LEAN = "sitting.lean_deg"
 

@@ -124,7 +124,7 @@ class CalmedIdle(IdleState):
 
 @dataclass(frozen=True)
 class Transfer:
-    """The `part.Part` of who goes over from another part to lying, or back.
+    """The `part.Part` of a person who goes over from another part to lying, or back.
 
     Channels are the shares of the way to lying of trunk, pelvis, legs and arms, and of heeding the
     surface; rolls; x and y of the hip from where the other part has it (m).
@@ -329,13 +329,13 @@ def _column(course: Course, channel: str, value: float) -> Float:
 
 
 def _on_edge(side: float) -> Held:
-    """How who sits on the edge of a bed is held: on the way to one side."""
+    """Hold of a person on the edge of a bed: on the way to one side."""
     upright = (-side * pi / 2, 0.0, side * LEFT_SIDE)
     return Held(upright, upright)
 
 
 def _place_in_bed(person: Physique, rest: Rest, side: float) -> Place:
-    """Place of who lies in bed, seen from the ankles of who sits on its edge."""
+    """Place of a person in bed, from the ankles of the same person on its edge."""
     seated = _pose_at(person, SitDown(1.0, bed_seat(rest)).part(person, 0.0), 9.0)
     x, y = seated.hip[:2, 0].tolist()
     return Place(x - INWARDS * person.stature, y, side * pi / 2)
@@ -437,7 +437,7 @@ class LieStill:
 
 @dataclass(frozen=True)
 class Fallen:
-    """The `part.Part` of who lies where a fall has ended."""
+    """The `part.Part` of a person who lies where a fall has ended."""
 
     fall: Part  # long over
     begin: float

@@ -581,7 +581,7 @@ class Walking:
         if heading is None:
             heading = np.zeros_like(distances)
         footholds = np.array([x - half_widths * np.sin(heading), y + half_widths * np.cos(heading)])
-        # The last step of who comes to a stop may go back; that foot is lifted too.
+        # The last step of a person who comes to a stop may go back; that foot is lifted too.
         size = np.minimum(1.0, np.abs(np.diff(distances)) / (gait.speed * self.stride))
         if self.from_rest:
             size[:1] *= FIRST_SIZE

@@ -53,7 +53,7 @@ NOT_RUN = {
 # Commands whose options alone are looked at, by a word of theirs, and why.
 OPTIONS_ONLY = {
     "--cluster": "other machines; tests/dataset/test_cluster.py has some",
-    "tradeoff": "takes minutes; tests/tradeoff runs its parts",
+    "tradeoff": "takes minutes; tests/study/tradeoff runs its parts",
 }
 # Pages whose commands take seconds of a processor, for `make test-all`.
 LONG = {

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from helpers.slow import slow
-from limits.extremes import EXTREMES, SLOW_EXTREMES, Extreme, config_of, document_of
+from study.limits.extremes import EXTREMES, SLOW_EXTREMES, Extreme, config_of, document_of
 
 from radhar_cli.dataset.sample import StoredSample, synthesise
 from radhar_cli.errors import ConfigError, RadharError

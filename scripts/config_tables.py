@@ -8,7 +8,6 @@ what lies in no section. What stands around them is written by hand.
 
 import inspect
 import re
-from collections import Counter
 from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
@@ -146,10 +145,11 @@ def _shown(value: Any) -> str:
         case Vary():
             return f"{as_text(value.vary[0])} +-{100 * value.vary[1]:g} %"
         case Choice():
-            shown = Counter(map(_shown, value.choice))
-            if len(set(shown.values())) == 1:
-                return " or ".join(shown)
-            return " or ".join(f"{one} ({n / shown.total():.0%})" for one, n in shown.items())
+            if value.weights is None:
+                return " or ".join(map(_shown, value.choice))
+            total = sum(value.weights)
+            shares = zip(map(_shown, value.choice), value.weights, strict=True)
+            return " or ".join(f"{one} ({weight / total:.0%})" for one, weight in shares)
         case tuple() | list():
             return f"[{', '.join(map(_shown, value))}]"
         case BaseModel():

@@ -4,8 +4,10 @@ Every form is read through its quantile function, so that one uniform variate pe
 draw: two distributions of a key give numbers of the same rank, sample by sample.
 """
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import accumulate
 from math import erfc, sqrt
 from statistics import NormalDist
 from typing import Annotated, Any, TypeAlias
@@ -17,7 +19,9 @@ from pydantic import (
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    SerializerFunctionWrapHandler,
     TypeAdapter,
+    model_serializer,
     model_validator,
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
@@ -191,19 +195,36 @@ class _PartSchema:
 
 
 class Choice(Distribution):
-    """``{choice: [a, b, c]}``: one of the values, equally likely.
+    """``{choice: [a, b, c]}``: one of the values, equally likely, or as ``weights: [3, 2, 1]`` say.
 
     Some of them, or all, may be distributions: ``{choice: [{uniform: [-30, 30]}, 180]}``. The
     nominal value is then that of the first one.
     """
 
     choice: tuple[Annotated[float | Uniform | Normal | Vary, _PartSchema()], ...]
+    weights: tuple[Real, ...] | None = None
 
     @model_validator(mode="after")
     def _require_values(self) -> "Choice":
         if not self.choice:  # Field(min_length=1) also complains where all values are wrong
             raise value_error("should be {choice: [a, b, ...]} with 1 value or more")
+        weights = self.weights
+        if weights is not None and (
+            len(weights) != len(self.choice) or min(weights) < 0 or max(weights) == 0
+        ):
+            raise value_error(
+                "should be {choice: [a, b, ...], weights: [...]} with a weight of 0 or more for "
+                "each value, and one above 0"
+            )
         return self
+
+    @model_serializer(mode="wrap")
+    def _leave_out_equal_weights(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out weights that were not given, as files have always had it."""
+        written: dict[str, Any] = handler(self)
+        if self.weights is None:
+            written.pop("weights", None)
+        return written
 
     @property
     def support(self) -> tuple[float, float]:
@@ -214,18 +235,31 @@ class Choice(Distribution):
     def nominal(self) -> float:
         if any(isinstance(part, Distribution) for part in self.choice):
             return nominal(self.choice[0])
-        return nominal(self._ordered[(len(self.choice) - 1) // 2])
+        return nominal(self._ordered[bisect_left(self._ends, 0.5)])
 
     @property
     def _ordered(self) -> tuple[float | Uniform | Normal | Vary, ...]:
         """The values and distributions by their middle, whichever was written first."""
         return tuple(sorted(self.choice, key=nominal))
 
+    @property
+    def _ends(self) -> list[float]:
+        """Share of the draws that are of each of `_ordered` or of one before it."""
+        weights = self.weights or (1.0,) * len(self.choice)
+        by_middle = sorted(range(len(weights)), key=lambda number: nominal(self.choice[number]))
+        sums = [*accumulate(weights[number] for number in by_middle)]
+        return [part / sums[-1] for part in sums]
+
     def quantile(self, u: float) -> float:
         """Value of the part in which u lies, at its place there; parts are ordered by middle."""
-        place = u * len(self.choice)
-        number = min(int(place), len(self.choice) - 1)
-        return quantile(self._ordered[number], min(place - number, 1.0))
+        if self.weights is None:
+            place = u * len(self.choice)
+            number = min(int(place), len(self.choice) - 1)
+            return quantile(self._ordered[number], min(place - number, 1.0))
+        ends = self._ends
+        number = min(bisect_right(ends, u), bisect_left(ends, 1.0))
+        start = ends[number - 1] if number else 0.0
+        return quantile(self._ordered[number], min((u - start) / (ends[number] - start), 1.0))
 
 
 def uniform(low: float, high: float) -> Uniform:

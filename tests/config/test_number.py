@@ -138,6 +138,31 @@ def test_normal_is_a_truncated_gaussian(low: float, high: float) -> None:
     assert [quantile(number, u) for u in GRID] == pytest.approx(list(expected), rel=1e-8)
 
 
+def test_weights_say_how_often_each_choice_is_drawn() -> None:
+    law = NUMBER.validate_python({"choice": [0, 90, -90, 180], "weights": [3, 2, 2, 1]})
+    drawn = [law.quantile((place + 0.5) / 800) for place in range(800)]
+    assert [drawn.count(value) for value in (0, 90, -90, 180)] == [300, 200, 200, 100]
+    assert (law.quantile(0.0), law.quantile(1.0), law.nominal) == (-90, 180, 0)
+    repeated = NUMBER.validate_python({"choice": [0, 0, 0, 90, 90, -90, -90, 180]})
+    assert all(law.quantile(u) == repeated.quantile(u) for u in np.linspace(0, 1, 1001))
+    assert NUMBER.validate_python({"choice": [0, 1], "weights": [0, 2]}).quantile(0.0) == 1
+    parts = NUMBER.validate_python({"choice": [{"uniform": [0, 1]}, 5], "weights": [3, 1]})
+    assert parts.quantile(0.375) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("weights", [[1], [1, -1], [0, 0], [1, 1, 1], [1, "many"], 3])
+def test_weights_that_are_no_law_are_refused(weights: object) -> None:
+    with pytest.raises(ValidationError, match="weights"):
+        NUMBER.validate_python({"choice": [0, 1], "weights": weights})
+
+
+def test_choices_without_weights_are_written_without() -> None:
+    assert NUMBER.validate_python({"choice": [0, 1]}).model_dump() == {"choice": (0.0, 1.0)}
+    assert NUMBER.validate_python({"choice": [0, 1], "weights": [2, 1]}).model_dump()[
+        "weights"
+    ] == (2.0, 1.0)
+
+
 def test_choices_are_equally_likely() -> None:
     number = NUMBER.validate_python({"choice": [30, -10, 20, 20]})
     values, counts = np.unique([quantile(number, u) for u in GRID], return_counts=True)

@@ -59,7 +59,7 @@ class GesturesConfig(Section, Generic[B]):
         ByActivity(NOT_NEGATIVE, RATIO),
         People("drinking drinking_seated writing writing_seated waving clapping", 0, 1),
         PERSONAL,
-    ] = default_draw(Choice(choice=(0,) * 9 + (1,)))
+    ] = default_draw(Choice(choice=(0, 1), weights=(9, 1)))
     """Hand that is used: 1 is the left one, 0 the right one."""
     drink_s: Annotated[
         B, ByActivity(NOT_NEGATIVE, SECONDS), People("drinking drinking_seated", 3, 60)
@@ -83,7 +83,7 @@ class GesturesConfig(Section, Generic[B]):
     )
     """Angle of a waving upper arm ahead of the vertical."""
     both_hands: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("waving", 0, 1)] = (
-        default_draw(Choice(choice=(0, 0, 0, 1)))
+        default_draw(Choice(choice=(0, 1), weights=(3, 1)))
     )
     """Whether both arms wave: 1 for both, 0 for one."""
     clapping_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("clapping", 1, 5)] = (

@@ -41,7 +41,7 @@ class LyingConfig(Section, Generic[B]):
     """How people lie, on the floor or in bed, lie down, turn over and get up from bed."""
 
     roll_deg: Annotated[B, ByActivity(ANGLE), People(None, -180, 180)] = default_draw(
-        Choice(choice=(0.0, 0.0, 0.0, 90.0, 90.0, -90.0, -90.0, 180.0))
+        Choice(choice=(0.0, 90.0, -90.0, 180.0), weights=(3, 2, 2, 1))
     )
     """Side that a lying person rests on: 0 the back, 90 the left, -90 the right, 180 the belly."""
     turn_deg: Annotated[B, ByActivity(ANGLE), People("turning_over", -180, 180)] = default_draw(

@@ -35,8 +35,8 @@ from radhar_cli.scene_checks.warnings import config_warnings
 from radhar_cli.schema.annotations import (
     ABOVE_ZERO,
     GIVEN,
-    ActsIf,
-    ActsIfAny,
+    NeedsAnyKey,
+    NeedsKey,
     OfRadar,
     Unless,
     at,
@@ -337,8 +337,8 @@ def with_conditions(document: dict[str, Any], key: str) -> dict[str, Any]:
         if isinstance(condition, Unless | OfRadar):
             continue
         if value_at is not None and not condition.holds(value_at):
-            one = condition.choices[0] if isinstance(condition, ActsIfAny) else condition
-            if isinstance(one, ActsIf) and one.key != key:
+            one = condition.choices[0] if isinstance(condition, NeedsAnyKey) else condition
+            if isinstance(one, NeedsKey) and one.key != key:
                 document = with_key(document, one.key, required(one))
     if key.startswith("processing.gate"):
         document = document | {"maps": [one for one in document["maps"] if "fsst" not in one]}
@@ -356,7 +356,7 @@ def reachable(config: Config, key: str) -> bool:
     return True
 
 
-def required(condition: ActsIf) -> Any:
+def required(condition: NeedsKey) -> Any:
     """A value with which a condition holds."""
     if GIVEN in condition.values or ABOVE_ZERO in condition.values:
         return SOME[condition.key]

@@ -5,13 +5,13 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from radhar_cli.config.acting import NO_IMPULSE
-from radhar_cli.schema.annotations import ActsIf
+from radhar_cli.schema.annotations import NeedsKey
 from radhar_cli.schema.section import Flag, Section
 
 MAX_TOLERANCE_DB = -6.0
 
 
-_DIRECT = ActsIf("engine.kind", "direct")
+_DIRECT = NeedsKey("engine.kind", "direct")
 
 
 class EngineConfig(Section):

@@ -6,7 +6,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, field_validator
 
 from radhar_cli.config.acting import CADENCES, OVER_RANGE, RANGES, SPECTRA
 from radhar_cli.errors import did_you_mean
-from radhar_cli.schema.annotations import ActsIf
+from radhar_cli.schema.annotations import NeedsKey
 from radhar_cli.schema.number import DECIBEL, POSITIVE, Real, require, uniform, value_error, within
 from radhar_cli.schema.section import N, Section, default_draw, defaults_of
 
@@ -35,7 +35,7 @@ class CfarConfig(Section, Generic[N]):
     domain: Literal["power", "decibel"] = "decibel"
     """Quantity that is averaged and compared."""
     floor_db: Annotated[
-        N, DECIBEL, within(0, 200, "dB"), ActsIf("image.cfar.domain", "decibel")
+        N, DECIBEL, within(0, 200, "dB"), NeedsKey("image.cfar.domain", "decibel")
     ] = default_draw(uniform(10.0, 30.0))
     """Level at which the map's median is put with `domain: decibel`: the threshold is then a factor
     of decibels."""
@@ -87,17 +87,19 @@ class ImageConfig(Section):
     kind: Literal["decibel", "cfar", "signed"] = "decibel"
     """What pixels show: grey levels of decibels; cfar, binary masks of what exceeds its background;
     or signed, the samples of an impulse radar's rtm, 0 in the middle."""
-    clipped: Annotated[float, Field(ge=0, lt=1, strict=True), ActsIf("image.kind", "signed")] = 0.02
+    clipped: Annotated[float, Field(ge=0, lt=1, strict=True), NeedsKey("image.kind", "signed")] = (
+        0.02
+    )
     """Share of the samples that are black or white."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
     """Range of the grey levels (`kind: decibel`)."""
-    reference: Annotated[ImageReference, ActsIf("image.kind", "decibel")] = "noise"
+    reference: Annotated[ImageReference, NeedsKey("image.kind", "decibel")] = "noise"
     """What grey levels are relative to: noise, the image's noise floor, which is 0.4
     dynamic_range_db above level 0, less where the image's peak would exceed level 255; peak, its
     largest power, level 255; or {dbm: NUMBER}, the power of a cell that is level 255 in all images:
     the received one in frame maps, in others with the gain of the sums over a window and over
     range (`largest_db` of output.power has their size)."""
-    cfar: Annotated[CfarConfig, ActsIf("image.kind", "cfar")] = defaults_of(CfarConfig)
+    cfar: Annotated[CfarConfig, NeedsKey("image.kind", "cfar")] = defaults_of(CfarConfig)
     colour_map: str = DEFAULT_COLOUR_MAP
     """Colour map of PNGs and figures, any Matplotlib name; dataset.h5 holds grey levels."""
     doppler_limits_mps: Annotated[

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal
 from pydantic import Field
 
 from radhar_cli.motion.movements import catalogue
-from radhar_cli.schema.annotations import ActsIfNull, ByModel, Paper, People, Unless
+from radhar_cli.schema.annotations import ByModel, NeedsNullKey, Paper, People, Unless
 from radhar_cli.schema.number import (
     ANGLE,
     COORDINATE,
@@ -35,7 +35,7 @@ class PlaceConfig(Section, Generic[B]):
 
     range_m: Annotated[B, ByActivity(COORDINATE)] = default_draw(uniform(2.0, 8.0))
     """Range at which people are."""
-    cross_range_m: Annotated[B, ByActivity(COORDINATE), ActsIfNull("motion.cross_range_m")] = (
+    cross_range_m: Annotated[B, ByActivity(COORDINATE), NeedsNullKey("motion.cross_range_m")] = (
         default_draw(uniform(-1.0, 1.0))
     )
     """Cross-range at which people are, positive to the left."""
@@ -56,7 +56,9 @@ class MotionConfig(Section, Generic[B]):
     for motion files in every class (docs/guide/motion.md)."""
     folder: Annotated[str | None, Field(exclude=True, max_length=1000)] = None
     """Folder that paths of motion files are relative to; not part of a data set's identity."""
-    place: Annotated[PlaceConfig[B], ZONED, ActsIfNull("motion.range_m")] = defaults_of(PlaceConfig)
+    place: Annotated[PlaceConfig[B], ZONED, NeedsNullKey("motion.range_m")] = defaults_of(
+        PlaceConfig
+    )
     range_m: Annotated[
         B, ZONED, ByActivity(COORDINATE, null=True), ByModel(paper=uniform(1.0, 3.0))
     ] = default_draw(None)

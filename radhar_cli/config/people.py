@@ -9,9 +9,9 @@ from radhar_cli.config.motion import MotionConfig, TimingConfig
 from radhar_cli.schema.annotations import (
     GIVEN,
     PERSONAL,
-    ActsIf,
-    ActsIfAny,
     Limits,
+    NeedsAnyKey,
+    NeedsKey,
     People,
 )
 from radhar_cli.schema.number import (
@@ -66,7 +66,7 @@ class SubjectConfig(Section, Generic[N]):
     """Amplitude of the chest's motion by the heartbeat."""
 
 
-_SEGMENTS = ActsIf("body.scatterers", "segments")
+_SEGMENTS = NeedsKey("body.scatterers", "segments")
 
 
 class BodyConfig(Section):
@@ -79,10 +79,10 @@ class BodyConfig(Section):
     scatterers: Literal["points", "segments", "surfaces"] = "points"
     """What scatters: the 13 joints, ellipsoids between them, or surfaces that face the radar."""
     points_per_segment: Annotated[
-        int, Field(ge=1, le=1000, strict=True), ActsIf("body.scatterers", "segments", "surfaces")
+        int, Field(ge=1, le=1000, strict=True), NeedsKey("body.scatterers", "segments", "surfaces")
     ] = 20
     """Largest number of points of a segment; a surface has 14 at most."""
-    shadowing: Annotated[Flag, ActsIfAny(_SEGMENTS, ActsIf("people", GIVEN))] = True
+    shadowing: Annotated[Flag, NeedsAnyKey(_SEGMENTS, NeedsKey("people", GIVEN))] = True
     """Whether trunk and thighs hide the segments behind them and, with `people`, each person hides
     others."""
 

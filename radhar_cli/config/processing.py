@@ -21,7 +21,7 @@ from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import half_up
 from radhar_cli.radar.chirp_window import WindowName
 from radhar_cli.radar.detection import Chain
-from radhar_cli.schema.annotations import ActsIf, ByModel
+from radhar_cli.schema.annotations import ByModel, NeedsKey
 from radhar_cli.schema.number import value_error
 from radhar_cli.schema.section import Flag, Section, defaults_of
 
@@ -71,7 +71,7 @@ MAX_WINDOW_SHARE = 0.25
 PAPER_WINDOW = 0.1  # of the recording
 
 
-_GATED = ActsIf("processing.range_sum", "gated")
+_GATED = NeedsKey("processing.range_sum", "gated")
 
 
 class ProcessingConfig(Section):
@@ -80,7 +80,7 @@ class ProcessingConfig(Section):
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
     """Clutter canceller: difference is s[m + 1] - s[m], the paper's MTI; mean takes out that of the
     recording; highpass is the filter below; none leaves leakage, walls and faces of the room."""
-    highpass: Annotated[HighpassConfig, ActsIf("processing.clutter", "highpass")] = defaults_of(
+    highpass: Annotated[HighpassConfig, NeedsKey("processing.clutter", "highpass")] = defaults_of(
         HighpassConfig
     )
     range_sum: Annotated[Literal["coherent", "gated"], SPECTRA] = "coherent"
@@ -105,7 +105,7 @@ class ProcessingConfig(Section):
     range_sidelobes_db: Annotated[
         float,
         Field(ge=20, le=120, strict=True),
-        ActsIf("processing.range_window", "taylor", "chebyshev"),
+        NeedsKey("processing.range_window", "taylor", "chebyshev"),
     ] = 60.0
     """Sidelobes of taylor and chebyshev, dB below the peak."""
     range_gain_power: Annotated[float, Field(ge=0, le=8, strict=True), RANGE_TIME] = 0.0
@@ -168,9 +168,9 @@ class CloudConfig(Section):
     chain: Chain = "best"
     """Detection chain: best is what the data allow, the others what TI's firmware does with the
     .cfg, board that which the file is for: the default where it has the commands of one."""
-    pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), ActsIf("cloud.chain", "best")] = 1e-5
+    pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), NeedsKey("cloud.chain", "best")] = 1e-5
     """Rate of false alarms of a range-Doppler cell."""
-    quantise: Annotated[Flag, ActsIf("cloud.chain", "board", "sdk1", "sdk3")] = True
+    quantise: Annotated[Flag, NeedsKey("cloud.chain", "board", "sdk1", "sdk3")] = True
     """Whether numbers are rounded as the firmware's fixed-point ones."""
     boundary_box: Flag = False
     """Whether points outside boundaryBox of the .cfg (SceneryParam of people counting), a box in

@@ -48,7 +48,7 @@ from radhar_cli.radar.board import (
 from radhar_cli.radar.detection import Chain, Firmware
 from radhar_cli.radar.frame_header import FrameHeader
 from radhar_cli.radar.written_frames import WrittenFrames
-from radhar_cli.schema.annotations import GIVEN, ActsIf, ActsIfAny, ByModel
+from radhar_cli.schema.annotations import GIVEN, ByModel, NeedsAnyKey, NeedsKey
 from radhar_cli.schema.number import (
     ANGLE,
     DECIBEL,
@@ -209,15 +209,17 @@ class _Emission(AnyRadar[N], Generic[N]):
 
     polarisation: Annotated[
         Literal["vertical", "horizontal"],
-        ActsIfAny(ActsIf("room.faces", GIVEN), ActsIf("wall.echoes", "exact")),
+        NeedsAnyKey(NeedsKey("room.faces", GIVEN), NeedsKey("wall.echoes", "exact")),
     ] = "vertical"
     """Polarisation of the antennas' field, for room.faces and wall.echoes; horizontal is along
     y."""
     transmit_power_dbm: Annotated[
         N,
         DECIBEL,
-        ActsIfAny(ActsIf("snr_db", None), ActsIf("image.reference.dbm", GIVEN)),
-        ActsIfAny(ActsIf("receiver.noise_figure_db", GIVEN), ActsIf("image.reference.dbm", GIVEN)),
+        NeedsAnyKey(NeedsKey("snr_db", None), NeedsKey("image.reference.dbm", GIVEN)),
+        NeedsAnyKey(
+            NeedsKey("receiver.noise_figure_db", GIVEN), NeedsKey("image.reference.dbm", GIVEN)
+        ),
     ] = default_draw(12.0)
     """Transmitted power, which thermal noise (receiver.noise_figure_db) is compared with, and by
     which image.reference has its dBm."""

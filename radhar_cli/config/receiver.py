@@ -5,7 +5,7 @@ from typing import Annotated, Generic, Literal
 from pydantic import Field
 
 from radhar_cli.config.acting import BOARD
-from radhar_cli.schema.annotations import ABOVE_ZERO, ActsIf, ActsIfAny
+from radhar_cli.schema.annotations import ABOVE_ZERO, NeedsAnyKey, NeedsKey
 from radhar_cli.schema.number import DECIBEL, NOT_NEGATIVE, POSITIVE, within
 from radhar_cli.schema.section import Flag, N, Section, default_draw
 
@@ -33,20 +33,20 @@ class ReceiverConfig(Section, Generic[N]):
     """Noise that grows towards zero Doppler, and interference tones, beside the white noise."""
 
     noise_corner_hz: Annotated[
-        N, NOT_NEGATIVE, within(0, 1e7, "Hz"), ActsIf("receiver.noise_corner_hz", ABOVE_ZERO)
+        N, NOT_NEGATIVE, within(0, 1e7, "Hz"), NeedsKey("receiver.noise_corner_hz", ABOVE_ZERO)
     ] = default_draw(0.0)
     """Doppler at which noise that grows towards zero equals the white noise; 0 is no such noise."""
     noise_slope_db: Annotated[
         N,
         NOT_NEGATIVE,
         within(1, 20, "dB per decade"),
-        ActsIf("receiver.noise_corner_hz", ABOVE_ZERO),
+        NeedsKey("receiver.noise_corner_hz", ABOVE_ZERO),
     ] = default_draw(10.0)
     """Slope of the noise that grows towards zero Doppler, dB per decade."""
     tones: Annotated[tuple[ToneConfig[N], ...], Field(max_length=16)] = ()
     """Interference tones: up to 16 of {doppler_hz, level_db, on_s, off_s, both_sides}."""
     noise_figure_db: Annotated[
-        Annotated[N, NOT_NEGATIVE, within(0, 100, "dB")] | None, ActsIf("snr_db", None)
+        Annotated[N, NOT_NEGATIVE, within(0, 100, "dB")] | None, NeedsKey("snr_db", None)
     ] = None
     """F of thermal noise, k T0 fs F in a raw sample, where snr_db is null; null is no noise. Left
     out, it is 15 dB of an xWR1443 and 30 dB of other boards; given, it makes snr_db null unless
@@ -60,9 +60,9 @@ class ReceiverConfig(Section, Generic[N]):
     channel_errors: Annotated[
         Literal["data_set", "sample"],
         BOARD,
-        ActsIfAny(
-            ActsIf("receiver.channel_gain_db", ABOVE_ZERO),
-            ActsIf("receiver.channel_phase_deg", ABOVE_ZERO),
+        NeedsAnyKey(
+            NeedsKey("receiver.channel_gain_db", ABOVE_ZERO),
+            NeedsKey("receiver.channel_phase_deg", ABOVE_ZERO),
         ),
     ] = "data_set"
     """How often gains and phases of the channels are drawn: once a data set, or once a sample."""

@@ -46,10 +46,10 @@ from radhar_cli.motion.movements.catalogue import MOVEMENTS, users_of
 from radhar_cli.motion.movements.exercises import EXERCISES
 from radhar_cli.schema.annotations import (
     GIVEN,
-    ActsIf,
-    ActsIfAny,
     ByModel,
     Limits,
+    NeedsAnyKey,
+    NeedsKey,
     OnlyMaps,
     Paper,
     People,
@@ -122,8 +122,8 @@ class Request(Section):
     receiver: ReceiverConfig = defaults_of(ReceiverConfig)
     snr_reference: Annotated[
         Literal["free_space", "received"],
-        ActsIf("snr_db", GIVEN),
-        ActsIfAny(ActsIf("wall", GIVEN), ActsIf("radar.beam", GIVEN), BOARD),
+        NeedsKey("snr_db", GIVEN),
+        NeedsAnyKey(NeedsKey("wall", GIVEN), NeedsKey("radar.beam", GIVEN), BOARD),
     ] = "free_space"
     """Echo that snr_db refers to: as it would be without the wall, in the middle of the antennas'
     beam (free_space); or as it is received, less what the wall and the beam take."""

@@ -6,7 +6,7 @@ from pydantic import Discriminator, Field, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema
 
 from radhar_cli.radar.materials import Material
-from radhar_cli.schema.annotations import GIVEN, ActsIf, ByModel
+from radhar_cli.schema.annotations import GIVEN, ByModel, NeedsKey
 from radhar_cli.schema.number import (
     AT_LEAST_ONE,
     NOT_NEGATIVE,
@@ -32,7 +32,7 @@ class LayerConfig(Section, Generic[N]):
     """Loss tangent of the layer, used with eps_r."""
 
 
-_NO_LAYERS = ActsIf("wall.layers", None)
+_NO_LAYERS = NeedsKey("wall.layers", None)
 
 
 class WallConfig(Section, Generic[N]):
@@ -68,7 +68,7 @@ class WallConfig(Section, Generic[N]):
     needs engine.kind: cube or an impulse radar."""
     layers: Annotated[
         Annotated[tuple[LayerConfig[N], ...], Field(min_length=1, max_length=16)] | None,
-        ActsIf("wall.echoes", "exact"),
+        NeedsKey("wall.echoes", "exact"),
     ] = None
     """Layers of the wall, nearest first, with echoes: exact; null is one layer of size_m, eps_r and
     loss_tangent."""
@@ -160,11 +160,11 @@ class FacesConfig(Section, Generic[N]):
 class RoomConfig(Section, Generic[N]):
     """What stands in the room, what its faces echo, or a wall behind people."""
 
-    box_m: Annotated[BoxConfig[N] | None, ActsIf("room.faces", GIVEN)] = None
+    box_m: Annotated[BoxConfig[N] | None, NeedsKey("room.faces", GIVEN)] = None
     """Places of the room's faces."""
     faces: FacesConfig[N] | None = None
     """Faces in which people are seen again; null is none."""
-    order: Annotated[int, Field(ge=0, le=2, strict=True), ActsIf("room.faces", GIVEN)] = 1
+    order: Annotated[int, Field(ge=0, le=2, strict=True), NeedsKey("room.faces", GIVEN)] = 1
     """Largest number of bounces of a path, on the ways there and back together."""
 
     reflectors: Annotated[tuple[ReflectorConfig[N], ...], Field(max_length=MAX_REFLECTORS)] = ()
@@ -173,6 +173,6 @@ class RoomConfig(Section, Generic[N]):
     back_wall_m: Annotated[N, within(0, 1e4, "m")] | None = None
     """Range of a rear wall beyond people, which mirrors them (image source); null is none."""
     back_wall_reflection_db: Annotated[
-        N, within(-120, 0, "dB"), ActsIf("room.back_wall_m", GIVEN)
+        N, within(-120, 0, "dB"), NeedsKey("room.back_wall_m", GIVEN)
     ] = default_draw(-8.0)
     """Reflection loss of the rear wall, applied twice to the mirrored echo."""

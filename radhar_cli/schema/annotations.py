@@ -1,4 +1,4 @@
-"""What is said of a key beside its type and bounds, as annotations of its field in the schema.
+"""Annotations of config keys: where they act, whose they are, the limits of people.
 
 Checks, draws, warnings and the tables of docs/reference are made of them.
 """
@@ -59,19 +59,19 @@ class Paper:
     names: str
 
 
-class Something(Enum):
+class Presence(Enum):
     """What a key has to say for another one to act, where no single value is meant."""
 
     GIVEN = "one"
     ABOVE_ZERO = "a number above 0"
 
 
-GIVEN, ABOVE_ZERO = Something
+GIVEN, ABOVE_ZERO = Presence
 ValueAt: TypeAlias = Callable[[str], Any]  # what stands under a dotted key of a config
 
 
 @dataclass(frozen=True)
-class ActsIf:
+class NeedsKey:
     """The key acts only where another one has one of some values; all such annotations hold."""
 
     key: str
@@ -110,12 +110,12 @@ class ActsIf:
 
 
 @dataclass(frozen=True)
-class ActsIfAny:
+class NeedsAnyKey:
     """The key acts only where one or more of these hold."""
 
-    choices: tuple[ActsIf, ...]
+    choices: tuple[NeedsKey, ...]
 
-    def __init__(self, *choices: ActsIf) -> None:
+    def __init__(self, *choices: NeedsKey) -> None:
         object.__setattr__(self, "choices", choices)
 
     def holds(self, value_at: ValueAt) -> bool:
@@ -154,7 +154,7 @@ class Unless:
 
 
 @dataclass(frozen=True)
-class ActsIfNull:
+class NeedsNullKey:
     """The key acts only where another one is null, for some activities at least."""
 
     key: str
@@ -207,7 +207,7 @@ class OfRadar:
         return " or ".join(dict.fromkeys(words))
 
 
-Condition: TypeAlias = ActsIf | ActsIfAny | ActsIfNull | Unless | OfRadar
+Condition: TypeAlias = NeedsKey | NeedsAnyKey | NeedsNullKey | Unless | OfRadar
 
 
 def entry(key: str, value: object) -> str:

@@ -40,8 +40,8 @@ from radhar_cli.schema.annotations import (
     ABOVE_ZERO,
     PERSONAL,
     UNSTEADY,
-    ActsIf,
     ByModel,
+    NeedsKey,
     Paper,
     People,
     Unless,
@@ -97,7 +97,7 @@ class WalkingConfig(Section, Generic[B]):
         B,
         ByActivity(NOT_NEGATIVE, RATIO),
         People("walking", 0, 1),
-        ActsIf("motion.walking.lane_m", ABOVE_ZERO),
+        NeedsKey("motion.walking.lane_m", ABOVE_ZERO),
     ] = default_draw(uniform(0.0, 1.0))
     """Share of the first lane that lies behind a walker at 0 s."""
     speed_up: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("walking", 0.4, 2)] = (

@@ -95,7 +95,7 @@ def test_it_works_in_an_empty_environment(wheel: Path, tmp_path: Path) -> None:
     run(*pip, "-c", ROOT / "constraints.txt", wheel, folder=tmp_path)
     radhar = programs / "radhar"
     run(radhar, "config", "init", "mine.yaml", folder=tmp_path)
-    run(radhar, "config", "diff", "mine.yaml", "mine.yaml", folder=tmp_path)
+    run(radhar, "config", "show", "mine.yaml", folder=tmp_path)
     small_config(tmp_path)
     run(radhar, "generate", "small.yaml", "-o", "set", "--jobs", 1, folder=tmp_path)
     assert "synthesised again" in run(radhar, "verify", "set", "--samples", 1, folder=tmp_path)

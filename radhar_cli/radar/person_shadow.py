@@ -143,7 +143,7 @@ def _share_beyond(distance: Float) -> Float:
     """Share of a shadow that is left at a distance (m) from who throws it."""
     near = distance < BEYOND_M + WIDTHS * BEYOND_WIDTH_M
     share = np.ones(distance.shape)
-    share[near] = 1 / (1 + np.exp((BEYOND_M - distance[near]) / BEYOND_WIDTH_M))
+    share[near] = 1 / (1 + np.exp(np.minimum((BEYOND_M - distance[near]) / BEYOND_WIDTH_M, 700)))
     return share
 
 
@@ -273,7 +273,8 @@ def _past_edge(inside: Real, v: Real) -> Any:
     q = 0.5 * (t + np.sqrt(t * t + 0.65 + (0.03 * v) ** 2))
     square = q * q
     power = 1 / np.sqrt(1 + 4 * np.pi**4 * square * square)
-    re, im = 1 + square * (0.002 / 16) * v * v, square * (1.65 / 16)
+    fringes = 0.002 * np.minimum(v, MOST) ** 2
+    re, im = 1 + square * (fringes / 16), square * (1.65 / 16)
     re, im = re * re - im * im, 2 * re * im
     re, im = re * re - im * im, 2 * re * im
     re, im = re * re - im * im, 2 * re * im

@@ -161,7 +161,7 @@ def test_the_whole_experiment(
     assert "generate" not in {command[0] for command in commands}, "what is made is kept"
     script.simulated(out / "papers", 5, 1, script.INSTEAD["the paper's motion"])
     names = {path.name for path in (out / "papers").iterdir()}
-    assert names == {"walking_away", "in_place", "falling_walking", "images", "done"}
+    assert names == {"walking_away", "in_place", "falling_walking", "images", "linear", "done"}
     script.curve(
         script.Measured(out / "measured"),
         out / "simulated/images",

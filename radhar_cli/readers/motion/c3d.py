@@ -154,7 +154,8 @@ def _read_points(
             where, f"says {frames} frames; it has {available} and may have {MAX_FRAMES}"
         )
     table = np.frombuffer(data, number, frames * width, start).reshape(frames, width)
-    points = table[:, : 4 * header.points].reshape(frames, header.points, 4).astype(float)
+    with np.errstate(invalid="ignore"):  # of signalling NaN in damaged files
+        points = table[:, : 4 * header.points].reshape(frames, header.points, 4).astype(float)
     values = points[..., :3] if is_float else points[..., :3] * header.scale
     return np.where(points[..., 3:] < 0, np.nan, values)
 

@@ -18,6 +18,7 @@ from radhar_cli.numerics.arrays import Bool, Float
 Real: TypeAlias = Any  # a number, or an array of them
 
 LEAST = 0.03  # two-way field that gets around a person
+BRIGHTEST = 0.5  # A^-4 of a field beside a person, in fringes of extreme carriers
 LEAST_POWER = 1e-6  # of the field that gets around a box
 BEYOND_M, BEYOND_WIDTH_M = 0.06, 0.03  # where a shadow begins behind a person, and how softly
 WIDTHS = 25.0  # of those softnesses beyond which nothing is left of a shadow, 1e-11
@@ -89,7 +90,7 @@ def field_behind_person(
             dimming[:, during] += _dimming(
                 leg_values, (z[during], *spread_then), (antenna[2], wavelength)
             )
-    field: Float = 1 / np.sqrt(np.sqrt(1 + dimming))
+    field: Float = 1 / np.sqrt(np.sqrt(np.maximum(1 + dimming, BRIGHTEST)))
     return field
 
 
@@ -182,7 +183,7 @@ def _fill_in(
                 size = (up[m], *first, moments[3, m], moments[4, m], moments[5, m])
                 field[i, m] += _dimming(offset, size, scale)
         for m in range(count):
-            field[i, m] = 1 / np.sqrt(np.sqrt(1 + field[i, m]))
+            field[i, m] = 1 / np.sqrt(np.sqrt(max(1 + field[i, m], BRIGHTEST)))
 
 
 def _dimming(ways: tuple[Real, ...], sizes: tuple[Real, ...], scale: tuple[float, float]) -> Any:

@@ -84,6 +84,8 @@ class HumanMotion:
         parts: list[tuple[Part, Place]] = []
         pauses = (*self.pauses, *[0.0] * len(self.movements))
         for movement, pause in zip(self.movements, pauses, strict=False):
+            if pause < 0:  # at the begin of the last one at the earliest
+                pause = max(pause, parts[-1][0].begin - begin)
             part = movement.part(self.person, begin + pause, self.horizon)
             if pause < 0:
                 parts[-1], part = _join_overlapping(parts[-1], part)

@@ -557,6 +557,11 @@ def _problems_of(
                 form = f"should be {_FORM_OF_TWO[str(names[-2])]}"
                 yield Problem(key.removesuffix(f".{names[-1]}"), item["input"], form)
                 continue
+            if item["type"] == "missing" and isinstance(item["input"], list | tuple):
+                if str(names[-1]) == str(len(item["input"])):  # the first of those that lack
+                    few = f"should have more values than {len(item['input'])}"
+                    yield Problem(key.removesuffix(f".{names[-1]}"), item["input"], few)
+                continue
             if item["type"] == "missing":
                 place = f" with {radar.named}" if names[:1] == ["radar"] else ""
                 yield Problem(key, _MISSING, f"{message}{place}")

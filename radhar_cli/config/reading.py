@@ -527,6 +527,29 @@ def _kinds_of_class(names: list[int | str], document: Any) -> list[type[BaseMode
     return [kind for key, kind in _CLASS_KINDS.items() if key in (its_keys or ())]
 
 
+def _problems_of_missing(
+    key: str, names: list[Any], beside: object, radar: type[AnyRadar[Any]]
+) -> Iterator[Problem]:
+    """Problem of a value that is missing, of lists that of the first one.
+
+    Args:
+        key: dotted key of the value.
+        names: parts of the key.
+        beside: list or mapping that lacks it.
+        radar: kind of radar, which its section is named by.
+    """
+    if names[-2:-1] and names[-2] in _FORM_OF_TWO:
+        form = f"should be {_FORM_OF_TWO[str(names[-2])]}"
+        yield Problem(key.removesuffix(f".{names[-1]}"), beside, form)
+    elif isinstance(beside, list | tuple):
+        if str(names[-1]) == str(len(beside)):
+            few = f"should have more values than {len(beside)}"
+            yield Problem(key.removesuffix(f".{names[-1]}"), beside, few)
+    else:
+        place = f" with {radar.named}" if names[:1] == ["radar"] else ""
+        yield Problem(key, _MISSING, f"{_WORDING['missing']}{place}")
+
+
 def _problems_of(
     kind: type[BaseModel],
     items: Iterable[Any],
@@ -553,18 +576,8 @@ def _problems_of(
         else:
             message = _WORDING.get(item["type"], item["msg"])
             radar = next((r for r in RADARS if f"<{r.kind}>" in item["loc"]), FmcwRadar)
-            if item["type"] == "missing" and names[-2:-1] and names[-2] in _FORM_OF_TWO:
-                form = f"should be {_FORM_OF_TWO[str(names[-2])]}"
-                yield Problem(key.removesuffix(f".{names[-1]}"), item["input"], form)
-                continue
-            if item["type"] == "missing" and isinstance(item["input"], list | tuple):
-                if str(names[-1]) == str(len(item["input"])):  # the first of those that lack
-                    few = f"should have more values than {len(item['input'])}"
-                    yield Problem(key.removesuffix(f".{names[-1]}"), item["input"], few)
-                continue
             if item["type"] == "missing":
-                place = f" with {radar.named}" if names[:1] == ["radar"] else ""
-                yield Problem(key, _MISSING, f"{message}{place}")
+                yield from _problems_of_missing(key, names, item["input"], radar)
                 continue
             if item["type"] == "tuple_type" and _holds_sections(kind, names, document):
                 message = "should be a list of sections: [{}, {}]"

@@ -337,9 +337,9 @@ def with_conditions(document: dict[str, Any], key: str) -> dict[str, Any]:
         if isinstance(condition, Unless | OfRadar):
             continue
         if value_at is not None and not condition.holds(value_at):
-            one = condition.choices[0] if isinstance(condition, NeedsAnyKey) else condition
-            if isinstance(one, NeedsKey) and one.key != key:
-                document = with_key(document, one.key, required(one))
+            need = condition.choices[0] if isinstance(condition, NeedsAnyKey) else condition
+            if isinstance(need, NeedsKey) and need.key != key:
+                document = with_key(document, need.key, required(need))
     if key.startswith("processing.gate"):
         document = document | {"maps": [one for one in document["maps"] if "fsst" not in one]}
     if key == "image.clipped":

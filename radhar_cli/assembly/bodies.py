@@ -171,15 +171,16 @@ def make_shade(person: Person, motion: Motion) -> Shade:
 
 def _boxes_at(motion: Motion, person: Person, t: Float) -> tuple[BodyBox, ...]:
     """Boxes of a person at times t [M] (s)."""
-    stature, names = person.subject.height_m, motion.names
+    stature = person.subject.height_m
     width = thickness(stature, person.subject.weight_kg)
 
     def make_boxes() -> tuple[BodyBox, ...]:
+        positions, names = motion.positions, motion.names
+        if person.scene.config.body.scatterers != "points" and isinstance(motion, Landmarks):
+            # Their own echo asks for these, too.
+            positions, names = motion.landmark_positions, motion.landmarks
         if not set(JOINTS) <= set(names):
             return (box_of_stature(motion.torso(t)[:, 0], stature, width),)
-        positions = motion.positions
-        if person.scene.config.body.scatterers != "points" and isinstance(motion, Landmarks):
-            positions = motion.landmark_positions  # which their own echo asks for, too
         p = positions(t)
         points = {name: p[:, names.index(name)] for name in JOINTS}
         return boxes_of_body(points, stature, width)

@@ -39,7 +39,7 @@ def boxes_of_body(
 
 
 def box_of_stature(torso: Float, stature: float, thickness: float) -> BodyBox:
-    """BodyBox of a standing person of whom only the torso [3, M] (m) is known."""
+    """Box of a standing person of whom only the torso [3, M] (m) is known."""
     top, foot = torso.copy(), torso.copy()
     top[2], foot[2] = stature, 0.0
     return box_about([(top, foot)], TRUNK_RADIUS_M * thickness)

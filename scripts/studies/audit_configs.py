@@ -69,12 +69,12 @@ def main() -> None:
     )
     parser.add_argument("config", nargs="*", type=Path)
     parser.add_argument("--count", type=int, default=40, help="scenes of a class")
-    given = parser.parse_args()
-    paths = [path.resolve() for path in given.config] or sorted(ROOT.glob("configs/**/*.yaml"))
+    options = parser.parse_args()
+    paths = [path.resolve() for path in options.config] or sorted(ROOT.glob("configs/**/*.yaml"))
     print("| config | classes | chance | all numbers together | above chance |")
     print("| --- | --- | --- | --- | --- |")
     for name, config in configs_with_classes(paths):
-        shares = shares_of_config(config, given.count)
+        shares = shares_of_config(config, options.count)
         together = [_words(share) for key, share in shares.items() if key.startswith("all ")]
         above = [
             f"{key} {_words(share)}" for key, share in shares.items() if share.low > share.chance

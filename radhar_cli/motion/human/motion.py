@@ -84,9 +84,10 @@ class HumanMotion:
         parts: list[tuple[Part, Place]] = []
         pauses = (*self.pauses, *[0.0] * len(self.movements))
         for movement, pause in zip(self.movements, pauses, strict=False):
-            if pause < 0:  # at the begin of the last one at the earliest
-                pause = max(pause, parts[-1][0].begin - begin)
-            part = movement.part(self.person, begin + pause, self.horizon)
+            start = begin + pause
+            if pause < 0:  # it begins with the last movement at the earliest
+                start = max(start, parts[-1][0].begin)
+            part = movement.part(self.person, start, self.horizon)
             if pause < 0:
                 parts[-1], part = _join_overlapping(parts[-1], part)
             if parts and parts[-1][0].after != part.before:

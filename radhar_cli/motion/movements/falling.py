@@ -19,7 +19,7 @@ from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.part import LYING, SEATED, STANDING
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.sitting import SEAT, make_seat
-from radhar_cli.motion.movements.words import OFF_SEATS, ON_FLOOR, joined
+from radhar_cli.motion.movements.words import OFF_SEATS, ON_FLOOR, join_words
 from radhar_cli.schema.annotations import UNSTEADY, People
 from radhar_cli.schema.number import ANGLE, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
@@ -147,7 +147,7 @@ MOVEMENTS = (
         LYING,
         1.0,
         uses=(DIRECTION, *SEAT),
-        words=joined("fall falling fall_down falling_down", OFF_SEATS),
+        words=join_words("fall falling fall_down falling_down", OFF_SEATS),
     ),
     MovementKind(
         "falling_on_rising",

@@ -22,7 +22,7 @@ from radhar_cli.motion.human.planted import (
 )
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.transitions import draw_lags
-from radhar_cli.motion.movements.words import OFF_SEATS, ONTO_SEATS, joined
+from radhar_cli.motion.movements.words import OFF_SEATS, ONTO_SEATS, join_words
 from radhar_cli.schema.annotations import PERSONAL, People
 from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, normal
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
@@ -219,7 +219,7 @@ MOVEMENTS = (
         steps=(None, 1.0),  # and leave it
         gestures=(("pitch", -0.05, False, -0.6, 0.5), ("pitch", 0.0, False, -0.1, 0.5)),  # back
         words="stand_up rising stand_up_from_chair sit_to_stand aufstehen standup "
-        + joined("get_up getting_up rise rising stand standing", OFF_SEATS),
+        + join_words("get_up getting_up rise rising stand standing", OFF_SEATS),
         manners=f"{OFF_SEATS} from_sitting",
     ),
     MovementKind(

@@ -118,17 +118,17 @@ def chosen_numbers(config: Config, keys: Sequence[str] | None) -> tuple[NumberKe
     """
     numbers = acting_numbers(config)
 
-    def chosen(name: str) -> list[NumberKey]:
+    def numbers_named(name: str) -> list[NumberKey]:
         return [number for number in numbers if f"{number.key}.".startswith(f"{name}.")]
 
     for name in keys or ():
-        if not chosen(name):
+        if not numbers_named(name):
             known = [number.key for number in numbers]
             raise ConfigError(
                 f"--key {name}: is no number that has an effect with this config; "
                 + did_you_mean(name, known, f"some that have: {', '.join(known[:8])}")
             )
-    named = [number for name in keys or () for number in chosen(name)]
+    named = [number for name in keys or () for number in numbers_named(name)]
     return tuple(number for number in numbers if not keys or number in named)
 
 

@@ -512,6 +512,17 @@ def test_transitions_may_overlap(
         assert np.abs(np.diff(p, n=2, axis=2)).max() < 500 * 1e-10  # no jump, no kink
 
 
+@pytest.mark.parametrize("what", OVERLAPPING)
+@pytest.mark.parametrize("begin", [0.1, 0.7, 1 / 3])
+def test_an_overlap_longer_than_the_last_movement_begins_with_it(what: str, begin: float) -> None:
+    person = Physique(1.75)
+    motion = HumanMotion(
+        person, OVERLAPPING[what], (9.0, 0.0), 0.0, 0.0, HORIZON, Idle(person), (begin, -50.0)
+    )
+    (first, _), (second, _) = motion.parts
+    assert second.begin == first.begin == begin  # legs may be too short: scenes are drawn again
+
+
 def test_only_a_walk_overlaps() -> None:
     person = Physique(1.75)
     motion = HumanMotion(

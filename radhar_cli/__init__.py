@@ -55,14 +55,14 @@ if TYPE_CHECKING:  # for the completion of editors
     from radhar_cli.learning.sequences import Sequences as Sequences
     from radhar_cli.learning.torch_dataset import torch_dataset as torch_dataset
     from radhar_cli.learning.trained_run import load_run as load_run
-    from radhar_cli.single_scene.simulate import simulate as simulate
+    from radhar_cli.scene.single.simulate import simulate as simulate
 
 __version__ = "0.1.0"
 
 _INTERFACE = {
     "load_config": "radhar_cli.config",
     "load_radars": "radhar_cli.config",
-    "simulate": "radhar_cli.single_scene.simulate",
+    "simulate": "radhar_cli.scene.single.simulate",
     "open_dataset": "radhar_cli.dataset.reading",
     "sample": "radhar_cli.dataset.on_demand",
     "Samples": "radhar_cli.learning.samples",

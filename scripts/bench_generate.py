@@ -24,7 +24,6 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
@@ -35,17 +34,18 @@ from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.paths import PathSource
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.signal import Signal, shown_pulses
-from radhar_cli.products.plan import Plan, Product, plan
-from radhar_cli.products.run import record, run
-from radhar_cli.products.signal import signal_of_look
-from radhar_cli.products.table import plan_images, products
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.scene.products.plan import Plan, Product, plan
+from radhar_cli.scene.products.run import record, run
+from radhar_cli.scene.products.signal import signal_of_look
+from radhar_cli.scene.products.table import plan_images, products
+from radhar_cli.scene.scene import Scene, draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "configs/paper/free_space.yaml"
@@ -459,9 +459,9 @@ from collections import Counter
 from time import process_time
 from radhar_cli.config import load_config
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.products.table import plan_images
-from radhar_cli.products.run import run
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.products.table import plan_images
+from radhar_cli.scene.products.run import run
+from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.processes.worker_process import prepare_process
 
 prepare_process()
@@ -607,8 +607,8 @@ LENGTHS = (60, 120, 240, 480)  # s
 _LENGTHS = """
 import json, sys, time
 from radhar_cli.config import load_config
-from radhar_cli.products.run import record
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
 def once(seconds):
     overrides = ["snr_db=null", "motion.walking.lane_m=4", f"duration_s={seconds}"]
     config = load_config(sys.argv[1], overrides)

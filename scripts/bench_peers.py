@@ -31,18 +31,18 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import load_config
 from radhar_cli.dataset.trial import make_trial_sample
 from radhar_cli.echo.exact import beat_blocks
 from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
 from radhar_cli.echo.paths import Paths
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processes.worker_process import prepare_process
-from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import Scene, draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = ROOT / "configs/paper/free_space.yaml"

@@ -48,8 +48,8 @@ _SCENE = """
 import json, sys
 from time import process_time
 from radhar_cli.config import load_config
-from radhar_cli.products.run import record
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
 
 def seconds(*more):
     config = load_config(sys.argv[1], [*more])

@@ -20,7 +20,7 @@ from radhar_cli.config import Config
 from radhar_cli.config.built_in_radars import BuiltInRadar, read_radars
 from radhar_cli.config.documents import RADARS
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.simulate import simulate
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/guide/board_profiles.md"
 RANGES_M = 2, 4, 6

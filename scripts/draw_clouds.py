@@ -16,15 +16,15 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw
 
-from radhar_cli.activities.activity import activity_named
 from radhar_cli.config.data_set import Config
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.motion.skeleton import PARENTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.points import Cloud, board_points
-from radhar_cli.products.run import record
 from radhar_cli.readers.ti.ti_commands import split_lines
 from radhar_cli.readers.ti.ti_detection import read_detection
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 CFG = """

@@ -15,12 +15,12 @@ import matplotlib
 import matplotlib.pyplot as plt
 from PIL import Image
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.figures.maps_panel import TITLES
+from radhar_cli.motion.activities.activity import ACTIVITIES
 
 ROOT = Path(__file__).resolve().parents[1]
 SCENARIOS = {

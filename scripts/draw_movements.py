@@ -17,20 +17,20 @@ import numpy as np
 from draw_people import frames
 from PIL import Image, ImageDraw
 
-from radhar_cli.activities.activity import ACTIVITIES, Activity, activity_named
-from radhar_cli.activities.vocabulary import MEANINGS, meaning_of
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import SceneError
+from radhar_cli.motion.activities.activity import ACTIVITIES, Activity, activity_named
+from radhar_cli.motion.activities.vocabulary import MEANINGS, meaning_of
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.movements.catalogue import MOVEMENTS, users_of
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.numerics.arrays import Float, Levels
-from radhar_cli.products.table import plan_images
-from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.products.table import plan_images
+from radhar_cli.scene.scene import Scene
 from radhar_cli.schema.annotations import People, of_kind
 
 ROOT = Path(__file__).resolve().parents[1]

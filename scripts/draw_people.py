@@ -15,13 +15,13 @@ from typing import TypeAlias
 import numpy as np
 from PIL import Image, ImageDraw
 
-from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 OVERRIDES = (

@@ -23,7 +23,6 @@ from matplotlib.figure import Figure
 from page_parts import replace_part
 from PIL import Image
 
-from radhar_cli.assembly.radar_figures import RadarFigures, describe_figures, figures_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.documents import RADARS, WRITTEN_RADARS
 from radhar_cli.config.identity import yaml_text
@@ -32,8 +31,9 @@ from radhar_cli.config.starting_file import of_board
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
-from radhar_cli.scene import draw_scene
-from radhar_cli.single_scene.simulate import Simulation, simulate
+from radhar_cli.scene.assembly.radar_figures import RadarFigures, describe_figures, figures_of
+from radhar_cli.scene.scene import draw_scene
+from radhar_cli.scene.single.simulate import Simulation, simulate
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs/guide/radars.md"

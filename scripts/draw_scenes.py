@@ -16,17 +16,17 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.motion import motion_of
-from radhar_cli.assembly.radar import antennas_of
-from radhar_cli.assembly.room import ways_of
 from radhar_cli.config import Config
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.products.run import record
 from radhar_cli.radar.layers import Layer, Layers
 from radhar_cli.radar.propagation import leg
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
-from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.assembly.radar import antennas_of
+from radhar_cli.scene.assembly.room import ways_of
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import Scene, nominal_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 WALKING = activity_named("walking")

@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from radhar_cli.config import Config, load_radars
-from radhar_cli.single_scene.simulate import Simulation, simulate
+from radhar_cli.scene.single.simulate import Simulation, simulate
 
 PICTURE = Path(__file__).resolve().parents[1] / "docs/images/two_radars.png"
 ASPECTS = """

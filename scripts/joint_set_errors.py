@@ -10,9 +10,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.motion.recorded.clip import make_clip
 from radhar_cli.motion.recorded.joint_sets import JOINT_SETS, JointSet
 from radhar_cli.motion.recorded.keypoints import make_keypoints
@@ -20,8 +19,9 @@ from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.motion.recorded.plain_names import canonical_name
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene import nominal_scene
-from radhar_cli.single_scene.motion_file import sample_joints
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import nominal_scene
+from radhar_cli.scene.single.motion_file import sample_joints
 
 RATE, SECONDS, HEIGHT_M = 30.0, 4.0, 1.75
 # {canonical name: (joint of ours, m ahead, m to the own side or left, m up)}, along the trunk.

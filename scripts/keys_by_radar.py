@@ -18,7 +18,6 @@ from typing import Any, Literal, NamedTuple, TypeAlias, get_args, get_origin
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.acting import FRAMES
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.offered_maps import possible_maps
@@ -27,11 +26,13 @@ from radhar_cli.errors import RadharError
 from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
-from radhar_cli.products.run import record
-from radhar_cli.products.table import plan_images, products
-from radhar_cli.scene import draw_scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.scene_checks.warnings import config_warnings
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.warnings import config_warnings
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.products.table import plan_images, products
+from radhar_cli.scene.scene import draw_scene
+from radhar_cli.scene.single.raw_echo import RAW_ECHO, RAW_PROFILES
 from radhar_cli.schema.annotations import (
     ABOVE_ZERO,
     GIVEN,
@@ -45,7 +46,6 @@ from radhar_cli.schema.annotations import (
     sections,
 )
 from radhar_cli.schema.section import PerActivity
-from radhar_cli.single_scene.raw_echo import RAW_ECHO, RAW_PROFILES
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/reference/keys.md"
 CFG = """

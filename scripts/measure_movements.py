@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
@@ -23,7 +22,8 @@ from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.segments import unit
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import draw_scene
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/reference/movement_figures.md"
 STATURE = 1.75

@@ -19,8 +19,8 @@ from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.motion.skeleton import PARENTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.points import Cloud
-from radhar_cli.products.run import record
-from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import Scene, draw_scene
 
 NEAR_M, SPEED_MPS, SECONDS = 0.3, 1.2, 1.0
 RANGES_M = 2.0, 4.0, 6.0

@@ -18,8 +18,8 @@ from radhar_cli.config import Config
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.reading import load_section
 from radhar_cli.learning.settings import ScheduleConfig, TrainConfig
-from radhar_cli.single_scene.scene_file import write_scene
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.scene_file import write_scene
+from radhar_cli.scene.single.simulate import simulate
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = {page.name: page for page in DOCS}

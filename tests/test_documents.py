@@ -39,7 +39,7 @@ from typer.main import get_command
 from radhar_cli.cli import program
 from radhar_cli.config import Config, load_config, load_radars
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.drawing import draw_valid_scene
 
 LANGUAGES = {"sh", "bash", "yaml", "python", "text"}  # text is not run
 # What no test can run, by a part of the block, and why.

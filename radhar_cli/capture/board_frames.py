@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.assembly.radar import board_of
 from radhar_cli.capture.chain import even_columns, part_of
 from radhar_cli.capture.content import (
     Beat,
@@ -21,15 +20,16 @@ from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.products.board import products_of_frames
-from radhar_cli.products.images import level_scale_of, scale_of
-from radhar_cli.products.plan import plan
-from radhar_cli.products.run import run
-from radhar_cli.products.table import products
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.scene import fixed_radar
+from radhar_cli.scene.assembly.radar import board_of
+from radhar_cli.scene.products.board import products_of_frames
+from radhar_cli.scene.products.images import level_scale_of, scale_of
+from radhar_cli.scene.products.plan import plan
+from radhar_cli.scene.products.run import run
+from radhar_cli.scene.products.table import products
+from radhar_cli.scene.scene import fixed_radar
 
 # {map of a board: products of its recording that are behind it}
 OF_FRAMES = {name: (name,) for name in (*ANGLE_TIME_MAPS, *FRAME_MAPS, "cube")} | {

@@ -10,13 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.assembly.processing import (
-    canceller_of,
-    chirp_window_of,
-    frames_of,
-    fsst_frames_of,
-)
-from radhar_cli.assembly.radar import board_of
 from radhar_cli.capture.content import Beat, RangeProfiles, Ranging, SlowTime
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
@@ -32,11 +25,18 @@ from radhar_cli.processing.map_kind import RTM, treatment_of
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, nearest
 from radhar_cli.processing.track import StandingTrack
-from radhar_cli.products.run import process
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import fixed_radar
+from radhar_cli.scene.assembly.processing import (
+    canceller_of,
+    chirp_window_of,
+    frames_of,
+    fsst_frames_of,
+)
+from radhar_cli.scene.assembly.radar import board_of
+from radhar_cli.scene.products.run import process
+from radhar_cli.scene.scene import fixed_radar
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once
 PIECE_SAMPLES = 2**20

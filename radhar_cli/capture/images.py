@@ -18,11 +18,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.activities.vocabulary import plain_word
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_gray
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import refuse_outside, regular_size, text_of
+from radhar_cli.motion.activities.vocabulary import plain_word
 from radhar_cli.numerics.arrays import Levels
 from radhar_cli.readers.captures.array_files import check_npz
 from radhar_cli.readers.captures.parser_errors import parser_errors_as_capture_errors

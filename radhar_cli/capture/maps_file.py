@@ -17,8 +17,8 @@ from radhar_cli.figures.frames_panel import BoardFrames, draw_frames
 from radhar_cli.figures.maps_panel import MapsPage, draw_maps
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
-from radhar_cli.single_scene.board_file import write_frames
-from radhar_cli.single_scene.scene_file import write_map
+from radhar_cli.scene.single.board_file import write_frames
+from radhar_cli.scene.single.scene_file import write_map
 
 FILES = MAPS_FILE, FIGURE, FRAMES = "maps.h5", "maps.png", "frames.png"
 TRACK_UNITS = {

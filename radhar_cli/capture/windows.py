@@ -46,9 +46,9 @@ from radhar_cli.files.untrusted import refuse_outside, text_of
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frame_sheets import cloud_sheet
 from radhar_cli.processing.power_map import MapImage, PowerMap
-from radhar_cli.products.images import draw_measured_map, level_scale_of
-from radhar_cli.products.maps import image_name
-from radhar_cli.scene import nominal_scene
+from radhar_cli.scene.products.images import draw_measured_map, level_scale_of
+from radhar_cli.scene.products.maps import image_name
+from radhar_cli.scene.scene import nominal_scene
 from radhar_cli.schema.twelve import TWELVE
 
 MAX_MANIFEST = 2**20  # bytes

@@ -86,14 +86,14 @@ def audit(
     from radhar_cli.commands.learning_options import needs
 
     needs("sklearn")
-    from radhar_cli.audit.audit import QUICK, QUICK_SAMPLES
-    from radhar_cli.audit.audit import audit as audit_data
-    from radhar_cli.audit.card import add_to_card
-    from radhar_cli.audit.evidence import EvidencePart
-    from radhar_cli.audit.held_out import Effort
-    from radhar_cli.audit.report import audit_numbers, terminal_lines, write_audit
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.audited import AUDIT_NUMBERS
+    from radhar_cli.study.audit.audit import QUICK, QUICK_SAMPLES
+    from radhar_cli.study.audit.audit import audit as audit_data
+    from radhar_cli.study.audit.card import add_to_card
+    from radhar_cli.study.audit.evidence import EvidencePart
+    from radhar_cli.study.audit.held_out import Effort
+    from radhar_cli.study.audit.report import audit_numbers, terminal_lines, write_audit
 
     folder = _output_folder(data, out)
     refuse_to_replace_results(folder, (AUDIT_NUMBERS,), overwrite)
@@ -130,9 +130,9 @@ def _output_folder(data: Path, out: Path | None) -> Path:
     """
     from radhar_cli.commands.learning_options import refuse_output_inside_data
     from radhar_cli.dataset.audited import audit_folder
-    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.radar_folders import describe_missing, refuse_several_radars
     from radhar_cli.errors import FolderError
+    from radhar_cli.files.replacing import refuse_links
 
     beside = audit_folder(data)
     if out is None and beside is not None:

@@ -44,10 +44,10 @@ def compare(
 
     needs("sklearn")
     from radhar_cli.commands.terminal import BarProgress
+    from radhar_cli.figures.report.report import NUMBERS
     from radhar_cli.learning.images.classes import read_classes
-    from radhar_cli.report.report import NUMBERS
-    from radhar_cli.two_sample.comparison import compare as compare_maps
-    from radhar_cli.two_sample.report import write
+    from radhar_cli.study.two_sample.comparison import compare as compare_maps
+    from radhar_cli.study.two_sample.report import write
 
     refuse_output_inside_data(out, [simulated, measured])
     refuse_to_replace_results(out, (NUMBERS,), overwrite)

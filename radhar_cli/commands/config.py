@@ -141,11 +141,11 @@ def _list_presets() -> None:
 
 def _describe_written(name: str) -> str:
     """Say what a radar is whose numbers stand in its config, and what it resolves."""
-    from radhar_cli.assembly.radar_figures import describe_figures, figures_of
     from radhar_cli.config import load_config
     from radhar_cli.config.documents import PRESETS
     from radhar_cli.config.starting_file import describe_written
-    from radhar_cli.scene import draw_scene
+    from radhar_cli.scene.assembly.radar_figures import describe_figures, figures_of
+    from radhar_cli.scene.scene import draw_scene
 
     config = load_config(PRESETS[f"boards/{name}"])
     scene = draw_scene(config, config.chosen_activities[0], 0)

@@ -73,7 +73,7 @@ def evaluate(
 
     needs_torch()
     from radhar_cli.commands.terminal import BarProgress
-    from radhar_cli.dataset.files import refuse_links
+    from radhar_cli.files.replacing import refuse_links
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.machine import choose_device

@@ -39,7 +39,7 @@ def motion(
     from radhar_cli.config.reading import load_radars
     from radhar_cli.errors import ConfigError, UnfinishedError
     from radhar_cli.files.replacing import write_text
-    from radhar_cli.single_scene.motion_file import scene_bvh
+    from radhar_cli.scene.single.motion_file import scene_bvh
 
     if out.suffix.lower() != ".bvh":
         raise ConfigError(f"{out}: should end in .bvh")

@@ -12,9 +12,9 @@ from radhar_cli.errors import INTERRUPTED, FolderError
 from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
-    from radhar_cli.activities.activity import Activity as ActivityOfPeople
     from radhar_cli.config.data_set import Config
     from radhar_cli.config.reading import Override
+    from radhar_cli.motion.activities.activity import Activity as ActivityOfPeople
 
 Overrides: TypeAlias = Annotated[
     list[str] | None,
@@ -76,10 +76,10 @@ def find_activity(name: str | None, config: "Config", says_word: bool = True) ->
     Raises:
         ConfigError: there is no such activity, or none is named and the config has several.
     """
-    from radhar_cli.activities.activity import class_called
-    from radhar_cli.activities.vocabulary import is_other_word
     from radhar_cli.errors import ConfigError
-    from radhar_cli.single_scene.request import activity_of
+    from radhar_cli.motion.activities.activity import class_called
+    from radhar_cli.motion.activities.vocabulary import is_other_word
+    from radhar_cli.scene.single.request import activity_of
 
     try:
         activity = activity_of(name, config)

@@ -32,10 +32,10 @@ def preview(
       radhar preview datasets/quickstart --map stft --per-class 4
     """
     from radhar_cli.dataset.contact_sheet import draw_contact_sheet
-    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.reading import open_dataset
     from radhar_cli.dataset.stream_files import draw_streams
     from radhar_cli.figures.page import DPI, write_figure
+    from radhar_cli.files.replacing import refuse_links
 
     if out is not None:
         refuse_to_replace(out, overwrite, "sheet.png")

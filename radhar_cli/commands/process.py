@@ -71,9 +71,9 @@ def process(
     from radhar_cli.config import resolved
     from radhar_cli.config.data_set import ProcessedConfig
     from radhar_cli.config.reading import validated
-    from radhar_cli.scene import nominal_scene
-    from radhar_cli.scene_checks.unused_keys import unused_keys
-    from radhar_cli.single_scene.request import map_names
+    from radhar_cli.scene.checks.unused_keys import unused_keys
+    from radhar_cli.scene.scene import nominal_scene
+    from radhar_cli.scene.single.request import map_names
 
     if out is None or (config is None and not has_usual_config(recording)):
         raise _describe_missing(recording, config, out)
@@ -142,8 +142,8 @@ def _require_folder(out: Path, overwrite: bool) -> None:
         FolderError: it is refused.
     """
     from radhar_cli.capture.maps_file import FILES
-    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.files.replacing import refuse_links
 
     refuse_file(out)
     for name in FILES:

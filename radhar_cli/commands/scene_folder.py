@@ -8,7 +8,7 @@ from radhar_cli.commands.options import refuse_to_replace_results
 from radhar_cli.commands.tell import report, tell
 
 if TYPE_CHECKING:
-    from radhar_cli.single_scene.simulate import Simulation
+    from radhar_cli.scene.single.simulate import Simulation
 
 RECORDING = "recording{}.h5"
 RECORDINGS = [RECORDING.format(end) for end in ("", "_sf1", "_sf2", "_sf3")]  # of subframes
@@ -34,9 +34,9 @@ def require_scene_folder(out: Path, overwrite: bool) -> None:
     Raises:
         FolderError: it is a file, holds other files or an earlier scene, or has links in it.
     """
-    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file, refuse_foreign_files
-    from radhar_cli.single_scene import scene_file
+    from radhar_cli.files.replacing import refuse_links
+    from radhar_cli.scene.single import scene_file
 
     refuse_file(out)
     if not any((out / name).exists() for name in scene_file.FILES):
@@ -57,7 +57,7 @@ def write_scene_folder(simulation: "Simulation", out: Path, outputs: SceneOutput
     Returns:
         Paths of the files.
     """
-    from radhar_cli.single_scene import scene_file
+    from radhar_cli.scene.single import scene_file
 
     files = scene_file.write_all(simulation, out)
     for name in RECORDINGS:
@@ -102,7 +102,7 @@ def _draw_figures(simulation: "Simulation", out: Path, overlay: bool) -> list[Pa
     """Write maps.png, the animation, and a board's frames and points; return their paths."""
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.figures import maps_panel, stickman
-    from radhar_cli.single_scene.scene_file import ANIMATION, CLOUD, FRAMES, MAPS
+    from radhar_cli.scene.single.scene_file import ANIMATION, CLOUD, FRAMES, MAPS
 
     if simulation.maps:
         maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), out / MAPS)
@@ -122,7 +122,7 @@ def _draw_figures(simulation: "Simulation", out: Path, overlay: bool) -> list[Pa
 
 def print_summary(simulation: "Simulation", files: list[Path]) -> None:
     """Print what was simulated, and where the files lie."""
-    from radhar_cli.single_scene.scene_file import describe
+    from radhar_cli.scene.single.scene_file import describe
 
     activity = simulation.activity
     elapsed_s = sum(simulation.seconds.values())

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from radhar_cli.config.reading import Override
-    from radhar_cli.single_scene.request import SceneRequest
-    from radhar_cli.single_scene.simulate import Simulation
+    from radhar_cli.scene.single.request import SceneRequest
+    from radhar_cli.scene.single.simulate import Simulation
 
 
 def simulate(
@@ -125,8 +125,8 @@ def simulate(
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.config.reading import load_radars
     from radhar_cli.processes.worker_process import prepare_process
-    from radhar_cli.single_scene.request import SceneRequest, map_names
-    from radhar_cli.single_scene.simulate import simulate_scene
+    from radhar_cli.scene.single.request import SceneRequest, map_names
+    from radhar_cli.scene.single.simulate import simulate_scene
 
     prepare_process()
     if motion is not None:

@@ -109,7 +109,7 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
     from radhar_cli.config.data_set import Config
     from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
     from radhar_cli.dataset.split import split_rows
-    from radhar_cli.products.acceleration import describe_acceleration
+    from radhar_cli.scene.products.acceleration import describe_acceleration
 
     folder, rows = outcome.folder, Rows.of(config)
     size = (folder / DATASET).stat().st_size
@@ -163,8 +163,8 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     from radhar_cli.dataset.estimate import CHECK_SHARE, DRY_RUN_S, AtLeast, Estimate, plan_build
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
-    from radhar_cli.products.acceleration import describe_acceleration
-    from radhar_cli.products.table import plan_images
+    from radhar_cli.scene.products.acceleration import describe_acceleration
+    from radhar_cli.scene.products.table import plan_images
 
     rows = Rows.of(config)
     samples = f"samples     {len(rows)} = {rows.counts_text}"

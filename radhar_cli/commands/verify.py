@@ -113,12 +113,12 @@ def _is_sound(out: Path, samples: int, motion: Path | None) -> bool:
 
 def _leak_in_words(out: Path) -> str:
     """Say what tells the classes besides the movement, in a line, and which command says more."""
-    from radhar_cli.audit.cheap import most_telling_number
-    from radhar_cli.audit.scene_numbers import sentences_on_cue
     from radhar_cli.config.class_laws import laws_by_class
     from radhar_cli.config.data_set import Config
     from radhar_cli.dataset.audited import audit_folder, read_audit
     from radhar_cli.dataset.reading import open_dataset
+    from radhar_cli.study.audit.cheap import most_telling_number
+    from radhar_cli.study.audit.scene_numbers import sentences_on_cue
 
     command = f"radhar audit {out}"
     stored = read_audit(out)

@@ -16,7 +16,7 @@ def _print_versions(requested: bool) -> None:
     import platform
     from importlib.metadata import PackageNotFoundError, version
 
-    from radhar_cli.code_identity.build_version import build_version
+    from radhar_cli.dataset.build_version import build_version
 
     versions = [f"Python {platform.python_version()}"]
     for library in LIBRARIES:

@@ -43,10 +43,10 @@ def view(
     """
     needs("plotly")
 
-    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.reading import open_dataset
     from radhar_cli.dataset.sample_page import choose_rows, sample_entries
     from radhar_cli.figures.scene_page import write_page
+    from radhar_cli.files.replacing import refuse_links
 
     if out is not None:
         refuse_to_replace(out, overwrite, "view.html")
@@ -62,8 +62,8 @@ def view(
 
 def _tell_of_other_words(samples: list[str], data: "Dataset", rows: list[int]) -> None:
     """Say which class is taken for each word of --sample that names it otherwise."""
-    from radhar_cli.activities.vocabulary import plain_word
     from radhar_cli.dataset.layout import Rows
+    from radhar_cli.motion.activities.vocabulary import plain_word
 
     words = dict[str, str]()
     for sample, row in zip(samples, rows, strict=False):

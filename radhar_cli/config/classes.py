@@ -7,9 +7,14 @@ from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator, model_validator
 
-from radhar_cli.activities.activity import ACTIVITIES, Activity, activity_of_movements, is_new_slug
 from radhar_cli.config.sequence import BY_ITSELF, SequenceConfig
 from radhar_cli.errors import did_you_mean
+from radhar_cli.motion.activities.activity import (
+    ACTIVITIES,
+    Activity,
+    activity_of_movements,
+    is_new_slug,
+)
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.recorded.joint_sets import JOINT_SETS

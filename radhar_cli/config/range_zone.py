@@ -6,7 +6,7 @@ from itertools import product
 from math import ceil, cos, hypot, pi, radians
 from typing import TYPE_CHECKING, Any
 
-from radhar_cli.activities.activity import Activity
+from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.schema.annotations import People, at, of_kind
 from radhar_cli.schema.number import nominal, support
 from radhar_cli.schema.section import for_activity

@@ -9,16 +9,6 @@ from typing import Annotated, Any, ClassVar, Literal, Self, TypeAlias
 
 from pydantic import BaseModel, Field, ValidationInfo, field_validator
 
-from radhar_cli.activities.activity import (
-    ACTIVITIES,
-    STREAM,
-    Activity,
-    activity_named,
-    class_called,
-    is_new_slug,
-)
-from radhar_cli.activities.links import links_between
-from radhar_cli.activities.vocabulary import is_other_word, plain_word
 from radhar_cli.config.acting import BOARD
 from radhar_cli.config.classes import (
     ClassConfig,
@@ -42,6 +32,16 @@ from radhar_cli.config.room import RoomConfig, WallConfig
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import TURN, StreamConfig
 from radhar_cli.errors import CaptureError
+from radhar_cli.motion.activities.activity import (
+    ACTIVITIES,
+    STREAM,
+    Activity,
+    activity_named,
+    class_called,
+    is_new_slug,
+)
+from radhar_cli.motion.activities.links import links_between
+from radhar_cli.motion.activities.vocabulary import is_other_word, plain_word
 from radhar_cli.motion.movements.catalogue import MOVEMENTS, users_of
 from radhar_cli.motion.movements.exercises import EXERCISES
 from radhar_cli.schema.annotations import (

@@ -10,9 +10,9 @@ from typing import Annotated, Any, ClassVar, Generic, NamedTuple, Protocol, Type
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
-from radhar_cli.activities.activity import OR, state_after
-from radhar_cli.activities.links import links_to
-from radhar_cli.activities.vocabulary import advice_on, is_other_word, meaning_of
+from radhar_cli.motion.activities.activity import OR, state_after
+from radhar_cli.motion.activities.links import links_to
+from radhar_cli.motion.activities.vocabulary import advice_on, is_other_word, meaning_of
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.schema.number import NOT_NEGATIVE, SECONDS, Number, Share, support, value_error

@@ -8,10 +8,10 @@ from typing import Annotated, Generic, Literal, Protocol, cast
 
 from pydantic import Field, model_validator
 
-from radhar_cli.activities.activity import Activity, first_states, state_after
-from radhar_cli.activities.links import links_between
 from radhar_cli.config.classes import ClassConfig
 from radhar_cli.config.sequence import MIN_MOVEMENT_S, Chance, SequenceConfig, SequenceStep
+from radhar_cli.motion.activities.activity import Activity, first_states, state_after
+from radhar_cli.motion.activities.links import links_between
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.schema.number import (
     NOT_NEGATIVE,

@@ -28,8 +28,8 @@ from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.processes.progress import Progress
 from radhar_cli.readers.untrusted_hdf5 import DIGESTS, UntrustedFile, attribute_digests, remember
-from radhar_cli.scene_checks.flags import describe_flags
-from radhar_cli.scene_checks.warnings import collect_warnings
+from radhar_cli.scene.checks.flags import describe_flags
+from radhar_cli.scene.checks.warnings import collect_warnings
 
 SCENES_DIGEST = "scenes_sha256"
 CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"

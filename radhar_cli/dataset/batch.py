@@ -24,12 +24,12 @@ from radhar_cli.numerics.arrays import Levels
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processes.time_limit import time_limit
 from radhar_cli.processes.worker_process import prepare_process
-from radhar_cli.products.table import plan_images
 from radhar_cli.readers.untrusted_hdf5 import UntrustedFile
-from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.scene_checks.flags import Flags
-from radhar_cli.scene_checks.warnings import collect_warnings
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.flags import Flags
+from radhar_cli.scene.checks.warnings import collect_warnings
+from radhar_cli.scene.products.table import plan_images
+from radhar_cli.scene.scene import Scene
 
 CHECKED_SCENES = 24  # before a build; each is checked as it is made
 

@@ -36,8 +36,8 @@ from radhar_cli.dataset.stream_files import write_missing_segments
 from radhar_cli.dataset.workers import parent_pid, run_tasks
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.processes.progress import Progress
-from radhar_cli.products.table import plan_images
 from radhar_cli.readers.untrusted_hdf5 import try_files
+from radhar_cli.scene.products.table import plan_images
 
 # Samples a batch: few at first; of many rows more, as each shard costs some ms of the assembly, but
 # no more than 1/64 of a worker's share, as much as a kill may lose.

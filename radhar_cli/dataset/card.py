@@ -18,12 +18,13 @@ from radhar_cli.dataset.card_contents import (
     describe_streams,
 )
 from radhar_cli.dataset.file_description import describe_levels
-from radhar_cli.dataset.files import refuse_links, write_whole
+from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.image_tables import hub_configs
 from radhar_cli.dataset.layout import CARD, GALLERY, Rows, column_axis, row_axis
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.stream_files import draw_streams
+from radhar_cli.files.replacing import refuse_links
 from radhar_cli.files.table_text import markdown_table
 from radhar_cli.schema.number import nominal
 

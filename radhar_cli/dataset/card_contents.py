@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from radhar_cli.activities.meanings import meaning_of_class
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.dataset.layout import SEGMENTS, SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.files.table_text import markdown_table
+from radhar_cli.motion.activities.meanings import meaning_of_class
 from radhar_cli.processing.points import COLUMNS
 
 POINT_COLUMNS = (

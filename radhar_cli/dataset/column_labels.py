@@ -9,7 +9,7 @@ from radhar_cli.motion.phases import PHASES, phase_numbers
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Levels
 from radhar_cli.processing.power_map import MapImage
-from radhar_cli.scene import Scene
+from radhar_cli.scene.scene import Scene
 
 
 def label_names(config: AnyConfig) -> tuple[str, ...]:

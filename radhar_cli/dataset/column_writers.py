@@ -23,7 +23,7 @@ from radhar_cli.dataset.shards import chunked_dataset
 from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.untrusted_hdf5 import NumberColumn, UntrustedFile
-from radhar_cli.scene_checks.flags import FLAG_TYPE, Flags
+from radhar_cli.scene.checks.flags import FLAG_TYPE, Flags
 
 RUN, RUN_BYTES = 128, 2**28
 COLUMN_RUN, CHUNK_BYTES = 4096, 2**16

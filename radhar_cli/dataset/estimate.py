@@ -24,8 +24,8 @@ from radhar_cli.dataset.workers import cores
 from radhar_cli.errors import RadharError
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processes.time_limit import time_limit
-from radhar_cli.products.table import plan_images
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.products.table import plan_images
 
 TRIED = 48  # samples at most
 DRY_RUN_S = 30.0  # of a dry run, whatever a sample takes

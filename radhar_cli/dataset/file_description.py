@@ -6,7 +6,6 @@ from typing import Any
 import h5py
 import numpy as np
 
-from radhar_cli.assembly.room import kinds_of
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.config.image import AbsoluteReference, ImageConfig
@@ -20,8 +19,9 @@ from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.processing.points import COLUMNS
 from radhar_cli.processing.scale import NOISE_PLACE
-from radhar_cli.products.segments import SEGMENT_COLUMNS
-from radhar_cli.products.segments import label_names as stream_label_names
+from radhar_cli.scene.assembly.room import kinds_of
+from radhar_cli.scene.products.segments import SEGMENT_COLUMNS
+from radhar_cli.scene.products.segments import label_names as stream_label_names
 from radhar_cli.schema.annotations import value_text
 
 BLOCK = 4096  # rows of a column read at once

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError
-from radhar_cli.files.replacing import replacing
+from radhar_cli.files.replacing import refuse_links, replacing
 from radhar_cli.files.untrusted import regular_size
 
 MAX_TEXT = 2**20
@@ -28,30 +28,9 @@ def write_whole(folder: Path, path: Path, data: bytes) -> None:
         unfinished.write_bytes(data)
 
 
-def write_result(folder: Path, path: Path, data: bytes) -> None:
-    """Write a file of a folder without a work folder, which no run holds, atomically."""
-    refuse_links(folder, path.parent)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with replacing(path) as unfinished:
-        unfinished.write_bytes(data)
-
-
 def unfinished_path(folder: Path) -> Path:
     """Make a path that no other process uses, on the same file system as the output."""
     return folder / WORK / "unfinished" / f"{os.getpid()}-{uuid.uuid4().hex}"
-
-
-def refuse_links(folder: Path, path: Path) -> None:
-    """Refuse a path inside a folder if a part of it below the folder is a symbolic link.
-
-    Raises:
-        FolderError: a part is.
-    """
-    for part in (path, *path.parents):
-        if part == folder:
-            return
-        if part.is_symlink():
-            raise FolderError(f"{part}: is a symbolic link; radhar writes and deletes through none")
 
 
 def refuse_foreign_work(folder: Path) -> None:

@@ -13,11 +13,11 @@ from filelock import FileLock, Timeout
 
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.dataset import layout
-from radhar_cli.dataset.files import refuse_foreign_work, refuse_links, unfinished_path, write_whole
+from radhar_cli.dataset.files import refuse_foreign_work, unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError, RadharError
-from radhar_cli.files.replacing import UNFINISHED
+from radhar_cli.files.replacing import UNFINISHED, refuse_links
 from radhar_cli.files.untrusted import read_json
 
 

@@ -5,13 +5,13 @@ import json
 import operator
 from typing import Any
 
-from radhar_cli.activities.activity import own_activities
-from radhar_cli.code_identity.build_version import build_version
-from radhar_cli.code_identity.code_digest import code_digest
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.config.identity import config_hash, flat_document, resolved
 from radhar_cli.config.several_radars import NAME_KEY, key_among_radars
+from radhar_cli.dataset.build_version import build_version
+from radhar_cli.dataset.code_digest import code_digest
 from radhar_cli.extensions import extensions, own_products
+from radhar_cli.motion.activities.activity import own_activities
 from radhar_cli.numerics.accelerators import installed
 
 # What the user has added, and its digest, taken once: what it holds may change as it works.

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.config.data_set import AnyConfig
-from radhar_cli.dataset.files import refuse_links, write_whole
+from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import CLASSES, METADATA, PNG, SPLIT_FOLDERS, SPLITS, Rows
+from radhar_cli.files.replacing import refuse_links
 from radhar_cli.numerics.arrays import Levels
 
 COLUMNS = ("file_name", "label", "class", "index")

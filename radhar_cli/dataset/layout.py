@@ -11,8 +11,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from radhar_cli.activities.activity import Activity
 from radhar_cli.config.data_set import AnyConfig
+from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.numerics.arrays import Index
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import ANGLES, FRAME_MAP_KINDS
@@ -54,7 +54,7 @@ def large_datasets(config: AnyConfig) -> Parts:
     if config.output.power is not None:
         parts |= {f"power/{name}": ("<f2", size) for name in config.maps}
     if config.output.slow_time:
-        from radhar_cli.assembly.processing import max_samples
+        from radhar_cli.scene.assembly.processing import max_samples
 
         parts["slow_time"] = ("<c8", (max_samples(config),))
     return parts

@@ -12,19 +12,19 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.activities.activity import Activity, know_activities, own_activities
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import as_config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import large_datasets
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import ConfigError
+from radhar_cli.motion.activities.activity import Activity, know_activities, own_activities
 from radhar_cli.processes.worker_process import one_thread
-from radhar_cli.products.plan import Plan
-from radhar_cli.products.table import plan_images
-from radhar_cli.scene import ByIdentity
-from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.single_scene.request import activity_of
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.products.plan import Plan
+from radhar_cli.scene.products.table import plan_images
+from radhar_cli.scene.scene import ByIdentity
+from radhar_cli.scene.single.request import activity_of
 
 
 def sample(

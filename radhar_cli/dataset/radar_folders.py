@@ -4,10 +4,9 @@ import json
 from collections.abc import Iterable
 from pathlib import Path
 
-from radhar_cli.dataset.files import refuse_links
 from radhar_cli.dataset.folder import refuse_file, refuse_foreign_files
 from radhar_cli.errors import FolderError
-from radhar_cli.files.replacing import write_text
+from radhar_cli.files.replacing import refuse_links, write_text
 from radhar_cli.files.untrusted import read_json
 
 RADARS = "radars.json"

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from radhar_cli.config.data_set import MeasuredConfig
 from radhar_cli.config.recordings import RecordedPart
-from radhar_cli.scene import ByIdentity
+from radhar_cli.scene.scene import ByIdentity
 
 
 class RecordedWindow(NamedTuple):

@@ -26,12 +26,12 @@ from radhar_cli.numerics.arrays import Complex, Float, Levels
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.processing.scale import DecibelScale
-from radhar_cli.products.fallback import EchoAccuracy, Fallback
-from radhar_cli.products.images import level_scale_of
-from radhar_cli.products.plan import Plan
-from radhar_cli.products.run import Results, run
-from radhar_cli.products.segments import column_times, label_frames
-from radhar_cli.scene import Scene
+from radhar_cli.scene.products.fallback import EchoAccuracy, Fallback
+from radhar_cli.scene.products.images import level_scale_of
+from radhar_cli.scene.products.plan import Plan
+from radhar_cli.scene.products.run import Results, run
+from radhar_cli.scene.products.segments import column_times, label_frames
+from radhar_cli.scene.scene import Scene
 
 
 class StoredSample(NamedTuple):

@@ -7,9 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.activities.vocabulary import FROM_FILES, advice_on, meaning_of
-from radhar_cli.assembly.motion import motion_of
-from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.data_set import Config, MeasuredConfig
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.config.radar import ArrayRadar
@@ -21,12 +18,15 @@ from radhar_cli.figures.page_plots import LevelScale, MapLevels, PointFrames, pl
 from radhar_cli.figures.scene_page import Entry, make_entry
 from radhar_cli.figures.scene_view import MovingBody, SceneView, frame_times, view_scene
 from radhar_cli.figures.sides import bones
+from radhar_cli.motion.activities.vocabulary import FROM_FILES, advice_on, meaning_of
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
-from radhar_cli.scene import Scene, fixed_radar, nominal_scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.assembly.radar import board_of
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.scene import Scene, fixed_radar, nominal_scene
 
 MOST = 50  # samples of a page
 OF_RADAR = ("ahead (m)", "left (m)", "up of the radar (m)")  # axes of points

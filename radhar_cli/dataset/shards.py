@@ -20,7 +20,7 @@ from radhar_cli.dataset.layout import WORK, checksum_of, count_of, large_dataset
 from radhar_cli.dataset.png import deflate
 from radhar_cli.dataset.sample import SampleRow
 from radhar_cli.errors import SceneError, UnfinishedError
-from radhar_cli.scene_checks.flags import FLAG_TYPE
+from radhar_cli.scene.checks.flags import FLAG_TYPE
 
 USER_BLOCK = 512
 RUNS_NAMED = 10

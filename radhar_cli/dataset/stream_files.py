@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from radhar_cli.dataset.files import refuse_links, write_whole
+from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import SEGMENTS, SEGMENTS_TABLE, SPLITS, Rows, row_axis
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.products.segments import column_times
+from radhar_cli.files.replacing import refuse_links
+from radhar_cli.scene.products.segments import column_times
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

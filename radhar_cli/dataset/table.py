@@ -10,7 +10,7 @@ from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.errors import FolderError
-from radhar_cli.scene import FALL, numbers
+from radhar_cli.scene.scene import FALL, numbers
 from radhar_cli.schema.number import support
 from radhar_cli.schema.section import for_activity
 

@@ -16,10 +16,10 @@ from radhar_cli.dataset.workers import run_within
 from radhar_cli.numerics.arrays import Levels
 from radhar_cli.processes.progress import Progress
 from radhar_cli.processes.worker_process import prepare_process
-from radhar_cli.products.plan import Plan
-from radhar_cli.products.run import run
-from radhar_cli.products.table import plan_images
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.products.plan import Plan
+from radhar_cli.scene.products.run import run
+from radhar_cli.scene.products.table import plan_images
 
 ENOUGH_S = 5.0  # of a trial, once each process has made its first sample
 DRAW, WRITE = "draw and check", "write"  # stages of a sample before and after those of its plan

@@ -27,10 +27,10 @@ from radhar_cli.errors import FolderError
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.processing.power_map import MapImage
-from radhar_cli.products.table import plan_images
 from radhar_cli.readers.untrusted_hdf5 import DIGESTS
-from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.products.table import plan_images
+from radhar_cli.scene.scene import Scene
 
 # Of a mask's pixels that may differ under other versions of the libraries.
 MASK_SHARE = 1e-3

@@ -13,9 +13,9 @@ from multiprocessing import resource_tracker
 from time import monotonic
 from typing import Any, TypeVar
 
-from radhar_cli.activities.activity import Activity, know_activities, own_activities
 from radhar_cli.errors import MachineError, UnfinishedError, how_to_install
 from radhar_cli.extensions import know_products, own_products
+from radhar_cli.motion.activities.activity import Activity, know_activities, own_activities
 from radhar_cli.processes import interrupts
 from radhar_cli.processes.time_limit import time_limit
 from radhar_cli.processes.worker_process import end_with, prepare_process

@@ -8,11 +8,11 @@ from radhar_cli.echo.beat import BLOCK_SAMPLES, beat_matrix
 from radhar_cli.echo.dispersion import beat_of, power_of
 from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
 from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.echo.receiver.impairment import Impairment
 from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.look import Look, RawSamples
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.receiver.impairment import Impairment
 
 CHUNK_PULSES = 2**15
 

@@ -18,7 +18,7 @@ from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, SPEED, FrameMaps
 from radhar_cli.processing.points import Cloud
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
-from radhar_cli.single_scene.simulate import Simulation
+from radhar_cli.scene.single.simulate import Simulation
 
 COLUMNS = 6
 SLOWER = 90  # per cent of the points whose speeds the colours tell apart

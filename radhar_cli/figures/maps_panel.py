@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
-from radhar_cli.bodies.motion_paths import point_delay
 from radhar_cli.config.image import ImageConfig
+from radhar_cli.echo.bodies.motion_paths import point_delay
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
@@ -19,9 +19,9 @@ from radhar_cli.processing.image import decibels
 from radhar_cli.processing.map_kind import treatment_of
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene import Scene
+from radhar_cli.scene.scene import Scene
+from radhar_cli.scene.single.simulate import Simulation
 from radhar_cli.schema.number import nominal
-from radhar_cli.single_scene.simulate import Simulation
 
 _DOPPLER_TIME_TITLES = {
     "stft": "STFT",

@@ -23,8 +23,8 @@ from radhar_cli.files.replacing import write_text
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.image import levels, reduced_map, signed_levels
 from radhar_cli.processing.power_map import Axis, PowerMap
-from radhar_cli.scene import scene_numbers
-from radhar_cli.single_scene.simulate import Simulation
+from radhar_cli.scene.scene import scene_numbers
+from radhar_cli.scene.single.simulate import Simulation
 
 Entry: TypeAlias = dict[str, Any]  # what JSON holds
 

@@ -5,14 +5,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.bodies.motion_paths import point_delay
+from radhar_cli.echo.bodies.motion_paths import point_delay
 from radhar_cli.figures.sides import limbs
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
-from radhar_cli.scene import Scene
-from radhar_cli.single_scene.truth import evaluate_truth
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import Scene
+from radhar_cli.scene.single.truth import evaluate_truth
 
 FRAMES_PER_SECOND, MAX_FRAMES = 25, 600
 FINER = 4  # points of a Doppler curve a frame

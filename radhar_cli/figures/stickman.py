@@ -6,8 +6,8 @@ import numpy as np
 
 from radhar_cli.figures.maps_panel import draw_map, of_simulation, title
 from radhar_cli.figures.sides import Advance, Film, limbs
-from radhar_cli.single_scene.simulate import Simulation
-from radhar_cli.single_scene.truth import WHOLE
+from radhar_cli.scene.single.simulate import Simulation
+from radhar_cli.scene.single.truth import WHOLE
 
 FRAMES_PER_SECOND = 20
 SHOWN_BESIDE = ("stft", "fsst", "stft_compensated", "rtm")

@@ -77,6 +77,27 @@ def write_output(path: Path, content: bytes) -> None:
         raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
 
 
+def write_result(folder: Path, path: Path, data: bytes) -> None:
+    """Write a file of a folder without a work folder, which no run holds, atomically."""
+    refuse_links(folder, path.parent)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(path) as unfinished:
+        unfinished.write_bytes(data)
+
+
+def refuse_links(folder: Path, path: Path) -> None:
+    """Refuse a path inside a folder if a part of it below the folder is a symbolic link.
+
+    Raises:
+        FolderError: a part is.
+    """
+    for part in (path, *path.parents):
+        if part == folder:
+            return
+        if part.is_symlink():
+            raise FolderError(f"{part}: is a symbolic link; radhar writes and deletes through none")
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a text file that appears when it is whole."""
     with replacing(path) as unfinished:

@@ -10,13 +10,14 @@ from typing import Any
 
 import torch
 
-from radhar_cli.code_identity.build_version import build_version
 from radhar_cli.dataset.audited import read_audit
+from radhar_cli.dataset.build_version import build_version
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.dataset.split import TEST
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.class_shares import ShareBar, class_shares_png
 from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
+from radhar_cli.figures.report.parts import Details, ReportFigure, ReportTable
 from radhar_cli.learning.evaluation import SPEEDS, measure_speed
 from radhar_cli.learning.filter_weights import filter_magnitudes, filter_table
 from radhar_cli.learning.images.classes import left_out_message
@@ -34,7 +35,6 @@ from radhar_cli.learning.single_result import (
 from radhar_cli.learning.tasks.categories import Classifier
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.processes.progress import Progress
-from radhar_cli.report.parts import Details, ReportFigure, ReportTable
 
 NETWORK = ("model", "parameters", "multiply_adds", "best_epoch")
 

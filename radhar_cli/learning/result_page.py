@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from radhar_cli.report.parts import ReportFigure, ReportTable
-from radhar_cli.report.report import Format, Report
+from radhar_cli.figures.report.parts import ReportFigure, ReportTable
+from radhar_cli.figures.report.report import Format, Report
 
 
 @dataclass

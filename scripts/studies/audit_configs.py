@@ -15,14 +15,14 @@ from typing import cast
 import numpy as np
 from shared import ROOT
 
-from radhar_cli.audit.held_out import ClassShare, Effort, class_share
-from radhar_cli.audit.scene_numbers import scene_evidence
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.errors import RadharError
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.study.audit.held_out import ClassShare, Effort, class_share
+from radhar_cli.study.audit.scene_numbers import scene_evidence
 
 
 def configs_with_classes(paths: list[Path]) -> list[tuple[str, Config]]:

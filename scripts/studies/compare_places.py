@@ -14,10 +14,10 @@ import numpy as np
 from scipy.stats import ks_2samp
 from shared import ROOT
 
-from radhar_cli.assembly.motion import moving
 from radhar_cli.config import load_config
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.assembly.motion import moving
+from radhar_cli.scene.checks.drawing import draw_valid_scene
 
 POINTS = 61  # instants of a recording
 QUANTITIES = (

@@ -19,11 +19,11 @@ from matplotlib import colormaps
 from matplotlib import pyplot as plt
 from PIL import Image
 
-from radhar_cli.activities.activity import activity_named
 from radhar_cli.config.data_set import Config
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.products.run import record
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
 
 SIZE, STRIPE_M, STRIPE_ROWS, STRIPES = 256, 0.1, 5.96, 17
 SECONDS, NEAREST_M, REACH_M = 2.0, 0.6, SIZE * STRIPE_M / STRIPE_ROWS

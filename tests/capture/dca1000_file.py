@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.assembly.motion import motion_of
-from radhar_cli.bodies.motion_paths import MotionPaths
 from radhar_cli.config import Config
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.bodies.motion_paths import MotionPaths
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import nominal_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import nominal_scene
 
 SPACING = 0.002  # between antennas, m
 

@@ -20,7 +20,7 @@ from radhar_cli.processing.image import decibels
 from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.single_scene.simulate import Simulation, simulate
+from radhar_cli.scene.single.simulate import Simulation, simulate
 
 SCENE = """
 activities: [walking]

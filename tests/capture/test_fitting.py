@@ -10,7 +10,6 @@ from helpers.command_line import radhar
 from helpers.documented import KEYS
 from helpers.slow import slow
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.capture.content import Beat
 from radhar_cli.capture.fitting import fit
 from radhar_cli.capture.importing import write_simulated
@@ -23,9 +22,10 @@ from radhar_cli.capture.recording import (
 )
 from radhar_cli.config import load_config
 from radhar_cli.errors import CaptureError
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.single_scene.simulate import Simulation, simulate
+from radhar_cli.scene.single.simulate import Simulation, simulate
 
 CONFIG = """
 duration_s: 4

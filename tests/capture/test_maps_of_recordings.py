@@ -14,7 +14,7 @@ from radhar_cli.capture.recording import Recording
 from radhar_cli.commands.scene_folder import SceneOutputs, write_scene_folder
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
-from radhar_cli.single_scene.simulate import Simulation, simulate
+from radhar_cli.scene.single.simulate import Simulation, simulate
 
 SCENE = """
 activities: [walking]

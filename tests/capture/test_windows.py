@@ -14,8 +14,8 @@ from radhar_cli.config import load_config, resolved
 from radhar_cli.config.data_set import MeasuredConfig
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.learning.images.opening import open_images
-from radhar_cli.products.images import draw_measured_map
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.products.images import draw_measured_map
+from radhar_cli.scene.single.simulate import simulate
 
 CONFIG = """
 duration_s: 3

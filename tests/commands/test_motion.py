@@ -10,7 +10,7 @@ from helpers.poses import BLAZE
 from helpers.recorded import frames, write_npz
 from helpers.slow import slow_but
 
-from radhar_cli.activities.activity import ACTIVITIES
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.recorded.clip import make_clip
 from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.readers.motion.reading import read_motion

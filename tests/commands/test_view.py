@@ -17,7 +17,7 @@ from helpers.small import edited, small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.figures.scene_page import of_simulation, write_page
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.simulate import simulate
 
 pytest.importorskip("plotly", reason="needs radhar[view]")
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "google-chrome"))), None)

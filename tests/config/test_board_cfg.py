@@ -10,10 +10,10 @@ from helpers.scatterers import ISK_CFG
 from radhar_cli.config import Config
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.config.starting_file import of_board
-from radhar_cli.products.board import CloudChain
 from radhar_cli.radar.board import device_name
 from radhar_cli.radar.frame_header import RoomBox
-from radhar_cli.scene_checks.warnings import config_warnings
+from radhar_cli.scene.checks.warnings import config_warnings
+from radhar_cli.scene.products.board import CloudChain
 
 TRACKING = f"{CFG}sensorPosition 2 10 15\n"
 WITHOUT_CFAR = CFG.replace("cfarCfg 0 2 8 4 3 0 1130\n", "")

@@ -15,7 +15,7 @@ from radhar_cli.config.starting_file import of_board
 from radhar_cli.errors import ConfigError
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.ti_family import Family
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.simulate import simulate
 
 BUILT_IN = {radar.name: radar for radar in read_radars()}
 each = pytest.mark.parametrize("radar", BUILT_IN.values(), ids=BUILT_IN)

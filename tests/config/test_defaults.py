@@ -11,9 +11,9 @@ from radhar_cli.config import Config, load_config
 from radhar_cli.config.request import Request
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
-from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.scene_checks.flags import Flags
-from radhar_cli.scene_checks.warnings import collect_warnings
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.flags import Flags
+from radhar_cli.scene.checks.warnings import collect_warnings
 from radhar_cli.schema.section import Section, defaults_of
 
 ROOT = Path(__file__).resolve().parents[2]

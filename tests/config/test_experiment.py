@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from radhar_cli.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.config import (
     MAP_NAMES,
     Config,
@@ -27,6 +26,7 @@ from radhar_cli.config.recordings import RecordingsConfig
 from radhar_cli.config.room import BoxConfig, FacesConfig, LayerConfig, ReflectorConfig
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import StreamConfig
+from radhar_cli.motion.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.schema.number import Uniform
 from radhar_cli.schema.section import Section
 

@@ -10,7 +10,6 @@ from helpers.known import A, P, V
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.assembly.radar import antennas_of, board_of
 from radhar_cli.config import Config
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.radar import BoardRadar, ChirpFramesRadar, FmcwRadar, StepFramesRadar
@@ -19,10 +18,11 @@ from radhar_cli.echo.board_cube import exact_cube, fast_cube
 from radhar_cli.errors import ConfigError
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, range_doppler
-from radhar_cli.products.run import record
 from radhar_cli.radar.board import Board
-from radhar_cli.scene import nominal_scene
-from radhar_cli.scene_checks.warnings import warnings_of_signal
+from radhar_cli.scene.assembly.radar import antennas_of, board_of
+from radhar_cli.scene.checks.warnings import warnings_of_signal
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import nominal_scene
 
 BGT60: dict[str, Any] = {
     "frame": {"chirps": 64, "interval_s": 500e-6, "period_s": 0.1},

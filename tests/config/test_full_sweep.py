@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from radhar_cli.assembly.radar import waveform_of
 from radhar_cli.config import Config
-from radhar_cli.scene import nominal_scene
+from radhar_cli.scene.assembly.radar import waveform_of
+from radhar_cli.scene.scene import nominal_scene
 
 
 def sweeping(prf_hz: float, chirp_s: float, adc_rate_hz: float = 128e3) -> Config:

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from helpers.recorded import frames, write_bvh, write_npz
 
-from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.motion_files import file_motion
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.identity import config_hash, flat_document
 from radhar_cli.errors import ConfigError, MotionFileError
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.motion.recorded.clip import make_clip
 from radhar_cli.motion.recorded.keypoints import make_keypoints
 from radhar_cli.motion.recorded.names import WANTED
-from radhar_cli.scene import draw_scene, nominal_scene
+from radhar_cli.scene.assembly.motion_files import file_motion
+from radhar_cli.scene.scene import draw_scene, nominal_scene
 
 TEXT = """
 duration_s: 0.5

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.checks.doubts import word_warnings
 from radhar_cli.config.classes import movement_class
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.errors import ConfigError
-from radhar_cli.scene import Scene, draw_scene, nominal_scene, scene_numbers
-from radhar_cli.single_scene.request import activity_of
+from radhar_cli.motion.activities.activity import ACTIVITIES
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import Scene, draw_scene, nominal_scene, scene_numbers
+from radhar_cli.scene.single.request import activity_of
 
 
 def _scene(config: Config, slug: str, index: int = 0) -> Scene:

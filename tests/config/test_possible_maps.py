@@ -11,7 +11,7 @@ from radhar_cli.config.maps import KNOWN_MAPS, without_cadences
 from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.reading import load_config
 from radhar_cli.errors import ConfigError
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.simulate import simulate
 
 GATED = {"processing": {"range_sum": "gated"}}
 IMPULSE = {

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.reading import Override, load_section
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.schema.annotations import at
 from radhar_cli.schema.number import Choice, Normal, Uniform, Vary
 from radhar_cli.schema.section import for_activity

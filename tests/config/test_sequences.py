@@ -6,14 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from radhar_cli.activities.links import is_link, links_between
-from radhar_cli.assembly.people import human_motion
 from radhar_cli.config import Config, resolved
 from radhar_cli.config.reading import validated
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.errors import ConfigError
+from radhar_cli.motion.activities.links import is_link, links_between
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
-from radhar_cli.scene import Scene, draw_scene, nominal_scene
+from radhar_cli.scene.assembly.people import human_motion
+from radhar_cli.scene.scene import Scene, draw_scene, nominal_scene
 
 PARTS = [
     ["walking"],

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import yaml
 
-from radhar_cli.assembly.radar import antennas_of
 from radhar_cli.config import Config, load_config, load_radars, resolved
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.errors import ConfigError
-from radhar_cli.scene import nominal_scene
+from radhar_cli.scene.assembly.radar import antennas_of
+from radhar_cli.scene.scene import nominal_scene
 
 BOARD = "{cfg: iwr1843boost, device: IWR1843BOOST}"
 

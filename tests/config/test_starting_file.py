@@ -20,8 +20,8 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.radar.board import DEVICES
+from radhar_cli.scene.single.simulate import simulate
 from radhar_cli.schema.section import Section
-from radhar_cli.single_scene.simulate import simulate
 
 KINDS = pytest.mark.parametrize("kind", [Config, TrainConfig], ids=["data", "train"])
 

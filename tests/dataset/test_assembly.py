@@ -18,7 +18,6 @@ from helpers.small import fingerprint, small_config
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import Activity
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import column_writers
@@ -28,9 +27,10 @@ from radhar_cli.dataset.sample import StoredSample
 from radhar_cli.dataset.shards import list_shards, shard_folder
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import UnfinishedError
+from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.processing.power_map import MapImage
-from radhar_cli.scene import Scene, draw_scene, scene_numbers
-from radhar_cli.scene_checks.flags import Flags
+from radhar_cli.scene.checks.flags import Flags
+from radhar_cli.scene.scene import Scene, draw_scene, scene_numbers
 
 
 def stub_draw(config: Config, activity: Activity, index: int) -> tuple[Scene, Flags]:

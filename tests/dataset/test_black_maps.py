@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from helpers.listener import Listener
 
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import RadharError, SceneError
-from radhar_cli.products.run import record
-from radhar_cli.scene import draw_scene
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
+from radhar_cli.scene.single.simulate import simulate
 
 ENGINES = pytest.mark.parametrize("engine", ["direct", "cube"])
 OPAQUE = {"wall": {"loss_tangent": 1}, "snr_reference": "received"}  # 77 GHz: 1e-170 or less

@@ -155,7 +155,7 @@ def test_the_card_says_what_classes_mean_and_what_sides_of_images_are(whole: Pat
 
 
 def test_an_audit_takes_the_place_that_the_card_leaves_for_it(whole: Path) -> None:
-    from radhar_cli.audit.card import with_section
+    from radhar_cli.study.audit.card import with_section
 
     text = with_section((whole / "README.md").read_text(), "## Who is told apart by what\n\nX.")
     assert text.count("## Who is told apart by what") == 1
@@ -186,8 +186,8 @@ def test_the_card_counts_people(tmp_path: Path) -> None:
 
 
 def test_every_class_has_a_meaning_if_only_its_name() -> None:
-    from radhar_cli.activities.activity import ACTIVITIES, activity_named
-    from radhar_cli.activities.meanings import MEANINGS, meaning_of_class
+    from radhar_cli.motion.activities.activity import ACTIVITIES, activity_named
+    from radhar_cli.motion.activities.meanings import MEANINGS, meaning_of_class
 
     assert all(meaning_of_class(activity) == MEANINGS[activity.slug] for activity in ACTIVITIES)
     assert (
@@ -196,8 +196,8 @@ def test_every_class_has_a_meaning_if_only_its_name() -> None:
 
 
 def test_every_movement_has_a_meaning_of_the_posture_in_which_it_is_made() -> None:
-    from radhar_cli.activities.activity import activity_named
-    from radhar_cli.activities.meanings import meaning_of_class
+    from radhar_cli.motion.activities.activity import activity_named
+    from radhar_cli.motion.activities.meanings import meaning_of_class
     from radhar_cli.motion.movements import gestures
     from radhar_cli.motion.movements.catalogue import MOVEMENTS
 

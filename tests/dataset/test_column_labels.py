@@ -9,20 +9,20 @@ import pytest
 from helpers.listener import Listener
 from helpers.small import fingerprint, small_config
 
-from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.column_labels import label_columns, label_names
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.verify import verify
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.phases import PHASES
 from radhar_cli.motion.protocol import ScattererSubset
 from radhar_cli.processing.power_map import MapImage
-from radhar_cli.scene import nominal_scene
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import nominal_scene
+from radhar_cli.scene.single.simulate import simulate
 
 TEXT = """
 seed: 5

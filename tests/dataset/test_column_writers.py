@@ -15,7 +15,7 @@ from radhar_cli.dataset.shards import Shard, ShardError, encode_shard, write_sha
 from radhar_cli.processes.progress import NO_PROGRESS
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.readers.untrusted_hdf5 import UntrustedFile
-from radhar_cli.scene_checks.flags import Flags
+from radhar_cli.scene.checks.flags import Flags
 
 OWNER = "0" * 64
 

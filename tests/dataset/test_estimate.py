@@ -30,8 +30,8 @@ from radhar_cli.dataset.sample import SampleRow, synthesise
 from radhar_cli.dataset.trial import DRAW, WRITE, Trial, TrialSample, try_samples
 from radhar_cli.dataset.workers import run_within
 from radhar_cli.processes.progress import NO_PROGRESS
-from radhar_cli.products.table import plan_images
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.products.table import plan_images
 
 
 def test_bytes_are_close_to_those_of_the_build(tmp_path):

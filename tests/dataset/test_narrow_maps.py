@@ -6,14 +6,14 @@ import pytest
 from helpers.command_line import ok, radhar
 from helpers.slow import slow_but
 
-from radhar_cli.activities.activity import activity_named
 from radhar_cli.config.reading import load_config
 from radhar_cli.dataset.sample import storable_array
 from radhar_cli.errors import SceneError
-from radhar_cli.products.plan import plan
-from radhar_cli.products.run import run
-from radhar_cli.products.table import products
-from radhar_cli.scene import draw_scene
+from radhar_cli.motion.activities.activity import activity_named
+from radhar_cli.scene.products.plan import plan
+from radhar_cli.scene.products.run import run
+from radhar_cli.scene.products.table import products
+from radhar_cli.scene.scene import draw_scene
 
 SMALL = """
 samples_per_class: 1

@@ -15,7 +15,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.on_demand import Recipe, sample
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError, SceneError
-from radhar_cli.products.table import plan_images
+from radhar_cli.scene.products.table import plan_images
 
 EVERYTHING = """
 on_invalid: redraw

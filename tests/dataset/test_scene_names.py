@@ -8,9 +8,9 @@ import pytest
 import yaml
 from helpers.command_line import ok
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import load_config
 from radhar_cli.dataset.scene_fields import TAKEN, fields
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 
 LAW = {"uniform": [0.3, 0.5]}

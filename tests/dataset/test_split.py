@@ -10,11 +10,11 @@ from helpers.command_line import ok
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import Config, load_config, load_radars
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.split import TEST, TRAIN, VALIDATION, persons, split_rows, split_warnings
-from radhar_cli.scene import subject_of
+from radhar_cli.motion.activities.activity import ACTIVITIES
+from radhar_cli.scene.scene import subject_of
 
 
 def split_of(count, seed=1, activities="all", **split):

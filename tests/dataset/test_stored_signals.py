@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from helpers.small import SMALL, edited, fingerprint, small_config
 
-from radhar_cli.activities.activity import activity_named
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
 from radhar_cli.dataset import verify as verification
@@ -17,9 +16,10 @@ from radhar_cli.dataset.layout import row_bytes
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError
-from radhar_cli.products.images import level_scale_of
-from radhar_cli.products.run import record
-from radhar_cli.scene import draw_scene
+from radhar_cli.motion.activities.activity import activity_named
+from radhar_cli.scene.products.images import level_scale_of
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
 
 WITH_SIGNALS = SMALL + "output: {png: false, power: float16, slow_time: true}\n"
 HALF_DB = 0.03  # half a step of float16 between 64 and 128 dB, and more

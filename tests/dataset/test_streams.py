@@ -15,7 +15,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.stream_files import segments_text
 from radhar_cli.processes.progress import NO_PROGRESS
-from radhar_cli.products.segments import SEGMENT_COLUMNS, column_times
+from radhar_cli.scene.products.segments import SEGMENT_COLUMNS, column_times
 
 VALUES: dict[str, Any] = {
     "activities": ("walking", "grabbing", "stationary"),

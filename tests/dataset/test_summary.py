@@ -11,8 +11,8 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.summary import summarise
 from radhar_cli.errors import FolderError
-from radhar_cli.single_scene.scene_file import write_all
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.scene_file import write_all
+from radhar_cli.scene.single.simulate import simulate
 
 
 @pytest.mark.parametrize("name", ["", "dataset.h5"])

@@ -9,21 +9,21 @@ from helpers import reference as ref
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import ACTIVITIES, Activity
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.echo.accuracy import LOOSEST_DB, AccuracyError, measured_db
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.errors import SceneError
+from radhar_cli.motion.activities.activity import ACTIVITIES, Activity
 from radhar_cli.motion.protocol import ScattererSubset
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Fir
-from radhar_cli.products.receiver import name_of_impairments
-from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.products.receiver import name_of_impairments
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
 
 pytestmark = pytest.mark.usefixtures("either_sum")
 

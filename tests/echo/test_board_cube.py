@@ -12,7 +12,6 @@ from helpers.known import A, P, V
 from hypothesis import given
 from hypothesis import strategies as st
 
-from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo import board_cube
 from radhar_cli.echo.accuracy import LOOSEST_DB, SPARE_DB, AccuracyError
@@ -21,6 +20,7 @@ from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
+from radhar_cli.scene.assembly.radar import board_of
 
 # Of a program of other authors; [frame, loop, virtual, sample].
 KNOWN = {

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from helpers import reference as ref
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo import exact
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import Fir
-from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
 
 # fc tau is about 1e4 cycles at most: float64 places the phase to some 1e-11 of a turn.
 ROUNDING = 1e-11

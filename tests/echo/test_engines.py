@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from helpers import reference as ref
 
-from radhar_cli.activities.activity import ACTIVITIES, Activity
 from radhar_cli.config.data_set import Config
-from radhar_cli.products.run import record
-from radhar_cli.scene import draw_scene
+from radhar_cli.motion.activities.activity import ACTIVITIES, Activity
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
 
 # The default tolerance; what the maps show is 50 dB deep.
 DEFAULT_DB = -80

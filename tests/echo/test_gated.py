@@ -8,7 +8,6 @@ from helpers import reference as ref
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo import gated
 from radhar_cli.echo.accuracy import AccuracyError, Settings
@@ -16,6 +15,7 @@ from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.gated import GatedEcho, kernel
 from radhar_cli.echo.knots import Spacing
 from radhar_cli.echo.paths import Paths
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.processing.canceller import (
     FIRST_DIFFERENCE,
     NO_CANCELLER,
@@ -24,9 +24,9 @@ from radhar_cli.processing.canceller import (
     MeanRemoval,
 )
 from radhar_cli.processing.range_compression import range_compression
-from radhar_cli.products.run import record
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import draw_scene
 
 CANCELLERS = {"difference": FIRST_DIFFERENCE, "mean": MeanRemoval(), "none": NO_CANCELLER}
 

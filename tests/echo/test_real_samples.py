@@ -7,14 +7,14 @@ import pytest
 from helpers.boards import channels, cube_of
 from helpers.known import A, P, V
 
-from radhar_cli.assembly.radar import board_of
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.echo.board_cube import exact_cube
+from radhar_cli.echo.receiver.noise import circular_gaussian
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.frame_maps import range_doppler
-from radhar_cli.products.board import compute_range_bins
 from radhar_cli.radar.board import Board
-from radhar_cli.receiver.noise import circular_gaussian
+from radhar_cli.scene.assembly.radar import board_of
+from radhar_cli.scene.products.board import compute_range_bins
 
 REAL = """
 channelCfg 15 1 0

@@ -9,8 +9,8 @@ import pytest
 from radhar_cli.config import Config
 from radhar_cli.motion.protocol import ScattererSubset
 from radhar_cli.numerics.arrays import Complex, Float
-from radhar_cli.products.run import record
-from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import Scene, nominal_scene
 
 C = 299792458.0
 TX, RX = [[0.0, 0.0], [4.0, 1.0]], [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]

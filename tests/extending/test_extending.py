@@ -17,11 +17,6 @@ from helpers.signals import signal
 from pydantic import ValidationError
 
 from radhar_cli import extensions
-from radhar_cli.activities import activity
-from radhar_cli.activities.activity import activity_named, add_activity
-from radhar_cli.assembly.motion import motion_of
-from radhar_cli.assembly.radar import antennas_of, waveform_of
-from radhar_cli.assembly.receiver import impairments_of
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.maps import CADENCE_MAPS
 from radhar_cli.config.offered_maps import possible_maps
@@ -31,7 +26,11 @@ from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.verify import verify
+from radhar_cli.echo.receiver.impairment import Impairment
+from radhar_cli.echo.receiver.noise import WhiteNoise
 from radhar_cli.errors import ConfigError, RadharError, SceneError
+from radhar_cli.motion.activities import activity
+from radhar_cli.motion.activities.activity import activity_named, add_activity
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.look import Look
@@ -39,15 +38,16 @@ from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.track import StandingTrack
-from radhar_cli.products.plan import Product
-from radhar_cli.products.run import process, record
-from radhar_cli.products.table import plan_images
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.receiver.impairment import Impairment
-from radhar_cli.receiver.noise import WhiteNoise
-from radhar_cli.scene import Person, Scene, nominal_scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.single_scene.raw_echo import RAW_ECHO
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
+from radhar_cli.scene.assembly.receiver import impairments_of
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.products.plan import Product
+from radhar_cli.scene.products.run import process, record
+from radhar_cli.scene.products.table import plan_images
+from radhar_cli.scene.scene import Person, Scene, nominal_scene
+from radhar_cli.scene.single.raw_echo import RAW_ECHO
 
 C = 299_792_458.0
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500, "antenna_isolation_db": 300}
@@ -470,7 +470,7 @@ def test_the_commands_import_modules_of_ones_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "my_radar.py").write_text(
-        "from radhar_cli.products.plan import Product\n"
+        "from radhar_cli.scene.products.plan import Product\n"
         "from radhar_cli.extensions import add_product\n"
         "add_product(Product('middle', ('signal',), lambda s: s.x[0, 0, 9:19], 'ten pulses'))\n"
     )
@@ -617,7 +617,7 @@ def test_a_movement_of_people_is_one_file(tmp_path: Path) -> None:
 FAN = """
 from dataclasses import dataclass
 import numpy as np
-from radhar_cli.activities.activity import add_activity
+from radhar_cli.motion.activities.activity import add_activity
 
 @dataclass(frozen=True)
 class Fan:

@@ -52,7 +52,7 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.sample_page import sample_entries
 from radhar_cli.figures.frames_panel import draw_frames, of_simulation
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.simulate import simulate
 
 folder = Path(sys.argv[1])
 config = load_config(folder / "config.yaml")

@@ -12,7 +12,7 @@ from radhar_cli.config.documents import RADARS, WRITTEN_RADARS
 from radhar_cli.config.offered_maps import possible_maps
 from radhar_cli.config.starting_file import of_board
 from radhar_cli.processing.frame_maps import FrameMaps
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.simulate import simulate
 
 pytestmark = pytest.mark.slow
 each = pytest.mark.parametrize("name", [*WRITTEN_RADARS, *RADARS])

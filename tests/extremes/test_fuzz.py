@@ -16,13 +16,13 @@ from helpers.slow import slow
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError, RadharError
-from radhar_cli.products.run import Results, run
-from radhar_cli.products.run import record as record_scene
-from radhar_cli.products.table import plan_images
-from radhar_cli.scene import draw_scene
-from radhar_cli.scene_checks import drawing
-from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.scene_checks.warnings import scene_warnings
+from radhar_cli.scene.checks import drawing
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.warnings import scene_warnings
+from radhar_cli.scene.products.run import Results, run
+from radhar_cli.scene.products.run import record as record_scene
+from radhar_cli.scene.products.table import plan_images
+from radhar_cli.scene.scene import draw_scene
 
 SEED = 20261121
 BLOCKS, CONFIGS = 10, 220

@@ -1,6 +1,6 @@
 """Ten million pulses: memory does not grow with the recording beyond a few arrays of its length.
 
-A process of its own each, so that its peak is its own. tests/products/test_long_recordings.py has
+A process of its own each, so that its peak is its own; scene/products/test_long_recordings.py has
 two million.
 """
 
@@ -23,11 +23,11 @@ PROGRAM = (
     PEAK
     + """
 import json, sys
-from radhar_cli.activities.activity import activity_named
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.config import Config
-from radhar_cli.products.table import plan_images
-from radhar_cli.products.run import run
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.products.table import plan_images
+from radhar_cli.scene.products.run import run
+from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.processes.worker_process import prepare_process
 
 prepare_process()

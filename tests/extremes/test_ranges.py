@@ -20,17 +20,17 @@ from helpers.extreme_scenes import (
     signal,
 )
 
-from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.reading import validated
 from radhar_cli.echo.exact import beat_blocks
 from radhar_cli.errors import ConfigError, SceneError
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, SKELETON
-from radhar_cli.products.run import record as record_scene
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import draw_scene, nominal_scene
-from radhar_cli.scene_checks.warnings import scene_warnings
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.checks.warnings import scene_warnings
+from radhar_cli.scene.products.run import record as record_scene
+from radhar_cli.scene.scene import draw_scene, nominal_scene
 
 DIRECT_DB = -60.0  # the promise of docs/physics/engines.md
 # Rounding of a phase of C cycles is about C 2^-52 turns; over the PRF it is compared with the

@@ -4,23 +4,23 @@ import numpy as np
 import pytest
 from helpers.extreme_scenes import config_of, record
 
-from radhar_cli.activities.activity import activity_named
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.echo.exact import beat_blocks
 from radhar_cli.echo.static_returns import leakage, wall_echo
 from radhar_cli.errors import SceneError
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.track import PulseTrack
-from radhar_cli.products.run import process
-from radhar_cli.products.run import record as record_scene
-from radhar_cli.products.signal import SIGNALS
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.scene import nominal_scene
-from radhar_cli.single_scene.raw_echo import RAW_ECHO
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.products.run import process
+from radhar_cli.scene.products.run import record as record_scene
+from radhar_cli.scene.products.signal import SIGNALS
+from radhar_cli.scene.scene import nominal_scene
+from radhar_cli.scene.single.raw_echo import RAW_ECHO
+from radhar_cli.scene.single.simulate import simulate
 
 ALL = [f"{kind}{name}" for name in MAP_NAMES for kind in ("", "image:")]
 

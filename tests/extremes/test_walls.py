@@ -11,8 +11,8 @@ from helpers.extreme_scenes import config_of, record, relative, signal
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError, SceneError
-from radhar_cli.products.run import Results
 from radhar_cli.radar.wall import Wall, crossing
+from radhar_cli.scene.products.run import Results
 
 DIRECT_DB = -60.0
 AIR = {"eps_r": 1, "loss_tangent": 0}

@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.radar import waveform_of
 from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.dataset.contact_sheet import draw_contact_sheet
@@ -26,9 +24,11 @@ from radhar_cli.figures.maps_panel import (
 from radhar_cli.figures.page import page
 from radhar_cli.figures.sides import UNCHANGED, gif_blocks
 from radhar_cli.figures.stickman import draw_stickman, frame_count
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.processing.power_map import Axis, PowerMap
-from radhar_cli.scene import draw_scene
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.assembly.radar import waveform_of
+from radhar_cli.scene.scene import draw_scene
+from radhar_cli.scene.single.simulate import simulate
 
 ROOT = Path(__file__).resolve().parents[2]
 WALL = ROOT / "configs/paper/figures_through_wall.yaml"

@@ -7,10 +7,10 @@ import numpy as np
 
 from radhar_cli.echo.board_cube import combine_transmitters, exact_cube
 from radhar_cli.echo.paths import Paths
+from radhar_cli.echo.receiver.noise import circular_gaussian
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
-from radhar_cli.receiver.noise import circular_gaussian
 
 # 10 frames a second of 32 loops of three transmitters, 80 samples of 3.2 GHz: what is inferred of
 # the recordings of MARS (An and Ogras, 2021).

@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 from helpers import reference as ref
 
-from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
-from radhar_cli.products.run import Results
-from radhar_cli.products.run import record as record_scene
-from radhar_cli.scene import nominal_scene, scene_numbers
+from radhar_cli.motion.activities.activity import activity_named
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.products.run import Results
+from radhar_cli.scene.products.run import record as record_scene
+from radhar_cli.scene.scene import nominal_scene, scene_numbers
 
 # 20 samples a chirp and 200 pulses: little to compute even in extended precision. The half-band
 # ends at 7.5 m.

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from radhar_cli.activities.activity import activity_named
 from radhar_cli.config import Config
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.motion.human.part import Movement
 from radhar_cli.motion.movements.catalogue import MOVEMENTS, name_of
 from radhar_cli.motion.movements.kind import S
-from radhar_cli.scene import nominal_scene
+from radhar_cli.scene.scene import nominal_scene
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ import numpy as np
 from helpers.movements import in_groups
 from pydantic import BaseModel
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.checks.people import HUMAN_LIMITS
+from radhar_cli.motion.activities.activity import ACTIVITIES
 
 Document = dict[str, Any]
 _, MAX_SECONDS = HUMAN_LIMITS["duration_s"]

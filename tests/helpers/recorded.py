@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from radhar_cli.activities.activity import activity_named
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.motion.recorded.writing import bvh_text
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene import nominal_scene
-from radhar_cli.single_scene.motion_file import sample_joints
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import nominal_scene
+from radhar_cli.scene.single.motion_file import sample_joints
 
 # {bone: (the one it hangs on, the joint at its end)}, in tree order.
 BONES = {

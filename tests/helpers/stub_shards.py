@@ -6,7 +6,7 @@ from radhar_cli.dataset import scene_fields, shards
 from radhar_cli.dataset.batch import Batch
 from radhar_cli.dataset.sample import SampleRow, StoredSample
 from radhar_cli.processing.power_map import MapImage
-from radhar_cli.scene_checks.flags import Flags
+from radhar_cli.scene.checks.flags import Flags
 
 
 def stub_shard(batch: Batch, size: int, made: dict[int, bytes]) -> int:

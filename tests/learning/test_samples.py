@@ -11,14 +11,14 @@ from extending.test_extending import swinging
 from torch.utils.data import DataLoader, DistributedSampler
 
 import radhar_cli as radhar
-from radhar_cli.activities import activity
-from radhar_cli.activities.activity import add_activity
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.on_demand import sample
 from radhar_cli.dataset.split import VALIDATION, split_rows
 from radhar_cli.errors import RadharError, SceneError
 from radhar_cli.learning.samples import Samples
+from radhar_cli.motion.activities import activity
+from radhar_cli.motion.activities.activity import add_activity
 
 pytestmark = pytest.mark.filterwarnings("ignore:This DataLoader will create")  # on few cores
 DOCUMENT: dict[str, Any] = {

@@ -6,9 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from radhar_cli.activities.activity import ACTIVITIES, activity_named
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
+from radhar_cli.motion.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.motion.protocol import Motion, ScattererSubset
 from radhar_cli.motion.segments import (
     SEGMENTS,
@@ -19,7 +18,8 @@ from radhar_cli.motion.segments import (
     thickness,
 )
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.scene import nominal_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import nominal_scene
 
 STATURE = 1.75
 NAMES = [one.name for one in SEGMENTS]

@@ -15,8 +15,8 @@ from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.angle_time import angle_time
 from radhar_cli.processing.frame_maps import range_angle
 from radhar_cli.radar.board import DEVICES, Board
-from radhar_cli.single_scene.request import map_names
-from radhar_cli.single_scene.simulate import Simulation, simulate
+from radhar_cli.scene.single.request import map_names
+from radhar_cli.scene.single.simulate import Simulation, simulate
 
 HALF_BEAM = 0.5 * np.degrees(2 / 8)  # of a row of eight elements, half power, broadside
 

@@ -9,9 +9,9 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.frame_maps import hann
 from radhar_cli.processing.points import board_points
-from radhar_cli.products.run import record
 from radhar_cli.radar.board import DEVICES, Array
 from radhar_cli.radar.detection import CASO, Cfar, Detection
+from radhar_cli.scene.products.run import record
 
 
 def _strongest(cube: Float, board: object) -> Float:

@@ -16,13 +16,13 @@ from radhar_cli.processing.doppler_power import compute_stft_power
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.signal import Signal
-from radhar_cli.products.plan import plan
-from radhar_cli.products.run import record
-from radhar_cli.products.table import plan_images, products
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.scene import nominal_scene
-from radhar_cli.single_scene.request import map_names
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.products.plan import plan
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.products.table import plan_images, products
+from radhar_cli.scene.scene import nominal_scene
+from radhar_cli.scene.single.request import map_names
+from radhar_cli.scene.single.simulate import simulate
 
 RATE = 40.0  # windows a second
 

@@ -8,6 +8,7 @@ import pytest
 from helpers.boards import MARS, channels, cube_of
 
 from radhar_cli.echo.board_cube import exact_cube, fast_cube
+from radhar_cli.echo.receiver.noise import circular_gaussian
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.frame_maps import (
     FrameMaps,
@@ -20,7 +21,6 @@ from radhar_cli.processing.frame_maps import (
 from radhar_cli.processing.points import board_points
 from radhar_cli.radar.board import DEVICES, longest_rows
 from radhar_cli.radar.detection import CASO, Cfar, Detection
-from radhar_cli.receiver.noise import circular_gaussian
 from tests.echo.test_board_cube import A, P, V
 
 STILL = Detection(Cfar(CASO, 8, 4, False, 15.0), remove_mean=True)

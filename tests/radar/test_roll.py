@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from radhar_cli.config import Config
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.processing.frame_maps import range_angle
-from radhar_cli.products.board import turn_points
-from radhar_cli.products.run import record
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.propagation import boresight_axes
-from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.scene.products.board import turn_points
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import Scene, nominal_scene
 
 BOARD_1843 = replace(MARS, array=DEVICES["IWR1843BOOST"].array)
 

@@ -9,7 +9,7 @@ from radhar_cli.config.documents import RADARS
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.readers.ti.ti_cfg import parse_ti_cfg
 from radhar_cli.readers.ti.ti_elements import compare_elements, fitting_devices
-from radhar_cli.scene_checks.warnings import config_warnings
+from radhar_cli.scene.checks.warnings import config_warnings
 
 BUILT_IN = {radar.name: radar for radar in read_radars()}
 ROW_AND_ONE_ABOVE = {"IWR6843ISK", "IWR1843BOOST", "AWR1843BOOST"}

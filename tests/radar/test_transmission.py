@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from radhar_cli.activities.activity import activity_named
-from radhar_cli.bodies.motion_paths import MotionPaths
 from radhar_cli.config import Config
-from radhar_cli.products.run import record
+from radhar_cli.echo.bodies.motion_paths import MotionPaths
+from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.radar.wall import Wall
-from radhar_cli.scene import Scene, nominal_scene
-from radhar_cli.scene_checks.flags import Flags
-from radhar_cli.scene_checks.validity import check_scene
+from radhar_cli.scene.checks.flags import Flags
+from radhar_cli.scene.checks.validity import check_scene
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.scene import Scene, nominal_scene
 
 T = np.linspace(0, 4, 50)
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.bodies.motion_paths import MotionPaths, point_delay
+from radhar_cli.echo.bodies.motion_paths import MotionPaths, point_delay
 from radhar_cli.echo.paths import Paths
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Crossing, Wall, crossing, extra_delay, field_factor

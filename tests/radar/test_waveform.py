@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.assembly.radar import waveform_of
-from radhar_cli.bodies.motion_paths import MotionPaths
 from radhar_cli.config import Config
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.reading import validated
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.bodies.motion_paths import MotionPaths
 from radhar_cli.errors import ConfigError
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene import nominal_scene
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.assembly.radar import waveform_of
+from radhar_cli.scene.scene import nominal_scene
+from radhar_cli.scene.single.simulate import simulate
 
 # The paper's table "Experimental Parameter Settings".
 FREE_SPACE = Waveform(fc=77e9, bandwidth=4e9, chirp=40e-6, adc_rate=10e6, prf=5000.0, duration=4.0)

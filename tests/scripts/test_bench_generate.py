@@ -4,7 +4,7 @@ import bench_generate as bench
 import numpy as np
 
 from radhar_cli.config import load_config
-from radhar_cli.products.run import record
+from radhar_cli.scene.products.run import record
 
 
 def test_the_naive_sample_shows_the_same() -> None:

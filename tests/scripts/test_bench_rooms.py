@@ -5,8 +5,8 @@ from pathlib import Path
 import bench_rooms as bench
 import pytest
 
-from radhar_cli.assembly.room import kinds_of
 from radhar_cli.config import load_config
+from radhar_cli.scene.assembly.room import kinds_of
 
 
 @pytest.mark.parametrize("name", bench.DOCUMENTS)

@@ -32,8 +32,8 @@ from radhar_cli.errors import RadharError
 from radhar_cli.learning.evaluation import open_for_model
 from radhar_cli.learning.evaluation import predict_classes as ask
 from radhar_cli.learning.run_folder import load_best, read_history, read_metadata, read_trained_on
-from radhar_cli.single_scene.scene_file import write_all
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.scene_file import write_all
+from radhar_cli.scene.single.simulate import simulate
 
 CPU = torch.device("cpu")
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from security.bounded import Answer, answers, refused
 
-from radhar_cli.code_identity.build_version import build_version
+from radhar_cli.dataset.build_version import build_version
 from radhar_cli.errors import FolderError
 from radhar_cli.readers import hdf5_check
 from radhar_cli.readers.untrusted_hdf5 import UntrustedFile

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable
 
-from radhar_cli.activities.activity import Activity
 from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.config.request import Request
+from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.schema.number import nominal, support
 from radhar_cli.schema.section import for_activity

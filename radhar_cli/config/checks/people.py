@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from radhar_cli.activities.activity import ACTIVITIES, STREAM, activity_named, own_activities
 from radhar_cli.config.request import Request
 from radhar_cli.config.sequence import SequenceConfig
+from radhar_cli.motion.activities.activity import ACTIVITIES, STREAM, activity_named, own_activities
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.numerics.rounding import show_beside

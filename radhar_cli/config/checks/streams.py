@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 from typing import cast
 
-from radhar_cli.activities.activity import STREAM
 from radhar_cli.config.image import MAX_SIDE_PX
 from radhar_cli.config.request import Request
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import MIN_ZONE_M, StreamConfig, linked
 from radhar_cli.errors import did_you_mean
+from radhar_cli.motion.activities.activity import STREAM
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.schema.number import Number, support
 from radhar_cli.schema.section import Problem

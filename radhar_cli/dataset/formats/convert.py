@@ -7,10 +7,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import TypeAlias
 
-from radhar_cli.dataset.files import refuse_links
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError, UnfinishedError
+from radhar_cli.files.replacing import refuse_links
 from radhar_cli.processes.progress import Progress
 
 # Module and function of each format; the function refuses what a data set of it must have.

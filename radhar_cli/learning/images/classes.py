@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from radhar_cli.activities.activity import ACTIVITIES
-from radhar_cli.activities.vocabulary import FROM_FILES, advice_on, meaning_of
 from radhar_cli.config.documents import read_document
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.motion.activities.activity import ACTIVITIES
+from radhar_cli.motion.activities.vocabulary import FROM_FILES, advice_on, meaning_of
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 
 

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 from torch import Tensor
 from torch.nn.functional import cross_entropy
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.batches import Targets
 from radhar_cli.learning.images.classes import keep_known_classes, refuse_mistyped
@@ -17,6 +16,7 @@ from radhar_cli.learning.intervals import interval_in_words
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.learning.tasks.task import Evaluation, Names, Task
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.numerics.arrays import Index
 
 

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.metrics import confusion_matrix
 
-from radhar_cli.activities.activity import ACTIVITIES
 from radhar_cli.figures.evaluation import (
     captioned_png,
     confusion_png,
@@ -21,6 +20,7 @@ from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.tasks.predictions import ClassPredictions
 from radhar_cli.learning.tasks.task import Evaluation
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.numerics.arrays import Float, Index, Levels
 
 MIN_EMBEDDED = 2

@@ -5,9 +5,9 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from radhar_cli.figures.report.parts import ReportTable, Sentences
+from radhar_cli.figures.report.report import Report
 from radhar_cli.files.table_text import markdown_table
-from radhar_cli.report.parts import ReportTable, Sentences
-from radhar_cli.report.report import Report
 from radhar_cli.study.limits.keys import NumberKey
 from radhar_cli.study.limits.limit import (
     AS_FAR,

@@ -10,8 +10,8 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.errors import ConfigError, RadharError, did_you_mean
 from radhar_cli.processes.progress import Progress
 from radhar_cli.processes.time_limit import time_limit
-from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.scene import Scene
 from radhar_cli.study.limits.keys import NumberKey, acting_numbers
 from radhar_cli.study.limits.limit import (
     CLEAN,

@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.activities.activity import Activity
 from radhar_cli.config.checks.doubts import timing_warnings
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import config_of_values, load_config, read_values
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import ConfigError, RadharError
-from radhar_cli.products.table import plan_images
-from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.scene_checks.flags import Flags, describe_flag
-from radhar_cli.scene_checks.warnings import warnings_of_signal
+from radhar_cli.motion.activities.activity import Activity
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.flags import Flags, describe_flag
+from radhar_cli.scene.checks.warnings import warnings_of_signal
+from radhar_cli.scene.products.table import plan_images
 from radhar_cli.study.limits.keys import OF_PEOPLE, with_number
 from radhar_cli.study.limits.limit import CLEAN, Consequence, Judgement, Origin
 

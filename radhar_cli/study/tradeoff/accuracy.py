@@ -27,11 +27,11 @@ import numpy as np
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.build import build
-from radhar_cli.dataset.files import write_result
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, Rows
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import RadharError
+from radhar_cli.files.replacing import write_result
 from radhar_cli.learning import run_files
 from radhar_cli.learning.evaluation import open_for_model, predict_classes
 from radhar_cli.learning.images.scan import content_hash

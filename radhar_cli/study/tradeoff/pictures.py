@@ -17,12 +17,12 @@ from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, FrameMaps
 from radhar_cli.processing.points import Cloud
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.processing.signal import Signal
-from radhar_cli.products.images import level_scale_of
-from radhar_cli.products.maps import image_name
-from radhar_cli.products.plan import plan
-from radhar_cli.products.run import record
-from radhar_cli.products.table import products
-from radhar_cli.scene import Scene
+from radhar_cli.scene.products.images import level_scale_of
+from radhar_cli.scene.products.maps import image_name
+from radhar_cli.scene.products.plan import plan
+from radhar_cli.scene.products.run import record
+from radhar_cli.scene.products.table import products
+from radhar_cli.scene.scene import Scene
 from radhar_cli.schema.number import nominal
 from radhar_cli.study.tradeoff.scenes import Scenes, SweepSample
 from radhar_cli.study.tradeoff.setting import Overrides

@@ -8,10 +8,10 @@ from typing import Any
 
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.errors import FolderError
+from radhar_cli.figures.report.parts import ReportFigure, ReportTable, Sentences
+from radhar_cli.figures.report.report import Report
 from radhar_cli.figures.tradeoff import DEFAULT_NAME, SettingMark, tradeoff_png
 from radhar_cli.files.untrusted import read_json
-from radhar_cli.report.parts import ReportFigure, ReportTable, Sentences
-from radhar_cli.report.report import Report
 from radhar_cli.study.tradeoff.recommendation import drops_map, recommend, saves
 from radhar_cli.study.tradeoff.row import Row
 from radhar_cli.study.tradeoff.scenes import Scenes

@@ -9,8 +9,8 @@ from typing import NamedTuple
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar
-from radhar_cli.scene import Scene
-from radhar_cli.scene_checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.scene import Scene
 
 # What differs most: a standing person's arms, a walk, a fall.
 QUICK = ("punching", "walking", "walking_to_falling")

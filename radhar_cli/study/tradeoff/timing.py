@@ -5,8 +5,8 @@ from statistics import median
 from time import process_time
 from typing import NamedTuple
 
-from radhar_cli.products.run import run
-from radhar_cli.products.table import plan_images
+from radhar_cli.scene.products.run import run
+from radhar_cli.scene.products.table import plan_images
 from radhar_cli.study.tradeoff.scenes import Scenes, SweepSample
 from radhar_cli.study.tradeoff.setting import Overrides, Setting
 

@@ -6,7 +6,6 @@ from math import radians, sqrt
 import numpy as np
 import pytest
 
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
 from radhar_cli.motion.human import boulic_thalmann as curves
 from radhar_cli.motion.human.falling import FallBackward, FallForward, OnFours, Sitting
@@ -26,7 +25,8 @@ from radhar_cli.motion.movements.standing import Stand
 from radhar_cli.motion.movements.striking import Kick, Punch
 from radhar_cli.motion.movements.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import draw_scene
 
 DT = 1e-3
 

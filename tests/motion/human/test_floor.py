@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import first_states, state_after
-from radhar_cli.assembly.motion import motion_of
 from radhar_cli.config import Config
+from radhar_cli.motion.activities.activity import first_states, state_after
 from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.part import Movement
@@ -24,7 +23,8 @@ from radhar_cli.motion.movements.sitting import Seat, Sit
 from radhar_cli.motion.movements.transfer import EDGE, GoToBed, LeaveBed
 from radhar_cli.motion.segments import segment_positions, segments_between, thickness
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.scene import draw_scene
 
 TORSO = JOINTS.index("torso")
 ROLLS = st.floats(-pi, pi)

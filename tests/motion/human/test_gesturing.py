@@ -17,7 +17,7 @@ from radhar_cli.motion.movements.sitting import Seat, SitDown, StandUp
 from radhar_cli.motion.movements.standing import Stand
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.single_scene.simulate import simulate
+from radhar_cli.scene.single.simulate import simulate
 
 STEP = 1 / 400
 RHYTHM = {

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy import cos, pi, sin
 
-from radhar_cli.activities.activity import ACTIVITIES
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.paper.activities import (
     PAPER_ACTIVITIES,
     PaperActivity,

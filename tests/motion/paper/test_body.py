@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.activities.activity import ACTIVITIES
+from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.paper.activities import PAPER_ACTIVITIES, PaperGait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links, standing_height, thigh_length

@@ -17,10 +17,10 @@ from study.limits.extremes import EXTREMES, SLOW_EXTREMES, Extreme, config_of, d
 from radhar_cli.dataset.sample import StoredSample, synthesise
 from radhar_cli.errors import ConfigError, RadharError
 from radhar_cli.processes.progress import NO_PROGRESS
-from radhar_cli.products.table import plan_images
-from radhar_cli.scene_checks.drawing import draw_valid_scene
-from radhar_cli.scene_checks.visibility import CHEST_M
-from radhar_cli.scene_checks.warnings import config_warnings, scene_warnings
+from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.checks.visibility import CHEST_M
+from radhar_cli.scene.checks.warnings import config_warnings, scene_warnings
+from radhar_cli.scene.products.table import plan_images
 from radhar_cli.study.limits.limit import Consequence, Limit, RangeSide
 from radhar_cli.study.limits.search import GAP
 from radhar_cli.study.limits.study import study_limits

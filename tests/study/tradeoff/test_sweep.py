@@ -10,7 +10,7 @@ from helpers.slow import slow_but
 from typer.testing import CliRunner
 
 from radhar_cli.cli import program
-from radhar_cli.scene import scene_numbers
+from radhar_cli.scene.scene import scene_numbers
 from radhar_cli.study.tradeoff import study
 from radhar_cli.study.tradeoff.row import Row
 from radhar_cli.study.tradeoff.scenes import Scenes, SweepSample

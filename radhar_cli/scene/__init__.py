@@ -1,0 +1,1 @@
+"""One scene: drawn, built of objects of physics, computed, checked and written."""

@@ -1,0 +1,90 @@
+"""When the movements of a person begin (`timing.onset`), and what follows of them."""
+
+from collections.abc import Sequence
+from math import inf
+from typing import NamedTuple
+
+from radhar_cli.config.sequence import SequenceStep
+from radhar_cli.motion.activities.onset import (
+    Onsets,
+    Stretch,
+    limits_of_movement,
+    limits_of_rise,
+    limits_of_sequence,
+    limits_of_stop,
+)
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.scene.scene import Person
+
+TRIP_S = 1.5  # duration of a trip within its walk
+LONGEST_S = 5.0  # of a walk, half way of which people trip
+
+
+class Bout(NamedTuple):
+    """When what lasts is under way.
+
+    Attributes:
+        begin: its beginning, s; 0 where it is under way at 0 s.
+        end: its end, s; inf where it goes on after the recording.
+        from_rest: whether people rest before.
+    """
+
+    begin: float
+    end: float
+    from_rest: bool
+
+
+def onset_at(person: Person, limits: Onsets) -> float:
+    """Onset (s) within some limits that `timing.onset` chooses."""
+    return limits.at_share(person.timing.onset)
+
+
+def bout_onset(person: Person) -> float:
+    """When a bout as long as the recording begins, s; below 0 it ends within the recording."""
+    seconds = person.seconds
+    return onset_at(person, limits_of_movement(seconds, seconds, person.timing.visible))
+
+
+def bout_of(person: Person) -> Bout:
+    """When what a person does all the time is under way, steadily where it is so at 0 s."""
+    onset = bout_onset(person)
+    if onset > 0:
+        return Bout(onset, inf, True)
+    return Bout(0.0, inf if onset == 0 else person.seconds + onset, False)
+
+
+def movement_onset(person: Person, duration: float) -> float:
+    """When a single movement of `duration` s begins, s."""
+    return onset_at(person, limits_of_movement(duration, person.seconds, person.timing.visible))
+
+
+def rise_onset(person: Person, duration: float) -> float:
+    """When rising for `duration` s before a walk begins, s."""
+    if person.timing.walk_start_s is not None:
+        return person.timing.walk_start_s - duration
+    limits = limits_of_rise(duration, person.seconds, person.timing.visible)
+    return onset_at(person, limits) - duration
+
+
+def stop_onset(person: Person, duration: float) -> float:
+    """When a movement of `duration` s after a walk begins, s."""
+    return onset_at(person, limits_of_stop(duration, person.seconds, person.timing.visible))
+
+
+def sequence_onset(person: Person, steps: Sequence[SequenceStep], motion: HumanMotion) -> float:
+    """When the sequence of a person's class begins, s.
+
+    Args:
+        person: person whose class is a sequence.
+        steps: movements of the sequence.
+        motion: what they make of the person, from 0 s on.
+    """
+    parts = list[Stretch]()
+    for step, (part, _) in zip(steps, motion.parts, strict=False):
+        kind = MOVEMENTS[step.name]
+        parts.append(Stretch(part.begin, part.end, kind.seconds is None, not kind.rests))
+        if step.name == "tripping":
+            trips = part.begin + min(part.end - part.begin, LONGEST_S) / 2
+            parts.append(Stretch(trips, trips + TRIP_S))
+    return onset_at(person, limits_of_sequence(parts, person.seconds, person.timing.visible))

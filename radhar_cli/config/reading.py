@@ -528,7 +528,7 @@ def _kinds_of_class(names: list[int | str], document: Any) -> list[type[BaseMode
 
 
 def _problems_of_missing(
-    key: str, names: list[Any], beside: object, radar: type[AnyRadar[Any]]
+    key: str, names: list[Any], beside: object, lacking: int, radar: type[AnyRadar[Any]]
 ) -> Iterator[Problem]:
     """Problem of a value that is missing, of lists that of the first one.
 
@@ -536,6 +536,7 @@ def _problems_of_missing(
         key: dotted key of the value.
         names: parts of the key.
         beside: list or mapping that lacks it.
+        lacking: number of values that are missing beside each other.
         radar: kind of radar, which its section is named by.
     """
     if names[-2:-1] and names[-2] in _FORM_OF_TWO:
@@ -543,7 +544,7 @@ def _problems_of_missing(
         yield Problem(key.removesuffix(f".{names[-1]}"), beside, form)
     elif isinstance(beside, list | tuple):
         if str(names[-1]) == str(len(beside)):
-            few = f"should have more values than {len(beside)}"
+            few = f"should be a list of {len(beside) + lacking} values, not of {len(beside)}"
             yield Problem(key.removesuffix(f".{names[-1]}"), beside, few)
     else:
         place = f" with {radar.named}" if names[:1] == ["radar"] else ""
@@ -556,6 +557,7 @@ def _problems_of(
     document: Any,
     written: RadarDocument | None = None,
 ) -> Iterator[Problem]:
+    items = list(items)
     for item in items:
         if item["type"] == "across":
             yield from item["ctx"]["problems"]
@@ -577,7 +579,11 @@ def _problems_of(
             message = _WORDING.get(item["type"], item["msg"])
             radar = next((r for r in RADARS if f"<{r.kind}>" in item["loc"]), FmcwRadar)
             if item["type"] == "missing":
-                yield from _problems_of_missing(key, names, item["input"], radar)
+                lacking = sum(
+                    one["type"] == "missing" and one["loc"][:-1] == item["loc"][:-1]
+                    for one in items
+                )
+                yield from _problems_of_missing(key, names, item["input"], lacking, radar)
                 continue
             if item["type"] == "tuple_type" and _holds_sections(kind, names, document):
                 message = "should be a list of sections: [{}, {}]"

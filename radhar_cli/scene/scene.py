@@ -394,8 +394,7 @@ def _draw_config(config: Config, activity: Activity, draw: Draw, subject: int | 
     fixed = _fix_numbers(config, activity, draw)
     falling = fixed.motion.falling.direction
     if isinstance(falling, Falls):
-        place = draw.index(FALL, len(falling.ordered))
-        fixed = changed(fixed, {FALL: falling.ordered[place]})
+        fixed = changed(fixed, {FALL: falling.at_rank(draw.number(FALL, uniform(0.0, 1.0)))})
     files = config.files_of(activity)
     if files is not None and files.file is None:
         fixed = _with_file(fixed, activity, draw, subject)

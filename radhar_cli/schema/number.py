@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import accumulate
 from math import erfc, sqrt
 from statistics import NormalDist
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, Self, TypeAlias
 
 from pydantic import (
     AfterValidator,
@@ -194,18 +194,14 @@ class _PartSchema:
         return {"anyOf": [{"type": "number"}, *forms]}
 
 
-class Choice(Distribution):
-    """``{choice: [a, b, c]}``: one of the values, equally likely, or as ``weights: [3, 2, 1]`` say.
+class Weighted(BaseModel):
+    """A choice among values, equally likely or as ``weights: [3, 2, 1]`` say."""
 
-    Some of them, or all, may be distributions: ``{choice: [{uniform: [-30, 30]}, 180]}``. The
-    nominal value is then that of the first one.
-    """
-
-    choice: tuple[Annotated[float | Uniform | Normal | Vary, _PartSchema()], ...]
+    choice: tuple[Any, ...]
     weights: tuple[Real, ...] | None = None
 
     @model_validator(mode="after")
-    def _require_values(self) -> "Choice":
+    def _require_values(self) -> Self:
         if not self.choice:  # Field(min_length=1) also complains where all values are wrong
             raise value_error("should be {choice: [a, b, ...]} with 1 value or more")
         weights = self.weights
@@ -225,6 +221,16 @@ class Choice(Distribution):
         if self.weights is None:
             written.pop("weights", None)
         return written
+
+
+class Choice(Weighted, Distribution):
+    """``{choice: [a, b, c]}``: one of the values, equally likely, or as ``weights: [3, 2, 1]`` say.
+
+    Some of them, or all, may be distributions: ``{choice: [{uniform: [-30, 30]}, 180]}``. The
+    nominal value is then that of the first one.
+    """
+
+    choice: tuple[Annotated[float | Uniform | Normal | Vary, _PartSchema()], ...]
 
     @property
     def support(self) -> tuple[float, float]:

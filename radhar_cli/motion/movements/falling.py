@@ -2,9 +2,7 @@
 
 from dataclasses import replace
 from math import radians
-from typing import Annotated, Generic, Literal, TypeAlias
-
-from pydantic import Field
+from typing import Annotated, ClassVar, Generic, Literal, TypeAlias
 
 from radhar_cli.motion.human.falling import (
     FallBackward,
@@ -21,7 +19,7 @@ from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.sitting import SEAT, make_seat
 from radhar_cli.motion.movements.words import OFF_SEATS, ON_FLOOR, join_words
 from radhar_cli.schema.annotations import UNSTEADY, People
-from radhar_cli.schema.number import ANGLE, uniform
+from radhar_cli.schema.number import ANGLE, Choice, Weighted, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 FallName = Literal["forward", "backward", "sideways"]
@@ -30,15 +28,17 @@ FallName = Literal["forward", "backward", "sideways"]
 FALLS: tuple[FallName, ...] = FallName.__args__  # type: ignore[attr-defined]
 
 
-class Falls(Section):
-    """``{choice: [forward, forward, sideways]}``: one of the directions, equally likely."""
+class Falls(Weighted, Section):
+    """``{choice: [forward, sideways], weights: [2, 1]}``: one of the directions."""
 
-    choice: Annotated[tuple[FallName, ...], Field(min_length=1)]
+    NUMBERS: ClassVar[tuple[str, ...]] = ()  # weights are not drawn
 
-    @property
-    def ordered(self) -> tuple[FallName, ...]:
-        """The directions in the order of FALLS, whichever was written first."""
-        return tuple(sorted(self.choice, key=FALLS.index))
+    choice: tuple[FallName, ...]
+
+    def at_rank(self, u: float) -> FallName:
+        """Direction below which a fraction u of the draws lie, in the order of FALLS."""
+        places = tuple(float(FALLS.index(name)) for name in self.choice)
+        return FALLS[int(Choice(choice=places, weights=self.weights).quantile(u))]
 
 
 class FallingConfig(Section, Generic[B]):
@@ -46,7 +46,7 @@ class FallingConfig(Section, Generic[B]):
 
     direction: Annotated[FallName | Falls, People(None)] = "forward"
     """Direction of a fall or stumble: forward, backward, sideways, or drawn: {choice: [forward,
-    forward, sideways]}."""
+    sideways], weights: [2, 1]}."""
     heels_deg: Annotated[B, ByActivity(ANGLE), People("falling", 0, 90), UNSTEADY] = default_draw(
         0.0
     )

@@ -221,7 +221,9 @@ BROKEN = [
     Broken("snr_db: [30, 20]", "1: snr_db = [30, 20]", "{choice: [a, b, ...]}"),
     Broken("radar: 77e9", "1: radar = 77000000000.0", "should be"),
     Broken("radar:\n  tx_m: [0, 1, a]", '2: radar.tx_m.2 = "a"', "should be a number"),
-    Broken("radar:\n  tx_m: [0, 1]", "2: radar.tx_m = [0, 1]", "should be a list of 3 values, not of 2"),
+    Broken(
+        "radar:\n  tx_m: [0, 1]", "2: radar.tx_m = [0, 1]", "should be a list of 3 values, not of 2"
+    ),
     Broken(
         "processing: {clutter: mti}",
         '1: processing.clutter = "mti"',

@@ -10,7 +10,6 @@ arms              swung, or with hands that are somewhere
 idle              sway, breath, pulse, fidgets: functions of the recording's time
 planted           movements on planted feet, angles from the ankles up
 stepping          steps to another stance, with inverse kinematics
-falling, falling_from_seat, falling_sideways     courses of falls, and how people lie after them
 boulic_thalmann, footsteps, lane, aids           parts of a gait
 part, motion      what a movement is; a person who does one after another
 

@@ -1,5 +1,6 @@
 """All movements and their sections of keys: what the modules beside this one have."""
 
+from collections.abc import Iterable
 from importlib import import_module
 from pkgutil import iter_modules
 from types import ModuleType
@@ -13,15 +14,27 @@ from radhar_cli.schema.section import Section
 ORDER = (
     *("walking", "running", "limping", "aids", "carrying", "paper", "rotating", "striking"),
     *("exercises", "gestures", "repeating", "grabbing", "sitting", "transitions", "falling"),
+    "falling_off_seat",
     *("lying", "crawling", "kneeling", "idle"),
 )
+
+TIMING_ORDER = (
+    *("seat_start_s", "seat_duration_s", "grab_start_s", "grab_duration_s", "rise_start_s"),
+    *("rise_duration_s", "walk_begin_s", "walk_start_s", "walk_stop_s", "sit_duration_s"),
+    *("fall_duration_s", "blend_s", "overlap_s"),
+)
+
+
+def _ordered(names: Iterable[str], order: tuple[str, ...]) -> list[str]:
+    """Sort names as in an order; those that it lacks follow by name."""
+    return sorted(
+        sorted(names), key=lambda name: order.index(name) if name in order else len(order)
+    )
 
 
 def _modules() -> list[ModuleType]:
     """Modules of the package in ORDER."""
-    names = sorted(info.name for info in iter_modules(movements.__path__))
-    rank = {name: place for place, name in enumerate(ORDER)}
-    names.sort(key=lambda name: rank.get(name, len(rank)))
+    names = _ordered((info.name for info in iter_modules(movements.__path__)), ORDER)
     return [import_module(f"{movements.__name__}.{name}") for name in names if name != "catalogue"]
 
 
@@ -35,6 +48,11 @@ _MODULES = _modules()
 SECTIONS: dict[str, type[Section]] = {
     name_of(module.SECTION): module.SECTION for module in _MODULES if hasattr(module, "SECTION")
 }
+# Sections whose keys are keys of `timing`, these as a section has them, and their defaults.
+TIMINGS: list[type[Section]] = [one.TIMING for one in _MODULES if hasattr(one, "TIMING")]
+_KEYS = {name: one for one in TIMINGS for name in one.model_fields}
+TIMING_KEYS = {name: _KEYS[name].__annotations__[name] for name in _ordered(_KEYS, TIMING_ORDER)}
+TIMING_DEFAULTS = {name: _KEYS[name].model_fields[name].default for name in TIMING_KEYS}
 MOVEMENTS: dict[str, MovementKind] = {
     kind.name: kind for module in _MODULES for kind in getattr(module, "MOVEMENTS", ())
 }

@@ -11,18 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import radians, sin
 
-from radhar_cli.motion.human.falling import (
-    AGAINST_SEAT,
-    ON_FLOOR,
-    ON_FOURS,
-    PRONE,
-    PROPPED,
-    SUPINE,
-    OnFours,
-    Prone,
-    Sitting,
-    Supine,
-)
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import LYING, STANDING, Phase
 from radhar_cli.motion.human.physique import Physique
@@ -33,6 +21,18 @@ from radhar_cli.motion.human.planted import (
     resting_channels,
     scale_steps,
     steps_of_both_sides,
+)
+from radhar_cli.motion.movements.falling import (
+    AGAINST_SEAT,
+    ON_FLOOR,
+    ON_FOURS,
+    PRONE,
+    PROPPED,
+    SUPINE,
+    OnFours,
+    Prone,
+    Sitting,
+    Supine,
 )
 from radhar_cli.motion.movements.kind import MovementKind
 from radhar_cli.motion.movements.words import ON_FLOOR as FLOOR

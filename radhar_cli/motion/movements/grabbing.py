@@ -12,7 +12,7 @@ from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.transitions import draw_lags
 from radhar_cli.motion.movements.words import ON_FLOOR
 from radhar_cli.schema.annotations import People
-from radhar_cli.schema.number import ANGLE, COORDINATE, normal, uniform
+from radhar_cli.schema.number import ANGLE, COORDINATE, NOT_NEGATIVE, SECONDS, normal, uniform
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
@@ -30,7 +30,20 @@ class GrabbingConfig(Section, Generic[B]):
     before the descent ends, by at most 0.6 of it."""
 
 
-SECTION = GrabbingConfig
+class GrabbingTiming(Section, Generic[B]):
+    """When something is picked up, and how long it takes."""
+
+    grab_start_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS, null=True), People("S4")] = (
+        default_draw(None)
+    )
+    """When picking up begins; null is by timing.onset."""
+    grab_duration_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S4", 1, 60)] = (
+        default_draw(normal(2.5, 0.5, 1.6, 3.6))
+    )
+    """Duration of picking up, down and up together."""
+
+
+SECTION, TIMING = GrabbingConfig, GrabbingTiming
 
 
 @dataclass(frozen=True)

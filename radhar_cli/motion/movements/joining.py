@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from radhar_cli.motion.human.falling_sideways import FallingSideways, RiseFromSide
 from radhar_cli.motion.human.part import Movement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.movements.crawling import Crawl
+from radhar_cli.motion.movements.falling_sideways import FallingSideways, RiseFromSide
 from radhar_cli.motion.movements.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.movements.kneeling import GetDown, Kneel, RiseFromKnees
 from radhar_cli.motion.movements.lying import Lie, TurnOver

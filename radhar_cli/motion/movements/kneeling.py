@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from math import acos, inf, radians
 from typing import Annotated, Generic
 
-from radhar_cli.motion.human.falling import OnFours
 from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
 from radhar_cli.motion.human.part import KNEELING, ON_FOURS, STANDING, Phase
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted, posture, resting_channels, scale_steps
+from radhar_cli.motion.movements.falling import OnFours
 from radhar_cli.motion.movements.getting_up import GetUp, standing_up_steps
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.words import ON_FLOOR

@@ -5,7 +5,7 @@ from typing import Annotated, Generic
 
 from radhar_cli.motion.paper.activities import PaperGait
 from radhar_cli.schema.annotations import PERSONAL, Paper
-from radhar_cli.schema.number import ANGLE, FREQUENCY, NOT_NEGATIVE, vary
+from radhar_cli.schema.number import ANGLE, FREQUENCY, NOT_NEGATIVE, SECONDS, vary
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
@@ -41,4 +41,13 @@ class PaperGaitConfig(Section, Generic[B]):
         )
 
 
-SECTION = PaperGaitConfig
+class PaperTiming(Section, Generic[B]):
+    """Ramps of the paper's gait."""
+
+    blend_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), Paper("S9 S10 S11 S12")] = (
+        default_draw(0.3)
+    )
+    """Duration of the raised-cosine ramps of the gait, in and out; 0 is a hard switch."""
+
+
+SECTION, TIMING = PaperGaitConfig, PaperTiming

@@ -23,9 +23,9 @@ from radhar_cli.motion.human.planted import (
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.transitions import draw_lags
 from radhar_cli.motion.movements.words import OFF_SEATS, ONTO_SEATS, join_words
-from radhar_cli.schema.annotations import PERSONAL, People
-from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, normal
-from radhar_cli.schema.section import B, ByActivity, Section, default_draw
+from radhar_cli.schema.annotations import PERSONAL, ByModel, Paper, People
+from radhar_cli.schema.number import ANGLE, NOT_NEGATIVE, RATIO, SECONDS, normal
+from radhar_cli.schema.section import B, ByActivity, Section, by_activity, default_draw
 
 
 class SittingConfig(Section, Generic[B]):
@@ -50,7 +50,60 @@ class SittingConfig(Section, Generic[B]):
     """Place of a seated person's hands: 0 is beside the seat, 1 on the lap."""
 
 
-SECTION = SittingConfig
+class SittingTiming(Section, Generic[B]):
+    """When people sit down or stand up, and how long it takes them."""
+
+    seat_start_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S5 S6"),
+        Paper("S5 S6"),
+        ByModel(paper=0.5),
+    ] = default_draw(None)
+    """When sitting down or standing up begins; null of people is by timing.onset."""
+    seat_duration_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S5 S6", 1, 60),
+        Paper("S5 S6"),
+        ByModel(
+            human=by_activity(normal(2.0, 0.4, 1.3, 3.0), standing_up=normal(1.8, 0.4, 1.2, 3.0)),
+            paper=2.0,
+        ),
+    ] = default_draw(None)
+    """Duration of sitting down or standing up."""
+    rise_start_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S9 S11"),
+        Paper("S9 S11"),
+        ByModel(paper=0.5),
+    ] = default_draw(None)
+    """When standing up or getting up before a walk begins; null of people is by timing.onset."""
+    rise_duration_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S9 S11", 1, 60),
+        Paper("S9 S11"),
+        ByModel(
+            human=by_activity(
+                normal(1.8, 0.25, 1.2, 3.0), falling_to_walking=normal(3.0, 0.5, 2.2, 4.5)
+            ),
+            paper=1.5,
+        ),
+    ] = default_draw(None)
+    """Duration of standing up or getting up before a walk."""
+    sit_duration_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S10", 1, 60),
+        Paper("S10"),
+        ByModel(human=normal(2.0, 0.25, 1.3, 3.0), paper=1.5),
+    ] = default_draw(None)
+    """Duration of sitting down after a walk."""
+
+
+SECTION, TIMING = SittingConfig, SittingTiming
 # Keys of a person who sits, and of a person who comes from a seat or goes to it.
 SEAT = ("sitting.seat_height", "sitting.recline_deg", "sitting.hands_on_lap")
 LEAN = "sitting.lean_deg"

@@ -15,7 +15,6 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from radhar_cli.motion.human.falling import PRONE
 from radhar_cli.motion.human.idle import IdleState, motionless
 from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
 from radhar_cli.motion.human.part import (
@@ -30,6 +29,7 @@ from radhar_cli.motion.human.part import (
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import scale_steps
 from radhar_cli.motion.human.pose import Axes, Pose, feet
+from radhar_cli.motion.movements.falling import PRONE
 from radhar_cli.motion.movements.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.lying import (

@@ -46,7 +46,16 @@ from radhar_cli.schema.annotations import (
     People,
     Unless,
 )
-from radhar_cli.schema.number import ANGLE, COORDINATE, NOT_NEGATIVE, RATIO, SPEED, normal, uniform
+from radhar_cli.schema.number import (
+    ANGLE,
+    COORDINATE,
+    NOT_NEGATIVE,
+    RATIO,
+    SECONDS,
+    SPEED,
+    normal,
+    uniform,
+)
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 WALKING_SPEED = normal(1.3, 0.18, 0.7, 2.0)
@@ -106,7 +115,39 @@ class WalkingConfig(Section, Generic[B]):
     """Strides in which a walker gains speed from rest; more above half of gravity."""
 
 
-SECTION = WalkingConfig
+class WalkingTiming(Section, Generic[B]):
+    """When walks begin and end before and after other movements."""
+
+    walk_begin_s: Annotated[
+        B | None, ByActivity(NOT_NEGATIVE, SECONDS, null=True), People("S8", 0, 600)
+    ] = default_draw(None)
+    """When the walk of S8 begins, after standing; null is by timing.onset, before or after 0 s."""
+    walk_start_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S9 S11", 0, 600),
+        Paper("S9 S11"),
+        ByModel(paper=2.0),
+    ] = default_draw(None)
+    """When the walk after rising begins; null of people is when they have risen, less overlap_s."""
+    walk_stop_s: Annotated[
+        B,
+        ByActivity(NOT_NEGATIVE, SECONDS, null=True),
+        People("S10 S12", 0.5, 600),
+        Paper("S10 S12"),
+        ByModel(paper=2.0),
+    ] = default_draw(None)
+    """When the walk before sitting down or falling begins to end; null of people is by
+    timing.onset, which says when sitting down or falling begins."""
+    overlap_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S9 S10 S11 S12", 0, 0.8)] = (
+        default_draw(0.0)
+    )
+    """Time by which the second movement starts before the first ends, unless walk_start_s says
+    when. A scene gets at most 0.3 of the duration of rising, sitting down or falling, and nothing
+    of a fall to the side: its number is what it got."""
+
+
+SECTION, TIMING = WalkingConfig, WalkingTiming
 
 
 START_PHASE = 0.5  # of the stride: the right foot goes first

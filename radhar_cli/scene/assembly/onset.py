@@ -62,7 +62,7 @@ def movement_onset(person: Person, duration: float) -> float:
 def rise_onset(person: Person, duration: float) -> float:
     """When rising for `duration` s before a walk begins, s."""
     if person.timing.walk_start_s is not None:
-        return person.timing.walk_start_s - duration
+        return float(person.timing.walk_start_s - duration)
     limits = limits_of_rise(duration, person.seconds, person.timing.visible)
     return onset_at(person, limits) - duration
 

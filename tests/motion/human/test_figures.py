@@ -8,21 +8,21 @@ import pytest
 
 from radhar_cli.config import Config
 from radhar_cli.motion.human import boulic_thalmann as curves
-from radhar_cli.motion.human.falling import FallBackward, FallForward, OnFours, Sitting
-from radhar_cli.motion.human.falling_from_seat import FallFromSeat
-from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.idle import Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.part import Movement
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.stepping import STUMBLES
+from radhar_cli.motion.movements.falling import FallBackward, FallForward, OnFours, Sitting
+from radhar_cli.motion.movements.falling_off_seat import FallFromSeat
+from radhar_cli.motion.movements.falling_sideways import FallSideways
 from radhar_cli.motion.movements.getting_up import TRIES, GetUp, TryToGetUp
 from radhar_cli.motion.movements.grabbing import Grab
 from radhar_cli.motion.movements.rotating import Turn
 from radhar_cli.motion.movements.sitting import Seat, SitDown, StandUp
 from radhar_cli.motion.movements.standing import Stand
 from radhar_cli.motion.movements.striking import Kick, Punch
+from radhar_cli.motion.movements.stumbling import STUMBLES
 from radhar_cli.motion.movements.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.scene.assembly.motion import motion_of

@@ -9,7 +9,16 @@ from helpers.bodies import links_of
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.motion.human.falling import (
+from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
+from radhar_cli.motion.human.lane import Lane, position_along_lane
+from radhar_cli.motion.human.minimum_jerk import Lags
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.human.part import Movement, Place
+from radhar_cli.motion.human.physique import Physique, froude_scale
+from radhar_cli.motion.human.stepping import StepTo
+from radhar_cli.motion.movements.crawling import Crawl
+from radhar_cli.motion.movements.exercises import EXERCISES
+from radhar_cli.motion.movements.falling import (
     ON_FLOOR,
     ON_FOURS,
     PROPPED,
@@ -19,17 +28,8 @@ from radhar_cli.motion.human.falling import (
     OnFours,
     Sitting,
 )
-from radhar_cli.motion.human.falling_from_seat import FallFromSeat
-from radhar_cli.motion.human.falling_sideways import FallSideways, RiseFromSide
-from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
-from radhar_cli.motion.human.lane import Lane, position_along_lane
-from radhar_cli.motion.human.minimum_jerk import Lags
-from radhar_cli.motion.human.motion import HumanMotion
-from radhar_cli.motion.human.part import Movement, Place
-from radhar_cli.motion.human.physique import Physique, froude_scale
-from radhar_cli.motion.human.stepping import STUMBLES, StepTo
-from radhar_cli.motion.movements.crawling import Crawl
-from radhar_cli.motion.movements.exercises import EXERCISES
+from radhar_cli.motion.movements.falling_off_seat import FallFromSeat
+from radhar_cli.motion.movements.falling_sideways import FallSideways, RiseFromSide
 from radhar_cli.motion.movements.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.movements.grabbing import Grab
 from radhar_cli.motion.movements.kneeling import GetDown, Kneel, RiseFromKnees
@@ -38,6 +38,7 @@ from radhar_cli.motion.movements.rotating import Turn
 from radhar_cli.motion.movements.sitting import Seat, Sit, SitDown, StandUp
 from radhar_cli.motion.movements.standing import Stand
 from radhar_cli.motion.movements.striking import Kick, Punch
+from radhar_cli.motion.movements.stumbling import STUMBLES
 from radhar_cli.motion.movements.transfer import GoToBed, LeaveBed, LieStill, RiseFromRest, Settle
 from radhar_cli.motion.movements.walking import Gait, Walk
 from radhar_cli.motion.skeleton import GROWN_UP, JOINTS, PARENTS

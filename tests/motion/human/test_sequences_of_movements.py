@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from helpers.movers import usual_movement
 
-from radhar_cli.motion.human.falling import FallBackward
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.human.part import Movement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
+from radhar_cli.motion.movements.falling import FallBackward
 from radhar_cli.motion.movements.getting_up import GetUp
 from radhar_cli.motion.movements.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS, PARENTS

@@ -9,9 +9,8 @@ have measured how long they take: the durations are guesses below those of falls
 from dataclasses import dataclass, field
 from math import radians
 
-from radhar_cli.motion.human.falling import AGAINST_SEAT, ON_FLOOR, PRONE, SUPINE, Prone, Supine
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import SEATED, Phase
+from radhar_cli.motion.human.part import LYING, SEATED, Phase
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import (
     ELBOWS,
@@ -20,7 +19,21 @@ from radhar_cli.motion.human.planted import (
     scale_steps,
     steps_of_both_sides,
 )
-from radhar_cli.motion.movements.sitting import Seat
+from radhar_cli.motion.movements.falling import (
+    AGAINST_SEAT,
+    DIRECTION,
+    ON_FLOOR,
+    PRONE,
+    SUPINE,
+    Prone,
+    Supine,
+    draw_side,
+    fall_direction,
+)
+from radhar_cli.motion.movements.falling_sideways import FallSideways
+from radhar_cli.motion.movements.kind import MovementKind, Mover
+from radhar_cli.motion.movements.sitting import SEAT, Seat, make_seat
+from radhar_cli.motion.movements.words import OFF_SEATS, join_words
 
 # Steps from the seat to the floor: channel, share of its change, start and length in units of the
 # duration, and whether the step is late.
@@ -93,3 +106,45 @@ class FallFromSeat:
         rises = (Phase(begin, "standing up"),) if self.rising else ()
         phases = (*rises, Phase(fall_start, "falling"), Phase(end, "lying"))
         return Planted(person, course, begin, end, phases, SEATED, after)
+
+
+def _make_fall_off_seat(mover: Mover, rising_share: float) -> FallFromSeat | FallSideways:
+    """Make a person fall off a seat who has risen for a share of the duration."""
+    rising = rising_share * mover.duration
+    duration, seat = (1 - 0.75 * rising_share) * mover.duration, make_seat(mover)
+    if fall_direction(mover) == "sideways":
+        return FallSideways(duration, draw_side(mover), seat=seat, rising=rising)
+    return FallFromSeat(duration, fall_direction(mover) == "forward", rising, seat)
+
+
+def make_fall_off_seat(mover: Mover) -> FallFromSeat | FallSideways:
+    """Make a person fall off a seat."""
+    return _make_fall_off_seat(mover, 0.0)
+
+
+def make_fall_on_rising(mover: Mover) -> FallFromSeat | FallSideways:
+    """Make a person fall who is about to stand up from a seat."""
+    return _make_fall_off_seat(mover, 0.5)
+
+
+MOVEMENTS = (
+    MovementKind(
+        "falling_off_seat",
+        "falls off a chair",
+        make_fall_off_seat,
+        SEATED,
+        LYING,
+        1.0,
+        uses=(DIRECTION, *SEAT),
+        words=join_words("fall falling fall_down falling_down", OFF_SEATS),
+    ),
+    MovementKind(
+        "falling_on_rising",
+        "falls on standing up from a chair",
+        make_fall_on_rising,
+        SEATED,
+        LYING,
+        1.7,
+        uses=(DIRECTION, *SEAT),
+    ),
+)

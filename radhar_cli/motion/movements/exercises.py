@@ -18,7 +18,6 @@ import numpy as np
 from radhar_cli.motion.human.arms import raised_arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import (
     LegBound,
     hip_joints,
@@ -31,10 +30,11 @@ from radhar_cli.motion.human.two_link import AHEAD, two_link
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.repeating import (
     EACH,
+    Repeated,
+    Repeating,
     Repetition,
     draw_repetitions,
     nonzero_tuple,
-    repetitions,
 )
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.schema.annotations import People
@@ -101,7 +101,7 @@ def _smooth(knots: Sequence[Knot]) -> "BPoly[np.float64]":
 
 
 @dataclass(frozen=True)
-class Exercise:
+class Exercise(Repeated):
     """Repeats an exercise for `duration` s, from rest to rest."""
 
     name: str  # name of its phase
@@ -110,12 +110,8 @@ class Exercise:
     hops: tuple[float, ...] = ()  # when feet leave the floor, shares of the period
     flight: float = 0.0  # time in the air of a hop, s
     crouch: float = 0.0  # depth of the crouch before and after a hop, over the stature
-    duration: float = inf
     first: float = 0.5  # time before the first repetition, s
     entry: float = 0.2  # time of rest at the end, s
-    # paces, sizes: time and size of each repetition, over the usual ones
-    paces: tuple[float, ...] = ()
-    sizes: tuple[float, ...] = ()
 
     fastest_hz = 4.0
 
@@ -123,48 +119,33 @@ class Exercise:
         return Exercising(person, self, begin, horizon)
 
 
-@dataclass(frozen=True)
-class Exercising:
+class Exercising(Repeating[Exercise]):
     """The `part.Part` of a person who exercises."""
 
-    person: Physique
-    exercise: Exercise
-    begin: float
-    horizon: float  # end of the recording, s
-
-    before = STANDING
-    after = STANDING
-    place = Place()
+    @property
+    def name(self) -> str:
+        return self.movement.name
 
     @property
     def end(self) -> float:
-        return self._end + self.exercise.entry
-
-    @property
-    def phases(self) -> tuple[Phase, ...]:
-        under_way = Phase(self.begin, self.exercise.name)
-        return (under_way,) if isinf(self.end) else (under_way, Phase(self.end, "standing"))
+        return self._end + self.movement.entry
 
     @cached_property
     def _repetitions(self) -> list[Repetition]:
         """Repetitions within the duration and the recording, at least one."""
-        exercise = self.exercise
-        start = self.begin + exercise.first
-        until = min(self.horizon + 1.0, start + exercise.duration)
-        return repetitions(
-            start, exercise.period, max(until, start + 1e-9), exercise.paces, exercise.sizes
-        )
+        start = self.begin + self.movement.first
+        return self.repeat(start, self.movement.period, start + self.movement.duration)
 
     @cached_property
     def _steps(self) -> list[Step]:
         """Steps of all repetitions, and of getting ready for them."""
-        steps = [Step("ready", 1.0, self.begin, self.exercise.first)]
+        steps = [Step("ready", 1.0, self.begin, self.movement.first)]
         if not isinf(self._end):
-            steps.append(Step("ready", -1.0, self._end, self.exercise.entry))
-        hops, flights = self.exercise.hops, iter(self._flights)
+            steps.append(Step("ready", -1.0, self._end, self.movement.entry))
+        hops, flights = self.movement.hops, iter(self._flights)
         for start, pace, size in self._repetitions:
-            period, in_air = pace * self.exercise.period, [next(flights) for _ in hops]
-            for channel, change, *spans in self.exercise.moves:
+            period, in_air = pace * self.movement.period, [next(flights) for _ in hops]
+            for channel, change, *spans in self.movement.moves:
                 for hop, (sign, span) in enumerate(zip((1, -1), spans, strict=True)):
                     if span is IN_THE_AIR:
                         begin, length = in_air[hop]
@@ -177,8 +158,8 @@ class Exercising:
     def _end(self) -> float:
         """When the body has done the last repetition, s; infinity for what goes on."""
         start, pace, _ = self._repetitions[-1]
-        end = start + pace * self.exercise.period
-        return inf if self.exercise.duration == inf else end + CROUCH_S * bool(self.exercise.hops)
+        end = start + pace * self.movement.period
+        return inf if self.movement.duration == inf else end + CROUCH_S * bool(self.movement.hops)
 
     @cached_property
     def course(self) -> Course:
@@ -189,7 +170,7 @@ class Exercising:
     @cached_property
     def _flights(self) -> list[tuple[float, float]]:
         """When the feet leave the floor, and how long they are in the air, s."""
-        exercise = self.exercise
+        exercise = self.movement
         take_offs = [
             (start + pace * exercise.period * hop, exercise.flight * size**0.5)
             for start, pace, size in self._repetitions
@@ -208,7 +189,7 @@ class Exercising:
         if not self._flights:
             return None
         feet, hip = list[Knot](), list[Knot]()
-        crouch = self.exercise.crouch * self.person.stature
+        crouch = self.movement.crouch * self.person.stature
         landed = None
         for take_off, flight in self._flights:
             speed = G * flight / 2

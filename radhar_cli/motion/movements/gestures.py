@@ -17,7 +17,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, isinf, pi, radians
-from typing import Annotated, ClassVar, Generic, Protocol, TypeAlias, TypeVar
+from typing import Annotated, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -29,12 +29,18 @@ from radhar_cli.motion.human.arms import (
 )
 from radhar_cli.motion.human.idle import IdleState, Waves
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import SEATED, STANDING, Movement, Phase, Place
+from radhar_cli.motion.human.part import SEATED, STANDING, Movement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted, resting_channels, scale_steps
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose
 from radhar_cli.motion.movements.kind import MovementKind, Mover
-from radhar_cli.motion.movements.repeating import EACH, Repetition, draw_repetitions, repetitions
+from radhar_cli.motion.movements.repeating import (
+    EACH,
+    Repeated,
+    Repeating,
+    Repetition,
+    draw_repetitions,
+)
 from radhar_cli.motion.movements.sitting import SEAT, Seat, make_seat
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.schema.annotations import PERSONAL, People
@@ -109,51 +115,30 @@ AROUND_BODY_M = 0.10  # by which a hand goes ahead of the straight way, past bel
 Point = tuple[float, float, float]  # ahead, inwards and up from the shoulder, m
 
 
-class Gesture(Protocol):
-    """A dataclass of how a person moves the arms.
+@dataclass(frozen=True)
+class Gesture(Repeated):
+    """A movement of the arms, while the person stands or sits."""
 
-    Attributes:
-        duration: How long it is repeated, s; infinity for what goes on.
-        period: Duration of a repetition, s.
-        entry: Time to raise the arms, and to lower them, s.
-        seat: Seat of the person; None stands.
-        paces: Duration of each repetition over the usual one.
-        sizes: Size of each, likewise.
-    """
+    period: float = 1.0  # duration of a repetition, s
+    entry: float = 1.0  # time to raise the arms, and to lower them, s
+    seat: Seat | None = None  # seat of the person; None stands
+    left: bool = False  # whether the left hand makes it, or more of it
 
-    @property
-    def duration(self) -> float: ...
-    @property
-    def period(self) -> float: ...
-    @property
-    def entry(self) -> float: ...
-    @property
-    def seat(self) -> Seat | None: ...
-    @property
-    def paces(self) -> tuple[float, ...]: ...
-    @property
-    def sizes(self) -> tuple[float, ...]: ...
+    fastest_hz = 4.0
 
 
 G = TypeVar("G", bound=Gesture)
 
 
 @dataclass(frozen=True)
-class Gesturing(Generic[G]):
+class Gesturing(Repeating[G]):
     """The `part.Part` of a person who moves the arms; subclasses have the steps and the arms."""
 
-    person: Physique
-    gesture: G
-    begin: float
-    horizon: float  # end of the recording, s; what goes on is worked out until 1 s after it
-
-    place = Place()
-    name: ClassVar[str]  # name of its phase
     channels: ClassVar[tuple[str, ...]]  # channels of `steps`, beside that of the trunk
 
     @property
     def before(self) -> str:
-        return STANDING if self.gesture.seat is None else SEATED
+        return STANDING if self.movement.seat is None else SEATED
 
     @property
     def after(self) -> str:
@@ -162,33 +147,24 @@ class Gesturing(Generic[G]):
     @cached_property
     def _repetitions(self) -> list[Repetition]:
         """Repetitions within the duration and the recording, at least one."""
-        gesture, start = self.gesture, self.begin + self.gesture.entry
+        gesture, start = self.movement, self.begin + self.movement.entry
         work_s = gesture.duration - 2 * gesture.entry - 0.5 * gesture.period
-        until = min(self.horizon + 1.0, start + work_s)
-        return repetitions(
-            start, gesture.period, max(until, start + 1e-9), gesture.paces, gesture.sizes
-        )
+        return self.repeat(start, gesture.period, start + work_s)
 
     @cached_property
     def _last_s(self) -> float:
         """When the last repetition has ended, s."""
         start, pace, _ = self._repetitions[-1]
-        return start + pace * self.gesture.period
+        return start + pace * self.movement.period
 
     @property
     def end(self) -> float:
-        return inf if isinf(self.gesture.duration) else self._last_s + self.gesture.entry
-
-    @property
-    def phases(self) -> tuple[Phase, ...]:
-        under_way = Phase(self.begin, self.name)
-        state = "standing" if self.gesture.seat is None else "seated"
-        return (under_way,) if isinf(self.end) else (under_way, Phase(self.end, state))
+        return inf if isinf(self.movement.duration) else self._last_s + self.movement.entry
 
     def _entry_steps(self, channel: str, change: float) -> list[Step]:
         """Steps that raise the arms, and lower them at the end."""
-        entry, steps = self.gesture.entry, [Step(channel, change, self.begin, self.gesture.entry)]
-        if not isinf(self.gesture.duration):
+        entry, steps = self.movement.entry, [Step(channel, change, self.begin, self.movement.entry)]
+        if not isinf(self.movement.duration):
             steps.append(Step(channel, -change, self._last_s, entry))
         return steps
 
@@ -199,7 +175,7 @@ class Gesturing(Generic[G]):
     @cached_property
     def _posture(self) -> dict[str, float]:
         """Channels of the posture in which the person stands or sits."""
-        seat = self.gesture.seat
+        seat = self.movement.seat
         return resting_channels(self.person) if seat is None else seat.posture(self.person)
 
     @cached_property
@@ -287,13 +263,10 @@ def both(values: dict[str, Float], channel: str) -> Float:
 
 
 @dataclass(frozen=True)
-class Drink:
+class Drink(Gesture):
     """Drinks from a cup: standing, from where the cup hangs or is held; seated, from a table."""
 
-    duration: float = inf
     period: float = 5.9
-    seat: Seat | None = None
-    left: bool = False  # whether the left hand holds the cup
     held: bool = False  # whether the cup is held ahead between drinks; else the arm is lowered
     cup: Point = (0.34, 0.07, -0.26)  # place of the hand where the cup is held or stands
     mouth: Point = (0.20, 0.165, 0.05)
@@ -303,10 +276,6 @@ class Drink:
     lean: float = radians(6)
     back: float = radians(8)
     entry: float = 0.1  # time of rest before and after
-    paces: tuple[float, ...] = ()
-    sizes: tuple[float, ...] = ()
-
-    fastest_hz = 4.0
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Drinking":
         return Drinking(person, self, begin, horizon)
@@ -323,7 +292,7 @@ class Drinking(Gesturing[Drink]):
     HANGING = ((0.0, 0.24), (0.04, 0.31), (0.26, 0.42), (0.46, 0.61), (0.56, 0.85), (0.62, 0.95))
 
     def steps(self) -> list[Step]:
-        drink, steps = self.gesture, list[Step]()
+        drink, steps = self.movement, list[Step]()
         is_lowered = drink.seat is not None or not drink.held
         spans = self.HANGING if drink.seat is None and not drink.held else self.TABLE
         last = len(self._repetitions) - 1
@@ -350,7 +319,7 @@ class Drinking(Gesturing[Drink]):
     def arms(
         self, t: Float, trunk: Axes, rest: tuple[Float, Float], values: dict[str, Float]
     ) -> tuple[Float, Float]:
-        drink, hand = self.gesture, np.array([[not self.gesture.left], [self.gesture.left]])
+        drink, hand = self.movement, np.array([[not self.movement.left], [self.movement.left]])
         cup, mouth = self._from_shoulder(drink.cup), self._from_shoulder(drink.mouth)
         hands = cup + values["lifted"] * (mouth - cup)
         hands[2] += drink.tilt[0] * self.scale * values["tilted"]
@@ -362,13 +331,10 @@ class Drinking(Gesturing[Drink]):
 
 
 @dataclass(frozen=True)
-class Write:
+class Write(Gesture):
     """Writes word by word, line by line, from left to right: at a board, or seated at a table."""
 
-    duration: float = inf
     period: float = 1.8  # duration of a word with the way to the next, s
-    seat: Seat | None = None
-    left: bool = False
     start: Point = (0.42, 0.15, 0.06)  # place of the hand where the first line begins
     other: Point | None = None  # place of the other hand; None hangs
     word: float = 0.09  # width of a word
@@ -379,14 +345,9 @@ class Write:
     off: float = 0.02  # distance of the pen from the paper between words
     upright: bool = True  # whether lines are below each other, else nearer and nearer on a table
     pitch: float = radians(3)  # of the trunk ahead, rad
-    entry: float = 1.0
     # up, across: rhythm of the strokes
     up: Waves = field(default_factory=Waves)
     across: Waves = field(default_factory=Waves)
-    paces: tuple[float, ...] = ()
-    sizes: tuple[float, ...] = ()
-
-    fastest_hz = 4.0
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Writing":
         return Writing(person, self, begin, horizon)
@@ -415,7 +376,7 @@ class Writing(Gesturing[Write]):
     channels = ("raised", "pen", "along", "down")
 
     def steps(self) -> list[Step]:
-        write = self.gesture
+        write = self.movement
         steps = [*self._entry_steps("raised", 1.0), *self._entry_steps("trunk", write.pitch)]
         along = down = 0.0
         for number, (start, pace, size) in enumerate(self._repetitions):
@@ -437,7 +398,7 @@ class Writing(Gesturing[Write]):
     def arms(
         self, t: Float, trunk: Axes, rest: tuple[Float, Float], values: dict[str, Float]
     ) -> tuple[Float, Float]:
-        write, pen = self.gesture, values["pen"]
+        write, pen = self.movement, values["pen"]
         writes = np.array([[not write.left], [write.left]])
         hands = self._from_shoulder(write.start) + np.zeros((3, 2, t.size))
         left_handed = 0.5 * write.words * write.word if write.left else 0.0  # begins farther out
@@ -454,21 +415,13 @@ class Writing(Gesturing[Write]):
 
 
 @dataclass(frozen=True)
-class Clap:
+class Clap(Gesture):
     """Claps ahead of the chest."""
 
-    duration: float = inf
     period: float = 0.33
-    seat: Seat | None = None
-    left: bool = False  # which hand does more of the way
     meet: Point = (0.30, 0.0, -0.09)  # where palms meet, from the shoulders; inwards counts not
     opening: float = 0.20  # way of a hand at one clap a second; it is shorter at more
     lead: float = 0.25  # by which the way of one hand is longer, and that of the other shorter
-    entry: float = 1.0
-    paces: tuple[float, ...] = ()
-    sizes: tuple[float, ...] = ()
-
-    fastest_hz = 4.0
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Clapping":
         return Clapping(person, self, begin, horizon)
@@ -481,7 +434,7 @@ class Clapping(Gesturing[Clap]):
     channels = ("raised", "apart")
 
     def steps(self) -> list[Step]:
-        clap, steps = self.gesture, self._entry_steps("raised", 1.0)
+        clap, steps = self.movement, self._entry_steps("raised", 1.0)
         usual = clap.opening * clap.period
         apart = usual * self._repetitions[0].size
         steps.append(Step("apart", apart, self.begin, clap.entry))
@@ -497,7 +450,7 @@ class Clapping(Gesturing[Clap]):
     def arms(
         self, t: Float, trunk: Axes, rest: tuple[Float, Float], values: dict[str, Float]
     ) -> tuple[Float, Float]:
-        clap, ways = self.gesture, np.array([[1.0], [1.0]])
+        clap, ways = self.movement, np.array([[1.0], [1.0]])
         ways[int(clap.left)] += clap.lead
         ways[1 - int(clap.left)] -= clap.lead
         hands = self._from_shoulder(clap.meet) + np.zeros((3, 2, t.size))
@@ -507,13 +460,10 @@ class Clapping(Gesturing[Clap]):
 
 
 @dataclass(frozen=True)
-class Wave:
+class Wave(Gesture):
     """Waves: an arm is raised, its forearm swings from side to side; angles in rad."""
 
-    duration: float = inf
     period: float = 0.65
-    seat: Seat | None = None
-    left: bool = False
     both: bool = False  # whether both arms are raised
     flexion: float = radians(60)  # of the upper arm, ahead
     outwards: float = radians(38)  # of the upper arm
@@ -521,10 +471,6 @@ class Wave:
     swing: float = radians(60)  # from one side to the other
     bend: float = radians(9)  # flexion of the elbow that comes with a swing
     entry: float = 1.1
-    paces: tuple[float, ...] = ()
-    sizes: tuple[float, ...] = ()
-
-    fastest_hz = 4.0
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Waving":
         return Waving(person, self, begin, horizon)
@@ -537,7 +483,7 @@ class Waving(Gesturing[Wave]):
     channels = ("raised", "swung")
 
     def steps(self) -> list[Step]:
-        wave, steps = self.gesture, self._entry_steps("raised", 1.0)
+        wave, steps = self.movement, self._entry_steps("raised", 1.0)
         steps += self._entry_steps("swung", -0.5)
         for start, pace, size in self._repetitions:
             half = 0.5 * pace * wave.period
@@ -548,7 +494,7 @@ class Waving(Gesturing[Wave]):
     def arms(
         self, t: Float, trunk: Axes, rest: tuple[Float, Float], values: dict[str, Float]
     ) -> tuple[Float, Float]:
-        wave, (shoulder, elbow) = self.gesture, rest
+        wave, (shoulder, elbow) = self.movement, rest
         waves = np.array([[wave.both or not wave.left], [wave.both or wave.left]])
         raised, swung = waves * values["raised"], waves * values["swung"]
         shoulder = shoulder + raised * (wave.flexion - shoulder)
@@ -571,27 +517,22 @@ CUP_IN_HAND = 0.65
 ON_BOARD = 0.7  # rate of strokes at a board, where letters are larger, over that on paper
 
 
-Repeated: TypeAlias = tuple[tuple[float, ...], tuple[float, ...]]
-
-
-def _numbers(mover: Mover) -> tuple[GesturesConfig[float], bool, Repeated]:
-    """Numbers of a person's gestures, whether the left hand makes them, paces and sizes."""
-    gestures, (paces, sizes) = mover.numbers(GesturesConfig[float]), draw_repetitions(mover)
-    is_left = gestures.left_handed >= 0.5
-    return gestures, is_left, (tuple(paces.tolist()), tuple(sizes.tolist()))
+def _draw(mover: Mover, usual: G) -> tuple[GesturesConfig[float], G]:
+    """Numbers of a person's gestures, and a usual one with the hand and the repetitions drawn."""
+    numbers, (paces, sizes) = mover.numbers(GesturesConfig[float]), draw_repetitions(mover)
+    return numbers, replace(
+        usual,
+        duration=mover.duration,
+        left=numbers.left_handed >= 0.5,
+        paces=tuple(paces.tolist()),
+        sizes=tuple(sizes.tolist()),
+    )
 
 
 def make_drinks(mover: Mover) -> Drink:
     """Make a person who stands drink, again and again."""
-    gestures, is_left, (paces, sizes) = _numbers(mover)
-    return Drink(
-        mover.duration,
-        period=CUP_IN_HAND * gestures.drink_s,
-        left=is_left,
-        held=gestures.cup_held >= 0.5,
-        paces=paces,
-        sizes=sizes,
-    )
+    numbers, drink = _draw(mover, Drink())
+    return replace(drink, period=CUP_IN_HAND * numbers.drink_s, held=numbers.cup_held >= 0.5)
 
 
 def make_seated_drinks(mover: Mover) -> Drink:
@@ -602,19 +543,15 @@ def make_seated_drinks(mover: Mover) -> Drink:
 
 def _make_writing(mover: Mover, usual: Write, rate: float) -> Write:
     """Make a person write as usual, by `rate` times the usual strokes a second."""
-    gestures, is_left, (paces, sizes) = _numbers(mover)
+    numbers, write = _draw(mover, usual)
     rng = mover.stream(f"motion.gestures.strokes/{mover.place}")
     up, across = (2 * pi * rng.random((2, len(STROKES_UP)))).tolist()
     return replace(
-        usual,
-        duration=mover.duration,
-        left=is_left,
-        stroke=gestures.size * usual.stroke,
-        word=gestures.size * usual.word,
-        up=_strokes(rate * gestures.strokes_hz, STROKES_UP, up),
-        across=_strokes(rate * gestures.strokes_hz, STROKES_ACROSS, across),
-        paces=paces,
-        sizes=sizes,
+        write,
+        stroke=numbers.size * usual.stroke,
+        word=numbers.size * usual.word,
+        up=_strokes(rate * numbers.strokes_hz, STROKES_UP, up),
+        across=_strokes(rate * numbers.strokes_hz, STROKES_ACROSS, across),
     )
 
 
@@ -630,31 +567,21 @@ def make_seated_writing(mover: Mover) -> Write:
 
 def make_waves(mover: Mover) -> Wave:
     """Make a person wave."""
-    gestures, is_left, (paces, sizes) = _numbers(mover)
-    return Wave(
-        mover.duration,
-        period=1 / gestures.waving_hz,
-        left=is_left,
-        both=gestures.both_hands >= 0.5,
-        flexion=radians(gestures.raise_deg),
-        swing=gestures.size * Wave.swing,
-        bend=gestures.size * Wave.bend,
-        paces=paces,
-        sizes=sizes,
+    numbers, wave = _draw(mover, Wave())
+    return replace(
+        wave,
+        period=1 / numbers.waving_hz,
+        both=numbers.both_hands >= 0.5,
+        flexion=radians(numbers.raise_deg),
+        swing=numbers.size * wave.swing,
+        bend=numbers.size * wave.bend,
     )
 
 
 def make_claps(mover: Mover) -> Clap:
     """Make a person clap."""
-    gestures, is_left, (paces, sizes) = _numbers(mover)
-    return Clap(
-        mover.duration,
-        period=1 / gestures.clapping_hz,
-        left=is_left,
-        opening=gestures.size * Clap.opening,
-        paces=paces,
-        sizes=sizes,
-    )
+    numbers, clap = _draw(mover, Clap())
+    return replace(clap, period=1 / numbers.clapping_hz, opening=numbers.size * clap.opening)
 
 
 def _strokes(rate: float, rates: tuple[float, ...], phases: list[float]) -> Waves:

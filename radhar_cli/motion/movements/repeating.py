@@ -1,11 +1,16 @@
 """Movements that are repeated: when each begins, how fast and how far it goes."""
 
 from collections.abc import Sequence
-from math import ceil
-from typing import Annotated, Generic, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, inf, isinf
+from typing import Annotated, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from radhar_cli.motion.human.minimum_jerk import Course
+from radhar_cli.motion.human.part import HERE, STANDING, Phase
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.movements.kind import Mover
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.schema.annotations import UNSTEADY, People
@@ -27,22 +32,14 @@ class RepeatingConfig(Section, Generic[B]):
     tempo_jitter: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, RATIO),
-        People(
-            None,
-            0,
-            0.2,
-        ),
+        People(None, 0, 0.2),
         UNSTEADY,
     ] = default_draw(uniform(0.0, 0.1))
     """Relative standard deviation of the time from one punch, kick or turn to the next."""
     size_jitter: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, RATIO),
-        People(
-            None,
-            0,
-            0.15,
-        ),
+        People(None, 0, 0.15),
         UNSTEADY,
     ] = default_draw(uniform(0.0, 0.1))
     """Relative standard deviation of the size from one punch, kick or turn to the next."""
@@ -102,3 +99,64 @@ def draw_repetitions(mover: Mover) -> tuple[Float, Float]:
 def nonzero_tuple(numbers: Float) -> tuple[float, ...]:
     """Numbers as a tuple, empty where all are 0."""
     return tuple(numbers.tolist()) if numbers.any() else ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Repeated:
+    """A movement that is repeated for `duration` s; infinity goes on."""
+
+    duration: float = inf
+    # paces, sizes: time and size of each repetition, over the usual ones
+    paces: tuple[float, ...] = ()
+    sizes: tuple[float, ...] = ()
+
+
+R = TypeVar("R", bound=Repeated)
+
+
+@dataclass(frozen=True)
+class Repeating(Generic[R]):
+    """The `part.Part` of a person who repeats a movement; subclasses have course, end and pose."""
+
+    person: Physique
+    movement: R
+    begin: float  # s
+    horizon: float  # end of the recording, s; what goes on is worked out until 1 s after it
+
+    place = HERE
+
+    @property
+    def name(self) -> str:
+        """Name of its phase."""
+        raise NotImplementedError
+
+    @property
+    def before(self) -> str:
+        return STANDING
+
+    @property
+    def after(self) -> str:
+        return STANDING
+
+    @property
+    def end(self) -> float:
+        raise NotImplementedError
+
+    @cached_property
+    def course(self) -> Course:
+        """Course of the channels that `pose` needs."""
+        raise NotImplementedError
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        under_way = Phase(self.begin, self.name)
+        return (under_way,) if isinf(self.end) else (under_way, Phase(self.end, self.after))
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        return self.course.breakpoints
+
+    def repeat(self, start: float, period: float, until: float, least: int = 1) -> list[Repetition]:
+        """Repetitions from `start` (s) to `until` (s) or the end; 0 or 1 at least."""
+        until = max(min(self.horizon + 1.0, until), start + 1e-9 * least)
+        return repetitions(start, period, until, self.movement.paces, self.movement.sizes)

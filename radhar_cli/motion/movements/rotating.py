@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, inf, isinf, pi, radians
+from math import ceil, isinf, pi, radians
 from typing import Annotated, Generic
 
 import numpy as np
@@ -10,13 +10,20 @@ import numpy as np
 from radhar_cli.motion.human.arms import arm_directions
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk_integral
-from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.part import STANDING
 from radhar_cli.motion.human.pelvis import hip_joints, hip_point_with_sway, sway_displacement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 from radhar_cli.motion.movements.kind import MovementKind, Mover
-from radhar_cli.motion.movements.repeating import EACH, PHASE, draw_repetitions, nonzero_tuple
+from radhar_cli.motion.movements.repeating import (
+    EACH,
+    PHASE,
+    Repeated,
+    Repeating,
+    draw_repetitions,
+    nonzero_tuple,
+)
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.schema.annotations import PERSONAL, Paper, People
 from radhar_cli.schema.number import ANGLE, FREQUENCY, NOT_NEGATIVE, vary
@@ -40,10 +47,9 @@ SECTION = RotatingConfig
 
 
 @dataclass(frozen=True)
-class Turn:
+class Turn(Repeated):
     """Turns the upper body from side to side for `duration` s; angles in rad."""
 
-    duration: float = inf
     frequency: float = 0.45  # Hz
     angle: float = radians(45)  # turn of the trunk to each side
     pelvis: float = 0.45  # turn of the pelvis over that of the trunk
@@ -51,65 +57,50 @@ class Turn:
     lag: float = radians(20)  # phase by which the arms follow the shoulders
     entry: float = 0.8  # time in which the turning begins, and ends, s
     from_rest: bool = False  # whether it begins from rest
-    # paces, sizes: time and angle of each turn to both sides, over the usual ones
-    paces: tuple[float, ...] = ()
-    sizes: tuple[float, ...] = ()
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Turning":
         return Turning(person, self, begin, horizon)
 
 
-@dataclass(frozen=True)
-class Turning:
+class Turning(Repeating[Turn]):
     """The `part.Part` of a person who turns from side to side."""
 
-    person: Physique
-    turn: Turn
-    begin: float
-    horizon: float
-
-    after = STANDING
-    place = Place()
+    name = "turning"
 
     @property
     def before(self) -> str:
-        return STANDING if self.turn.from_rest else "turning"
+        return STANDING if self.movement.from_rest else "turning"
 
     @property
     def end(self) -> float:
-        return self.begin + self.turn.duration
-
-    @property
-    def phases(self) -> tuple[Phase, ...]:
-        turning = Phase(self.begin, "turning")
-        return (turning,) if isinf(self.end) else (turning, Phase(self.end, "standing"))
+        return self.begin + self.movement.duration
 
     @cached_property
     def course(self) -> Course:
         """Course of the turning's amplitude, 0 to 1, and of each turn's size over the usual one."""
-        entry, sizes = self.turn.entry, self.turn.sizes
+        entry, sizes = self.movement.entry, self.movement.sizes
         steps = []
-        if self.turn.from_rest:
+        if self.movement.from_rest:
             steps.append(Step("drive", 1.0, self.begin, entry))
         if not isinf(self.end):
             steps.append(Step("drive", -1.0, self.end - entry, entry))
         for start, size, next_size in zip(self._starts, sizes, sizes[1:], strict=False):
-            steps.append(Step("size", next_size - size, start, 1 / self.turn.frequency))
-        drive = 0.0 if self.turn.from_rest else 1.0
+            steps.append(Step("size", next_size - size, start, 1 / self.movement.frequency))
+        drive = 0.0 if self.movement.from_rest else 1.0
         return Course.of({"drive": drive, "size": sizes[0] if sizes else 1.0}, steps)
 
     @cached_property
     def _starts(self) -> Float:
         """When turns to both sides begin [K] (s), as long as one differs from the next."""
-        f = self.turn.frequency
-        count = max(len(self.turn.paces), len(self.turn.sizes)) - 1
+        f = self.movement.frequency
+        count = max(len(self.movement.paces), len(self.movement.sizes)) - 1
         within = ceil(f * (min(self.horizon, self.end) - self.begin))
         starts: Float = self.begin + np.arange(max(0, min(count, within))) / (f or 1.0)
         return starts
 
     def _cycles(self, t: Float) -> Float:
         """Turns since the beginning [M] at times t [M], s; their frequency changes smoothly."""
-        f, paces, starts = self.turn.frequency, self.turn.paces, self._starts
+        f, paces, starts = self.movement.frequency, self.movement.paces, self._starts
         rates = f / np.array((*paces[: starts.size + 1],) or (1.0,))
         if not f or rates.size == 1:
             return np.asarray(rates[0] * (t - self.begin))
@@ -127,11 +118,11 @@ class Turning:
     @property
     def breakpoints(self) -> tuple[float, ...]:
         turns = tuple(self._starts.tolist())
-        ends = tuple(start + 1 / self.turn.frequency for start in turns)
+        ends = tuple(start + 1 / self.movement.frequency for start in turns)
         return (*self.course.breakpoints, *turns, *ends)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        body, turn, (drive, size) = self.person, self.turn, self.course(t)
+        body, turn, (drive, size) = self.person, self.movement, self.course(t)
         phase, drive = 2 * pi * self._cycles(t), drive * size
         yaw = drive * turn.angle * np.sin(phase)
         aside = hip_joints(body, turn.pelvis * yaw, np.zeros(t.size))

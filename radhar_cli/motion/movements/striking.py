@@ -7,7 +7,7 @@ into the punch. In a kick the left leg carries the body.
 from dataclasses import dataclass
 from functools import cached_property
 from math import acos, inf, isinf, radians
-from typing import Annotated, Generic, Protocol, TypeVar
+from typing import Annotated, Generic, TypeVar
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from radhar_cli.motion.human.arms import (
 )
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.part import STANDING
 from radhar_cli.motion.human.pelvis import (
     LegBound,
     hip_joints,
@@ -33,9 +33,11 @@ from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.repeating import (
     EACH,
     PHASE,
+    Repeated,
+    Repeating,
+    Repetition,
     draw_repetitions,
     nonzero_tuple,
-    repetitions,
 )
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.schema.annotations import PERSONAL, People
@@ -66,107 +68,34 @@ class StrikingConfig(Section, Generic[B]):
 SECTION = StrikingConfig
 
 
-def make_punches(mover: Mover) -> "Punch":
-    """Make the punches of a person, from rest."""
-    striking, (paces, sizes) = mover.numbers(StrikingConfig[float]), draw_repetitions(mover)
-    return Punch(
-        duration=mover.duration,
-        frequency=striking.strike_scale * striking.punch_hz,
-        from_rest=True,
-        paces=nonzero_tuple(striking.strike_scale * paces),
-        sizes=nonzero_tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
-    )
+@dataclass(frozen=True)
+class Strikes(Repeated):
+    """Blow after blow, from a stance that is taken first."""
+
+    frequency: float = 0.5  # Hz
+    first: float = 0.1  # the first blow after the beginning, or after the stance is taken, s
+    entry: float = 0.5  # time to take the stance, and to leave it, s
+    from_rest: bool = False  # whether the stance is taken at first; else the person stands in it
 
 
-def make_kicks(mover: Mover) -> "Kick":
-    """Make the kicks of a person, from rest."""
-    striking, (paces, sizes) = mover.numbers(StrikingConfig[float]), draw_repetitions(mover)
-    return Kick(
-        duration=mover.duration,
-        frequency=striking.strike_scale * striking.kick_hz,
-        from_rest=True,
-        paces=nonzero_tuple(striking.strike_scale * paces),
-        sizes=nonzero_tuple(sizes),
-    )
-
-
-MOVEMENTS = (
-    MovementKind(
-        "punching",
-        "stands and punches, one arm after the other",
-        make_punches,
-        in_place=True,
-        uses=(PHASE, *EACH),
-        rate=lambda mover: mover.numbers(StrikingConfig[float]).punch_hz,
-        words="boxing box punch shadow_boxing boxen",
-        manners="in_air",
-        nearby="hitting striking jab uppercut punch_slap",
-    ),
-    MovementKind(
-        "kicking",
-        "stands and kicks, again and again",
-        make_kicks,
-        in_place=True,
-        uses=(PHASE, *EACH),
-        rate=lambda mover: mover.numbers(StrikingConfig[float]).kick_hz,
-        words="kick front_kick",
-        nearby="side_kick roundhouse roundhouse_kick kicking_something kicking_toward_left "
-        "kicking_toward_right",
-    ),
-)
-
-
-class Strikes(Protocol):
-    """How a person strikes blow after blow, from a stance that is taken first.
-
-    Attributes:
-        duration: How long there are blows, s; infinity for what goes on.
-        first: When the first blow comes after the stance is taken, s.
-        entry: Time that it takes to take the stance, and to leave it, s.
-        from_rest: Whether the person takes the stance at first; else they stand in it already.
-    """
-
-    @property
-    def duration(self) -> float: ...
-    @property
-    def first(self) -> float: ...
-    @property
-    def entry(self) -> float: ...
-    @property
-    def from_rest(self) -> bool: ...
-
-
-S = TypeVar("S", bound=Strikes)
+K = TypeVar("K", bound=Strikes)
 
 
 @dataclass(frozen=True)
-class Striking(Generic[S]):
+class Striking(Repeating[K]):
     """The `part.Part` of a person who strikes; subclasses have the blows and the pose."""
 
-    person: Physique
-    strikes: S
-    begin: float  # when the stance begins to be taken, s
-    horizon: float  # end of the recording, s; blows that go on are worked out until 1 s after it
-
-    after = STANDING
-    place = Place()
     stance = "in stance"
-    name = "striking"
 
     @property
     def before(self) -> str:
-        return STANDING if self.strikes.from_rest else self.stance
+        return STANDING if self.movement.from_rest else self.stance
 
-    @property
-    def _first(self) -> float:
-        """When the first blow begins, s."""
-        entry = self.strikes.entry if self.strikes.from_rest else 0.0
-        return self.begin + self.strikes.first + entry
-
-    @property
-    def _until(self) -> float:
-        """When the last blow has begun at the latest, s."""
-        return min(self.horizon + 1.0, self._first + self.strikes.duration)
+    def _blows(self, period: float) -> list[Repetition]:
+        """Blows within the duration and the recording, one in each `period` (s)."""
+        strikes = self.movement
+        first = self.begin + strikes.first + (strikes.entry if strikes.from_rest else 0.0)
+        return self.repeat(first, period, first + strikes.duration, least=0)
 
     @cached_property
     def _strike_steps(self) -> list[Step]:
@@ -176,7 +105,7 @@ class Striking(Generic[S]):
     @cached_property
     def _stance_end_s(self) -> float:
         """When the last blow has ended and the stance begins to be left, s."""
-        if isinf(self.strikes.duration):
+        if isinf(self.movement.duration):
             return inf
         return max((step.start + step.length for step in self._strike_steps), default=self.begin)
 
@@ -184,9 +113,9 @@ class Striking(Generic[S]):
         self, channel: str, change: float, delay: float = 0.0, share: float = 1.0
     ) -> list[Step]:
         """Steps that take and leave the stance, `delay` late and within a `share` of the entry."""
-        entry = self.strikes.entry
+        entry = self.movement.entry
         steps = []
-        if self.strikes.from_rest:
+        if self.movement.from_rest:
             steps.append(Step(channel, change, self.begin + delay * entry, share * entry))
         if not isinf(self._stance_end_s):
             steps.append(Step(channel, -change, self._stance_end_s + delay * entry, share * entry))
@@ -194,30 +123,15 @@ class Striking(Generic[S]):
 
     @property
     def end(self) -> float:
-        return self._stance_end_s + self.strikes.entry
-
-    @property
-    def phases(self) -> tuple[Phase, ...]:
-        under_way = Phase(self.begin, self.name)
-        return (under_way,) if isinf(self.end) else (under_way, Phase(self.end, "standing"))
-
-    @cached_property
-    def course(self) -> Course:
-        """Course of the channels that `pose` needs."""
-        raise NotImplementedError
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        return self.course.breakpoints
+        return self._stance_end_s + self.movement.entry
 
 
 @dataclass(frozen=True)
-class Punch:
+class Punch(Strikes):
     """Punches in turn, right and left, for `duration` s; lengths in m for 1.75 m, angles in rad."""
 
-    duration: float = inf
     frequency: float = 0.7  # of a right and a left punch together, Hz
-    first: float = 0.1  # the first punch after the beginning, or after the guard is taken, s
+    entry: float = 0.9
     # out, hold, back: the hand goes out within `out`, begins its way back after `hold` and takes
     # `back`, s
     out: float = 0.28
@@ -234,12 +148,7 @@ class Punch:
     # pitch, bow: lean of the trunk ahead in guard, and further in a punch
     pitch: float = radians(6)
     bow: float = radians(4)
-    entry: float = 0.9  # time to take the guard, and to leave it, s
     lift: float = 0.03  # height of the feet as they step into the stance
-    from_rest: bool = False  # whether the guard is taken at first
-    # paces, sizes: time and size of each punch, over the usual ones
-    paces: tuple[float, ...] = ()
-    sizes: tuple[float, ...] = ()
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Punching":
         return Punching(person, self, begin, horizon)
@@ -253,12 +162,9 @@ class Punching(Striking[Punch]):
 
     @cached_property
     def _strike_steps(self) -> list[Step]:
-        punch = self.strikes
+        punch = self.movement
         steps = []
-        punches = repetitions(
-            self._first, 0.5 / punch.frequency, self._until, punch.paces, punch.sizes
-        )
-        for number, (start, pace, size) in enumerate(punches):
+        for number, (start, pace, size) in enumerate(self._blows(0.5 / punch.frequency)):
             hand = ("right", "left")[number % 2]
             steps.append(Step(hand, size, start, pace * punch.out))
             steps.append(Step(hand, -size, start + pace * punch.hold, pace * punch.back))
@@ -268,13 +174,13 @@ class Punching(Striking[Punch]):
     def course(self) -> Course:
         """Course of how far the hands are out, the feet in their stance, and the guard taken."""
         steps = list(self._strike_steps)
-        initial = 0.0 if self.strikes.from_rest else 1.0
+        initial = 0.0 if self.movement.from_rest else 1.0
         for channel, (start, length) in ENTRY.items():
             steps += self._stance_steps(channel, 1.0, start, length)
         return Course.of({"right": 0.0, "left": 0.0, **dict.fromkeys(ENTRY, initial)}, steps)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        body, punch = self.person, self.strikes
+        body, punch = self.person, self.movement
         scale = body.stature / REFERENCE_STATURE
         right, left, *feet, guard = self.course(t)
         ankles = self._ankles(np.array(feet))
@@ -306,19 +212,18 @@ class Punching(Striking[Punch]):
     def _ankles(self, feet: Float) -> Float:
         """Ankles [3, 2, M] (m) of feet that have gone shares [2, M] of the way to their stance."""
         scale = self.person.stature / REFERENCE_STATURE
-        ahead, beside = scale * self.strikes.stance[0], scale * self.strikes.stance[1]
+        ahead, beside = scale * self.movement.stance[0], scale * self.movement.stance[1]
         y = SIDES * (self.person.hip + (beside - self.person.hip) * feet)
-        lift = 4 * self.strikes.lift * feet * (1 - feet)
+        lift = 4 * self.movement.lift * feet * (1 - feet)
         return np.array([SIDES * ahead * feet, y, self.person.ankle + lift])
 
 
 @dataclass(frozen=True)
-class Kick:
+class Kick(Strikes):
     """Kicks ahead with the right leg for `duration` s; angles in rad."""
 
-    duration: float = inf
-    frequency: float = 0.45  # Hz
-    first: float = 0.3  # the first kick after the beginning, or after the stance is taken, s
+    frequency: float = 0.45
+    first: float = 0.3
     thigh: float = radians(78)  # flexion of the hip
     fold: float = radians(92)  # flexion of the knee before the kick
     snap: float = radians(100)  # extension of the knee in the kick
@@ -326,11 +231,6 @@ class Kick:
     lean: float = radians(2)  # lean of the trunk ahead in the stance
     back: float = radians(14)  # lean of the trunk backwards in the kick
     bend: float = 0.985  # length of the standing legs in the stance, over thigh and shank
-    entry: float = 0.5  # time to take the stance, and to leave it, s
-    from_rest: bool = False  # whether the stance is taken at first
-    # paces, sizes: time and size of each kick, over the usual ones
-    paces: tuple[float, ...] = ()
-    sizes: tuple[float, ...] = ()
 
     fastest_hz = 4.0
 
@@ -354,16 +254,13 @@ class Kick:
 class Kicking(Striking[Kick]):
     """The `part.Part` of a person who kicks."""
 
-    stance = "in stance"
     name = "kicking"
 
     @cached_property
     def _strike_steps(self) -> list[Step]:
-        kick = self.strikes
+        kick = self.movement
         steps = []
-        for start, pace, size in repetitions(
-            self._first, 1 / kick.frequency, self._until, kick.paces, kick.sizes
-        ):
+        for start, pace, size in self._blows(1 / kick.frequency):
             free = [Step("free", 1 / size, 0.0, 0.25), Step("free", -1 / size, 1.05, 0.25)]
             steps += [
                 step._replace(
@@ -378,7 +275,7 @@ class Kicking(Striking[Kick]):
     @cached_property
     def course(self) -> Course:
         """Course of the right leg beyond the stance, the trunk, and both standing legs, rad."""
-        kick, rest = self.strikes, self.person.rest_lean
+        kick, rest = self.movement, self.person.rest_lean
         steps, stance = (
             list(self._strike_steps),
             {"bend": acos(kick.bend) - rest, "trunk": kick.lean},
@@ -412,3 +309,54 @@ class Kicking(Striking[Kick]):
         trunk = axes(pitch + idle.pitch, idle.yaw, idle.roll)
         upper, fore = arm_directions(trunk, idle.shoulders, body.elbow + idle.elbows)
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
+
+
+def _make_strikes(mover: Mover, kind: type[K], frequency: float, largest: float = inf) -> K:
+    """Make the blows of a person, from rest, none larger than `largest` times the usual one."""
+    scale, (paces, sizes) = (
+        mover.numbers(StrikingConfig[float]).strike_scale,
+        draw_repetitions(mover),
+    )
+    return kind(
+        duration=mover.duration,
+        frequency=scale * frequency,
+        from_rest=True,
+        paces=nonzero_tuple(scale * paces),
+        sizes=nonzero_tuple(np.minimum(sizes, largest)),
+    )
+
+
+def make_punches(mover: Mover) -> Punch:
+    """Make the punches of a person, from rest; no arm gets longer than usual."""
+    return _make_strikes(mover, Punch, mover.numbers(StrikingConfig[float]).punch_hz, largest=1.0)
+
+
+def make_kicks(mover: Mover) -> Kick:
+    """Make the kicks of a person, from rest."""
+    return _make_strikes(mover, Kick, mover.numbers(StrikingConfig[float]).kick_hz)
+
+
+MOVEMENTS = (
+    MovementKind(
+        "punching",
+        "stands and punches, one arm after the other",
+        make_punches,
+        in_place=True,
+        uses=(PHASE, *EACH),
+        rate=lambda mover: mover.numbers(StrikingConfig[float]).punch_hz,
+        words="boxing box punch shadow_boxing boxen",
+        manners="in_air",
+        nearby="hitting striking jab uppercut punch_slap",
+    ),
+    MovementKind(
+        "kicking",
+        "stands and kicks, again and again",
+        make_kicks,
+        in_place=True,
+        uses=(PHASE, *EACH),
+        rate=lambda mover: mover.numbers(StrikingConfig[float]).kick_hz,
+        words="kick front_kick",
+        nearby="side_kick roundhouse roundhouse_kick kicking_something kicking_toward_left "
+        "kicking_toward_right",
+    ),
+)

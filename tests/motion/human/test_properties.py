@@ -136,9 +136,9 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
         "slowly off": (Grab(dwell=-2.0), Walk(replace(gait, start=2.0))),
         "rightwards": (stopping, FallSideways(side=-1.0)),
         "everything": (
-            Punch(0.5, from_rest=True),
-            Kick(0.5, from_rest=True),
-            Turn(1.8, from_rest=True),
+            Punch(duration=0.5, from_rest=True),
+            Kick(duration=0.5, from_rest=True),
+            Turn(duration=1.8, from_rest=True),
             Walk(gait, 0.8),
             StepTo(1.8, Place(turn=3.0), steps=5),
             SitDown(seat=Seat(recline=0.2)),

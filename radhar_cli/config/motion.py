@@ -1,4 +1,4 @@
-"""How people move: what each movement takes, and when the phases of an activity begin."""
+"""Movements of people: their keys, and when the phases of an activity begin."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal
 
@@ -6,13 +6,7 @@ from pydantic import Field
 
 from radhar_cli.motion.movements import catalogue
 from radhar_cli.schema.annotations import ByModel, NeedsNullKey, People, Unless
-from radhar_cli.schema.number import (
-    ANGLE,
-    COORDINATE,
-    Choice,
-    uniform,
-    within,
-)
+from radhar_cli.schema.number import ANGLE, COORDINATE, Choice, uniform, within
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw, defaults_of
 
 # Towards the radar as often as away from it, whatever people do; nominal ones face it.
@@ -26,7 +20,7 @@ NOT_OF_STREAMS = Unless("stream", "stream, which is cut anywhere")
 class PlaceConfig(Section, Generic[B]):
     """Where people are at one instant of the recording, whatever they do.
 
-    Who walks is there on the way: the course goes through the place at an instant at which all of
+    Walkers are there on the way: their course goes through the place at an instant at which all of
     it stays within what radar, wall and room allow, where there is one.
     """
 
@@ -39,7 +33,7 @@ class PlaceConfig(Section, Generic[B]):
     instant: Annotated[B, ByActivity(within(0, 1))] = default_draw(uniform(0.0, 1.0))
     """Share of the recording in which people who walk are nearer than their place: 0 has it at the
     near end of the course, 1 at the far end, as far as the whole course is possible. A law of it is
-    drawn by the mean of its own rank and that of `range_m`: who is far is so at a far end."""
+    drawn by the mean of its own rank and that of `range_m`: far people are so at a far end."""
 
 
 class MotionConfig(Section, Generic[B]):
@@ -107,7 +101,7 @@ class TimingConfig(Section, Generic[B]):
 
     @classmethod
     def descriptions(cls) -> dict[str, str]:
-        """What stands under each field in the source, of this class and of the movements."""
+        """Texts under the fields in the source, of this class and of the movements."""
         texts = super().descriptions()
         return texts | {
             k: text for one in catalogue.TIMINGS for k, text in one.descriptions().items()

@@ -525,7 +525,13 @@ class GreetingConfig(Section, Generic[B]):
     )
     """Angle by which the arm of somebody who greets is raised."""
 
-SECTION = GreetingConfig
+class GreetingTiming(Section, Generic[B]):
+    """When people greet."""
+
+    greet_after_s: Annotated[B, ByActivity(ANGLE), People("greeting", 0, 5)] = default_draw(1.0)
+    """Time after which somebody greets."""
+
+SECTION, TIMING = GreetingConfig, GreetingTiming
 
 @dataclass(frozen=True)
 class Greet:
@@ -597,6 +603,7 @@ def test_a_movement_of_people_is_one_file(tmp_path: Path) -> None:
     shown = yaml.safe_load(ran("config", "show", config))
     assert shown["motion"]["greeting"] == {"raised_deg": {"uniform": [80.0, 90.0]}}
     assert shown["motion"]["kneeling"]
+    assert list(shown["timing"])[-1] == "greet_after_s"
     ran("config", "init", tmp_path / "all.yaml")
     text = (tmp_path / "all.yaml").read_text()
     assert "Angle by which the arm of somebody who greets is raised." in text

@@ -1,4 +1,4 @@
-"""What a class shows, in a line for people who see it for the first time."""
+"""Meanings of classes, each in a line for people who see it for the first time."""
 
 from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.motion.movements.catalogue import MOVEMENTS

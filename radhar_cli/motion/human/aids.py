@@ -1,4 +1,4 @@
-"""What the hands of a walker hold: a stick, a walker that is lifted or rolled, a box, a bag.
+"""Aids and loads in the hands of a walker: stick, lifted frame, rollator, box, bag.
 
 Only the hands follow it; the aid or load itself does not scatter.
 """
@@ -20,7 +20,7 @@ TILTED = 0.5  # most of that over the length of the stick (30 degrees)
 
 @dataclass(frozen=True)
 class Load:
-    """What is held before or beside the trunk: places of hands, seen from their shoulders.
+    """Load before or beside the trunk: places of hands, seen from their shoulders.
 
     Lengths are in lengths of the stretched arm: ahead, outwards and up.
     """
@@ -36,7 +36,7 @@ class Load:
 
 @dataclass(frozen=True)
 class Aid:
-    """What is set on the floor ahead, or rolled; lengths are over the stature.
+    """Aid that is set on the floor ahead, or rolled; lengths are over the stature.
 
     A stick is as high as the wrist of a hanging arm, so that the elbow is bent by 20 to 30 degrees
     (Kumar, Roe and Scremin, Arch. Phys. Med. Rehabil. 76 (1995) 1173), and is set down with the

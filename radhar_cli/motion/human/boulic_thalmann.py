@@ -1,4 +1,4 @@
-"""How pelvis, trunk and arms move in a stride, u in 0..1 from right heel strike to the next.
+"""Movements of pelvis, trunk and arms in a stride, u in 0..1 from right heel strike to the next.
 
 Boulic, Magnenat-Thalmann and Thalmann, The Visual Computer 6 (1990) 344; Chen, The Micro-Doppler
 Effect in Radar (2011). Relative speed Rv = v/h, h the height of the hip (1/s); gaits a: Rv < 0.5,

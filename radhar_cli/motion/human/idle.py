@@ -119,15 +119,11 @@ class Fidget(NamedTuple):
 
 
 FIDGETS = (
-    "shift",
-    "lean",
-    "pitch",
-    "yaw",
-    "right_shoulder",
-    "left_shoulder",
-    "right_elbow",
+    *("shift", "lean", "pitch", "yaw", "right_shoulder", "left_shoulder", "right_elbow"),
     "left_elbow",
 )
+# What `IdleState` has but for the breath.
+SWAYING = ("lean", "roll", "legs_roll", "pitch", "yaw", "shoulders", "elbows")
 
 
 @dataclass(frozen=True)
@@ -166,22 +162,22 @@ class IdleState:
         roll: Float = self.roll + shift
         return roll
 
-    @property
+    @cached_property
     def pitch(self) -> Float:
         """Pitch of the trunk ahead [M], rad: lean and fidgets."""
         return self.lean + self._fidgets["pitch"]
 
-    @property
+    @cached_property
     def yaw(self) -> Float:
         """Turn of the trunk to the left [M], rad."""
         return self._fidgets["yaw"]
 
-    @property
+    @cached_property
     def shoulders(self) -> Float:
         """Further flexion of the right and left shoulder [2, M], rad."""
         return np.array([self._fidgets["right_shoulder"], self._fidgets["left_shoulder"]])
 
-    @property
+    @cached_property
     def elbows(self) -> Float:
         """Further flexion of the right and left elbow [2, M], rad."""
         return np.array([self._fidgets["right_elbow"], self._fidgets["left_elbow"]])

@@ -1,4 +1,4 @@
-"""Minimum-jerk steps: how a limb goes from one posture to another.
+"""Minimum-jerk steps: the way of a limb from one posture to another.
 
 Flash and Hogan, J. Neuroscience 5 (1985) 1688: S(x) = 10 x^3 - 15 x^4 + 6 x^5, x in 0..1, has the
 least jerk from rest to rest; twice continuously differentiable, peak slope 1.875.
@@ -162,7 +162,7 @@ class Course:
 
 @dataclass(frozen=True)
 class Lags:
-    """How far joints lead and lag: each channel moves in its own part of a step's time."""
+    """Leads and lags of joints: each channel moves in its own part of a step's time."""
 
     # by which share of its length each step is shorter; 0 moves all joints at the same time
     share: float = 0.0

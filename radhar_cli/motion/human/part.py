@@ -1,4 +1,4 @@
-"""What an activity is made of: parts, each from one state of rest to the next."""
+"""Parts that activities are made of, each from one state of rest to the next."""
 
 from math import cos, sin
 from typing import NamedTuple, Protocol

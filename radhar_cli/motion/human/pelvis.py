@@ -15,7 +15,7 @@ BENT, SOFTNESS = 0.9965, 280.0
 
 
 class LegBound(NamedTuple):
-    """How straight legs get: D (m) and k (1/m) of `hip_height`, numbers or [M]."""
+    """Bound on the reach of legs: D (m) and k (1/m) of `hip_height`, numbers or [M]."""
 
     reach: Float | float
     softness: Float | float
@@ -111,7 +111,7 @@ def hip_point_with_sway(
     which the hip is then, so the difference between the two is added.
 
     Args:
-        person: Whose hip; all arguments but `sway` are those of `hip_height`.
+        person: Person; all arguments but `sway` are those of `hip_height`.
         standing: m.
         hip: x and y without sway [2, M], m.
         joint_offsets: [3, 2, M], m.

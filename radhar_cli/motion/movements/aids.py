@@ -15,7 +15,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class AidsConfig(Section, Generic[B]):
-    """How people walk with a stick or a walker, which itself does not scatter."""
+    """Walking with a stick or a walker, which itself does not scatter."""
 
     stick_pace: Annotated[
         B, ByActivity(NOT_NEGATIVE, RATIO), People("walking_with_stick", 0.3, 1), PERSONAL
@@ -33,7 +33,7 @@ class AidsConfig(Section, Generic[B]):
     rollator: Annotated[
         B, ByActivity(NOT_NEGATIVE, RATIO), People("walking_with_walker", 0, 1), PERSONAL
     ] = default_draw(Choice(choice=(0, 1)))
-    """What the walker is: 1 is a rollator, 0 a frame that is lifted once a stride."""
+    """Kind of walker: 1 is a rollator, 0 a frame that is lifted once a stride."""
 
 
 SECTION = AidsConfig

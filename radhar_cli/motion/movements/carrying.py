@@ -14,7 +14,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class CarryingConfig(Section, Generic[B]):
-    """How people carry something, which itself does not scatter."""
+    """Carrying something, which itself does not scatter."""
 
     pace: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("carrying", 0.4, 1)] = default_draw(
         normal(0.9, 0.06, 0.7, 1.0)
@@ -23,7 +23,7 @@ class CarryingConfig(Section, Generic[B]):
     bag: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("carrying", 0, 1)] = default_draw(
         Choice(choice=(0, 1))
     )
-    """What is carried: 0 is a box in both hands before the trunk, 1 a bag in one hand."""
+    """Load that is carried: 0 is a box in both hands before the trunk, 1 a bag in one hand."""
 
 
 SECTION = CarryingConfig

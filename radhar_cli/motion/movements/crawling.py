@@ -36,7 +36,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class CrawlingConfig(Section, Generic[B]):
-    """How people crawl on hands and knees."""
+    """Crawling on hands and knees."""
 
     speed_mps: Annotated[B, ByActivity(NOT_NEGATIVE, SPEED), People("crawling", 0.2, 1.0)] = (
         default_draw(normal(0.5, 0.12, 0.28, 0.9))
@@ -114,38 +114,34 @@ class Crawling:
 
     @property
     def place(self) -> Place:
-        """Place where the body comes to rest."""
         return Place(float(self._way(np.array([self._stops + 9 * self.period]))[0]))
 
     @property
     def end(self) -> float:
-        """When the last limb has come down, s; infinity for a person who goes on."""
         if self.crawl.duration == inf:
             return inf
         return max(swings.end for swings in self.swings.values())
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """Names of what is under way, and from when on."""
         end = self.end
         rest = () if end == inf else (Phase(end, "kneeling"),)
         return (Phase(self.begin, "crawling"), *rest)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants at which a position is not smooth, s."""
         ramps = [start + k * self.period for start in (self.begin, self._stops) for k in (0, 1)]
         swings = (t for swings in self.swings.values() for t in swings.breakpoints)
         return (*swings, *ramps)
 
     def _way(self, t: Float) -> Float:
-        """How far the body has come at times t [M] (s), m."""
+        """Distance that the body has come at times t [M] (s), m."""
         up, down = ((t - start) / self.period for start in (self.begin, self._stops))
         strides = minimum_jerk_integral(up) - minimum_jerk_integral(down)
         return self.crawl.speed * self.period * strides
 
     def _under_way(self, t: Float) -> Float:
-        """How far the body is from rest on hands and knees at times t [M] (s), 0 to 1."""
+        """Share of crawling, not rest on hands and knees, at times t [M] (s), 0 to 1."""
         begin, stops = ((t - start) / self.period for start in (self.begin, self._stops))
         share: Float = minimum_jerk(begin) - minimum_jerk(stops)
         return share
@@ -187,7 +183,6 @@ class Crawling:
         return swings
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """Pose of the body at times t [M] (s)."""
         body, rest = self.person, self.rest
         zero, distance = np.zeros((2, t.size)), self._way(t)
         swings = np.stack([self.swings[limb](t) for limb in (*KNEES, *HANDS)], axis=1)
@@ -267,12 +262,10 @@ class Swings:
 
     @property
     def end(self) -> float:
-        """When the last one has ended, s."""
         return float(self.starts[-1]) + self.length
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants (s) at which a place or a height is not smooth."""
         shares = 0.0, self.ramp, 0.5, 1 - self.ramp, 1.0
         return tuple(t for share in shares for t in (self.starts + share * self.length).tolist())
 

@@ -43,7 +43,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class ExercisesConfig(Section, Generic[B]):
-    """How exercises are done: squats, jumps, lunges and the like."""
+    """Exercises: squats, jumps, lunges and the like."""
 
     period: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0.6, 1.8)] = default_draw(
         uniform(0.8, 1.3)

@@ -47,7 +47,7 @@ class Falls(Weighted, Section):
 
 
 class FallingConfig(Section, Generic[B]):
-    """How people fall, stumble and land."""
+    """Falling, stumbling and landing."""
 
     direction: Annotated[FallName | Falls, People(None)] = "forward"
     """Direction of a fall or stumble: forward, backward, sideways, or drawn: {choice: [forward,
@@ -88,7 +88,7 @@ ON_FLOOR, PROPPED = "lying against the seat", "lying on the hands"
 
 @dataclass(frozen=True)
 class Prone:
-    """How people lie after a fall ahead: height of the knees over the stature, angles in rad."""
+    """Posture after a fall ahead: height of the knees over the stature, angles in rad."""
 
     knee_height: float = 0.05
     thigh: float = radians(90)  # or in line with the shank, where that is less
@@ -112,7 +112,7 @@ class Prone:
 
 @dataclass(frozen=True)
 class OnFours(Prone):
-    """How people are on hands and knees, who broke a fall with the hands."""
+    """Posture on hands and knees, of people who broke a fall with the hands."""
 
     thigh: float = radians(4)
     trunk: float = radians(84)
@@ -127,8 +127,8 @@ class OnFours(Prone):
 class FallForward:
     """Falls from standing over the knees, within `duration` s from the loss of balance to impact.
 
-    Who is `prone` on hands and knees has broken the fall with the hands: the arms give way, then
-    push the trunk back.
+    A person who ends on hands and knees has broken the fall with the hands: the arms give way,
+    then push the trunk back.
     """
 
     duration: float = 1.1
@@ -165,7 +165,7 @@ class FallForward:
 
 @dataclass(frozen=True)
 class Supine:
-    """How people lie after a fall backwards: height of the hip in m, angles in rad."""
+    """Posture after a fall backwards: height of the hip in m, angles in rad."""
 
     hip_height: float = 0.10
     shank: float = radians(-55)
@@ -181,7 +181,7 @@ class Supine:
 
 @dataclass(frozen=True)
 class Sitting:
-    """How people sit on the floor, knees up, hands down; heights and lengths over the stature."""
+    """Posture of sitting on the floor, knees up, hands down; lengths are over the stature."""
 
     hip_height: float = 0.057
     shank: float = radians(-55)
@@ -211,7 +211,7 @@ AGAINST_SEAT = Sitting(shank=radians(-45), trunk=radians(-18), feet=0.30, hands=
 class FallBackward:
     """Falls from standing onto the buttocks, then the back, within about `duration` s.
 
-    Who ends `Sitting` has broken the fall with the hands, which land with the pelvis (within 0.04
+    A person who ends `Sitting` has broken the fall with the hands, which land with the pelvis (within 0.04
     s: Hsiao and Robinovitch, J. Biomechanics 31 (1998) 1).
     """
 

@@ -158,7 +158,7 @@ class FallingSideways:
 class RiseFromSide:
     """Gets up from lying on the side, over a crouch above the feet, within `duration` s.
 
-    Who only tries lifts the trunk and sinks back. The way is a guess.
+    A vain try lifts the trunk, which sinks back. The way is a guess.
     """
 
     fall: FallSideways

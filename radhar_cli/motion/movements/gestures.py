@@ -58,7 +58,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class GesturesConfig(Section, Generic[B]):
-    """How arms are moved: drinking, writing, waving, clapping."""
+    """Movements of the arms: drinking, writing, waving, clapping."""
 
     left_handed: Annotated[
         B,
@@ -71,7 +71,7 @@ class GesturesConfig(Section, Generic[B]):
         B, ByActivity(NOT_NEGATIVE, SECONDS), People("drinking drinking_seated", 3, 60)
     ] = default_draw(normal(5.9, 1.2, 3.5, 9.0))
     """Duration of a drink at a table, from reaching for the cup to returning; the next one follows.
-    Who stands has the cup in the hand, and takes 0.65 of that."""
+    A standing person has the cup in the hand, and takes 0.65 of that."""
     cup_held: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("drinking", 0, 1)] = (
         default_draw(Choice(choice=(0, 1)))
     )
@@ -625,10 +625,7 @@ MOVEMENTS = (
         nearby="eat eating sipping",
     ),
     _kind(
-        "writing",
-        "stands and writes on a board",
-        make_writing,
-        "write writing_on_board schreiben",
+        "writing", "stands and writes on a board", make_writing, "write writing_on_board schreiben"
     ),
     _kind(
         "waving",

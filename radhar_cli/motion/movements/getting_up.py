@@ -1,4 +1,4 @@
-"""What comes after a fall: getting up, as in the first half of S11, or trying to.
+"""Movements after a fall: getting up, as in the first half of S11, or trying to.
 
 From prone or hands and knees over the knees; from the back or the buttocks by sitting up, drawing
 the feet in and rising from a squat, as young people do most often (VanSant, Phys. Ther. 68 (1988)
@@ -51,10 +51,10 @@ DRAWN_IN = 0.32  # share of getting up in which the hands of who lies on the bel
 def hands_beside_chest(
     person: Physique, lying: dict[str, float], place: tuple[float, float]
 ) -> tuple[float, float]:
-    """Distances of hands ahead of the ankles and beside the middle, m, of who will push with them.
+    """Distances of hands ahead of the ankles and beside the middle, m, before they push.
 
     Args:
-        person: Who lies on the belly.
+        person: Person on the belly.
         lying: Channels of `planted.posture` of that.
         place: Place of the hands behind and outside the shoulders, over the stature.
     """
@@ -97,10 +97,7 @@ class GetUp:
         lying = _lying_posture(person, self.before)
         rest = resting_channels(person)
         steps_of = self.over_knees if self.before in ON_BELLY else self._over_squat
-        steps = [
-            *steps_of(person, lying, rest),
-            *standing_up_steps(lying),
-        ]
+        steps = [*steps_of(person, lying, rest), *standing_up_steps(lying)]
         course = Course.of(lying, scale_steps(steps, begin, self.duration))
         end = begin + self.duration
         phases = (Phase(begin, "getting up"), Phase(end, "standing"))

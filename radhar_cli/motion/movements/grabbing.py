@@ -17,7 +17,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class GrabbingConfig(Section, Generic[B]):
-    """How something is picked up from the floor."""
+    """Picking something up from the floor."""
 
     bend_deg: Annotated[B, ByActivity(ANGLE), People("grabbing", 30, 85)] = default_draw(
         normal(72.0, 5.0, 60.0, 85.0)

@@ -1,4 +1,4 @@
-"""What people do who stand or sit: they sway, breathe, fidget and shuffle (`motion.human.idle`)."""
+"""Small movements at rest: sway, breath, fidgets and shuffles (`motion.human.idle`)."""
 
 from collections.abc import Iterable
 from math import pi
@@ -13,7 +13,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class IdleConfig(Section, Generic[B]):
-    """What people do who stand or sit."""
+    """Small movements of people who stand or sit."""
 
     fidget_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("", 0, 2), UNSTEADY] = (
         default_draw(uniform(0.0, 0.4))

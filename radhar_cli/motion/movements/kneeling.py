@@ -22,12 +22,12 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class KneelingConfig(Section, Generic[B]):
-    """How people kneel."""
+    """Kneeling."""
 
     sit_back: Annotated[
         B, ByActivity(NOT_NEGATIVE, RATIO), People("kneeling kneeling_down", 0, 1)
     ] = default_draw(Choice(choice=(0.0, 1.0)))
-    """How far who kneels sits back: 0 is upright on the knees, 1 on the heels."""
+    """Distance by which a kneeling person sits back: 0 is upright on the knees, 1 on the heels."""
 
 
 SECTION = KneelingConfig

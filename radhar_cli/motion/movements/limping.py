@@ -13,7 +13,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class LimpingConfig(Section, Generic[B]):
-    """How people limp, to spare a leg whose side is drawn; a stick goes with it."""
+    """Limping, to spare a leg whose side is drawn; a stick goes with it."""
 
     pace: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("limping", 0.3, 1), PERSONAL] = (
         default_draw(normal(0.72, 0.08, 0.5, 0.95))

@@ -38,7 +38,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class LyingConfig(Section, Generic[B]):
-    """How people lie, on the floor or in bed, lie down, turn over and get up from bed."""
+    """Lying on the floor or in bed, lying down, turning over and getting up from bed."""
 
     roll_deg: Annotated[B, ByActivity(ANGLE), People(None, -180, 180)] = default_draw(
         Choice(choice=(0.0, 90.0, -90.0, 180.0), weights=(3, 2, 2, 1))
@@ -47,7 +47,7 @@ class LyingConfig(Section, Generic[B]):
     turn_deg: Annotated[B, ByActivity(ANGLE), People("turning_over", -180, 180)] = default_draw(
         Choice(choice=(90.0, -90.0, 180.0, -180.0))
     )
-    """How far who turns over rolls, to the left or, below 0, to the right."""
+    """Angle of a turn over, to the left or, below 0, to the right."""
     bed: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("lying turning_over", 0, 1)] = (
         default_draw(Choice(choice=(0.0, 1.0)))
     )
@@ -152,7 +152,7 @@ def _at_roll(curve: Float, roll: Float) -> Float:
 
 @dataclass(frozen=True)
 class Rest:
-    """How somebody lies; lengths over the stature, angles in rad."""
+    """Rest of somebody who lies; lengths over the stature, angles in rad."""
 
     roll: float = 0.0  # 0 on the back, pi/2 on the left side, pi on the belly
     surface: float = 0.0  # height of the surface, 0 for the floor
@@ -346,26 +346,21 @@ class Lying:
 
     @property
     def before(self) -> str:
-        """State in which it begins."""
         return self.rest.state
 
     @property
     def after(self) -> str:
-        """State in which it ends."""
         return self.rest_after.state
 
     @property
     def place(self) -> Place:
-        """Place where it ends: under the hip, towards the head."""
         return Place(turn=self.head)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants at which a position is not smooth, s."""
         return self.course.breakpoints
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """Pose of the body at times t [M] (s)."""
         body, zero = self.person, np.zeros(t.size)
         trunk_roll, pelvis_roll, *gestures = self.course(t)
         limbs = lying_limbs(self.rest.hands, trunk_roll, pelvis_roll)
@@ -408,7 +403,6 @@ class TurnOver:
 
     @property
     def after(self) -> Rest:
-        """How the person lies at the end."""
         return replace(self.rest, roll=wrap_angle(self.rest.roll + self.by))
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Lying:

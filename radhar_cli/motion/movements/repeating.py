@@ -23,25 +23,19 @@ PHASE = "repeating.cycle_phase"
 
 
 class RepeatingConfig(Section, Generic[B]):
-    """How what is done again and again differs from one time to the next."""
+    """Differences between one repetition of a movement and the next."""
 
     cycle_phase: Annotated[B, ByActivity(SIGNED), People(None, -1, 1)] = default_draw(
         uniform(-0.5, 0.5)
     )
     """Initial phase of steady walks, punches, kicks and turns, in cycles."""
-    tempo_jitter: Annotated[
-        B,
-        ByActivity(NOT_NEGATIVE, RATIO),
-        People(None, 0, 0.2),
-        UNSTEADY,
-    ] = default_draw(uniform(0.0, 0.1))
+    tempo_jitter: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0, 0.2), UNSTEADY] = (
+        default_draw(uniform(0.0, 0.1))
+    )
     """Relative standard deviation of the time from one punch, kick or turn to the next."""
-    size_jitter: Annotated[
-        B,
-        ByActivity(NOT_NEGATIVE, RATIO),
-        People(None, 0, 0.15),
-        UNSTEADY,
-    ] = default_draw(uniform(0.0, 0.1))
+    size_jitter: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0, 0.15), UNSTEADY] = (
+        default_draw(uniform(0.0, 0.1))
+    )
     """Relative standard deviation of the size from one punch, kick or turn to the next."""
 
 

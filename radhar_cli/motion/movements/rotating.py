@@ -31,7 +31,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class RotatingConfig(Section, Generic[B]):
-    """How a body rotates on the spot (S7)."""
+    """Rotation of a body on the spot (S7)."""
 
     turn_deg: Annotated[
         B, ByActivity(ANGLE), People("body_rotating", -90, 90), Paper("S7"), PERSONAL

@@ -44,7 +44,7 @@ RUNS = "running jogging_in_place"
 
 
 class RunningConfig(Section, Generic[B]):
-    """How people run, and jog on the spot."""
+    """Running, and jogging on the spot."""
 
     speed_mps: Annotated[
         B, ByActivity(NOT_NEGATIVE, SPEED), People("running", 1.0, 7.0), PERSONAL
@@ -122,7 +122,7 @@ NUDGE = 2e-5  # s, for derivatives of the leg at both ends of a swing
 
 @dataclass(frozen=True)
 class RunningGait:
-    """How a person runs."""
+    """Numbers of a run."""
 
     speed: float  # m/s; 0 is on the spot
     cadence: float = 1.0  # factor of the usual steps per second
@@ -138,7 +138,7 @@ class RunningGait:
 
     def __post_init__(self) -> None:
         if not self.speed >= 0:
-            raise ValueError(f"who runs has a speed of 0 m/s or more, not {self.speed:g} m/s")
+            raise ValueError(f"a run has a speed of 0 m/s or more, not {self.speed:g} m/s")
 
 
 @dataclass(frozen=True)
@@ -436,7 +436,6 @@ class Running:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants (s) of all events of the feet, and both ends of starts and stops."""
         times = {time for feet in self._stances for stance in feet for time in stance[:3]}
         times |= set(self._hip_curve.times.tolist()) | set(self._phase_curve.times.tolist())
         times |= {time for ramp in self._ramps if ramp for time in (ramp[0], sum(ramp))}

@@ -29,18 +29,15 @@ from radhar_cli.schema.section import B, ByActivity, Section, by_activity, defau
 
 
 class SittingConfig(Section, Generic[B]):
-    """How people sit down, sit, and stand up."""
+    """Sitting down, sitting, and standing up."""
 
     seat_height: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0.24, 0.33)] = (
         default_draw(normal(0.285, 0.015, 0.25, 0.32))
     )
     """Height of the seated hip, relative to the stature."""
-    lean_deg: Annotated[
-        B,
-        ByActivity(ANGLE),
-        People(None, 0, 60),
-        PERSONAL,
-    ] = default_draw(normal(42.0, 8.0, 25.0, 58.0))
+    lean_deg: Annotated[B, ByActivity(ANGLE), People(None, 0, 60), PERSONAL] = default_draw(
+        normal(42.0, 8.0, 25.0, 58.0)
+    )
     """Forward pitch of the trunk while sitting down or rising."""
     recline_deg: Annotated[B, ByActivity(ANGLE), People(None, -10, 45)] = default_draw(0.0)
     """Backward pitch of the trunk in the seat."""
@@ -111,7 +108,7 @@ LEAN = "sitting.lean_deg"
 
 @dataclass(frozen=True)
 class Seat:
-    """How people sit: height of the hip over the stature, angles in rad, `recline` backwards."""
+    """Seated posture: height of the hip over the stature, angles in rad, `recline` backwards."""
 
     height: float = 0.285
     shank: float = radians(8)
@@ -131,7 +128,7 @@ class Seat:
 
 @dataclass(frozen=True)
 class Rise:
-    """How people stand up; angles in rad."""
+    """Way of standing up; angles in rad."""
 
     lean: float = radians(42)  # lean of the trunk ahead while the body leaves the seat
     swing: float = radians(20)  # swing of the arms ahead
@@ -218,9 +215,7 @@ def make_seat(mover: Mover) -> Seat:
     """Make the seat of a person."""
     sitting = mover.numbers(SittingConfig[float])
     return Seat(
-        height=sitting.seat_height,
-        recline=radians(sitting.recline_deg),
-        lap=sitting.hands_on_lap,
+        height=sitting.seat_height, recline=radians(sitting.recline_deg), lap=sitting.hands_on_lap
     )
 
 

@@ -49,7 +49,7 @@ ENTRY = {"right_foot": (0.0, 0.6), "left_foot": (0.4, 0.6), "guard": (0.0, 1.0)}
 
 
 class StrikingConfig(Section, Generic[B]):
-    """How people punch and kick."""
+    """Punches and kicks."""
 
     punch_hz: Annotated[B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("punching", 0.05, 1.1)] = (
         default_draw(vary(0.7, 0.15))

@@ -64,11 +64,6 @@ MOVEMENTS = (
         nearby="staggering",
     ),
     MovementKind(
-        "tripping",
-        "trips on the way",
-        make_trip,
-        like="walking",
-        uses=(PITCH,),
-        words="trip",
+        "tripping", "trips on the way", make_trip, like="walking", uses=(PITCH,), words="trip"
     ),
 )

@@ -9,13 +9,12 @@ How long it takes differs with age and strength (Alexander et al., J. Rehabil. R
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from math import acos, atan2, cos, inf, pi, sin
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from radhar_cli.motion.human.idle import IdleState, motionless
+from radhar_cli.motion.human.idle import SWAYING, IdleState, motionless
 from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
 from radhar_cli.motion.human.part import (
     HERE,
@@ -75,51 +74,12 @@ class Held(NamedTuple):
     pelvis: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True)
-class CalmedIdle(IdleState):
+def calm(idle: IdleState, share: Float) -> IdleState:
     """A body's own movements, of which a share [M] is left; breath and pulse stay."""
-
-    share: Float
-
-    @cached_property
-    def _uncalmed(self) -> IdleState:
-        """All of the body's own movements."""
-        return IdleState(self.idle, self.t)
-
-    @property
-    def lean(self) -> Float:
-        """Lean ahead [M], rad."""
-        return self.share * self._uncalmed.lean
-
-    @property
-    def roll(self) -> Float:
-        """Lean to the left [M], rad."""
-        return self.share * self._uncalmed.roll
-
-    @property
-    def legs_roll(self) -> Float:
-        """Lean of the legs to the left [M], rad."""
-        return self.share * self._uncalmed.legs_roll
-
-    @property
-    def pitch(self) -> Float:
-        """Pitch of the trunk ahead [M], rad."""
-        return self.share * self._uncalmed.pitch
-
-    @property
-    def yaw(self) -> Float:
-        """Turn of the trunk to the left [M], rad."""
-        return self.share * self._uncalmed.yaw
-
-    @property
-    def shoulders(self) -> Float:
-        """Further flexion of the shoulders [2, M], rad."""
-        return self.share * self._uncalmed.shoulders
-
-    @property
-    def elbows(self) -> Float:
-        """Further flexion of the elbows [2, M], rad."""
-        return self.share * self._uncalmed.elbows
+    calmed = IdleState(idle.idle, idle.t)
+    for name in SWAYING:
+        vars(calmed)[name] = share * getattr(idle, name)
+    return calmed
 
 
 @dataclass(frozen=True)
@@ -145,14 +105,12 @@ class Transfer:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants at which a position is not smooth, s."""
         return (*self.course.breakpoints, *self.other.breakpoints)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """Pose of the body at times t [M] (s)."""
         body = self.person
         of = dict(zip(self.course.channels, self.course(t), strict=True))
-        other = self.other.pose(t, CalmedIdle(idle.idle, t, share=1 - of["trunk"]))
+        other = self.other.pose(t, calm(idle, 1 - of["trunk"]))
         roll, pelvis_roll = of["trunk_roll"], of["pelvis_roll"]
         trunk, pelvis = self._axes(of, idle, other)
         limbs = blend_limbs(
@@ -226,7 +184,7 @@ def _pose_at(person: Physique, part: Part, t: float) -> Pose:
 
 
 def _held(pose: Pose) -> Held:
-    """How trunk and pelvis of a pose at one instant are held."""
+    """Angles at which trunk and pelvis of a pose at one instant are held."""
     left = unit(pose.hip_joints[:, 1] - pose.hip_joints[:, 0])
     ahead = unit(np.cross(left, pose.trunk.up, axis=0))
     pelvis = Axes(ahead, left, np.cross(ahead, left, axis=0))
@@ -236,7 +194,7 @@ def _held(pose: Pose) -> Held:
 def _course(
     held: Held, steps: Iterable[Step], lying: bool = False, rolls: tuple[float, float] = (0.0, 0.0)
 ) -> Course:
-    """Course of a `Transfer` that begins lying, or held; `rolls` of who begins lying, rad."""
+    """Course of a `Transfer` that begins lying, or held; `rolls` of a person who begins lying, rad."""
     first = rolls if lying else (held.trunk[2], held.pelvis[2])
     initial = dict.fromkeys(SHARES, 1.0 if lying else 0.0)
     initial |= {"trunk_roll": first[0], "pelvis_roll": first[1], "x": 0.0, "y": 0.0}
@@ -244,7 +202,7 @@ def _course(
 
 
 def bed_seat(rest: Rest) -> Seat:
-    """How people sit on the edge of the bed in which they lie."""
+    """Seat on the edge of the bed in which people lie."""
     return Seat(height=rest.surface + FLESH)
 
 
@@ -370,7 +328,7 @@ class Settle:
     duration: float = 5.0
 
     def rest(self, person: Physique) -> Rest:
-        """How the person lies at the end."""
+        """Rest in which the person lies at the end."""
         _, held, _ = self._fallen(person)
         roll = held.trunk[2] + self.by
         return Rest(wrap_angle(pi / 2 * round(roll / (pi / 2))), 0.0, self.hands)
@@ -447,26 +405,21 @@ class Fallen:
 
     @property
     def before(self) -> str:
-        """State in which the fall has ended."""
         return self.fall.after
 
     @property
     def after(self) -> str:
-        """State in which the fall has ended, which lasts."""
         return self.fall.after
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """Name of what is under way: lying."""
         return (Phase(self.begin, "lying"),)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """None: nothing moves but the body itself."""
         return ()
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """Pose of the body at times t [M] (s)."""
         place = origin_seen_from(self.fall.place)
         pose = self.fall.pose(t, idle)
         return pose.at(np.array(place.ahead), np.array(place.left), np.array(place.turn))

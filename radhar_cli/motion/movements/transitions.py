@@ -1,4 +1,4 @@
-"""What comes with picking up, sitting down and standing up: joints that lead, steps, fidgets."""
+"""Details of picking up, sitting down and standing up: joints that lead, steps, fidgets."""
 
 from typing import Annotated, Generic
 
@@ -11,14 +11,11 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class TransitionsConfig(Section, Generic[B]):
-    """What comes with picking up, sitting down and standing up."""
+    """Details of picking up, sitting down and standing up."""
 
-    joint_lag: Annotated[
-        B,
-        ByActivity(NOT_NEGATIVE, RATIO),
-        People(None, 0, 0.6),
-        UNSTEADY,
-    ] = default_draw(0.0)
+    joint_lag: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0, 0.6), UNSTEADY] = (
+        default_draw(0.0)
+    )
     """Share of a movement by which some joints lead and others lag; which ones differs between
     recordings."""
     step_m: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("S4 S5 S6", 0, 0.5), UNSTEADY] = (

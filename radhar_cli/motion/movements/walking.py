@@ -62,7 +62,7 @@ WALKING_SPEED = normal(1.3, 0.18, 0.7, 2.0)
 
 
 class WalkingConfig(Section, Generic[B]):
-    """How people walk (motion.model: human); the paper's gait takes the speed alone."""
+    """Walking (motion.model: human); the paper's gait takes the speed alone."""
 
     speed_mps: Annotated[
         B,
@@ -173,7 +173,7 @@ TRIP = Step("phase", 0.3, 0.0, 1.2), Step("upset", 1.0, 0.05, 0.4), Step("upset"
 
 @dataclass(frozen=True)
 class Gait:
-    """How a person walks; phases are fractions of a stride from right heel strike on."""
+    """Numbers of a walk; phases are fractions of a stride from right heel strike on."""
 
     speed: float  # m/s
     period_scale: float = 1.0  # factor of the stride's duration after Boulic and Thalmann
@@ -261,7 +261,7 @@ class BodyChannels(NamedTuple):
 
 
 class Stance(NamedTuple):
-    """What a stance adds to the channels of a walk at M instants, named as in `BodyChannels`.
+    """Additions of a stance to the channels of a walk at M instants, named as in `BodyChannels`.
 
     `sway` is the displacement of the hip [3, M] (m) by posture and sway of the legs.
     """
@@ -520,7 +520,6 @@ class Walking:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants (s) of the feet's events, and both ends of ramps, strides and half turns."""
         tracks = (*self._foot_tracks, self._aid_track)
         ends = [track.breakpoints for track in tracks if track is not None]
         if self.from_rest:
@@ -587,7 +586,7 @@ class Walking:
         return np.array([off, toe, k + delay + 1 + gait.touch_down, above])
 
     def _limp_of(self, delay: float) -> tuple[float, float, float]:
-        """How a limp changes the stride of a foot, fractions of a stride.
+        """Changes of a foot's stride by a limp, fractions of a stride.
 
         Args:
             delay: How much later the foot's stride is than the right one's without a limp.
@@ -647,10 +646,7 @@ class Walking:
         cycle = gait.speed * self.stride / (2 * pi)
         surge = sum(
             curves.harmonic(k, share * cycle / k, SURGE_PHASE + 1 / (4 * k))
-            for k, share in (
-                (2, gait.surge),
-                (4, SHARPNESS * gait.surge),
-            )
+            for k, share in ((2, gait.surge), (4, SHARPNESS * gait.surge))
         )
         arm, bend = curves.shoulder(rv, gait.arm_swing), curves.elbow(rv)
         bend[0] -= self.person.elbow

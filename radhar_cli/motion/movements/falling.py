@@ -211,8 +211,8 @@ AGAINST_SEAT = Sitting(shank=radians(-45), trunk=radians(-18), feet=0.30, hands=
 class FallBackward:
     """Falls from standing onto the buttocks, then the back, within about `duration` s.
 
-    A person who ends `Sitting` has broken the fall with the hands, which land with the pelvis (within 0.04
-    s: Hsiao and Robinovitch, J. Biomechanics 31 (1998) 1).
+    A person who ends `Sitting` has broken the fall with the hands, which land with the pelvis
+    (within 0.04 s: Hsiao and Robinovitch, J. Biomechanics 31 (1998) 1).
     """
 
     duration: float = 1.1  # to the impact of the trunk, s

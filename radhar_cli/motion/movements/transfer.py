@@ -194,7 +194,7 @@ def _held(pose: Pose) -> Held:
 def _course(
     held: Held, steps: Iterable[Step], lying: bool = False, rolls: tuple[float, float] = (0.0, 0.0)
 ) -> Course:
-    """Course of a `Transfer` that begins lying, or held; `rolls` of a person who begins lying, rad."""
+    """Course of a `Transfer` that begins lying at `rolls` (rad), or held."""
     first = rolls if lying else (held.trunk[2], held.pelvis[2])
     initial = dict.fromkeys(SHARES, 1.0 if lying else 0.0)
     initial |= {"trunk_roll": first[0], "pelvis_roll": first[1], "x": 0.0, "y": 0.0}

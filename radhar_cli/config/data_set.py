@@ -51,7 +51,9 @@ class Config(Request):
 
         document = self.model_dump(mode="json", exclude_unset=True)
         others = document.pop(OTHERS_KEY, None)
-        changed = load_config(document, {**(values or {}), **more}, type(self))
+        given: dict[str, Any] = {**(values or {}), **more}
+        changed = load_config(document, given, type(self))
+        assert isinstance(changed, type(self))
         return changed.model_copy(update={OTHERS_KEY: getattr(self, OTHERS_KEY)} if others else {})
 
 

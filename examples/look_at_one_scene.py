@@ -14,7 +14,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-import radhar_cli as radhar
+import radhar
 
 CONFIG = """\
 radar: {prf_hz: 2000, bandwidth_hz: 1e9}

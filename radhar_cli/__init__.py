@@ -2,25 +2,18 @@
 
 The packages, in the order in which imports go (docs/reference/architecture.md):
 
-    motion        `Motion`: scatterers over time; the paper's model, the human one, their skeleton
-    activities    the twelve activities, other movements, and user-defined classes
-    radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel)
-    config        the schema of the YAML file, its checks, and how it is read
-    scene         (config, class, index) -> one scene: a config with nothing left to draw
+    motion        movements of people and their skeleton, the paper's model, recordings, activities
+    radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel), room
     processing    cancellers, range compression, compensation, STFT, FSST, entropy, image
-    receiver      impairments between echo and processing; noise
-    echo          paths -> echo: exact (the reference), direct (closed form), gated, impulse, boards
-    bodies        motion -> paths: points, ellipsoids, surfaces; delay and amplitude over time
-    assembly      numbers of a scene -> objects of physics: radar, wall, room, people, receiver
-    products      scene -> maps: the table of products, the plan of a request, its run
-    scene_checks  where a scene leaves its models, what noise hides, which keys do nothing
-    single_scene  one scene with its truth, and its files
-    figures       panels, animations, confusion matrices, curves
+    readers       files of others: movements, captures, points, .cfg
+    echo          motion -> paths -> echo: exact (the reference), direct, gated, impulse, boards
+    config        the schema of the YAML file, its checks, and how it is read
+    scene         (config, class, index) -> one scene: drawn, built, computed, checked, written
+    figures       panels, animations, pages, reports
     dataset       many scenes -> shards -> dataset.h5 and PNG; resume, verify, estimate
     capture       recordings of real radars -> maps, fitted configs, data sets
     learning      images -> trained networks and reports; the only package with PyTorch
-    two_sample    statistics of two sets of maps, and whether they can be told apart
-    tradeoff      what accuracy costs
+    study         audit, comparison of two sets, what accuracy costs, how far numbers may go
     commands      one file per subcommand of the `radhar` program
 
 Symbols (SI units, radians)::
@@ -49,13 +42,17 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:  # for the completion of editors
     from radhar_cli.config import load_config as load_config
     from radhar_cli.config import load_radars as load_radars
+    from radhar_cli.dataset.generating import generate as generate
     from radhar_cli.dataset.on_demand import sample as sample
     from radhar_cli.dataset.reading import open_dataset as open_dataset
+    from radhar_cli.learning.interface import evaluate as evaluate
+    from radhar_cli.learning.interface import train as train
     from radhar_cli.learning.samples import Samples as Samples
     from radhar_cli.learning.sequences import Sequences as Sequences
     from radhar_cli.learning.torch_dataset import torch_dataset as torch_dataset
     from radhar_cli.learning.trained_run import load_run as load_run
     from radhar_cli.scene.single.simulate import simulate as simulate
+    from radhar_cli.study.audit.audit import audit as audit
 
 __version__ = "0.1.0"
 
@@ -63,6 +60,10 @@ _INTERFACE = {
     "load_config": "radhar_cli.config",
     "load_radars": "radhar_cli.config",
     "simulate": "radhar_cli.scene.single.simulate",
+    "generate": "radhar_cli.dataset.generating",
+    "train": "radhar_cli.learning.interface",
+    "evaluate": "radhar_cli.learning.interface",
+    "audit": "radhar_cli.study.audit.audit",
     "open_dataset": "radhar_cli.dataset.reading",
     "sample": "radhar_cli.dataset.on_demand",
     "Samples": "radhar_cli.learning.samples",
@@ -81,12 +82,14 @@ def __getattr__(name: str) -> object:
     try:
         return getattr(import_module(_INTERFACE[name]), name)
     except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] != "torch":
+        missing = (error.name or "").partition(".")[0]
+        if missing not in ("torch", "sklearn", "safetensors"):
             raise
         from radhar_cli.errors import how_to_install
 
+        library = {"torch": "PyTorch", "sklearn": "scikit-learn"}.get(missing, missing)
         command = how_to_install("torch", "safetensors", "sklearn")
-        raise ImportError(f"radhar.{name} needs PyTorch: {command}") from None
+        raise ImportError(f"radhar.{name} needs {library}: {command}") from None
 
 
 def __dir__() -> list[str]:

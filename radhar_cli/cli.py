@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 DATA_SETS = "Data sets"
 COMMANDS = {
-    DATA_SETS: ("generate", "verify", "audit", "merge", "convert"),
+    DATA_SETS: ("demo", "generate", "verify", "audit", "merge", "convert"),
     "Look": ("simulate", "motion", "preview", "view", "inspect"),
     "Real radars": ("import", "process", "fit", "compare"),
     "Learn": ("train", "eval", "predict", "adapt", "export"),

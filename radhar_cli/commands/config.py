@@ -29,6 +29,7 @@ def group() -> typer.Typer:
     )
     for command in (init, show, schema):
         app.command()(command)
+    app.command("list")(list_configs)
     return app
 
 
@@ -58,9 +59,6 @@ def init(
 ) -> None:
     """Write a config to start from: short, complete, or a preset.
 
-    Where the documentation names configs/human/room.yaml, an installed radhar has `--preset
-    human/room`.
-
     Example:
 
       radhar config init mine.yaml --minimal
@@ -84,7 +82,7 @@ def init(
         _list_radars()
         return
     if preset == "list":
-        _list_presets()
+        list_configs()
         return
     if out.exists() or out.is_symlink() or not out.parent.is_dir():
         why = "exists already" if out.parent.is_dir() else "there is no such folder"
@@ -127,8 +125,15 @@ def _list_radars() -> None:
         tell(f"{name:{width}}  {description}")
 
 
-def _list_presets() -> None:
-    """Print the configs that radhar comes with, one a line."""
+def list_configs() -> None:
+    """List the configs that radhar comes with; their names go where a config is asked for.
+
+    Example:
+
+      radhar config list
+
+      radhar generate human/room -o datasets/room --dry-run
+    """
     from radhar_cli.config.documents import PRESETS
     from radhar_cli.config.starting_file import describe_preset
 

@@ -1,7 +1,7 @@
 """The whole YAML file of a data set, checked across sections."""
 
-from collections.abc import Iterable
-from typing import TypeAlias, TypeVar
+from collections.abc import Iterable, Mapping
+from typing import Any, Self, TypeAlias, TypeVar
 
 from pydantic import model_validator
 from pydantic_core import PydanticCustomError
@@ -13,6 +13,7 @@ from radhar_cli.config.checks.data_set import (
     problems_of_recordings,
 )
 from radhar_cli.config.request import MeasuredRequest, Request
+from radhar_cli.config.several_radars import OTHERS_KEY
 from radhar_cli.schema.section import Problem
 
 R = TypeVar("R", bound=Request | MeasuredRequest)
@@ -35,6 +36,25 @@ class Config(Request):
     def problems(self) -> Iterable[Problem]:
         """Find what does not go together in this config, once defaults by model are filled in."""
         return problems(self.filled())
+
+    def replace(self, values: Mapping[str, Any] | None = None, **more: Any) -> Self:
+        """Return this config with other values, checked as if they stood in its file.
+
+        Args:
+            values: {dotted key: value}, such as {"radar.prf_hz": 128}; None for none.
+            more: values of keys of the first level, such as snr_db=5.
+
+        Raises:
+            ConfigError: a value is out of place; names its key, and what would be right.
+        """
+        from radhar_cli import load_config
+
+        document = self.model_dump(mode="json", exclude_unset=True)
+        others = document.pop(OTHERS_KEY, None)
+        given: dict[str, Any] = {**(values or {}), **more}
+        changed = load_config(document, given, type(self))
+        assert isinstance(changed, type(self))
+        return changed.model_copy(update={OTHERS_KEY: getattr(self, OTHERS_KEY)} if others else {})
 
 
 class ConfigOfRecordings(Config):

@@ -4,6 +4,7 @@ import json
 import os
 import re
 from collections.abc import Iterator, Mapping
+from copy import deepcopy
 from functools import lru_cache
 from itertools import accumulate
 from pathlib import Path
@@ -18,6 +19,7 @@ from radhar_cli.schema.number import FORMS
 
 Document: TypeAlias = dict[str, Any]
 Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
+Source: TypeAlias = Path | Mapping[str, Any] | None  # a file, the plain values of one, or nothing
 
 BASE = "base"
 FILE_OF_CFG = "radar.cfg:"  # key, which none is, of the name that messages have for a .cfg
@@ -57,15 +59,24 @@ def read_document(path: Path) -> tuple[Document, Places]:
     Raises:
         ConfigError: the file cannot be read, is not YAML, or holds no mapping.
     """
-    if (name := _preset_called(path.as_posix())) and not path.exists():
-        raise ConfigError(
-            f"{path}: no such file; `radhar config init FILE --preset {name}` writes that config"
-        )
     document, lines = parse_yaml(text_of(path, MAX_TEXT, ConfigError), str(path))
     document = {} if document is None else document
     if not isinstance(document, dict):
         raise ConfigError(f"{path}: should be a mapping of keys such as 'seed: 1'")
     places = {key: f"{path}:{line}" for key, line in lines.items()}
+    _fill_in(document, places, path.parent, str(path))
+    return document, places
+
+
+def _fill_in(document: Document, places: Places, folder: Path, where: str) -> None:
+    """Give keys their present names, and each `radar.cfg` the text of its file.
+
+    Args:
+        document: keys and values, changed in place.
+        places: {dotted key: file:line}, changed in place.
+        folder: folder from which files are named.
+        where: name of the document in messages.
+    """
     _rename_keys(document, "", places)
     people = document.get("people")
     for number, person in enumerate(people if isinstance(people, list) else ()):
@@ -75,9 +86,7 @@ def read_document(path: Path) -> tuple[Document, Places]:
     for key, value in {"radar": radar, **written}.items():
         if isinstance(value, dict) and "cfg" in value:
             places[f"{key}.cfg:"] = name_of_cfg(value["cfg"])
-            where = places.get(f"{key}.cfg", str(path))
-            value["cfg"] = cfg_text(value["cfg"], path.parent, where)
-    return document, places
+            value["cfg"] = cfg_text(value["cfg"], folder, places.get(f"{key}.cfg", where))
 
 
 def _preset_called(path: str) -> str | None:
@@ -86,6 +95,19 @@ def _preset_called(path: str) -> str | None:
     if name in PRESETS:
         return name
     return next((preset for preset in PRESETS if preset.rpartition("/")[2] == path), None)
+
+
+def find_config(path: Path) -> Path:
+    """Path of a config: of the file itself, or of a config that radhar comes with.
+
+    The latter has a name, as `human/room` or `room`, or stands in the documentation as
+    `configs/human/room.yaml`. A name with a suffix alone, as `room.yaml`, is that of a file.
+    """
+    name = path.as_posix()
+    if path.exists() or (path.suffix and not name.startswith("configs/")):
+        return path
+    preset = _preset_called(name)
+    return path if preset is None else PRESETS[preset]
 
 
 def _rename_keys(section: Any, prefix: str, places: Places) -> None:
@@ -207,11 +229,12 @@ def _names_of_radars() -> dict[str, str]:
     return names
 
 
-def read_on_bases(path: Path | None, overrides: Mapping[str, Any]) -> tuple[Document, Places]:
+def read_on_bases(source: Source, overrides: Mapping[str, Any]) -> tuple[Document, Places]:
     """Read a file and lay it over its base, and that one over its own, until one has no base.
 
     Args:
-        path: YAML file; None for an empty one.
+        source: YAML file, or the name of a config that radhar comes with, or the plain values of
+            one, whose files are named from the current folder; None for an empty one.
         overrides: document that may have a `base` instead of the file's own, as seen from the
             current folder.
 
@@ -221,20 +244,27 @@ def read_on_bases(path: Path | None, overrides: Mapping[str, Any]) -> tuple[Docu
     Raises:
         ConfigError: a file cannot be read, or bases lead back to one of them; names the chain.
     """
-    document, places = read_document(path) if path else ({}, {})
-    files = [path] if path else []
-    folder, referred_from = path.parent if path else Path(), places.get(BASE, "")
+    files, folder = list[Path](), Path()
+    if isinstance(source, Path):
+        path = find_config(source)
+        document, places = read_document(path)
+        files, folder = [path], path.parent
+    else:
+        document, places = deepcopy(dict(source or {})), {}
+        _fill_in(document, places, folder, "config")
+    referred_from = places.get(BASE, "")
     base = document.pop(BASE, None)
     if BASE in overrides:
         base, folder, referred_from = overrides[BASE], Path(), f"--set {BASE}"
     while base is not None:
         referred_from = f"{referred_from}: {BASE} = {json.dumps(base)[:120]}"
-        if not isinstance(base, str) or not base.endswith(SUFFIXES):
+        if not isinstance(base, str) or not (base.endswith(SUFFIXES) or base in PRESETS):
             advice = f"; {named}" if (named := advice_on_radars(base)) else ""
             raise ConfigError(
-                f"{referred_from}: should be the path of a {', '.join(SUFFIXES)} file{advice}"
+                f"{referred_from}: should be the path of a {', '.join(SUFFIXES)} file, or a name "
+                f"that `radhar config list` has{advice}"
             )
-        base_path = _plain(folder / base)
+        base_path = PRESETS[base] if base in PRESETS else _plain(folder / base)
         try:
             base_document, lower_places = read_document(base_path)
         except ConfigError as error:

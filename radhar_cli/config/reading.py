@@ -18,8 +18,10 @@ from radhar_cli.config.documents import (
     FILE_OF_CFG,
     OTHER_NAMES,
     Places,
+    Source,
     advice_on_radars,
     cfg_text,
+    find_config,
     name_of_cfg,
     read_on_bases,
 )
@@ -151,14 +153,21 @@ class Override(NamedTuple):
         return cls(OTHER_NAMES.get(key, key), value, f"--set {key}")
 
 
+Overrides: TypeAlias = Iterable[str | Override] | Mapping[str, Any]
+
+
 def load_config(
-    path: str | Path, overrides: Iterable[str | Override] = (), kind: type[Config] = Config
+    config: str | Path | Mapping[str, Any],
+    overrides: Overrides = (),
+    kind: type[Config] = Config,
 ) -> Config:
     """Read a data set's config file, and its bases, and apply overrides.
 
     Args:
-        path: YAML file.
-        overrides: texts such as ``radar.prf_hz=128``, as `--set` takes them, or `Override`.
+        config: YAML file, or the name of a config that radhar comes with, such as `human/room`, or
+            the plain values of one, whose files are named from the current folder.
+        overrides: {"radar.prf_hz": 128}, or texts such as ``radar.prf_hz=128``, as `--set` takes
+            them.
         kind: class of the config.
 
     Returns:
@@ -169,11 +178,12 @@ def load_config(
             file (that or one under it, `base`), the line, the key, the value and what would be
             right.
     """
-    configs = load_radars(path, overrides, kind)
+    configs = load_radars(config, overrides, kind)
     if len(configs) == 1:
         return next(iter(configs.values()))
-    _, places, options = _read_values(Path(path), overrides)
-    where = _locate(str(path), RADARS_KEY, places, options)
+    source = _source(config)
+    _, places, options = _read_values(source, overrides)
+    where = _locate(_name_of(source), RADARS_KEY, places, options)
     raise ConfigError(f"{where}: {ask_for_one_radar([*configs])}")
 
 
@@ -187,13 +197,15 @@ def ask_for_one_radar(names: Iterable[str]) -> str:
 
 
 def load_radars(
-    path: str | Path, overrides: Iterable[str | Override] = (), kind: type[Config] = Config
+    config: str | Path | Mapping[str, Any],
+    overrides: Overrides = (),
+    kind: type[Config] = Config,
 ) -> dict[str, Config]:
     """Read the config of each radar of a data set's config file, as `load_config` reads one.
 
     Args:
-        path: YAML file.
-        overrides: texts such as ``radars.side.yaw_deg=30``, as `--set` takes them, or `Override`.
+        config: YAML file, name, or plain values, as of `load_config`.
+        overrides: {"radars.side.yaw_deg": 30}, or texts, as of `load_config`.
         kind: class of the configs.
 
     Returns:
@@ -204,7 +216,8 @@ def load_radars(
     Raises:
         ConfigError: as `load_config`; a mistake that all radars share is told once.
     """
-    path = Path(path)
+    source = _source(config)
+    folder = find_config(source).parent if isinstance(source, Path) else Path()
 
     def with_files(config: Config, located: tuple[Places, Options]) -> Config:
         if kind is ConfigOfRecordings:
@@ -213,31 +226,53 @@ def load_radars(
 
         def refuse(key: str, value: object, right: str) -> ConfigError:
             problem = Problem(key, value, right)
-            return ConfigError(_locate(str(path), key, *located) + _value_and_advice(problem))
+            name = _name_of(source)
+            return ConfigError(_locate(name, key, *located) + _value_and_advice(problem))
 
-        return resolve_files(config, path.parent, refuse)
+        return resolve_files(config, folder, refuse)
 
-    return _load_radars(path, overrides, kind, with_files)
+    return _load_radars(source, overrides, kind, with_files)
+
+
+def _source(config: str | Path | Mapping[str, Any]) -> Path | Mapping[str, Any]:
+    """Take what a config is read from: a file, or plain values.
+
+    Raises:
+        ConfigError: it is neither.
+    """
+    if isinstance(config, Mapping):
+        return config
+    if isinstance(config, (str, Path)):
+        return Path(config)
+    raise ConfigError(
+        f"config = {_short(repr(config))}: should be the path of a YAML file, a name that `radhar "
+        "config list` has, or a mapping such as {'snr_db': 5}"
+    )
+
+
+def _name_of(source: Source) -> str:
+    """Name of a config in messages: that of its file, or "config"."""
+    return str(source) if isinstance(source, Path) else "config"
 
 
 def _load_radars(
-    path: Path,
-    overrides: Iterable[str | Override],
+    source: Source,
+    overrides: Overrides,
     kind: type[Config],
     finish: Callable[[Config, tuple[Places, Options]], Config],
 ) -> dict[str, Config]:
     """Read the config of each radar, and finish it with the places and options of its keys."""
-    document, places, options = _read_values(path, overrides)
+    document, places, options = _read_values(source, overrides)
     if document.get(RADARS_KEY) is None:
-        config = validated(kind, document, str(path), places, options)
+        config = validated(kind, document, _name_of(source), places, options)
         return {"": finish(config, (places, options))}
     configs, mistakes = dict[str, Config](), dict[str, None]()
-    documents = _documents_of_radars(document, str(path), places, options)
+    documents = _documents_of_radars(document, _name_of(source), places, options)
     for name, of_name in documents.items():
         try:
             of_radar = of_name.places(places)
             values = {key: value for key, value in of_name.values.items() if key != OTHERS_KEY}
-            config = validated(kind, values, str(path), of_radar, options, of_name)
+            config = validated(kind, values, _name_of(source), of_radar, options, of_name)
             configs[name] = finish(config, (of_radar, options))
         except ConfigError as error:
             mistakes |= dict.fromkeys(str(error).splitlines())
@@ -268,39 +303,33 @@ def _documents_of_radars(
     return documents_of_radars(document)
 
 
-def as_config(config: Config | str | Path) -> Config:
-    """Return a config as it is, or read the one in a file.
+def as_config(config: Config | str | Path | Mapping[str, Any]) -> Config:
+    """Return a config as it is, or read another one.
 
     Raises:
-        ConfigError: it is neither a config nor a path, or as `load_config`.
+        ConfigError: as `load_config`.
     """
-    if isinstance(config, (str, Path)):
-        return load_config(config)
-    if not isinstance(config, Config):
-        shown_config = _short(repr(config))
-        raise ConfigError(
-            f"config = {shown_config}: should be the path of a YAML file, or a Config"
-        )
-    return config
+    return config if isinstance(config, Config) else load_config(config)
 
 
-def load_section(kind: type[S], path: Path | None, overrides: Iterable[str | Override] = ()) -> S:
+def load_section(kind: type[S], source: Source, overrides: Overrides = ()) -> S:
     """Read a file that holds one `kind` of config, or its defaults, and apply overrides.
 
     Args:
         kind: class of the config.
-        path: YAML file; None for the defaults.
+        source: YAML file, or plain values; None for the defaults.
         overrides: as of `load_config`.
 
     Raises:
         ConfigError: as `load_config`.
     """
-    document, places, options = _read_values(path, overrides)
-    where = str(path) if path else ", ".join(dict.fromkeys(options.values())) or "the defaults"
+    document, places, options = _read_values(source, overrides)
+    where = ", ".join(dict.fromkeys(options.values())) or "the defaults"
+    where = where if source is None else _name_of(source)
     return validated(kind, document, where, places, options)
 
 
-def load_sections(path: Path, overrides: Iterable[str | Override] = ()) -> dict[str, Config]:
+def load_sections(path: Path, overrides: Overrides = ()) -> dict[str, Config]:
     """Read a data set's config file as `load_radars`, without looking for its motion files.
 
     Args:
@@ -324,16 +353,38 @@ def _refuse_other_radar(document: Mapping[str, Any], override: Override) -> None
         )
 
 
-def _read_values(
-    path: Path | None, overrides: Iterable[str | Override]
-) -> tuple[dict[str, Any], Places, Options]:
+def _parse_overrides(overrides: Overrides) -> list[Override]:
+    """Parse texts as `--set` takes them, or {key: value}, whose messages name the key alone.
+
+    Raises:
+        ConfigError: a text is no override, or a value cannot be written as YAML.
+    """
+    if isinstance(overrides, str):
+        raise ConfigError(
+            f"overrides = {_short(repr(overrides))}: should be a list of such texts, or a mapping "
+            "such as {'snr_db': 5}"
+        )
+    if not isinstance(overrides, Mapping):
+        return [Override.parse(one) if isinstance(one, str) else one for one in overrides]
+    parsed = []
+    for key, value in overrides.items():
+        try:
+            parsed.append(Override(OTHER_NAMES.get(key, key), json.dumps(value), "overrides"))
+        except (TypeError, ValueError):
+            raise ConfigError(
+                f"{key} = {_short(repr(value))}: should be a plain value, as YAML has it"
+            ) from None
+    return parsed
+
+
+def _read_values(source: Source, overrides: Overrides) -> tuple[dict[str, Any], Places, Options]:
     """Read the plain values of a config, their places, and the options that gave some of them."""
-    parsed = [Override.parse(one) if isinstance(one, str) else one for one in overrides]
+    parsed = _parse_overrides(overrides)
     of_base: dict[str, Any] = {}
     for override in parsed:
         if override.key == BASE:
             _apply(of_base, override)
-    document, places = read_on_bases(path, of_base)
+    document, places = read_on_bases(source, of_base)
     options: Options = {}
     for override in parsed:
         if override.key == BASE:
@@ -348,7 +399,7 @@ def _read_values(
     return document, places, options
 
 
-def read_values(path: Path, overrides: Iterable[str | Override] = ()) -> dict[str, Any]:
+def read_values(path: Path, overrides: Overrides = ()) -> dict[str, Any]:
     """Read the plain values of a config file and its bases under overrides, unchecked.
 
     Of several radars they are those of the chosen one.

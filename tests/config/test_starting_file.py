@@ -174,24 +174,27 @@ def test_presets_are_listed_with_what_they_are() -> None:
     assert all(len(line.split()) > 3 for line in lines)
 
 
-def test_who_has_no_clone_is_told_of_the_preset(
+def test_a_config_that_radhar_comes_with_goes_by_its_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    presets = {
-        "configs/human/room.yaml": "human/room",
-        "human/room": "human/room",
-        "room": "human/room",
-        "quickstart": "quickstart",
-        "quickstart.yaml": "quickstart",
-        "configs/room.yaml": None,
-        "room.yaml": None,
-    }
-    for name, preset in presets.items():
-        error = radhar("generate", name, "-o", "set").stderr
-        assert f"{name}: no such file" in error
-        hint = f"`radhar config init FILE --preset {preset}` writes"
-        assert (hint in error) is (preset is not None)
+    room = load_config(ROOT / "configs/human/room.yaml")
+    for name in ("configs/human/room.yaml", "human/room", "room"):
+        assert load_config(name) == room
+    (tmp_path / "over.yaml").write_text("base: human/room\nsnr_db: 7\n")
+    assert load_config("over.yaml") == room.replace(snr_db=7)
+    (tmp_path / "room").write_text("snr_db: 3\n")
+    assert load_config("room").snr_db == 3  # a file goes before a name
+
+
+@pytest.mark.parametrize("name", ["room.yaml", "quickstart.yaml", "configs/room.yaml", "human/rom"])
+def test_a_file_that_is_missing_is_no_name(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = radhar("generate", name, "-o", "set")
+    assert done.returncode == 2
+    assert f"{name}: no such file" in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import numpy as np
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.numerics.randomness import TRAINING, stream
-from radhar_cli.processes.progress import Progress
+from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.study.audit.clouds import cloud_evidence
 from radhar_cli.study.audit.duplicates import (
     Overlaps,
@@ -131,8 +131,8 @@ class Audit:
 
 
 def audit(
-    path: Path,
-    progress: Progress,
+    path: str | Path,
+    progress: Progress = NO_PROGRESS,
     map_name: str | None = None,
     table: Path | None = None,
     effort: Effort | None = None,
@@ -152,7 +152,7 @@ def audit(
         FolderError: a file cannot be used.
     """
     effort = effort or Effort()
-    data = open_for_audit(path, map_name, table)
+    data = open_for_audit(Path(path), map_name, table)
     rows = draw_rows(data, max_samples, effort.seed)
     warnings = list[str]()
     if rows.size < len(data):

@@ -51,8 +51,8 @@ class Config(Request):
 
         document = self.model_dump(mode="json", exclude_unset=True)
         others = document.pop(OTHERS_KEY, None)
-        given: dict[str, Any] = {**(values or {}), **more}
-        changed = load_config(document, given, type(self))
+        overrides: dict[str, Any] = {**(values or {}), **more}
+        changed = load_config(document, overrides, type(self))
         assert isinstance(changed, type(self))
         return changed.model_copy(update={OTHERS_KEY: getattr(self, OTHERS_KEY)} if others else {})
 

@@ -39,6 +39,7 @@ class TextTable:
         separator: Mark between cells; None of blanks.
         has_decimal_comma: Whether numbers have a comma for the point.
         refusal: Makes an error of a place (file, or file and line) and a problem.
+        first: Number of the first line in the file, from 0.
     """
 
     where: str
@@ -46,6 +47,7 @@ class TextTable:
     separator: str | None
     has_decimal_comma: bool
     refusal: Callable[[str, str], RadharError]
+    first: int = 0
 
     @cached_property
     def rows(self) -> list[list[str]]:
@@ -67,7 +69,7 @@ class TextTable:
 
     def place(self, row: int) -> str:
         """File and line of a row, from 0 on, as messages name them."""
-        return f"{self.where}:{row + 1}"
+        return f"{self.where}:{self.first + row + 1}"
 
     def filled_rows(
         self, begin: int, width: int | None, end: int | None = None
@@ -177,13 +179,13 @@ def read_text_table(
     Raises:
         RadharError: It is too long, no text, empty, or has too many columns.
     """
-    return split_lines(read_lines(data, where, max_bytes, refusal), where, refusal)
+    return split_lines(text_of_bytes(data, where, max_bytes, refusal).splitlines(), where, refusal)
 
 
-def read_lines(
+def text_of_bytes(
     data: bytes, where: str, max_bytes: int, refusal: Callable[[str, str], RadharError]
-) -> list[str]:
-    """Lines of a text of at most so many bytes.
+) -> str:
+    """Text of at most so many bytes in UTF-8, UTF-16 or Latin-1.
 
     Raises:
         RadharError: It is too long, or no text.
@@ -191,7 +193,7 @@ def read_lines(
     if len(data) > max_bytes:
         raise refusal(where, f"is {len(data)} bytes; should be at most {max_bytes}")
     try:
-        return decode_text(data).splitlines()
+        return decode_text(data)
     except ValueError as error:
         raise refusal(where, str(error)) from None
 

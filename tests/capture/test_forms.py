@@ -298,7 +298,7 @@ REFUSED = {
     "turns.npy": (lambda p: np.save(p, TURNS), r"axes=\[pulse,iq\]\)\?; so may be carrier_hz, prf"),
     "turns.mat": (lambda p: savemat(p, {"x": TURNS}), "radhar import .* --set axes=.*-o walk.h5"),
     "turns.txt": (lambda p: p.write_text("\n".join(map(str, TURNS))), "800 real numbers along one"),
-    "rows.npy": (lambda p: np.save(p, TURNS.reshape(-1, 2).T), r"\[2, 400\]; --set axes.*such as \[iq,pulse\] if"),
+    "rows.npy": (lambda p: np.save(p, TURNS.reshape(-1, 2).T), r"--set axes.*such as \[iq,pulse\] if"),
     "turns.bin": (lambda p: TURNS.tofile(p), "samples and receivers are missing.*dtype=int16"),
     "three.wav": (lambda p: wavfile.write(p, 9, TURNS[:600].reshape(-1, 3)), "has 3 channels"),
     "count.csv": (lambda p: p.write_bytes(with_times(range(400), "time,I,Q")), "without a unit"),
@@ -307,7 +307,7 @@ REFUSED = {
         lambda p: p.write_bytes(polar("time,amplitude,phase", degrees=True)),
         "phase: goes beyond 2 pi; its name should say",
     ),
-    "many.npy": (lambda p: np.save(p, np.ones((40, 8, 16), "c8")), "has 3 axes, .40, 8, 16.; --set axes"),
+    "many.npy": (lambda p: np.save(p, np.ones((40, 8, 16), "c8")), "has 3 axes.*; --set axes"),
     "x.tar.gz": (lambda p: tarfile.open(p, "w:gz").close(), "unpack it first"),
 }  # fmt: skip
 

@@ -33,8 +33,8 @@ from radhar_cli.readers.text_table import (
     TextTable,
     is_comment,
     is_number,
-    read_lines,
     split_lines,
+    text_of_bytes,
 )
 
 MAX_TEXT = 2**28  # bytes, of all files
@@ -95,7 +95,7 @@ def read_capture_lines(path: Path) -> list[str]:
         raise CaptureError(
             f"{path}: has {regular_size(path)} bytes; should have at most {MAX_TEXT}"
         )
-    lines = read_lines(path.read_bytes(), str(path), MAX_TEXT, capture_error)
+    lines = text_of_bytes(path.read_bytes(), str(path), MAX_TEXT, capture_error).splitlines()
     if _COMPLEX.search(_last_line(lines)):
         return [_COMPLEX.sub(_plain_complex, line) for line in lines]
     return lines

@@ -102,7 +102,7 @@ class TextTable:
         rows: Iterable[tuple[int, list[str]]],
         columns: Sequence[int],
         most: int,
-        parse: Callable[[str], complex] = float,
+        parse: type[float] | type[complex] = float,
     ) -> NDArray[Any]:
         """Numbers [rows, columns] of some columns, NaN where a cell is lost or not there.
 
@@ -115,7 +115,8 @@ class TextTable:
         Raises:
             RadharError: Names the line of what is no number, or there are too many rows.
         """
-        blocks, count, rows = [np.empty((0, len(columns)), parse)], 0, iter(rows)
+        dtype: np.dtype[Any] = np.dtype(parse)
+        blocks, count, rows = [np.empty((0, len(columns)), dtype)], 0, iter(rows)
         while block := [*islice(rows, BLOCK)]:
             if (count := count + len(block)) > most:
                 raise self.refusal(self.where, f"has more than {most} rows of numbers")
@@ -126,10 +127,10 @@ class TextTable:
                     [self.number("".join(row[c : c + 1]), number, parse) for c in columns]
                     for number, row in block
                 ]
-            blocks.append(np.array(values, parse))
+            blocks.append(np.array(values, dtype))
         return np.concatenate(blocks)
 
-    def number(self, cell: str, row: int, parse: Callable[[str], complex] = float) -> complex:
+    def number(self, cell: str, row: int, parse: type[float] | type[complex] = float) -> complex:
         """Number of a cell; NaN where it is lost.
 
         Raises:

@@ -13,7 +13,7 @@ from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.errors import RadharError
 from radhar_cli.readers.motion.reading import SUFFIXES, read_motion
 
-SECONDS = 20  # in which each is refused, also on a busy machine
+SECONDS = 120  # in which each is refused, also on a busy machine
 LARGE = 2**31 + 2  # bytes of a file with holes, more than any text or motion may have
 LONG = 2**21  # bytes of an endless line
 
@@ -34,7 +34,7 @@ def read_joints(path: Path) -> None:
 
 CAPTURES = (".csv", ".txt", ".dat", ".npy", ".npz", ".mat", ".h5", ".wav", ".pcap")
 CAPTURES += (".zip", ".npy.xz", ".npy.gz", ".npy.bz2")
-HEADERS = (".cfg", ".lua", ".mmwave.json", ".yaml")
+HEADERS = (".cfg", ".lua", ".mmwave.json")
 FORMATS: list[tuple[str, Callable[[Path], None]]] = [
     *((suffix, read_capture) for suffix in CAPTURES),
     *((suffix, read_header) for suffix in HEADERS),

@@ -1,4 +1,4 @@
-"""Which of the arrays of a file are the samples, Q where it is apart, and the times of pulses."""
+"""Choice of arrays or columns by names: samples, Q where it is apart, times of the pulses."""
 
 from collections.abc import Callable, Mapping
 from math import prod

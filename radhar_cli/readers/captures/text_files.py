@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import islice
 from pathlib import Path
+from statistics import mode
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,6 +31,7 @@ from radhar_cli.readers.captures.source import CaptureFiles, CaptureFormat, Miss
 from radhar_cli.readers.captures.stored_arrays import FrameFiles, StoredArray
 from radhar_cli.readers.text_table import (
     LOST,
+    SAMPLED,
     TextTable,
     is_comment,
     is_number,
@@ -150,7 +152,7 @@ def _read_signal(path: Path, settings: CaptureSettings) -> TextSignal:
         if twins:
             raise CaptureError(f"{path}: several columns are named {', '.join(twins)}")
         return _choose_columns(path, table, begin, names, settings)
-    width = len(_filled(table.cells([_last_line(table.lines)])[0]))
+    width = _usual_width(table)
     samples = _read_columns(table, begin, range(width), width)
     if width == 1:
         return TextSignal(samples[:, 0])
@@ -190,7 +192,7 @@ def _find_heading(table: TextTable) -> tuple[int, list[str]]:
 
     The line above the numbers holds the names, or the units of those above it; it may be a comment.
     """
-    count = len(_filled(table.cells([_last_line(table.lines)])[0]))
+    count = _usual_width(table)
     head, begin = list[list[str]](), None
     first, names = 0, list[str]()  # row below the line that may have the names
     for number, line in enumerate(islice(table.lines, MAX_PREAMBLE)):
@@ -210,6 +212,12 @@ def _find_heading(table: TextTable) -> tuple[int, list[str]]:
     if len(head) > 1 and len(head[-2]) == count and {u.lower() for u in units} <= UNITS:
         names = [f"{name} ({unit})" for name, unit in zip(head[-2], units, strict=True)]
     return begin, names
+
+
+def _usual_width(table: TextTable) -> int:
+    """Number of cells of most of the last lines, of which one may be cut off."""
+    filled = (line for line in reversed(table.lines) if line.strip() and not is_comment(line))
+    return mode(len(_filled(row)) for row in table.cells(islice(filled, SAMPLED)))
 
 
 def _filled(row: Sequence[str]) -> list[str]:
@@ -268,6 +276,7 @@ def _choose_columns(
         shapes,
         settings.model_copy(update={"dataset": likely[0], "imaginary": likely[1]}),
     )
+    pairs: Sequence[tuple[str, str | None]]
     pairs = receivers or [(chosen.samples, chosen.imaginary)]
     wanted = [name for pair in pairs for name in pair if name is not None]
     places = [names.index(name) for name in wanted]

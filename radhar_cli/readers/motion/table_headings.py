@@ -55,7 +55,7 @@ _TURNS |= frozenset({"meanmarkererror", "markerquality", "residual", "linearvelo
 
 
 class Heading(NamedTuple):
-    """What stands above the numbers of a table of one row a frame."""
+    """Names, places of joints, rate and unit above the numbers of a table of a row a frame."""
 
     begin: int  # row of the first numbers
     names: list[str] | None

@@ -21,7 +21,8 @@ from radhar_cli.files.plain_text import decode_text
 from radhar_cli.numerics.arrays import Float
 
 MAX_COLUMNS = 2**16
-SAMPLED = 200  # last lines by which the separator is chosen
+SAMPLED = 200  # first lines that are checked, and last ones by which the separator is chosen
+LONGEST_CELL = 2000  # characters, of the first lines, where names are looked for
 COMMENTS = ("#", "%", "//")
 LOST = frozenset({"", "nan", "null", "none", "na", "n/a", "-nan(ind)", "nan(ind)", "1.#qnan"})
 BLOCK = 2**14  # lines that are split at once
@@ -205,7 +206,7 @@ def split_lines(
     """Find the separator of lines, and whether numbers have decimal commas.
 
     Raises:
-        RadharError: There is nothing in them, or more than MAX_COLUMNS.
+        RadharError: There is nothing in them, more than MAX_COLUMNS, or a cell is too long.
     """
     filled = (line for line in reversed(lines) if line.strip() and not is_comment(line))
     last = [*islice(filled, SAMPLED)]
@@ -216,6 +217,9 @@ def split_lines(
     if max(line.count(separator or " ") for line in lines) > MAX_COLUMNS:
         raise refusal(where, f"has more than {MAX_COLUMNS} columns")
     table = TextTable(where, lines, separator, False, refusal)
+    long = (line for line in lines[:SAMPLED] if len(line) > LONGEST_CELL)
+    if any(len(cell) > LONGEST_CELL for row in table.cells(long) for cell in row):
+        raise refusal(where, f"has a cell of more than {LONGEST_CELL} characters")
     has_comma = separator != "," and any(
         _DECIMAL_COMMA.fullmatch(cell) for row in table.cells(last) for cell in row
     )

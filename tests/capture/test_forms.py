@@ -298,7 +298,7 @@ REFUSED = {
     "turns.npy": (lambda p: np.save(p, TURNS), r"axes=\[pulse,iq\]\)\?; so may be carrier_hz, prf"),
     "turns.mat": (lambda p: savemat(p, {"x": TURNS}), "radhar import .* --set axes=.*-o walk.h5"),
     "turns.txt": (lambda p: p.write_text("\n".join(map(str, TURNS))), "800 real numbers along one"),
-    "rows.npy": (lambda p: np.save(p, TURNS.reshape(-1, 2).T), r"--set axes.*such as \[iq,pulse\] if"),
+    "rows.npy": (lambda p: np.save(p, TURNS.reshape(-1, 2).T), r"such as \[iq,pulse\] if"),
     "turns.bin": (lambda p: TURNS.tofile(p), "samples and receivers are missing.*dtype=int16"),
     "three.wav": (lambda p: wavfile.write(p, 9, TURNS[:600].reshape(-1, 3)), "has 3 channels"),
     "count.csv": (lambda p: p.write_bytes(with_times(range(400), "time,I,Q")), "without a unit"),

@@ -52,8 +52,8 @@ class TextTable:
 
     @cached_property
     def rows(self) -> list[list[str]]:
-        """Cells of every line; none of an empty line, whose number stays."""
-        return self.cells(self.lines)
+        """Cells of the first lines, above the numbers; an empty line has none."""
+        return self.cells(self.lines[:SAMPLED])
 
     def cells(self, lines: Iterable[str]) -> list[list[str]]:
         """Cells of lines."""
@@ -102,7 +102,7 @@ class TextTable:
         self,
         rows: Iterable[tuple[int, list[str]]],
         columns: Sequence[int],
-        most: int,
+        max_rows: int,
         parse: type[float] | type[complex] = float,
     ) -> NDArray[Any]:
         """Numbers [rows, columns] of some columns, NaN where a cell is lost or not there.
@@ -110,7 +110,7 @@ class TextTable:
         Args:
             rows: Rows with their numbers (`filled_rows`).
             columns: Numbers of the columns.
-            most: Most rows that are read.
+            max_rows: Most rows that are read.
             parse: `float` or `complex`.
 
         Raises:
@@ -119,8 +119,8 @@ class TextTable:
         dtype: np.dtype[Any] = np.dtype(parse)
         blocks, count, rows = [np.empty((0, len(columns)), dtype)], 0, iter(rows)
         while block := [*islice(rows, BLOCK)]:
-            if (count := count + len(block)) > most:
-                raise self.refusal(self.where, f"has more than {most} rows of numbers")
+            if (count := count + len(block)) > max_rows:
+                raise self.refusal(self.where, f"has more than {max_rows} rows of numbers")
             try:
                 values = [[parse(row[column]) for column in columns] for _, row in block]
             except (ValueError, IndexError):

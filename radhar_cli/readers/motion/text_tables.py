@@ -76,7 +76,8 @@ def _trajectories(table: TextTable) -> TextTable:
     Raises:
         MotionFileError: It has other parts of Nexus alone.
     """
-    words = [_only_word(row) for row in table.rows]
+    marks = (table.separator or " ") + ' \t"'
+    words = [line.strip(marks).lower() for line in table.lines]
     begins = [
         number
         for number, (word, rate) in enumerate(zip(words, [*words[1:], ""], strict=True))
@@ -94,11 +95,6 @@ def _trajectories(table: TextTable) -> TextTable:
         )
     begin, end = parts["trajectories"]
     return replace(table, lines=table.lines[begin:end], first=begin)
-
-
-def _only_word(row: list[str]) -> str:
-    """First cell of a row in lower case; "" where others are filled."""
-    return "" if not row or any(map(str.strip, row[1:])) else row[0].strip().lower()
 
 
 def _read_long(table: TextTable, heading: int, xyz: tuple[int, int, int], joint: int) -> Keypoints:

@@ -46,7 +46,8 @@ SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc")
 EPOCH_S = 1e9  # seconds from 1970 to 2001, before which nobody has recorded
 # Words of a second line of names, which holds the units.
 UNITS = {*TIME_WORDS, "", "-", "v", "mv", "a", "ma", "counts", "rad", "deg"}
-_REAL = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+# It begins where no digit precedes it, so that the time grows with the length of a word alone.
+_REAL = r"[-+]?(?<![\d.])(?:\d+(?:\.\d*)?|\.\d+)(?:e[-+]?\d+)?"
 # The ways in which programs write 1+2j: (1+2j), 1 + 2i, 1+2*I, 1 + j2; and C++'s (1,2).
 _COMPLEX = re.compile(
     rf"\(?(?P<re>{_REAL})\s*(?:(?P<sign>[-+])\s*(?:[ij]\s*\*?\s*(?P<last>{_REAL[5:]})|"

@@ -268,7 +268,7 @@ def _choose_columns(
     """
     refuse_names_of_points(path, names)
     width = len(names)
-    shapes = {name: (len(table.lines) - begin,) for name in names}
+    shapes = {name: (max(len(table.lines) - begin, 2),) for name in names}
     receivers = find_receivers(names) if settings.dataset is None else []
     polar = find_pair(names, POLAR) if settings.dataset is None else None
     likely = receivers[0] if receivers else polar or (settings.dataset, settings.imaginary)

@@ -445,8 +445,6 @@ def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
         return
     are = "are" if len(missing) > 1 else "is"
     examples = {key: EXAMPLES[key] for key in missing}
-    if source.axes and s.axes is None:
-        examples["axes"] = _as_word(source.axes)
     command = _command_with(source.files, examples, s, header)
     several = "s" * (source.receivers > 1)
     shape = f"{source.receivers} receiver{several}, {source.samples or 'no'} samples a pulse, "
@@ -459,8 +457,6 @@ def _require_keys(source: Source, s: CaptureSettings, header: str) -> None:
             f"; bandwidth_hz is that of the pulse, of bins of a transform without padding "
             f"{min(step_hz, s.carrier_hz or step_hz):.4g}"
         )
-    if "axes" in examples:
-        also += f"; axes={examples['axes']} is a guess, which may be the other way round"
     raise CaptureError(
         f"{header}: {', '.join(missing)} {are} missing; of {shape}{source.pulses} pulses, with "
         f"your numbers: {command}, or --radar FILE with these keys{also}"

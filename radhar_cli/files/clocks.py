@@ -26,15 +26,6 @@ _HEAD, _TAIL = rf"(?:{_DATE}[T ,;]?\s*)?", rf"{_HALF}{_ZONE}"
 _WHOLE = re.compile(
     rf"\s*{_HEAD}(?:(\d\d?):)?(\d\d?):(\d\d?)(?:[.:,](\d{{1,9}}))?{_TAIL}\s*", re.ASCII
 )
-# Within a table a comma before a fraction may as well stand between columns, unless something else
-# does, and minutes with seconds are a cell of their own. After a
-# date of two digits a year it stays.
-_WITHIN = re.compile(
-    rf"(?<!\d)(?<!\d[-/.]\d\d[T ]){_HEAD}"
-    r"(?:(\d\d?):(?=\d\d:\d\d)|(?<![^\s,;\"'])(?=\d\d?:\d\d(?:\.\d+)?(?:[\s,;\"']|$)))"
-    rf"(\d\d?):(\d\d)(?:[.:](\d{{1,9}})|,(\d{{1,9}})(?=\s*[;\t]|[ ]+[-+\d]))?{_TAIL}(?![\d:])",
-    re.ASCII | re.MULTILINE,
-)
 
 
 def seconds_of_texts(texts: Sequence[str]) -> Float | None:
@@ -54,31 +45,6 @@ def seconds_of_texts(texts: Sequence[str]) -> Float | None:
         return np.array(_read_column(matches))
     except ValueError:  # a month of more than 12
         return None
-
-
-def replace_clocks(text: str) -> str:
-    """Replace dates with times, and times of a clock, in a table by seconds from the first.
-
-    The first of each line make a column, and so on.
-    """
-    if ":" not in text:
-        return text
-    columns = dict[int, list[re.Match[str]]]()
-    for line in re.finditer(r"[^\r\n]+", text):
-        for column, match in enumerate(_WITHIN.finditer(text, line.start(), line.end())):
-            columns.setdefault(column, []).append(match)
-    replaced = list[tuple[int, int, float]]()
-    try:
-        for matches in columns.values():
-            seconds = _read_column(matches)
-            replaced += [(*m.span(), s) for m, s in zip(matches, seconds, strict=True)]
-    except ValueError:  # a month of more than 12
-        return text
-    pieces, end = list[str](), 0
-    for first, stop, second in sorted(replaced):
-        pieces += [text[end:first], f"{second:.9f}"]
-        end = stop
-    return "".join([*pieces, text[end:]])
 
 
 def _read_column(matches: Sequence[re.Match[str]]) -> list[float]:

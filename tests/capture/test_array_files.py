@@ -26,6 +26,7 @@ from radhar_cli.readers.captures.settings import CaptureSettings
 from radhar_cli.readers.captures.stored_arrays import StoredArray
 
 RADAR = ["carrier_hz=77e9", "bandwidth_hz=1e9", "adc_rate_hz=1e6", "prf_hz=1000"]
+AXES = "axes=[receiver,sample,pulse]"
 RECEIVERS, SAMPLES, PULSES = 3, 16, 40
 
 
@@ -41,7 +42,8 @@ def cube(dtype: str = "c8") -> np.ndarray:
 
 def imported(path: Path, *overrides: str) -> np.ndarray:
     out = path.with_name("out.h5")
-    import_capture([path], out, read_settings(None, [*RADAR, *overrides]))
+    axes = [] if any(o.startswith("axes=") for o in overrides) else [AXES]
+    import_capture([path], out, read_settings(None, [*RADAR, *axes, *overrides]))
     with Recording(out) as recording:
         return recording.beat(0, recording.info.pulses)
 
@@ -122,7 +124,8 @@ def test_any_range_of_pulses_is_read(first: int, count: int, frame: int) -> None
             read.append(x[key].size)
             return super().read(key)
 
-    source = as_source(Path("x"), Counting("x", lambda: x), CaptureSettings())
+    axes = ("frame", "pulse", "receiver", "sample")
+    source = as_source(Path("x"), Counting("x", lambda: x), CaptureSettings(axes=axes))
     stop = min(first + count, 40)
     found = source.read(first, stop)
     assert np.array_equal(found[..., 0], x.reshape(40, 2, 3).transpose(1, 2, 0)[:, :, first:stop])
@@ -155,7 +158,7 @@ def test_gaps_follow_from_the_times(tmp_path: Path) -> None:
     times[30:] += 0.7
     np.savez(tmp_path / "x.npz", beat=x, t=times)
     out = tmp_path / "out.h5"
-    given_settings = read_settings(None, [*RADAR[:3], "times=t", "dataset=beat"])
+    given_settings = read_settings(None, [*RADAR[:3], "times=t", "dataset=beat", AXES])
     told = import_capture([tmp_path / "x.npz"], out, given_settings).source.findings
     assert any("not uniform: 2 stretches" in line for line in told)
     with Recording(out) as recording:
@@ -190,7 +193,7 @@ def test_wrong_array_is_refused_in_one_line(
 @pytest.mark.parametrize("key", ["carrier_hz", "bandwidth_hz", "adc_rate_hz", "prf_hz"])
 def test_missing_settings_are_asked_for(tmp_path: Path, key: str) -> None:
     np.save(tmp_path / "x.npy", cube())
-    left = [one for one in RADAR if not one.startswith(key)]
+    left = [one for one in (*RADAR, AXES) if not one.startswith(key)]
     done = radhar(
         *("import", tmp_path / "x.npy", "-o", tmp_path / "out.h5"),
         *(word for one in left for word in ("--set", one)),

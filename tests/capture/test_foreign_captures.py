@@ -116,7 +116,7 @@ SLOW_TIME = {
     "units.csv": (csv_units, []),
     "preamble.csv": (csv_preamble, ["prf_hz=1000"]),
     "gaps.csv": (csv_gaps, []),
-    "last.npy": (npy_last_axis, ["prf_hz=1000"]),
+    "last.npy": (npy_last_axis, ["prf_hz=1000", "axes=[pulse, iq]"]),
     "group.h5": (
         h5_group,
         ["prf_hz=1000", "axes=[pulse, receiver]", "dataset=session/entry_0/frame"],
@@ -226,7 +226,8 @@ def test_a_folder_is_its_files_in_the_order_of_their_numbers(tmp_path):
     (tmp_path / "frames").mkdir()
     for index in range(12):
         np.save(tmp_path / "frames" / f"f{index}.npy", frame(index, 3.0))
-    sets = [part for key in (*FRAME_KEYS, "frame_s=0.1") for part in ("--set", key)]
+    keys = (*FRAME_KEYS, "frame_s=0.1", "axes=[sample,pulse]")
+    sets = [part for key in keys for part in ("--set", key)]
     ok("import", tmp_path / "frames", *sets, "-o", tmp_path / "out.h5")
     with Recording(tmp_path / "out.h5") as recording:
         assert recording.info.source.files == [f"f{index}.npy" for index in range(12)]
@@ -298,17 +299,19 @@ def test_scripts_of_mmwave_studio_are_read_as_its_json_is(tmp_path):
 
 def test_missing_keys_are_all_named_at_once_with_a_command(tmp_path):
     np.save(tmp_path / "x.npy", np.ones((40, 64)))
-    done = radhar("import", tmp_path / "x.npy", "-o", tmp_path / "y.h5")
+    axes = ("--set", "axes=[sample,pulse]")
+    done = radhar("import", tmp_path / "x.npy", *axes, "-o", tmp_path / "y.h5")
     assert done.returncode == 2
     keys = ("carrier_hz", "prf_hz", "bandwidth_hz", "adc_rate_hz")
     assert ", ".join(keys) + " are missing" in done.stderr
     assert all(f"--set {key}=" in done.stderr for key in keys)
-    assert f"radhar import {tmp_path / 'x.npy'} --set carrier_hz" in done.stderr
+    assert f"radhar import {tmp_path / 'x.npy'} --set axes=[sample,pulse] --set" in done.stderr
 
 
 def test_a_missing_out_is_named_with_the_missing_keys_in_a_command_to_copy(tmp_path):
     np.save(tmp_path / "my x.npy", np.ones((40, 64)))
-    done = radhar("import", tmp_path / "my x.npy", "--set", "carrier_hz=24e9")
+    axes = ("--set", "axes=[sample,pulse]")
+    done = radhar("import", tmp_path / "my x.npy", "--set", "carrier_hz=24e9", *axes)
     assert done.returncode == 2
     assert "-o, the recording to write, is missing; " in done.stderr
     assert "prf_hz, bandwidth_hz, adc_rate_hz are missing" in done.stderr
@@ -349,7 +352,13 @@ def test_fit_chooses_frames_of_plain_real_chirps_and_says_so(tmp_path):
     ok("simulate", tmp_path / "radar.yaml", "--raw", "--no-figures", "-o", tmp_path / "raw")
     with Recording(tmp_path / "raw/recording.h5") as recording:
         np.save(tmp_path / "x.npy", recording.beat(0, recording.info.pulses)[0].real)
-    header = ("carrier_hz=24e9", "bandwidth_hz=250e6", "adc_rate_hz=0.5e6", "prf_hz=1000")
+    header = (
+        "carrier_hz=24e9",
+        "bandwidth_hz=250e6",
+        "adc_rate_hz=0.5e6",
+        "prf_hz=1000",
+        "axes=[sample,pulse]",
+    )
     words = [word for text in header for word in ("--set", text)]
     ok("import", tmp_path / "x.npy", "-o", tmp_path / "r.h5", *words)
     done = ok("fit", tmp_path / "r.h5", "-o", tmp_path / "fitted.yaml")
@@ -393,10 +402,10 @@ def test_packed_files_cannot_take_the_disk(tmp_path, suffix, pack):
 @pytest.mark.parametrize(
     ("name", "content", "says"),
     [
-        ("a.csv", b"time,I,Q\n0,1\n", "lines have 2 numbers"),
-        ("a.csv", b"a,b,c\n1,2,3\n2,3,4\n", "has columns a, b, c"),
-        ("a.csv", b"I,Q\n1,2\n3\n", "as many numbers"),
-        ("a.txt", b"1\nx\n", "after line 1"),
+        ("a.csv", b"time,I,Q\n0,1\n", "a.csv:2: has 2 columns; lines above have 3"),
+        ("a.csv", b"a,b,c\n1,2,3\n2,3,4\n", "there are a [2], b [2], c [2]"),
+        ("a.csv", b"I,Q\n1,2\n3\n", "a.csv:3: has 1 columns; lines above have 2"),
+        ("a.txt", b"1\nx\n", "a.txt:2: 'x' should be a number"),
         ("a.wav", b"RIFF\x00\x00\x00\x00WAVEfmt ", "cannot be read"),
         ("a.npy.xz", b"\xfd7zXZ\x00junk", "cannot be unpacked"),
         ("a.qqq", b"123", "unknown format"),

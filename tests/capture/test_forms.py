@@ -273,7 +273,7 @@ def test_a_sweep_a_line_with_i_then_q_and_a_time_is_asked_for_and_read(tmp_path)
     ]
     (tmp_path / "IQ.txt").write_text("\n".join(rows))
     keys = ["carrier_hz=24e9", "bandwidth_hz=2.4e8", "adc_rate_hz=2e5"]
-    with pytest.raises(CaptureError, match=r"64 real numbers a line and a time.*\[pulse,iq,sample"):
+    with pytest.raises(CaptureError, match=r"65 columns without names.*\[pulse,iq,sample"):
         taken(tmp_path, ["IQ.txt"], *keys)
     info, values = taken(tmp_path, ["IQ.txt"], *keys, "axes=[pulse,iq,sample]", "beat=negative")
     assert (info.prf_hz, values.shape) == (pytest.approx(50, rel=1e-3), (1, 32, 60))
@@ -298,7 +298,7 @@ REFUSED = {
     "turns.npy": (lambda p: np.save(p, TURNS), r"axes=\[pulse,iq\]\)\?; so may be carrier_hz, prf"),
     "turns.mat": (lambda p: savemat(p, {"x": TURNS}), "radhar import .* --set axes=.*-o walk.h5"),
     "turns.txt": (lambda p: p.write_text("\n".join(map(str, TURNS))), "800 real numbers along one"),
-    "rows.npy": (lambda p: np.save(p, TURNS.reshape(-1, 2).T), r"two receivers \(axes=\[rec"),
+    "rows.npy": (lambda p: np.save(p, TURNS.reshape(-1, 2).T), r"such as \[iq,pulse\] if"),
     "turns.bin": (lambda p: TURNS.tofile(p), "samples and receivers are missing.*dtype=int16"),
     "three.wav": (lambda p: wavfile.write(p, 9, TURNS[:600].reshape(-1, 3)), "has 3 channels"),
     "count.csv": (lambda p: p.write_bytes(with_times(range(400), "time,I,Q")), "without a unit"),
@@ -307,7 +307,7 @@ REFUSED = {
         lambda p: p.write_bytes(polar("time,amplitude,phase", degrees=True)),
         "phase: goes beyond 2 pi; its name should say",
     ),
-    "many.npy": (lambda p: np.save(p, np.ones((40, 8, 16), "c8")), "40, which may be frames"),
+    "many.npy": (lambda p: np.save(p, np.ones((40, 8, 16), "c8")), "has 3 axes.*; --set axes"),
     "x.tar.gz": (lambda p: tarfile.open(p, "w:gz").close(), "unpack it first"),
 }  # fmt: skip
 

@@ -1,9 +1,9 @@
-"""Instants in texts are seconds from the first, alone and within tables."""
+"""Instants in texts are seconds from the first."""
 
 import numpy as np
 import pytest
 
-from radhar_cli.files.clocks import replace_clocks, seconds_of_texts
+from radhar_cli.files.clocks import seconds_of_texts
 
 INSTANTS = {
     "ISO": ("2026-05-01T12:00:00.9", "2026-05-01T12:00:01.4"),
@@ -31,12 +31,6 @@ INSTANTS = {
 @pytest.mark.parametrize("texts", INSTANTS.values(), ids=INSTANTS)
 def test_instants_are_seconds_from_the_first(texts: tuple[str, str]) -> None:
     assert seconds_of_texts(texts) == pytest.approx([0, 0.5], abs=1e-9)
-    for table in (f"{texts[0]},1,2\n{texts[1]},3,4", f"1;2;{texts[0]}\r\n3;4;{texts[1]}\r\n"):
-        rows = replace_clocks(table).split()
-        cells = [row.replace(";", ",").split(",") for row in rows]
-        column = 0 if table[0] != "1" or "," in table else 2
-        assert [float(row[column]) for row in cells] == pytest.approx([0, 0.5], abs=1e-9)
-        assert len(cells[0]) == 3
 
 
 @pytest.mark.parametrize("texts", INSTANTS.values(), ids=INSTANTS)
@@ -45,23 +39,11 @@ def test_decimal_commas_of_instants(texts: tuple[str, str]) -> None:
     assert seconds_of_texts([first, second]) == pytest.approx([0, 0.5], abs=1e-9)
 
 
-def test_columns_pass_midnight_apart() -> None:
-    table = "23:59:59.5;00:00:10\n00:00:00.5;23:59:00\n"
-    assert replace_clocks(table) == ("0.000000000;0.000000000\n1.000000000;86330.000000000\n")
-
-
 @pytest.mark.parametrize(
     "texts", [(), ("",), ("1.5", "2.5"), ("12:00:00", "later"), ("2026-13-40 12:00:00",)]
 )
 def test_other_texts_are_no_instants(texts: tuple[str, ...]) -> None:
     assert seconds_of_texts(texts) is None
-
-
-@pytest.mark.parametrize(
-    "table", ["1:2;3", "03-02-26 23:59:58.5,1", "40/40/2026 12:00:00,1", "a:b", "0.5,1.5\n0.25,2.5"]
-)
-def test_what_is_no_instant_stays(table: str) -> None:
-    assert replace_clocks(table) == table
 
 
 def test_a_long_column_is_exact() -> None:

@@ -228,7 +228,7 @@ def _leg_in_units(p: Float, has_hip_joints: bool) -> float:
 def _head_remarks(
     file: MotionRecording, joints: JointNames | None, head: JointMean | None
 ) -> tuple[str, ...]:
-    """What to say of a head that the trunk tells, or that is a nose alone."""
+    """Remark on a head that follows from the trunk, or is a nose alone."""
     if head is None:
         return ()
     if head.is_of_trunk:
@@ -242,7 +242,7 @@ def _head_remarks(
 def _marches(p: Float, rate: float) -> bool:
     """Whether the feet step while the hips stay where they are, as in poses about the hips.
 
-    Who walks has a foot at rest nearly always. Poses [frames, 15, 3] over the stature, z up, whose
+    A walker has a foot at rest nearly always. Poses [frames, 15, 3] over the stature, z up, whose
     hips are the origin have both feet moving ahead or back most of the time.
     """
     if np.ptp(p[:, _HIP, :2], axis=0).max() > STAYS:

@@ -2,8 +2,8 @@
 
 The seam lies where the end of the clip is most like its beginning, as the transitions of motion
 graphs do (Kovar, Gleicher and Pighin 2002). Over half a second one cycle fades into the next. Where
-people stand and how they are turned at the end of a cycle is where the next begins: who walks,
-walks on, and who turns, turns on.
+people stand and how they are turned at the end of a cycle is where the next begins: walkers
+walk on, and turns go on.
 """
 
 from dataclasses import dataclass

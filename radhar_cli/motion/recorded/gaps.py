@@ -51,7 +51,7 @@ def bridge_gaps(p: Float, t: Float, rate: float) -> Bridged:
 
 
 def _reach(t: Float, known: Bool, grid: Float, rate: float) -> tuple[Bool, int, int]:
-    """Which instants of a grid [N] lie between known frames that are near enough.
+    """Instants of a grid [N] that lie between known frames that are near enough.
 
     Returns:
         Whether each instant is reachable [N]; number of lost frames that are bridged, and of gaps.

@@ -33,7 +33,7 @@ ADVICE = (
 
 
 def two_dimensional(finding: str) -> str:
-    """What to say of poses in the plane of an image."""
+    """Words for poses in the plane of an image."""
     return (
         f"{finding}: pixels of an image; a radar needs 3-D positions in m, cm or mm, as "
         "MediaPipe's world landmarks, a depth camera, several cameras or a lifting network give"

@@ -30,7 +30,7 @@ class JointSet:
 
     @property
     def spellings(self) -> tuple[frozenset[str], ...]:
-        """What each joint may be called, in canonical form."""
+        """Names that each joint may have, in canonical form."""
         return tuple(frozenset(map(canonical_name, name.split("|"))) for name in self.names)
 
 

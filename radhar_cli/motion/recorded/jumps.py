@@ -19,7 +19,7 @@ from radhar_cli.numerics.arrays import Bool, Float
 # 2011) in some 0.1 s, 90 m/s^2 on the way
 HARDEST = 300.0
 FARTHEST = 0.1  # m; so far noise alone carries no joint
-FAST = 11.0  # m/s; who is faster in one frame, but not in those beside it, has jumped
+FAST = 11.0  # m/s; a joint that is faster in one frame, but not in those beside it, has jumped
 FASTEST = 30.0  # m/s, of any joint
 TRUNK_FASTEST = 15.0  # m/s; sprinters run at 12
 JUMP_MARGIN_S = 0.15  # before and after a jump, for which a low-pass remembers it

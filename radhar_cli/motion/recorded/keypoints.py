@@ -123,7 +123,7 @@ class Keypoints:
         return bridge_gaps(p, times, rate)
 
     def label(self, joint: int) -> str:
-        """What messages call a joint: its name, or its number where there are no names."""
+        """Name of a joint in messages, or its number where there are no names."""
         return self.names[joint] if self.is_named else f"joint {joint}"
 
     def place(self, frame: int) -> str:

@@ -37,7 +37,7 @@ def _common_beginning(names: list[str]) -> str:
     if len(names) < FEWEST:
         return ""
     low, second, *_, before_last, high = sorted(names)
-    # Who begins otherwise is the first or the last.
+    # A name that begins otherwise is the first or the last.
     return max(_shared_beginning(second, high), _shared_beginning(low, before_last), key=len)
 
 

@@ -1,4 +1,4 @@
-"""What every reader of motion files gives: names, who hangs on whom, positions of some joints."""
+"""Recordings of motion files: names of joints, their parents, positions of some of them."""
 
 from collections.abc import Sequence
 from typing import Protocol

@@ -1,4 +1,4 @@
-"""Which axis of a file points up: somebody stands along it, on a floor, and falls down along it."""
+"""Axis of a file that points up: people stand along it, on a floor, and fall down along it."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,16 +11,16 @@ from radhar_cli.numerics.arrays import Bool, Float
 UPRIGHT = 0.8  # least cosine of the angle to the vertical that tells which way is up
 MAJORITY = 0.5  # least share of the frames in which the head is above the feet
 LEAST_SHARE = 0.03  # least share of the frames in which an axis is that of a body at all
-FLOOR = 0.25  # most that the lowest joint goes up and down who stays on a floor, over the stature
+FLOOR = 0.25  # largest range of heights of the lowest joint on a floor, over the stature
 CLIMB = 0.5  # least path along the body's own axis that makes somebody a crawler, statures
-FALL = 1.2  # least speed of a head that falls, statures per second; who gets up is slower
+FALL = 1.2  # least speed of a head that falls, statures per second; a person who gets up is slower
 IN_PLACE = 0.3  # most that hips go across the body of a person who takes no steps, over the stature
-NO_SQUAT = 0.08  # most that hips go along the body of who neither squats nor jumps, the same
-LEGS = 0.5  # least cosine of hips over feet to an axis that is up: who bends down lies in none
+NO_SQUAT = 0.08  # largest way of hips along a body that neither squats nor jumps, the same
+LEGS = 0.5  # least cosine of hips over feet to an axis that is up; a bent body has none
 BENT_LEG = 0.5  # most cosine of thighs to the line from feet to head of a person who sits or crawls
-FLAT = 0.45  # most that somebody extends upwards who lies or is on all fours, over the stature
-FLOOR_AT = (-0.02, 0.09)  # height of the lowest joint of who is on a floor at 0, over the stature
-BED = 0.45  # most height of the lowest joint of who lies, the same; nearer than a camera stands
+FLAT = 0.45  # largest height of a body that lies or is on all fours, over the stature
+FLOOR_AT = (-0.02, 0.09)  # heights of the lowest joint on a floor at 0, over the stature
+BED = 0.45  # largest height of the lowest joint of a lying person; a camera stands farther off
 USUAL = ("z", "y", "-y")  # the vertical of nearly all files
 
 _HEAD, _HIP = JOINTS.index("head"), JOINTS.index("hip")
@@ -96,7 +96,7 @@ def find_up_axis(p: Float, rate: float, stature: float, rest: Float | None = Non
 
 
 def _name_choice(names: Sequence[str]) -> str:
-    """What to say where several axes may point up."""
+    """Words for several axes that may point up."""
     return f"for somebody is upright along {' and '.join(names)}" if names else ""
 
 
@@ -127,7 +127,7 @@ def _axis_of_rest(rest: Float | None) -> str | None:
 
 
 def _floor_range(p: Float, axis: int, sign: int) -> float:
-    """How far the lowest joint goes up and down in nearly all frames, over the stature."""
+    """Range of heights of the lowest joint in nearly all frames, over the stature."""
     low, high = np.percentile((sign * p[..., axis]).min(axis=1), [3, 97])
     return float(high - low)
 
@@ -214,7 +214,7 @@ def _height(p: Float, signed: tuple[int, int]) -> float:
 
 
 def _doubt(p: Float, body: Float, signed: tuple[int, int]) -> str:
-    """What to say where a body is straight along one axis only, but who lies might be so, too."""
+    """Words for a body that is straight along one axis only, as a lying one may be, too."""
     name = _name(*signed)
     say = f"{name} is assumed to point up; up: AXIS of its class (--up AXIS) says otherwise"
     thighs = _directions(p[:, _KNEES] - p[:, _HIP_JOINTS]).mean(axis=1)

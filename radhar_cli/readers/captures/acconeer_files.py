@@ -1,4 +1,4 @@
-"""What a recording of acconeer's Exploration Tool (A121, HDF5) says of its frames.
+"""Frames of recordings of acconeer's Exploration Tool (A121, HDF5), by their own settings.
 
 `ENTRY/result/frame` holds [frame, sweep, point], integers `real` and `imag`; JSON texts are
 `session_config` of the session, with sweeps and points of the sensor, and `ENTRY/metadata`

@@ -11,12 +11,11 @@ import numpy as np
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.captures.point_tables import HOW
-from radhar_cli.readers.captures.settings import USUAL_AXES, AxisName, CaptureSettings
+from radhar_cli.readers.captures.settings import AxisName, CaptureSettings
 from radhar_cli.readers.captures.source import MissingKeysError, Parts, Source
-from radhar_cli.readers.captures.stored_arrays import CutArray, Samples, SplitArray
+from radhar_cli.readers.captures.stored_arrays import CutArray, FrameFiles, Samples, SplitArray
 
 MAX_RECEIVERS = 1024
-MOST_GUESSED_RECEIVERS = 16  # of axes that nobody has named
 _ORDER: tuple[AxisName, ...] = ("transmitter", "receiver", "sample", "frame", "pulse", "iq")
 
 
@@ -114,21 +113,13 @@ def as_source(
     """
     if not of_matlab or prod(array.shape) == max(array.shape):
         array = cut_axes(array, settings)
-    of_matlab = of_matlab and not isinstance(array, CutArray)
-    axes = _axes(array, settings, of_matlab)
+    axes = _axes(array, settings, of_matlab and not isinstance(array, CutArray))
     sizes = dict(zip(axes, array.shape, strict=True))
     transmitters = sizes.get("transmitter", settings.transmitters)
     pulses = ArrayPulses(array, axes, transmitters)
     has_frames = "frame" in axes
-    notes = [
-        note
-        for note in (
-            _note_of_cycle(pulses.chirps % pulses.turns),
-            None if settings.axes is not None else _note_of_axes(axes, sizes, of_matlab),
-        )
-        if note is not None
-    ]
-    guess = () if settings.axes else axes[::-1] if of_matlab else axes
+    incomplete = pulses.chirps % pulses.turns
+    note = f"the last {incomplete} chirps (an incomplete transmitter cycle) are left out"
     chunk = array.chunk[axes.index("frame" if has_frames else "pulse")]
     return Source(
         (path,),
@@ -139,30 +130,10 @@ def as_source(
         pulses.parts,
         pulses.read,
         times=times,
-        axes=guess if len(guess) > 1 else (),
         step=max(chunk * (pulses.per_frame if has_frames else 1) // pulses.turns, 1),
         settings={"frame_pulses": pulses.per_frame // pulses.turns} if has_frames else {},
-        notes=tuple(notes),
+        notes=(note,) if incomplete else (),
     )
-
-
-def _note_of_cycle(incomplete: int) -> str | None:
-    """Words for chirps of an incomplete cycle of transmitters."""
-    if not incomplete:
-        return None
-    return f"the last {incomplete} chirps (an incomplete transmitter cycle) are left out"
-
-
-def _note_of_axes(
-    axes: tuple[AxisName, ...], sizes: dict[AxisName, int], of_matlab: bool
-) -> str | None:
-    """Words for axes that were guessed, where another order is as likely."""
-    if "iq" in axes:
-        return "the last axis, of two real numbers, is I and Q (axes=[...] says otherwise)"
-    if sizes.get("sample", 0) > sizes["pulse"]:
-        names = ", ".join(axes[::-1] if of_matlab else axes)
-        return f"axes are read as [{names}] (axes=[...] says otherwise)"
-    return None
 
 
 def cut_axes(array: Samples, s: CaptureSettings) -> Samples:
@@ -232,9 +203,13 @@ def _by_frame(low: int, high: int, per_frame: int) -> Iterator[tuple[slice, slic
 
 
 def _axes(array: Samples, s: CaptureSettings, of_matlab: bool) -> tuple[AxisName, ...]:
-    """Names of the axes of an array, in the order of the file."""
+    """Names of the axes of an array, in the order of the file.
+
+    Raises:
+        MissingKeysError: axes have no names, or others than their sizes.
+    """
     shape = array.shape[::-1] if of_matlab else array.shape
-    axes = s.axes or _usual_axes(array.parts, shape, s)
+    axes = s.axes or (("pulse",) if len(shape) == 1 else ())
     sizes = dict(zip(axes, shape, strict=False))
     expected_sizes: dict[AxisName, int | None] = {
         "sample": s.samples,
@@ -249,119 +224,42 @@ def _axes(array: Samples, s: CaptureSettings, of_matlab: bool) -> tuple[AxisName
         problems.append("sample should have 2 or more")
     if sizes.get("receiver", 1) > MAX_RECEIVERS:
         problems.append(f"receiver should have at most {MAX_RECEIVERS}")
-    if s.axes is None and sizes.get("receiver", 1) > MOST_GUESSED_RECEIVERS:
-        problems.append(f"receiver has {sizes['receiver']}, which may be frames")
-    if s.axes is None and axes == ("sample", "pulse") and shape[0] == 2 and array.parts == 1:
-        raise MissingKeysError(
-            f"{array.where}: has the shape {[*shape]} of real numbers: are they I and Q "
-            "(axes=[iq,pulse]), or two receivers (axes=[receiver,pulse])?",
-            {"axes": "[iq,pulse]"},
-        )
     if problems or len(axes) != len(shape):
+        read_as = f", read as axes = {[*axes]}" if axes else ""
         problem = f"; {problems[0]}" if problems else ""
         if s.axes is None and array.parts == 1 and set(shape) & {*range(3, 8)}:
             problem += f"; points (x, y, z, Doppler, ...) are not samples, of them {HOW}"
-        likely_axes = ("frame", "receiver", "pulse", "sample")[-len(shape) :]
+        likely = _likely_axes(shape, array)
+        named = " x ".join(f"{n} {name}s" for n, name in zip(shape, likely, strict=True))
         raise MissingKeysError(
-            f"{array.where}: has {len(shape)} axes, {list(shape)}, read as axes = {[*axes]}"
-            f"{problem}; --set axes=[...] should name each, outermost first",
-            {"axes": f"[{','.join(likely_axes)}]"},
+            f"{array.where}: has {len(shape)} axes, {[*shape]}{read_as}{problem}; --set axes=[...] "
+            f"should name each, outermost first, of {', '.join(_ORDER)}, such as "
+            f"[{','.join(likely)}] if they are {named}",
+            {"axes": f"[{','.join(likely)}]"},
         )
-    if s.axes is None and axes[:2] == ("sample", "pulse"):
-        _require_axes_of_matrix(array.where, shape, s, axes[2:])
     return axes[::-1] if of_matlab else axes
 
 
-def _require_axes_of_matrix(
-    where: str, shape: tuple[int, ...], s: CaptureSettings, iq: tuple[AxisName, ...]
-) -> None:
-    """Require that the two axes of a matrix have names where a guess may be the transposition.
-
-    Args:
-        where: file and array, for messages.
-        shape: sizes of the axes, in the order of the program that wrote it.
-        s: header of the capture, without axes.
-        iq: the axis that follows the two; none of complex numbers.
-
-    Raises:
-        MissingKeysError: nothing tells samples from pulses, or from receivers.
-    """
-    rows, columns = shape[:2]
-    has_beat_keys = s.bandwidth_hz is not None and s.adc_rate_hz is not None
-    may_be_receivers = min(rows, columns) <= MOST_GUESSED_RECEIVERS and not (
-        s.are_profiles or has_beat_keys
-    )
-    is_long = rows > columns or s.are_profiles
-    if s.samples is not None or not (is_long or may_be_receivers):
-        return
-    by_pulse: tuple[AxisName, ...] = ("pulse", "sample", *iq)
-    by_sample: tuple[AxisName, ...] = ("sample", "pulse", *iq)
-    meanings = {
-        by_pulse: _words_of_pulses(rows, columns, s),
-        by_sample: _words_of_pulses(columns, rows, s),
-    }
-    likely = by_pulse
-    if may_be_receivers:
-        likely = ("pulse", "receiver", *iq) if rows > columns else ("receiver", "pulse", *iq)
-        receivers = f"slow time of {min(rows, columns)} receivers, {max(rows, columns)} pulses"
-        meanings = {likely: receivers, **meanings}
-    choices = ", or ".join(f"axes=[{','.join(a)}]: {text}" for a, text in meanings.items())
-    raise MissingKeysError(
-        f"{where}: has the shape {[*shape]}, and axes should say what that is: {choices}",
-        {"axes": f"[{','.join(likely)}]"},
-    )
+def _likely_axes(shape: tuple[int, ...], array: Samples) -> list[str]:
+    """Names that axes may have, as an example: the longest is of pulses, two real ones are iq."""
+    names = dict[int, str]()
+    if isinstance(array, FrameFiles):
+        names[0] = "frame"
+    if array.parts == 1 and 2 in (shape[-1], shape[0]):
+        names[len(shape) - 1 if shape[-1] == 2 else 0] = "iq"
+    others = [axis for axis in range(len(shape)) if axis not in names]
+    usual = ["pulse", "sample", "receiver", "frame", "transmitter", "axis"]
+    for axis in sorted(others, key=lambda axis: -shape[axis]):
+        names[axis] = next((name for name in usual if name not in names.values()), "axis")
+    return [names[axis] for axis in range(len(shape))]
 
 
-def _words_of_pulses(pulses: int, samples: int, s: CaptureSettings) -> str:
-    """Words for a number of pulses of a number of samples, or profiles of bins to a range."""
-    if not s.are_profiles:
-        return f"{pulses} pulses of {samples} samples"
-    if s.first_range_m is None or s.range_step_m is None:
-        return f"{pulses} profiles of {samples} bins"
-    last_m = s.first_range_m + (samples - 1) * s.range_step_m
-    return f"{pulses} profiles of {samples} bins to {last_m:.2g} m"
-
-
-def _usual_axes(parts: int, shape: tuple[int, ...], s: CaptureSettings) -> tuple[AxisName, ...]:
-    """Names of axes that nobody has named; a last one of two real numbers is I and Q.
-
-    Args:
-        parts: 2 of complex numbers, 1 of real ones.
-        shape: sizes of the axes.
-        s: header of the capture.
-    """
-    is_tone = s.radar is not None and s.radar.get("waveform") == "cw" and s.transmitters == 1
-    if is_tone and s.receivers and (axes := _axes_of_slow_time(parts, shape, s.receivers)):
-        return axes
-    others = USUAL_AXES.get(len(shape) - 1)
-    is_pair = parts == 1 and len(shape) > 1 and shape[-1] == 2 and shape[0] > 2
-    if is_pair and others is not None and s.receivers != 2 and s.complex:
-        return (*others, "iq")
-    return USUAL_AXES.get(len(shape), ())
-
-
-def _axes_of_slow_time(parts: int, shape: tuple[int, ...], receivers: int) -> tuple[AxisName, ...]:
-    """Names of the axes of slow time of several receivers; () where none is as long as these."""
-    iq: tuple[AxisName, ...] = ("iq",) if parts == 1 and shape[-1] == 2 else ()
-    sides = shape[: len(shape) - len(iq)]
-    is_complex = parts == 2 or iq
-    if not is_complex or len(sides) != 2 or receivers not in sides or receivers == 1:
-        return ()
-    first_is_receiver = sides[0] == receivers
-    return ("receiver", "pulse", *iq) if first_is_receiver else ("pulse", "receiver", *iq)
-
-
-def settings_with_frames(
-    array: Samples, settings: CaptureSettings, of_matlab: bool
-) -> CaptureSettings:
-    """Settings whose axes begin with that of the frames, a file or a cell each; end, of MATLAB.
-
-    Raises:
-        CaptureError: axes are not named, and not the usual ones of a frame.
-    """
-    usual: dict[int, tuple[AxisName, ...]] = {3: ("frame", "sample", "pulse")}
-    axes = settings.axes or usual.get(len(array.shape)) or USUAL_AXES.get(len(array.shape), ())
-    if settings.axes is not None and "frame" not in axes:
+def settings_with_frames(settings: CaptureSettings, of_matlab: bool) -> CaptureSettings:
+    """Settings whose axes begin with that of the frames, a file or a cell each; end, of MATLAB."""
+    axes = settings.axes
+    if axes is None:
+        return settings
+    if "frame" not in axes:
         axes = ("frame", *axes)
     if of_matlab and axes[:1] == ("frame",):
         axes = (*axes[1:], "frame")

@@ -226,7 +226,7 @@ def _open_with(
             frames = [cut_axes(frame, cut) if axes else frame for frame in frames]
         samples = frames[0] if len(frames) == 1 else FrameFiles(frames)
         if isinstance(samples, FrameFiles):
-            settings = settings_with_frames(samples, settings, of_matlab)
+            settings = settings_with_frames(settings, of_matlab)
         source = as_source(path, samples, settings, None, of_matlab)
         source = replace(source, files=tuple(capture.paths))
         names, arrays, _ = opened[0]

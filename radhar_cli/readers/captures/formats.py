@@ -5,7 +5,14 @@ from pathlib import Path
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import regular_size
-from radhar_cli.readers.captures import array_files, dca1000, text_files, wav_files, xethru_files
+from radhar_cli.readers.captures import (
+    array_files,
+    dca1000,
+    glasgow_files,
+    text_files,
+    wav_files,
+    xethru_files,
+)
 from radhar_cli.readers.captures.packed_files import unpack_file, unpack_zip
 from radhar_cli.readers.captures.source import HEAD_BYTES, CaptureFiles, CaptureFormat, Source
 
@@ -19,6 +26,7 @@ FORMATS: list[CaptureFormat] = [
     array_files.HDF5,
     wav_files.WAV,
     xethru_files.XETHRU,
+    glasgow_files.GLASGOW,
     text_files.TEXT,
 ]
 

@@ -1,4 +1,4 @@
-"""Which of the arrays of a file are the samples, Q where it is apart, and the times of pulses."""
+"""Choice of arrays or columns by names: samples, Q where it is apart, times of the pulses."""
 
 from collections.abc import Callable, Mapping
 from math import prod
@@ -9,6 +9,8 @@ from radhar_cli.errors import CaptureError, did_you_mean
 from radhar_cli.readers.captures.named_parts import find_pair, find_times
 from radhar_cli.readers.captures.point_tables import refuse_names_of_points
 from radhar_cli.readers.captures.settings import NO_TIMES, CaptureSettings
+
+MOST_LISTED = 40  # arrays in a message
 
 
 class ArrayNames(NamedTuple):
@@ -51,7 +53,8 @@ def choose_arrays(
     named_times = None if settings.times == NO_TIMES else settings.times
     for name in filter(None, (settings.dataset, named_times, settings.imaginary)):
         if name not in shapes:
-            hint = did_you_mean(name, shapes, f"there are {', '.join(shapes) or 'none'}")
+            listed = ", ".join([*shapes][:MOST_LISTED]) or "none"
+            hint = did_you_mean(name, shapes, f"there are {listed}")
             raise CaptureError(f"{path}: {name}: no such array of numbers; {hint}{advice}")
     times = settings.times or find_times(n for n, shape in shapes.items() if prod(shape) > 1)
     times = None if times == NO_TIMES else times
@@ -67,7 +70,8 @@ def choose_arrays(
     if len(candidates) > 1:
         candidates = [name for name in candidates if is_complex(name)] or candidates
     if len(candidates) != 1:
-        arrays = ", ".join(f"{name} {[*shape]}" for name, shape in shapes.items()) or "none"
+        some = [*shapes.items()][:MOST_LISTED]
+        arrays = ", ".join(f"{name} {[*shape]}" for name, shape in some) or "none"
         raise CaptureError(
             f"{path}: --set dataset=NAME should name the samples, or dataset=NAME and "
             f"imaginary=NAME I and Q; there are {arrays}{advice}"

@@ -76,7 +76,7 @@ def is_quadrature_first(names: Sequence[str]) -> bool:
 
 
 def _stems(name: str, ending: str) -> list[tuple[str, str]]:
-    """What stands before an ending that is a word of its own in a name, and what numbers it.
+    """Stem before an ending that is a word of its own in a name, and the number after it.
 
     A number may have a word before it, as in `I_ch1` and `I_rx1`.
     """

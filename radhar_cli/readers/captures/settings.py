@@ -33,12 +33,6 @@ NUMBER_TYPE = r"^[<>]?(u?int(8|16|32|64)|float(16|32|64)|complex(64|128))$"
 FARTHEST_M = 1000  # first sample of range profiles
 MAX_RANGE_STEP_M = 3.0  # of range profiles; a coarser one is of cm
 NO_TIMES = "none"  # for `times`: those of the file are not used
-USUAL_AXES: dict[int, tuple[AxisName, ...]] = {
-    1: ("pulse",),
-    2: ("sample", "pulse"),
-    3: ("receiver", "sample", "pulse"),
-    4: ("frame", "pulse", "receiver", "sample"),
-}
 
 
 def _refusal(right: str) -> PydanticCustomError:

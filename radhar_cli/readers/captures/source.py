@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.readers.captures.settings import AxisName, CaptureSettings
+from radhar_cli.readers.captures.settings import CaptureSettings
 
 Parts = NDArray[Any]
 PIECE_BYTES = 2**24
@@ -35,7 +35,6 @@ class Source:
     is_part: bool = False  # whether its files hold pulses of other subframes, too
     # fields of `CaptureSettings` that the capture itself contains
     settings: dict[str, Any] = field(default_factory=dict)
-    axes: tuple[AxisName, ...] = ()  # that were guessed of an array, in its program's order
     notes: tuple[str, ...] = ()  # findings on opening it, in words
     # sign of the beat frequencies where the samples do not show it
     usual_beat: Literal["negative", "positive"] = "negative"

@@ -79,7 +79,7 @@ def _read_file(path: Path, folder: Path) -> bytes:
 
 
 def _describe_folder(names: list[str]) -> str:
-    """What to say of a folder without JSON: what its files are, and what to do."""
+    """Words for a folder without JSON: the kind of its files, and the way on."""
     counts = Counter(Path(name).suffix.lower() for name in names if not name.startswith("."))
     suffix = counts.most_common(1)[0][0] if counts else ""
     if suffix in _PIXELS:

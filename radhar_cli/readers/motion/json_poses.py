@@ -30,7 +30,8 @@ from radhar_cli.readers.motion.json_bodies import (
     lower_keys,
     read_frame,
 )
-from radhar_cli.readers.motion.text_cells import decode_text
+from radhar_cli.readers.motion.text_tables import MAX_TEXT
+from radhar_cli.readers.text_table import text_of_bytes
 
 MAX_JSON = 2**25  # bytes
 # Least share of joints in the picture of landmarks of an image, whose feet are often below it; of
@@ -217,7 +218,7 @@ def _parse(data: bytes, where: str) -> Any:
     """Value of a JSON text of bounded length; a list where each line is one."""
     if len(data) > MAX_JSON:
         raise motion_file_error(where, f"is {len(data)} bytes; should be at most {MAX_JSON}")
-    text = decode_text(data, where)
+    text = text_of_bytes(data, where, MAX_TEXT, motion_file_error)
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:

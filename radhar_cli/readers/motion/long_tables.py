@@ -10,7 +10,7 @@ from radhar_cli.motion.recorded.image_landmarks import two_dimensional
 from radhar_cli.motion.recorded.recording import MAX_FRAMES, MAX_JOINTS, motion_file_error
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.motion.table_headings import MOST_LINES, find_time
-from radhar_cli.readers.motion.text_cells import CellTable, is_number, number_of, rows_of
+from radhar_cli.readers.text_table import TextTable, is_number
 
 OFTEN = 0.5  # share of the rows of the main person from which another one is a second person
 _JOINT = re.compile(
@@ -50,7 +50,7 @@ class _LongColumns(NamedTuple):
     confidence: int | None
 
 
-def find_long_heading(table: CellTable) -> tuple[int, tuple[int, int, int], int] | None:
+def find_long_heading(table: TextTable) -> tuple[int, tuple[int, int, int], int] | None:
     """Find the row of a long table's names: the row, columns x, y and z, and that of the joint.
 
     Raises:
@@ -73,7 +73,7 @@ def find_long_heading(table: CellTable) -> tuple[int, tuple[int, int, int], int]
     return None
 
 
-def read_long(table: CellTable, heading: int, xyz: tuple[int, int, int], joint: int) -> LongTable:
+def read_long(table: TextTable, heading: int, xyz: tuple[int, int, int], joint: int) -> LongTable:
     """Read a table of a row for each joint of each frame.
 
     Args:
@@ -96,7 +96,7 @@ def read_long(table: CellTable, heading: int, xyz: tuple[int, int, int], joint: 
         _first_matching(_PERSON, names),
         _first_matching(_CONFIDENCE, names),
     )
-    rows = [*rows_of(table, heading + 1, len(names))]
+    rows = [*table.filled_rows(heading + 1, len(names))]
     if len(rows) > MAX_FRAMES * 4:
         raise motion_file_error(table.where, f"has more than {4 * MAX_FRAMES} rows")
     rows, remarks = _rows_of_person(rows, columns.person, table.where)
@@ -157,7 +157,7 @@ def _rows_of_person(
 
 
 def _arrange(
-    table: CellTable,
+    table: TextTable,
     rows: Sequence[tuple[int, list[str]]],
     columns: _LongColumns,
     numbers: dict[str, int],
@@ -182,9 +182,8 @@ def _arrange(
             seen_joints = set()
             instants.append("" if columns.time is None else row[columns.time])
         seen_joints.add(number)
-        place = table.place(line)
         if not _is_lost(row, columns.confidence):
-            frames[-1][number] = [number_of(row[column], place) for column in columns.xyz]
+            frames[-1][number] = [table.number(row[column], line) for column in columns.xyz]
     return np.stack(frames) if frames else np.empty((0, len(numbers), 3)), instants
 
 

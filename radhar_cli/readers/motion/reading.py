@@ -49,7 +49,7 @@ WRITE_NPZ = "np.savez('clip.npz', names=[...], positions=p, rate=30), p [frames,
 
 
 def describe_unknown(path: Path) -> str:
-    """What to say of a file of a kind that is not read: what is, and how to get there."""
+    """Words for a file of a kind that is not read: the kinds that are, and the way there."""
     advice = ADVICE.get(path.suffix.lower(), f"others by three lines of NumPy: {WRITE_NPZ}")
     return f"should be paths of {', '.join(SUFFIXES)} files, or FOLDER/ of JSON; {advice}"
 

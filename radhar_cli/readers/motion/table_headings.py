@@ -12,7 +12,7 @@ from typing import NamedTuple
 from radhar_cli.files.clocks import TIME_WORDS
 from radhar_cli.motion.recorded.image_landmarks import two_dimensional
 from radhar_cli.motion.recorded.recording import MAX_JOINTS, RATES, motion_file_error
-from radhar_cli.readers.motion.text_cells import LOST, CellTable, is_number
+from radhar_cli.readers.text_table import LOST, TextTable, is_number
 
 MOST_LINES = 60  # above the numbers
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "inches": 0.0254}
@@ -55,7 +55,7 @@ _TURNS |= frozenset({"meanmarkererror", "markerquality", "residual", "linearvelo
 
 
 class Heading(NamedTuple):
-    """What stands above the numbers of a table of one row a frame."""
+    """Names, places of joints, rate and unit above the numbers of a table of a row a frame."""
 
     begin: int  # row of the first numbers
     names: list[str] | None
@@ -68,7 +68,7 @@ class Heading(NamedTuple):
     width: int | None = None  # cells that a row must have
 
 
-def find_heading(table: CellTable) -> Heading | None:
+def find_heading(table: TextTable) -> Heading | None:
     """Find names of joints and axes above the numbers of a table.
 
     Args:
@@ -101,7 +101,7 @@ def find_heading(table: CellTable) -> Heading | None:
     )
 
 
-def rate_above(table: CellTable, begin: int) -> float | None:
+def rate_above(table: TextTable, begin: int) -> float | None:
     """Frames per second that lines above a row say; None where none does."""
     lines = [" , ".join(cell.strip() for cell in row) for row in table.rows[:begin]]
     matches = [match for line in lines for match in _RATE.finditer(line)]
@@ -116,7 +116,7 @@ def rate_above(table: CellTable, begin: int) -> float | None:
     return None
 
 
-def unit_above(table: CellTable, begin: int) -> float | None:
+def unit_above(table: TextTable, begin: int) -> float | None:
     """Length of a unit that lines above a row say, m; None where none does."""
     for row in table.rows[:begin]:
         match = _LENGTH_UNIT.search(" , ".join(cell.strip() for cell in row))
@@ -166,7 +166,7 @@ def _has_axes(row: Sequence[str]) -> bool:
     return sum(bool(_AXIS_ALONE.match(_clean(cell))) for cell in row) > 3
 
 
-def _above_numbers(table: CellTable, begin: int) -> Heading:
+def _above_numbers(table: TextTable, begin: int) -> Heading:
     """Heading of numbers below a line of names without axes, as Qualisys writes them.
 
     Raises:
@@ -228,7 +228,7 @@ def _refuse_pixels(names: Sequence[str], where: str) -> None:
         raise motion_file_error(where, two_dimensional(f"{pairs[0][:30]} has x and y, but no z"))
 
 
-def _of_names(table: CellTable, number: int) -> Heading:
+def _of_names(table: TextTable, number: int) -> Heading:
     """Heading of columns that are named by joint and axis in one line."""
     names = [_clean(cell) for cell in table.rows[number]]
     complete, _ = _joints_of_names(names)
@@ -260,7 +260,7 @@ def _require_joints(joints: Mapping[str, object], where: str) -> None:
         raise motion_file_error(where, f"has {len(joints)} joints; should have 1 to {MAX_JOINTS}")
 
 
-def _of_axes(table: CellTable, number: int) -> Heading:
+def _of_axes(table: TextTable, number: int) -> Heading:
     """Heading of a line of axes, above which a line names the joints."""
     axes = [_AXIS_ALONE.match(_clean(cell)) for cell in table.rows[number]]
     above = [table.rows[n] for n in range(number) if _is_filled(table.rows[n])]
@@ -318,7 +318,7 @@ def _columns_of_turns(row: Sequence[str]) -> list[int]:
 
 
 def _name_joints(
-    above: Sequence[Sequence[str]], starts: Sequence[int], table: CellTable, number: int
+    above: Sequence[Sequence[str]], starts: Sequence[int], table: TextTable, number: int
 ) -> list[str]:
     """Names of the joints whose axes begin at some columns.
 

@@ -1,16 +1,17 @@
 """Tables of positions as text: `.csv`, `.tsv` and `.txt`; `.trc` of OpenSim and Pose2Sim."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
-from radhar_cli.files.clocks import TIME_UNITS, seconds_of_texts
+from radhar_cli.files.clocks import TIME_UNITS
 from radhar_cli.motion.recorded.keypoints import (
     Keypoints,
     make_keypoints,
 )
-from radhar_cli.motion.recorded.recording import MAX_JOINTS, motion_file_error
+from radhar_cli.motion.recorded.recording import MAX_FRAMES, MAX_JOINTS, motion_file_error
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.motion.long_tables import find_long_heading, read_long
 from radhar_cli.readers.motion.position_arrays import arrange_positions
@@ -21,16 +22,9 @@ from radhar_cli.readers.motion.table_headings import (
     rate_above,
     unit_above,
 )
-from radhar_cli.readers.motion.text_cells import (
-    CellTable,
-    decode_text,
-    is_number,
-    number_of,
-    numbers_of,
-    rows_of,
-    split_cells,
-)
+from radhar_cli.readers.text_table import TextTable, is_number, read_text_table, text_of_bytes
 
+MAX_TEXT = 2**26  # bytes
 # Parts of a table of Vicon Nexus, each below a line with its name and one with its rate.
 NEXUS_PARTS = {
     name.lower(): name
@@ -48,7 +42,7 @@ def read_table(data: bytes, where: str) -> Keypoints:
     Raises:
         MotionFileError: Names the line and what is odd.
     """
-    table = split_cells(decode_text(data, where), where)
+    table = read_text_table(data, where, MAX_TEXT, motion_file_error)
     table = _trajectories(table)
     long_heading = find_long_heading(table)
     if long_heading is not None:
@@ -57,11 +51,11 @@ def read_table(data: bytes, where: str) -> Keypoints:
     if heading is None:
         return _without_names(table)
     columns = [column for place in heading.places for column in place]
-    numbers = numbers_of(table, heading.begin, columns, heading.width)
+    numbers = _numbers_of(table, heading.begin, columns, heading.width)
     values = numbers.reshape(len(numbers), len(heading.places), 3)
     lost = [column for column in heading.confidences if column is not None]
     if lost:
-        certain = iter(numbers_of(table, heading.begin, lost, heading.width).T)
+        certain = iter(_numbers_of(table, heading.begin, lost, heading.width).T)
         for joint, column in enumerate(heading.confidences):
             if column is not None:
                 values[next(certain) <= 0, joint] = np.nan
@@ -76,13 +70,14 @@ def read_table(data: bytes, where: str) -> Keypoints:
     )
 
 
-def _trajectories(table: CellTable) -> CellTable:
+def _trajectories(table: TextTable) -> TextTable:
     """Part of a table of Vicon Nexus that has trajectories; the table itself if of another program.
 
     Raises:
         MotionFileError: It has other parts of Nexus alone.
     """
-    words = [_only_word(row) for row in table.rows]
+    marks = (table.separator or " ") + ' \t"'
+    words = [line.strip(marks).lower() for line in table.lines]
     begins = [
         number
         for number, (word, rate) in enumerate(zip(words, [*words[1:], ""], strict=True))
@@ -99,20 +94,14 @@ def _trajectories(table: CellTable) -> CellTable:
             "too (Export ASCII: Trajectories), or C3D",
         )
     begin, end = parts["trajectories"]
-    return CellTable(table.rows[begin:end], table.first + begin, table.where)
+    return replace(table, lines=table.lines[begin:end], first=begin)
 
 
-def _only_word(row: list[str]) -> str:
-    """First cell of a row in lower case; "" where others are filled."""
-    return "" if not row or any(map(str.strip, row[1:])) else row[0].strip().lower()
-
-
-def _read_long(table: CellTable, heading: int, xyz: tuple[int, int, int], joint: int) -> Keypoints:
+def _read_long(table: TextTable, heading: int, xyz: tuple[int, int, int], joint: int) -> Keypoints:
     """Recording of a table of a row for each joint of each frame."""
     long = read_long(table, heading, xyz, joint)
-    times = (
-        None if long.instants is None else _instants(long.instants, long.time_unit, table, heading)
-    )
+    rows = [(heading + 1 + n, [text]) for n, text in enumerate(long.instants or ())]
+    times = _instants(table, rows, 0, long.time_unit)
     return make_keypoints(
         table.where,
         long.names,
@@ -124,25 +113,27 @@ def _read_long(table: CellTable, heading: int, xyz: tuple[int, int, int], joint:
     )
 
 
-def _times_of(table: CellTable, heading: Heading) -> Float | None:
+def _times_of(table: TextTable, heading: Heading) -> Float | None:
     """Instants of the rows of a table; None where it has none, or nothing stands in the column."""
     if heading.time is None:
         return None
-    rows = rows_of(table, heading.begin, heading.width)
-    texts = [row[heading.time] for _, row in rows]
-    return _instants(texts, heading.time_unit, table, heading.begin)
+    rows = [*table.filled_rows(heading.begin, heading.width)]
+    return _instants(table, rows, heading.time, heading.time_unit)
 
 
-def _instants(texts: list[str], unit: str | None, table: CellTable, begin: int) -> Float | None:
-    """Instants of texts: numbers in a unit, dates with times, or times of a clock."""
-    if not any(text.strip() for text in texts):
+def _instants(
+    table: TextTable, rows: Sequence[tuple[int, list[str]]], column: int, unit: str | None
+) -> Float | None:
+    """Instants of a column: numbers in a unit, or clocks in s; None where nothing stands there."""
+    if not any("".join(row[column : column + 1]).strip() for _, row in rows):
         return None
-    if not is_number(texts[0]):
-        seconds = seconds_of_texts(texts)
-        if seconds is not None:
-            return seconds
-    times = np.array([number_of(text, table.place(begin + n)) for n, text in enumerate(texts)])
-    return times * TIME_UNITS[unit] if unit else times
+    times, are_clocks = table.instants(rows, column)
+    return times * TIME_UNITS[unit] if unit and not are_clocks else times
+
+
+def _numbers_of(table: TextTable, begin: int, columns: Sequence[int], width: int | None) -> Float:
+    """Numbers [rows, columns] of some columns, NaN where a cell is lost."""
+    return table.numbers(table.filled_rows(begin, width), columns, MAX_FRAMES)
 
 
 def read_trc(data: bytes, where: str) -> Keypoints:
@@ -155,7 +146,7 @@ def read_trc(data: bytes, where: str) -> Keypoints:
     Raises:
         MotionFileError: Names the line and what is odd.
     """
-    lines = decode_text(data, where).splitlines()
+    lines = text_of_bytes(data, where, MAX_TEXT, motion_file_error).splitlines()
     if len(lines) < 6 or not lines[0].startswith("PathFileType"):
         raise motion_file_error(where, "is not a TRC file: it should begin with PathFileType")
     keys, texts = lines[1].split(), lines[2].split()
@@ -170,16 +161,13 @@ def read_trc(data: bytes, where: str) -> Keypoints:
         raise motion_file_error(
             f"{where}:4", f"has {len(names)} names; should have 1 to {MAX_JOINTS}"
         )
-    first = 5
-    rows = [line.rstrip("\r\n").split("\t") for line in lines[first:]]
-    width = 2 + 3 * len(names)
-    rows = [[*row[:width], *[""] * (width - len(row))] for row in rows]
-    numbers = numbers_of(CellTable(rows, first + 1, where), 0, range(2, width), width)
+    table = TextTable(where, lines[5:], "\t", False, motion_file_error, first=5)
+    numbers = _numbers_of(table, 0, range(2, 2 + 3 * len(names)), None)
     values = numbers.reshape(len(numbers), len(names), 3)
     return make_keypoints(where, names, values, float(rate), unit=UNITS[unit])
 
 
-def _without_names(table: CellTable) -> Keypoints:
+def _without_names(table: TextTable) -> Keypoints:
     """Recording of a table without a line of names: columns are x, y, z of each joint."""
     where = table.where
     begin = next(
@@ -188,7 +176,7 @@ def _without_names(table: CellTable) -> Keypoints:
         if any(c.strip() for c in row) and not row[0].startswith(("#", "%"))
     )
     width = len(table.rows[begin])
-    numbers = numbers_of(table, begin, range(width), width)
+    numbers = _numbers_of(table, begin, range(width), width)
     columns = width - width % 3
     if np.array_equal(numbers[0, -columns:], np.arange(columns)):  # as pandas names columns
         numbers = numbers[1:]

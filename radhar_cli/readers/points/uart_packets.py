@@ -64,7 +64,7 @@ LAYOUTS = (
 
 @dataclass(frozen=True)
 class Framing:
-    """How packets of a dump are cut into messages."""
+    """Law by which packets of a dump are cut into messages."""
 
     layout: HeaderLayout
     length_counts_itself: bool  # of a message: whether it counts type and length
@@ -111,14 +111,14 @@ class Packet:
 
 @dataclass
 class DumpDamage:
-    """What of a dump was left out."""
+    """Bytes of a dump that were left out."""
 
     skipped: int = 0  # bytes outside of whole packets
     damaged: int = 0  # packets that do not fit themselves
     truncated: bool = False  # the last packet ends early
 
     def findings(self) -> list[str]:
-        """Say what was left out, in words."""
+        """Words for the bytes that were left out."""
         sentences = []
         if self.damaged:
             sentences.append(

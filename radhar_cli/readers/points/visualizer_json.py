@@ -121,7 +121,7 @@ def _read_json(path: Path) -> Any:
 
 
 def _inner(item: dict[str, Any]) -> dict[str, Any]:
-    """What a frame holds: `frameData`, or the frame itself."""
+    """Content of a frame: `frameData`, or the frame itself."""
     inner = item.get("frameData", item)
     return inner if isinstance(inner, dict) else {}
 

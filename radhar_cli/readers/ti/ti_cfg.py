@@ -132,7 +132,7 @@ class BoardPose:
 
 @dataclass(frozen=True, kw_only=True)
 class BoardHeader(FrameHeader):
-    """What a .cfg says of a board that is simulated, whichever device it runs on.
+    """Board of a .cfg that is simulated, whichever device it runs on.
 
     That is more than its frames: how its firmware finds points, and where the board stands.
 

@@ -22,7 +22,7 @@ LARGEST = 1e9  # of every other number
 
 
 class Effect(Enum):
-    """What a command does here."""
+    """Effect of a command on a simulated board."""
 
     SIGNAL = "describes the chirps, frames and samples: simulated, and read of captures"
     POINTS = "sets the detection of points: simulated"
@@ -67,7 +67,7 @@ class Argument:
 
     @property
     def right(self) -> str:
-        """What is right, as in "should be ..."."""
+        """Values that are right, as in "should be ..."."""
         return self._limits + f" ({self.meaning})" * bool(self.meaning)
 
     @property
@@ -138,7 +138,7 @@ class Command:
 
     @cached_property
     def counts(self) -> range:
-        """How many numbers a line may have."""
+        """Numbers that a line may have, from and to."""
         required = sum(not argument.is_optional for argument in self.arguments)
         least = required + (self.subframe is Subframe.ALWAYS)
         return range(least, len(self.arguments) + (self.subframe is not Subframe.NEVER) + 1)
@@ -227,7 +227,7 @@ class CfgLine:
 
     @property
     def _right_counts(self) -> str:
-        """How many numbers the line may have, as words."""
+        """Numbers that the line may have, as words."""
         counts = sorted({count for one in self._candidates for count in one.counts})
         if len(counts) > MAX_COUNTS:
             return f"{counts[0]} to {counts[-1]}"

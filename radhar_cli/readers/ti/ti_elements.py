@@ -53,7 +53,7 @@ class FileElements:
 
 @dataclass(frozen=True)
 class ElementDifference:
-    """What of a file's elements is not a device's.
+    """Elements of a file that are not a device's, in words.
 
     Attributes:
         commands: Commands that differ; () for none.

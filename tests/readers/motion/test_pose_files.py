@@ -184,7 +184,7 @@ def test_frames_at_uneven_instants_are_brought_to_an_even_rate(tmp_path: Path) -
         ("x.csv", "time,a_x,a_y\n0,1,2\n", "a has x and y, but no z: pixels"),
         ("x.csv", "a,b\n1,2\n", r"x\.csv:1: should name its columns"),
         ("x.csv", "t,a_x,a_y,a_z\n0,1,2,3\n1,x,2,3\n", r"x\.csv:3: 'x' should be a number"),
-        ("x.csv", "t,a_x,a_y,a_z\n0,1,2\n", r"x\.csv:2: has 3 columns; .* has 4"),
+        ("x.csv", "t,a_x,a_y,a_z\n0,1,2\n", r"x\.csv:2: has 3 columns; .* have 4"),
         ("x.trc", "hello\n", "is not a TRC file"),
         ("x.c3d", "hello", "is not a C3D file"),
         ("x.skeleton", "2\n1\n", "ends before a line with a body"),

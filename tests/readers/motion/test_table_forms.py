@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from radhar_cli.errors import MotionFileError
+from radhar_cli.files.plain_text import decode_text
 from radhar_cli.motion.recorded.clip import make_clip
 from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
 from radhar_cli.motion.recorded.names import WANTED
-from radhar_cli.readers.motion.text_cells import decode_text
 from radhar_cli.readers.motion.text_tables import read_table
 
 SETS = ("coco17", "openpose25", "h36m17", "kinect2_25", "smpl24", "blazepose33", "azure32")
@@ -72,7 +72,7 @@ def test_encodings(tmp_path: Path) -> None:
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-16-le", "utf-16-be", "latin-1"])
 def test_names_keep_their_letters(encoding: str) -> None:
     data = "Schulter_für_x,Schulter_für_y,Schulter_für_z\n1,2,3\n".encode(encoding)
-    assert "Schulter_für_y" in decode_text(data, "x.csv")
+    assert "Schulter_für_y" in decode_text(data)
 
 
 @pytest.mark.parametrize(

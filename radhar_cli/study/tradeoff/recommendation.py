@@ -101,10 +101,12 @@ def verdict_of(row: Row, blur: float, engine: EngineConfig) -> Verdict:
     if row.saves(blur):
         return Verdict.SAVES
     key, _, value = row.name.partition(": ")
-    # Scenes that miss one tolerance and not the other are refused, unless the cube takes them over.
-    if key == "engine.tolerance_db" and engine.fallback == "refuse":
-        if target_error_db(float(value)) == target_error_db(engine.tolerance_db):
-            return Verdict.SAME
+    if (
+        key == "engine.tolerance_db"
+        and engine.fallback == "refuse"  # else the cube takes over what misses one of the two
+        and target_error_db(float(value)) == target_error_db(engine.tolerance_db)
+    ):
+        return Verdict.SAME
     if row.rounds < LEAST_ROUNDS:
         return Verdict.UNSURE
     return Verdict.SLOWER if row.costs(blur) else Verdict.LEVEL
@@ -174,9 +176,10 @@ def _floor_sentences(sweep: Sweep) -> Iterator[str]:
         return
     name, floor_db = floors[0]
     yield (
-        f"More than {percent_text(VISIBLE)} of the pixels are more than a level apart (of points: "
-        "move by more than 1 cm) from an error of the signal on of "
-        f"{', '.join(f'{db} dB ({key})' for key, db in floors)}; 8 bits cannot show less."
+        "8 bits show an error of the signal from "
+        f"{', '.join(f'{db} dB ({key})' for key, db in floors)} on: more than "
+        f"{percent_text(VISIBLE)} of the pixels are then more than a level off, or of the points "
+        "more than 1 cm."
     )
     if row.error_db is not None:
         own = "none" if row.error_db == -inf else f"{row.error_db:.0f} dB of {row.error_of}"

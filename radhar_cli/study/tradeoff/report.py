@@ -95,8 +95,13 @@ class TradeoffReport:
             ReportFigure(FIGURE, "time against difference", figure),
         )
         report.section(SETTINGS)
-        verdicts = [verdict_of(row, sweep.blur, engine).name.lower() for row in sweep.rows]
-        rows = [(*_cells(row), each) for row, each in zip(sweep.rows, verdicts, strict=True)]
+        rows = [
+            (
+                *_cells(row),
+                "" if row.is_default else verdict_of(row, sweep.blur, engine).name.lower(),
+            )
+            for row in sweep.rows
+        ]
         csv = [cells for row in sweep.rows for cells in _csv_rows(row)]
         report.add(
             Sentences([ABOUT]),

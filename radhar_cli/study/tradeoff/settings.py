@@ -129,7 +129,9 @@ def _maps(config: Config) -> Iterator[Setting]:
 def _is_other_receiver(config: Config) -> bool:
     """Whether the radar has frames, or real samples of impulses."""
     radar = config.radar
-    return isinstance(radar, ArrayRadar) or (isinstance(radar, ImpulseRadar) and radar.output == "rf")
+    return isinstance(radar, ArrayRadar) or (
+        isinstance(radar, ImpulseRadar) and radar.output == "rf"
+    )
 
 
 def _has_fsst(config: Config) -> bool:

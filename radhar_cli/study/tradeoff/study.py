@@ -291,5 +291,7 @@ def reason_of(error: RadharError) -> str:
     """Reason why a config does not allow a setting: a short line without its place in the file."""
     line = (str(error).splitlines() or [""])[0]
     right = line.partition(": should be ")[2]
-    reason = f"should be {right}" if right else re.sub(r"^\S+:\d+: ", "", line)
+    reason = re.sub(r"^some of [^:]*: ", "", right)  # a list of names, and then why
+    if reason == right:
+        reason = f"should be {right}" if right else re.sub(r"^\S+:\d+: ", "", line)
     return shorten(reason, MAX_REASON, placeholder=" ...")

@@ -56,7 +56,7 @@ def accuracy(*by_seed):
 
 def test_the_floor_of_the_image_and_the_error_of_the_config():
     lines = text()
-    assert "from an error of the signal on of -53 dB (stft)" in lines
+    assert "8 bits show an error of the signal from -53 dB (stft) on" in lines
     assert "own error, worst of 3 scenes, is -107 dB of the signal, 54 dB below that" in lines
 
 

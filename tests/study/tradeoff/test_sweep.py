@@ -10,6 +10,7 @@ from helpers.slow import slow_but
 from typer.testing import CliRunner
 
 from radhar_cli.cli import program
+from radhar_cli.errors import ConfigError
 from radhar_cli.scene.scene import scene_numbers
 from radhar_cli.study.tradeoff import study
 from radhar_cli.study.tradeoff.differences import signal_error
@@ -240,6 +241,13 @@ class TestSettings:
         assert len(messages) == 1
         assert messages[0].startswith("left out: processing.clutter: highpass: ")
         assert "\n" not in messages[0]
+
+    def test_a_reason_that_follows_a_list_of_names_is_told_whole(self):
+        error = ConfigError(
+            "c.yaml:7: maps = []: should be some of rtm, stft: no cloud.chain: best"
+        )
+        assert study.reason_of(error) == "no cloud.chain: best"
+        assert study.reason_of(ConfigError("c.yaml:7: x = 1: should be 2")) == "should be 2"
 
     def test_scenes_do_not_depend_on_engine_and_maps(self, tmp_path):
         scenes = self.scenes(tmp_path, "fmcw")

@@ -14,7 +14,6 @@ from radhar_cli.config.radar import (
     BoardRadar,
     ChirpFramesRadar,
     FmcwRadar,
-    FramesRadar,
     ImpulseRadar,
     SfcwRadar,
     StepFramesRadar,
@@ -58,7 +57,6 @@ class Worth(IntEnum):
 class Setting:
     """A setting that is tried: overrides of a config, and what its data are compared with."""
 
-    group: str  # part of radhar that it belongs to, in a word
     overrides: Overrides
     worth: Worth
     words: str = ""  # its name; "" names it by its first key and value
@@ -72,12 +70,18 @@ class Setting:
         return self.words or self.overrides[0].replace("=", ": ", 1)
 
     @property
+    def group(self) -> str:
+        """Section of the config that its first key is in."""
+        key = "".join(self.overrides[:1]).partition("=")[0]
+        return key.partition(".")[0] or "default"
+
+    @property
     def base_name(self) -> str:
         """Name of what its data are compared with."""
         return ", ".join(one.replace("=", ": ", 1) for one in self.base) or DEFAULT
 
 
-AS_IT_IS = Setting("default", (), Worth.SAVES, DEFAULT, effect=Change.ERROR)
+AS_IT_IS = Setting((), Worth.SAVES, DEFAULT, effect=Change.ERROR)
 
 
 def settings_of(config: Config) -> list[Setting]:
@@ -85,9 +89,14 @@ def settings_of(config: Config) -> list[Setting]:
 
     Whether the config allows them shows when it is read with them.
     """
-    parts = _engine, _maps, _body, _radar, _processing, _people, _room, _wall, _receiver
+    parts = _engine, _maps, _body, _radar, _processing, _scene, _wall, _receiver
     settings = [setting for part in parts for setting in part(config)]
     return sorted(settings, key=lambda setting: setting.worth)
+
+
+def _single(worth: Worth, *overrides: str) -> list[Setting]:
+    """Settings of one key each."""
+    return [Setting((override,), worth) for override in overrides]
 
 
 def _engine(config: Config) -> Iterator[Setting]:
@@ -104,34 +113,33 @@ def _engine(config: Config) -> Iterator[Setting]:
         if is_direct and engine.precision != "double":
             overrides.append("engine.precision=double")
     for override in overrides:
-        yield Setting("engine", (override,), Worth.ENGINE, effect=Change.ERROR)
+        yield Setting((override,), Worth.ENGINE, effect=Change.ERROR)
     if not reflects and not isinstance(radar, ArrayRadar) and not engine.motion_in_chirp:
         moving = (*CUBE, "engine.motion_in_chirp=true")
-        yield Setting("engine", moving, Worth.SLOW, "motion within the chirp", CUBE)
+        yield Setting(moving, Worth.SLOW, "motion within the chirp", CUBE)
 
 
 def _maps(config: Config) -> Iterator[Setting]:
     """Yield fewer maps, an FSST more, and other sizes of images."""
     for name in config.maps if len(config.maps) > 1 else ():
         remaining = ", ".join(other for other in config.maps if other != name)
-        yield Setting("maps", (f"maps=[{remaining}]",), Worth.SAVES, f"maps without {name}")
+        yield Setting((f"maps=[{remaining}]",), Worth.SAVES, f"maps without {name}")
     if _has_fsst(config):
-        yield Setting("maps", ("processing.fsst_hop_pulses=1",), Worth.SLOW)
+        yield from _single(Worth.SLOW, "processing.fsst_hop_pulses=1")
     elif not _is_other_receiver(config) and config.processing.range_sum == "coherent":
         maps = f"maps=[{', '.join((*config.maps, 'fsst'))}]"
-        yield Setting("maps", (maps,), Worth.PROCESSING, "maps with fsst")
-    height, width = config.image.size_px
+        yield Setting((maps,), Worth.PROCESSING, "maps with fsst")
     for parts, worth in ((2, Worth.SAVES), (4, Worth.PROCESSING)):
-        if min(height, width) // parts >= LEAST_PX and config.stream is None:
-            yield Setting("maps", (f"image.size_px=[{height // parts}, {width // parts}]",), worth)
+        height, width = (side // parts for side in config.image.size_px)
+        if min(height, width) >= LEAST_PX and config.stream is None:
+            yield from _single(worth, f"image.size_px=[{height}, {width}]")
 
 
 def _is_other_receiver(config: Config) -> bool:
     """Whether the radar has frames, or real samples of impulses."""
     radar = config.radar
-    return isinstance(radar, ArrayRadar) or (
-        isinstance(radar, ImpulseRadar) and radar.output == "rf"
-    )
+    is_real = isinstance(radar, ImpulseRadar) and radar.output == "rf"
+    return is_real or isinstance(radar, ArrayRadar)
 
 
 def _has_fsst(config: Config) -> bool:
@@ -145,63 +153,55 @@ def _body(config: Config) -> Iterator[Setting]:
     for kind in BODIES:
         if kind != body.scatterers:
             worth = Worth.SAVES if kind == "points" else Worth.PHYSICS
-            yield Setting("body", (f"body.scatterers={kind}",), worth)
-    overrides = [
-        f"body.points_per_segment={points}"
-        for points in (10, 5)
-        if body.scatterers != "points" and points < body.points_per_segment
-    ]
+            yield from _single(worth, f"body.scatterers={kind}")
+    for points in (10, 5) if body.scatterers != "points" else ():
+        if points < body.points_per_segment:
+            yield from _single(Worth.SAVES, f"body.points_per_segment={points}")
     if body.scatterers == "segments" or config.people:
-        overrides.append(f"body.shadowing={str(not body.shadowing).lower()}")
-    yield from (Setting("body", (override,), Worth.SAVES) for override in overrides)
+        yield from _single(Worth.SAVES, f"body.shadowing={str(not body.shadowing).lower()}")
 
 
 def _radar(config: Config) -> Iterator[Setting]:
     """Yield fewer pulses, samples, frames and antennas, other points, and other radar physics."""
     radar = config.radar
-    if isinstance(radar, BoardRadar):
-        yield from _board(radar)
-    else:
-        pulses = () if isinstance(radar, ArrayRadar) else (0.5, 0.75)
-        overrides: list[Overrides] = [
-            (f"radar.prf_hz={share * nominal(radar.prf_hz):g}",) for share in pulses
-        ]
-        if isinstance(radar, FramesRadar):
-            header = radar.header
-            overrides.append((f"radar.frame.period_s={2 * header.period_s:g}",))
-            if header.loops > 1:
-                overrides.append((f"radar.frame.chirps={header.loops // 2}",))
-        if isinstance(radar, SfcwRadar | StepFramesRadar):  # each step twice as long
-            dwell = f"radar.dwell_s={2 * radar.dwell_s:g}"
-            overrides.append((f"radar.steps={radar.steps // 2}", dwell))
-        elif isinstance(radar, FmcwRadar | ChirpFramesRadar):
-            overrides.append((f"radar.adc_rate_hz={nominal(radar.adc_rate_hz) / 2:g}",))
-        elif isinstance(radar, ImpulseRadar):
-            overrides.append((f"radar.profile_samples={radar.profile_samples // 2}",))
-        yield from (Setting("radar", override, Worth.SAVES) for override in overrides)
+    if isinstance(radar, SfcwRadar | StepFramesRadar):  # each step twice as long
+        steps = (f"radar.steps={radar.steps // 2}", f"radar.dwell_s={2 * radar.dwell_s:g}")
+        yield Setting(steps, Worth.SAVES)
+    elif isinstance(radar, FmcwRadar | ChirpFramesRadar):
+        yield from _single(Worth.SAVES, f"radar.adc_rate_hz={nominal(radar.adc_rate_hz) / 2:g}")
+    elif isinstance(radar, ImpulseRadar):
+        yield from _single(Worth.SAVES, f"radar.profile_samples={radar.profile_samples // 2}")
     if isinstance(radar, ArrayRadar):
+        yield from _frames(radar)
         if "points" in config.maps:
             yield from _points(config)
         return
+    for share in (0.5, 0.75):
+        yield from _single(Worth.SAVES, f"radar.prf_hz={share * nominal(radar.prf_hz):g}")
     if isinstance(radar, FmcwRadar | SfcwRadar) and not radar.residual_video_phase:
-        yield Setting("radar", ("radar.residual_video_phase=true",), Worth.PHYSICS)
+        yield from _single(Worth.PHYSICS, "radar.residual_video_phase=true")
     if radar.beam is None:
-        yield Setting("radar", (BEAM,), Worth.PHYSICS, "beams of 70 x 30 degrees")
+        yield Setting((BEAM,), Worth.PHYSICS, "beams of 70 x 30 degrees")
     else:
-        yield Setting("radar", ("radar.beam=null",), Worth.SAVES)
+        yield from _single(Worth.SAVES, "radar.beam=null")
 
 
-def _board(radar: BoardRadar) -> Iterator[Setting]:
-    """Yield settings of a board's .cfg: numbers of its lines, by command and place."""
+def _frames(radar: ArrayRadar) -> Iterator[Setting]:
+    """Yield fewer frames and chirps; of a board's .cfg numbers of its lines, command and place."""
     header = radar.header
-    transmitters, receivers = len(header.masks), len(header.receivers)
+    if not isinstance(radar, BoardRadar):
+        yield from _single(Worth.SAVES, f"radar.frame.period_s={2 * header.period_s:g}")
+        if header.loops > 1:
+            yield from _single(Worth.SAVES, f"radar.frame.chirps={header.loops // 2}")
+        return
+    receivers = len(header.receivers)
     mask = sum(1 << receiver for receiver in header.receivers[: receivers // 2])
     changes: dict[str, tuple[str, dict[int, float | int]]] = {
         "half as many frames": ("frameCfg", {5: 2.0}),
         f"{header.loops // 2} loops a frame": ("frameCfg", {3: 0.5}),
         "half as many samples a chirp": ("profileCfg", {10: 0.5, 11: 0.5}),
     }
-    for count in range(transmitters - 1, 0, -1):
+    for count in range(len(header.masks) - 1, 0, -1):
         changes[f"{count} transmitter{'s' * (count > 1)}"] = ("frameCfg", {2: count - 1})
     if receivers > 2:
         changes[f"{receivers // 2} receivers"] = ("channelCfg", {1: mask})
@@ -209,7 +209,7 @@ def _board(radar: BoardRadar) -> Iterator[Setting]:
         change = partial(_with_numbers, numbers)
         text = re.sub(rf"^{command}\b.*$", change, radar.cfg, flags=re.MULTILINE)
         if text != radar.cfg:
-            yield Setting("board", (f"radar.cfg={json.dumps(text)}",), Worth.SAVES, name)
+            yield Setting((f"radar.cfg={json.dumps(text)}",), Worth.SAVES, name)
 
 
 def _with_numbers(numbers: Mapping[int, float | int], line: re.Match[str]) -> str:
@@ -228,9 +228,9 @@ def _with_numbers(numbers: Mapping[int, float | int], line: re.Match[str]) -> st
 def _points(config: Config) -> Iterator[Setting]:
     """Yield other ways to find points."""
     is_best, quantise = config.cloud.chain == "best", str(not config.cloud.quantise).lower()
-    yield Setting("points", (f"cloud.chain={'board' if is_best else 'best'}",), Worth.SAVES)
+    yield from _single(Worth.SAVES, f"cloud.chain={'board' if is_best else 'best'}")
     override = "cloud.pfa=0.001" if is_best else f"cloud.quantise={quantise}"
-    yield Setting("points", (override,), Worth.PROCESSING)
+    yield from _single(Worth.PROCESSING, override)
 
 
 def _processing(config: Config) -> Iterator[Setting]:
@@ -240,47 +240,44 @@ def _processing(config: Config) -> Iterator[Setting]:
     for share, worth in ((2, Worth.SAVES), (5, Worth.PROCESSING)):
         overlap = 1 - share * (1 - processing.overlap_fraction)
         if has_doppler and not is_array and overlap > 0:
-            yield Setting("processing", (f"processing.overlap_fraction={overlap:.3g}",), worth)
-    for kind in ("mean", "none") if is_array else CLUTTER:
-        if kind != processing.clutter:
-            yield Setting("processing", (f"processing.clutter={kind}",), Worth.PROCESSING)
+            yield from _single(worth, f"processing.overlap_fraction={overlap:.3g}")
+    kinds = [
+        kind for kind in (CLUTTER[1::2] if is_array else CLUTTER) if kind != processing.clutter
+    ]
+    yield from _single(Worth.PROCESSING, *(f"processing.clutter={kind}" for kind in kinds))
     if "stft" in config.maps and config.radar.has_range:
         kind = "gated" if processing.range_sum == "coherent" else "coherent"
         base: Overrides = ("maps=[stft]",) if _has_fsst(config) else ()  # a gate has no fsst
-        name = f"processing.range_sum: {kind}"
+        override = f"processing.range_sum={kind}"
         worth = Worth.PROCESSING if kind == "gated" else Worth.SAVES
-        yield Setting("processing", (*base, f"processing.range_sum={kind}"), worth, name, base)
+        yield Setting((*base, override), worth, override.replace("=", ": "), base)
 
 
-def _people(config: Config) -> Iterator[Setting]:
-    """Yield nobody else, or another person."""
-    if config.people:
-        yield Setting("people", ("people=[]",), Worth.SAVES)
-    elif config.motion.model == "human":
-        yield Setting("people", ("people=[{}]",), Worth.PHYSICS, "another person, who walks")
-
-
-def _room(config: Config) -> Iterator[Setting]:
-    """Yield an emptier room, or a corridor and things in it."""
+def _scene(config: Config) -> Iterator[Setting]:
+    """Yield nobody else or another person, an emptier room, or a corridor and things in it."""
     room = config.room
-    if room.faces is not None:
-        yield Setting("room", ("room.faces=null",), Worth.SAVES)
-        for order in (1, 2):
-            if order != room.order:
-                worth = Worth.SAVES if order < room.order else Worth.SLOW
-                yield Setting("room", (f"room.order={order}",), worth)
-    elif room.back_wall_m is None and config.stream is None:
-        corridor = "a corridor of concrete, 8 m wide"
-        yield Setting("room", CORRIDOR, Worth.PHYSICS, corridor)
+    removals = {
+        "people=[]": config.people,
+        "room.faces=null": room.faces,
+        "room.back_wall_m=null": room.back_wall_m,
+        "room.reflectors=[]": room.reflectors,
+    }
+    yield from _single(
+        Worth.SAVES, *(key for key, has in removals.items() if has not in (None, ()))
+    )
+    if not config.people and config.motion.model == "human":
+        yield Setting(("people=[{}]",), Worth.PHYSICS, "another person, who walks")
+    for order in (1, 2) if room.faces is not None else ():
+        if order != room.order:
+            worth = Worth.SAVES if order < room.order else Worth.SLOW
+            yield from _single(worth, f"room.order={order}")
+    if room.faces is None and room.back_wall_m is None and config.stream is None:
+        yield Setting(CORRIDOR, Worth.PHYSICS, "a corridor of concrete, 8 m wide")
         twice = (*CORRIDOR, "room.order=2")
-        yield Setting("room", twice, Worth.SLOW, "the corridor with two bounces")
-    if room.back_wall_m is not None:
-        yield Setting("room", ("room.back_wall_m=null",), Worth.SAVES)
-    if room.reflectors:
-        yield Setting("room", ("room.reflectors=[]",), Worth.SAVES)
-    else:
+        yield Setting(twice, Worth.SLOW, "the corridor with two bounces")
+    if not room.reflectors:
         three = ("room.reflectors=[{}, {}, {}]",)
-        yield Setting("room", three, Worth.PHYSICS, "3 reflectors in the room")
+        yield Setting(three, Worth.PHYSICS, "3 reflectors in the room")
 
 
 def _wall(config: Config) -> Iterator[Setting]:
@@ -294,21 +291,19 @@ def _wall(config: Config) -> Iterator[Setting]:
         sides = ", ".join(f"{nominal(side):g}" for side in wall.size_m[1:])
         size = f"wall.size_m=[{thickness:g}, {sides}]"
         plain = ("wall.echoes=none", "wall.layers=null", size)
-        if config.engine.kind == "direct":
-            yield Setting("wall", plain, Worth.SAVES)
-        else:
-            name = "wall.echoes: none, engine.kind: direct"
-            yield Setting("wall", (*plain, "engine.kind=direct"), Worth.SAVES, name)
+        name = "wall.echoes: none"
+        if config.engine.kind != "direct":
+            plain, name = (*plain, "engine.kind=direct"), f"{name}, engine.kind: direct"
+        yield Setting(plain, Worth.SAVES, name)
         return
     for key, kinds in (("rays", RAYS), ("fresnel", ("perpendicular", "parallel"))):
         for kind in kinds:
             if kind != getattr(wall, key):
                 worth = Worth.SAVES if kind == "straight" else Worth.PHYSICS
-                yield Setting("wall", (f"wall.{key}={kind}",), worth)
+                yield from _single(worth, f"wall.{key}={kind}")
     is_impulse = isinstance(config.radar, ImpulseRadar)
     base: Overrides = () if is_impulse else (*CUBE, "wall.rays=plane")
-    exact = (*base, "wall.echoes=exact")
-    yield Setting("wall", exact, Worth.SLOW, "wall.echoes: exact", base)
+    yield Setting((*base, "wall.echoes=exact"), Worth.SLOW, "wall.echoes: exact", base)
 
 
 def _receiver(config: Config) -> Iterator[Setting]:
@@ -317,13 +312,12 @@ def _receiver(config: Config) -> Iterator[Setting]:
         return
     prf, worth = nominal(config.radar.prf_hz), Worth.PROCESSING
     if nominal(config.receiver.noise_corner_hz) > 0:
-        yield Setting("receiver", ("receiver.noise_corner_hz=0",), worth)
+        yield from _single(worth, "receiver.noise_corner_hz=0")
     else:
         corner, name = f"receiver.noise_corner_hz={prf / 20:g}", "a noise corner at PRF/20"
-        yield Setting("receiver", (corner,), worth, name, is_noisy=True)
-    if config.receiver.tones:
-        yield Setting("receiver", ("receiver.tones=[]",), worth, is_noisy=True)
-    else:
-        tone = f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"
+        yield Setting((corner,), worth, name, is_noisy=True)
+    tones, name = "receiver.tones=[]", ""
+    if not config.receiver.tones:
+        tones = f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"
         name = "an interference line at PRF/8"
-        yield Setting("receiver", (tone,), worth, name, is_noisy=True)
+    yield Setting((tones,), worth, name, is_noisy=True)

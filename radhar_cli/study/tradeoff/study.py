@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import isfinite
 from textwrap import shorten
 from time import process_time
 
@@ -107,11 +106,10 @@ class TradeoffStudy:
             RadharError: the config as it is cannot be simulated.
         """
         self.sweep.loads.append(load_average())
-        settings, start = self.allowed_settings(), time.monotonic()
+        settings = self.allowed_settings()
         if self.sweep.row_of(DEFAULT) is None:
             *_, row = self.measure(AS_IT_IS)
             self.sweep.rows.append(row)
-        self._tell_estimate(len(settings), time.monotonic() - start)
         self.save()
         self._measure_floors()
         waiting = [setting for setting in settings if self.sweep.row_of(setting.name) is None]
@@ -167,19 +165,6 @@ class TradeoffStudy:
         omission = Omission(name, reason_of(error))
         self.sweep.left_out.append(omission)
         self.progress.say(f"left out: {omission.name}: {omission.reason}")
-
-    def _tell_estimate(self, count: int, seconds: float) -> None:
-        """Say how long the sweep is likely to take."""
-        row = self.sweep.row_of(DEFAULT)
-        if row is None or row.sample_ms is None:
-            return
-        sample_s, samples = row.sample_ms / 1e3, len(self.scenes.samples())
-        rounds = LEAST_ROUNDS if self.scenes.quick else FULL_ROUNDS
-        each = sample_s * (3 * samples + 4 * rounds * min(samples, 1 + 0.3 / sample_s))
-        needed, within = (seconds + count * each) / 60, self.budget.left / 60
-        limit = f", of which there are {within:.1f}" if isfinite(within) else ""
-        sample = f"{count} settings; {row.sample_ms:.0f} ms a sample"
-        self.progress.say(f"{sample}: about {max(needed, 0.1):.1f} minutes{limit}")
 
     def _measure_floors(self) -> None:
         """Find the error that images show at least, of as many scenes as there is time for."""

@@ -253,7 +253,7 @@ class TestSettings:
         scenes = self.scenes(tmp_path, "fmcw")
         usual = scene_numbers(ScenePlace(scenes, "walking").draw())
         for setting in settings_of(scenes.config()):
-            if setting.group in ("engine", "maps", "processing"):
+            if setting.group in ("engine", "maps", "image", "processing"):
                 scene = ScenePlace(scenes, "walking").draw(setting.overrides)
                 assert usual.items() <= scene_numbers(scene).items()
 

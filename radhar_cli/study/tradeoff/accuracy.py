@@ -17,7 +17,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field, TypeAdapter
@@ -87,18 +87,6 @@ class _Quiet(NoProgress):
         """Nobody sees it."""
 
 
-class StudyData(NamedTuple):
-    """Data set of a study, in a folder that its identity names."""
-
-    folder: Path
-    config: Config
-
-    def build(self, progress: Progress) -> None:
-        """Make the data set, unless it is there."""
-        if not (self.folder / DATASET).exists():
-            build(self.config, self.folder, 1, _Quiet(progress))
-
-
 @dataclass(frozen=True)
 class AccuracyStudy:
     """Networks of the settings of one config, in a folder."""
@@ -163,11 +151,9 @@ class AccuracyStudy:
                 return TypeAdapter(SeedAccuracy).validate_python(read_json(record)["accuracy"])
             except (FolderError, KeyError, TypeError, ValueError):
                 self.progress.say(f"{record}: is damaged; the network is tested again")
-        parts = self.parts(setting, number)
-        for part in parts.values():
-            part.build(self.progress)
-        run = self._train(parts.pop("learned").folder, self._train_config(number))
-        shares = {name: measure_share(run, part.folder) for name, part in parts.items()}
+        folders = {name: self._build(part) for name, part in self.parts(setting, number).items()}
+        run = self._train(folders.pop("learned"), self._train_config(number))
+        shares = {name: measure_share(run, folder) for name, folder in folders.items()}
         accuracy = SeedAccuracy(shares.get("default"), shares["own"])
         about = {"setting": list(setting), "seed": number, "run": run.name}
         data = json.dumps({**about, "accuracy": asdict(accuracy)}, indent=2) + "\n"
@@ -176,20 +162,20 @@ class AccuracyStudy:
 
     def _record_path(self, setting: Overrides, number: int) -> Path:
         kinds = ((setting, False), (setting, True), ((), True))
-        names = [self._part(each, number, tested).folder.name for each, tested in kinds]
+        names = [self._data(self._part(each, number, tested)).name for each, tested in kinds]
         text = json.dumps([names, self._train_config(number).model_dump_json()])
         return self.folder / "records" / f"{_digest(text)}.json"
 
-    def parts(self, setting: Overrides, number: int) -> dict[str, StudyData]:
-        """Data sets of a seed: learned from, and tested on, by name."""
+    def parts(self, setting: Overrides, number: int) -> dict[str, Config]:
+        """Configs of the data sets of a seed: learned from, and tested on, by name."""
         parts = {name: self._part(setting, number, name == "own") for name in ("learned", "own")}
         if self._is_alike(setting, number):
-            (name,) = parts["learned"].config.maps
+            (name,) = parts["learned"].maps
             parts["default"] = self._part((f"maps=[{name}]",), number, True)
         return parts
 
-    def _part(self, setting: Overrides, number: int, tested: bool) -> StudyData:
-        """Data set of a seed under a setting: of the first map, without PNGs."""
+    def _part(self, setting: Overrides, number: int, tested: bool) -> Config:
+        """Config of the data set of a seed under a setting: of the first map, without PNGs."""
         config = self.scenes.config(setting)
         count = min(self.sizes.learned, max(Rows.of(config).counts))
         further = (
@@ -199,8 +185,18 @@ class AccuracyStudy:
             "output.png=false",
             "split={train: 0.8, validation: 0.2}",
         )
-        part = self.scenes.config((*setting, *further))
-        return StudyData(self.folder / "data" / identity_hash(identity(part))[:24], part)
+        return self.scenes.config((*setting, *further))
+
+    def _data(self, part: Config) -> Path:
+        """Folder of a data set, which its identity names."""
+        return self.folder / "data" / identity_hash(identity(part))[:24]
+
+    def _build(self, part: Config) -> Path:
+        """Make a data set, unless it is there; return its folder."""
+        folder = self._data(part)
+        if not (folder / DATASET).exists():
+            build(part, folder, 1, _Quiet(self.progress))
+        return folder
 
     def _train_config(self, number: int) -> TrainConfig:
         epochs = self.sizes.epochs
@@ -226,11 +222,10 @@ class AccuracyStudy:
             return False
         if Rows.of(config).activities != Rows.of(default).activities:
             return False
-        ends = []
-        for each in (setting, (f"maps=[{name}]",)):
-            part = self._part(each, number, True)
-            part.build(self.progress)
-            ends.append(_axis_ends(part.folder, name))
+        ends = [
+            _axis_ends(self._build(self._part(each, number, True)), name)
+            for each in (setting, (f"maps=[{name}]",))
+        ]
         left, right, low, high = ends[1]
         pixel = np.array([(right - left) / size[1]] * 2 + [(high - low) / size[0]] * 2)
         return bool((np.abs(np.subtract(ends[0], ends[1])) <= np.abs(pixel)).all())

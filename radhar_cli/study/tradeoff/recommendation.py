@@ -123,9 +123,9 @@ def _price(row: Row, default: Row | None) -> tuple[str, bool]:
             amount = (
                 "costs at most 2 points" if is_little else f"may cost {100 * lost.high:.0f} points"
             )
-        own = ", tested on its own images" * (row.accuracy.tested_on == "own")
+        test = ", tested on its own images" * (row.accuracy.tested_on == "own")
         means = f"{100 * default.accuracy.mean:.0f} to {100 * row.accuracy.mean:.0f}"
-        seeds = f"{len(row.accuracy.by_seed)} seeds{own}"
+        seeds = f"{len(row.accuracy.by_seed)} seeds{test}"
         return f"{amount} of accuracy ({means}, {seeds})", lost.high <= MOST_LOST
     if over_one is None:
         return f"was not compared{': ' * bool(row.note)}{row.note}", False
@@ -182,11 +182,11 @@ def _floor_sentences(sweep: Sweep) -> Iterator[str]:
         "more than 1 cm."
     )
     if row.error_db is not None:
-        own = "none" if row.error_db == -inf else f"{row.error_db:.0f} dB of {row.error_of}"
+        error = "none" if row.error_db == -inf else f"{row.error_db:.0f} dB of {row.error_of}"
         below = f"{floor_db - row.error_db:.0f} dB below that"
         if row.error_db >= floor_db:
             below = f"and shows in {name}: a tighter engine.tolerance_db is worth its time"
-        yield f"The config's own error, worst of {row.scenes} scenes, is {own}, {below}."
+        yield f"The config's own error, worst of {row.scenes} scenes, is {error}, {below}."
 
 
 def _blur_sentence(sweep: Sweep, cores: int) -> Iterator[str]:

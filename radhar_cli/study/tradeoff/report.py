@@ -12,7 +12,7 @@ from radhar_cli.figures.report.parts import ReportFigure, ReportTable, Sentences
 from radhar_cli.figures.report.report import Report
 from radhar_cli.figures.tradeoff import DEFAULT_NAME, SettingMark, tradeoff_png
 from radhar_cli.files.untrusted import read_json
-from radhar_cli.study.tradeoff.recommendation import recommend, verdict_of
+from radhar_cli.study.tradeoff.recommendation import percent_text, recommend, verdict_of
 from radhar_cli.study.tradeoff.samples import Scenes
 from radhar_cli.study.tradeoff.settings import DEFAULT
 from radhar_cli.study.tradeoff.sweep import Omission, Row, Sweep
@@ -155,8 +155,8 @@ def _cells(row: Row) -> tuple[object, ...]:
     error = "none" if row.error_db == -inf else error
     if row.is_error and row.stated_db is not None:
         error += f" (states {row.stated_db:.0f})"
-    shown = "; ".join([*_shown_cells(row), *[row.note] * bool(row.note)])
-    return name, row.effect, row.sample_ms, time, over, error, shown
+    changes = "; ".join([*_shown_cells(row), *[row.note] * bool(row.note)])
+    return name, row.effect, row.sample_ms, time, over, error, changes
 
 
 def _shown_cells(row: Row) -> Iterator[str]:
@@ -165,12 +165,14 @@ def _shown_cells(row: Row) -> Iterator[str]:
         over_one, size = numbers.shown(is_worst=row.is_error)
         similar = "" if numbers.ssim is None else f", SSIM {numbers.ssim:.3f}"
         is_same = numbers.changed == 0
-        yield f"{name}: " + ("the same" if is_same else f"{100 * over_one:.2g} %, {size}{similar}")
+        yield f"{name}: " + (
+            "the same" if is_same else f"{percent_text(over_one)}, {size}{similar}"
+        )
     if row.points is not None:
-        way = row.points.distance_m
-        moved_by = "" if way is None else f" by {100 * way:.1f} cm"
+        distance_m = row.points.distance_m
+        moved_by = "" if distance_m is None else f" by {100 * distance_m:.1f} cm"
         number = f"{row.points.per_frame:.1f} a frame ({row.points.base_per_frame:.1f})"
-        yield f"points: {100 * row.points.moved:.2g} % moved{moved_by}, {number}"
+        yield f"points: {percent_text(row.points.moved)} moved{moved_by}, {number}"
     if row.accuracy is not None:
         mean, low, high = (100 * getattr(row.accuracy, end) for end in ("mean", "low", "high"))
         yield f"accuracy {mean:.1f} % ({low:.1f} to {high:.1f})"
@@ -187,9 +189,9 @@ def _csv_rows(row: Row) -> Iterator[tuple[object, ...]]:
     """Yield the rows of tradeoff.csv: one for each map of a setting."""
     points, accuracy = row.points, row.accuracy
     for name, numbers in row.maps.items() or [("", None)]:
-        shown: tuple[object, ...] = ("",) * 5
+        cells: tuple[object, ...] = ("",) * 5
         if numbers is not None:
-            shown = (
+            cells = (
                 numbers.changed,
                 numbers.over_one,
                 numbers.ssim,
@@ -199,7 +201,7 @@ def _csv_rows(row: Row) -> Iterator[tuple[object, ...]]:
         yield (
             *(row.group, row.name, row.effect, row.base_name),
             *(row.sample_ms, row.ratio, row.ratio_low, row.ratio_high),
-            *(row.error_db, row.stated_db, name, *shown),
+            *(row.error_db, row.stated_db, name, *cells),
             *(("", "") if points is None else (points.moved, points.per_frame)),
             *(("", "", "") if accuracy is None else (accuracy.mean, accuracy.low, accuracy.high)),
         )

@@ -26,7 +26,7 @@ from radhar_cli.study.tradeoff.settings import (
     Setting,
     settings_of,
 )
-from radhar_cli.study.tradeoff.sweep import LEAST_ROUNDS, Omission, Ratio, Row, Sweep, Times
+from radhar_cli.study.tradeoff.sweep import LEAST_ROUNDS, Omission, Ratio, Row, Sweep
 from radhar_cli.study.trials import Budget, TriedSetting, last_within, try_settings
 
 EXACT = (*CUBE, "engine.precision=double")
@@ -197,7 +197,11 @@ class TradeoffStudy:
         Raises:
             RadharError: none of its scenes can be simulated.
         """
-        scenes, rounds, notes = list[SceneDifference](), list[Times](), dict[str, None]()
+        scenes, rounds, notes = (
+            list[SceneDifference](),
+            list[tuple[float, float]](),
+            dict[str, None](),
+        )
         start, base_s = time.monotonic(), BASE_SHARE * self.budget.left
 
         def row(ratio: Ratio) -> Row:
@@ -225,7 +229,7 @@ class TradeoffStudy:
                 del self.comparisons[number:]  # which would leave no time for settings
         yield from map(row, self._time(setting, rounds))
 
-    def _time(self, setting: Setting, rounds: list[Times]) -> Iterator[Ratio]:
+    def _time(self, setting: Setting, rounds: list[tuple[float, float]]) -> Iterator[Ratio]:
         """Time a setting in further rounds, and yield the ratio of all of them after each."""
         start, quick = time.monotonic(), self.scenes.quick
         while len(rounds) < (MOST_ROUNDS if quick else FULL_ROUNDS):
@@ -235,8 +239,8 @@ class TradeoffStudy:
             yield Ratio.of(rounds)
 
 
-def time_setting(scenes: Scenes, setting: Setting, turn: int) -> Times:
-    """Time a setting and what it is compared with in turns, scene by scene.
+def time_setting(scenes: Scenes, setting: Setting, turn: int) -> tuple[float, float]:
+    """Time a setting and what it is compared with in turns, scene by scene: ms a sample, and ratio.
 
     Args:
         scenes: scenes of the sweep.
@@ -254,7 +258,7 @@ def time_setting(scenes: Scenes, setting: Setting, turn: int) -> Times:
             base_s += sample_seconds(place, setting.base)
         if setting_s + base_s > ROUND_S:
             break
-    return Times(1e3 * setting_s / (step - turn + 1), setting_s / base_s)
+    return 1e3 * setting_s / (step - turn + 1), setting_s / base_s
 
 
 def sample_seconds(place: ScenePlace, overrides: Overrides) -> float:

@@ -22,13 +22,6 @@ LEAST_ROUNDS = 3  # of timing, without which nothing is concluded
 MANY_ROUNDS = 6  # from which on the interval leaves out the outermost ones
 
 
-class Times(NamedTuple):
-    """Times of one round of one setting."""
-
-    sample_ms: float  # from drawing a scene to levels and entropy, a sample
-    ratio: float  # over that of what it is compared with
-
-
 @dataclass(frozen=True)
 class Ratio:
     """Time of a setting over that of what it is compared with, over some rounds."""
@@ -40,15 +33,15 @@ class Ratio:
     rounds: int
 
     @classmethod
-    def of(cls, rounds: Sequence[Times]) -> "Ratio":
-        """Ratio of some rounds, one at least.
+    def of(cls, rounds: Sequence[tuple[float, float]]) -> "Ratio":
+        """Ratio of rounds, one at least: time of a sample, ms, and over that of what it is beside.
 
         The interval of six rounds or more leaves out the smallest and the largest, and so on: it
         holds the median in nine of ten cases or more.
         """
-        ratios = sorted(times.ratio for times in rounds)
+        ratios = sorted(ratio for _, ratio in rounds)
         cut = 0 if len(ratios) < MANY_ROUNDS else (len(ratios) - 3) // 3
-        sample_ms = median(times.sample_ms for times in rounds)
+        sample_ms = median(sample_ms for sample_ms, _ in rounds)
         return cls(sample_ms, median(ratios), ratios[cut], ratios[-1 - cut], len(ratios))
 
 

@@ -103,11 +103,11 @@ def test_settings_of_the_same_images_share_the_network(config, folder):
 def test_what_is_tested_on_what(config, folder, setting, tested_on):
     parts = study(config, folder).parts((setting,), 1)
     assert ("default" in parts) == (tested_on == "default")
-    learned, own = parts["learned"].config, parts["own"].config
+    learned, own = parts["learned"], parts["own"]
     assert learned.seed != own.seed
     assert learned.maps == own.maps
     if tested_on == "default":
-        right = parts["default"].config
+        right = parts["default"]
         assert right.seed == own.seed
         assert right.maps == own.maps
         assert right.snr_db == study(config, folder).scenes.config().snr_db
@@ -121,13 +121,13 @@ def test_a_setting_of_its_own_axes(config, folder):
 def test_seeds_are_of_other_scenes_and_the_same_under_every_setting(config, folder):
     networks = study(config, folder)
     seeds = {
-        (number, name): part.config.seed
+        (number, name): part.seed
         for number in (1, 2)
         for name, part in networks.parts((), number).items()
     }
     assert len(set(seeds.values())) == 4
     for (number, name), seed in seeds.items():
-        assert networks.parts(("snr_db=0",), number)[name].config.seed == seed
+        assert networks.parts(("snr_db=0",), number)[name].seed == seed
 
 
 @pytest.mark.parametrize(

@@ -47,6 +47,7 @@ def limits(
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.processes.worker_process import prepare_process
+    from radhar_cli.study.limits.judging import ConfigTrial
     from radhar_cli.study.limits.report import (
         FILES,
         limits_numbers,
@@ -55,7 +56,6 @@ def limits(
         write_report,
     )
     from radhar_cli.study.limits.study import study_limits
-    from radhar_cli.study.limits.trial import ConfigTrial
 
     if out is not None:
         refuse_file(out)

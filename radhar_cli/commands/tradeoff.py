@@ -64,7 +64,7 @@ def tradeoff(
     from radhar_cli.dataset.workers import cores
     from radhar_cli.processes.worker_process import prepare_process
     from radhar_cli.study.tradeoff.report import TradeoffReport
-    from radhar_cli.study.tradeoff.scenes import Scenes
+    from radhar_cli.study.tradeoff.samples import Scenes
 
     refuse_file(out)
     scenes = Scenes(config, tuple(set_ or ()), quick)
@@ -104,13 +104,11 @@ def _measure(files: "TradeoffReport", sweep: "Sweep", seconds: float, seeds: int
             study = TradeoffStudy(files.scenes, sweep, budget, progress, lambda: files.keep(sweep))
             study.run()
             if seeds is not None:
-                from radhar_cli.study.tradeoff.accuracy import measure_accuracies  # of PyTorch
+                # which need PyTorch
+                from radhar_cli.study.tradeoff.accuracy import AccuracyStudy, measure_accuracies
 
-                measure_accuracies(
-                    *(files.scenes, sweep, seeds, files.folder / "accuracy", progress),
-                    lambda: files.keep(sweep),
-                    budget.left,
-                )
+                networks = AccuracyStudy(files.scenes, files.folder / "accuracy", progress)
+                measure_accuracies(networks, sweep, seeds, budget, lambda: files.keep(sweep))
         except (KeyboardInterrupt, SystemExit):
             if sweep.rows:
                 files.write(sweep)

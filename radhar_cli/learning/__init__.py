@@ -13,7 +13,7 @@ The only package that imports PyTorch; the extra `train` installs it.
     training        epochs, the best one, resuming; starting_point: --init
     run_folder      the files of a run, and how they are read safely; run_summary
     evaluation      probabilities, features and speed; metrics: how good they are
-    report          `radhar eval`: single_result and the reports of tasks/ fill it
+    report          `radhar eval`: evaluated_run and the reports of tasks/ fill it
     adaptation      batch norm fitted to unlabelled images
     stream          samples for a PyTorch DataLoader, synthesised in its workers; sequences: stored
     onnx_export     the network without PyTorch

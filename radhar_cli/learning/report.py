@@ -4,6 +4,7 @@ import json
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -18,22 +19,23 @@ from radhar_cli.errors import FolderError
 from radhar_cli.figures.class_shares import ShareBar, class_shares_png
 from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
 from radhar_cli.figures.report.parts import Details, ReportFigure, ReportTable
-from radhar_cli.learning.evaluation import SPEEDS, measure_speed
-from radhar_cli.learning.filter_weights import filter_magnitudes, filter_table
-from radhar_cli.learning.images.classes import left_out_message
-from radhar_cli.learning.result_page import EvalReport, ResultPage
-from radhar_cli.learning.run_files import BEST
-from radhar_cli.learning.run_folder import RunMetadata, best_epoch
-from radhar_cli.learning.single_result import (
+from radhar_cli.figures.report.report import Report
+from radhar_cli.learning.evaluated_run import (
     EvalSet,
     Run,
     check_options,
-    evaluate_run,
+    count_seen,
     open_eval_set,
     open_run,
 )
+from radhar_cli.learning.evaluation import SPEEDS, last_features, measure_speed, predict
+from radhar_cli.learning.filter_weights import filter_magnitudes, filter_table
+from radhar_cli.learning.images.classes import left_out_message
+from radhar_cli.learning.run_files import BEST
+from radhar_cli.learning.run_folder import RunMetadata, best_epoch
 from radhar_cli.learning.tasks.categories import Classifier
 from radhar_cli.learning.tasks.predictions import EvalOptions
+from radhar_cli.learning.tasks.task import Evaluation
 from radhar_cli.processes.progress import Progress
 
 NETWORK = ("model", "parameters", "multiply_adds", "best_epoch")
@@ -45,7 +47,7 @@ def evaluate(
     options: EvalOptions,
     device: torch.device,
     progress: Progress,
-) -> EvalReport:
+) -> Report:
     """Evaluate every run on every data set.
 
     Args:
@@ -91,10 +93,10 @@ def evaluate(
 
 def _begin_report(
     runs: Sequence[str], data: Sequence[str], options: EvalOptions, device: torch.device
-) -> EvalReport:
+) -> Report:
     """Report on some runs and data sets, by name, in which nothing is found yet."""
     threads = torch.get_num_threads()
-    return EvalReport(
+    return Report(
         {
             "split": options.split,
             "batch": options.batch,
@@ -110,6 +112,8 @@ def _begin_report(
             "Intervals of 95 % are Wilson's, of as many samples as vary like whole persons or "
             "recordings drawn anew where these are known, else of single samples."
         ),
+        formats=("html",),
+        lists_files=True,
     )
 
 
@@ -117,7 +121,7 @@ def _begin_report(
 class _Evaluation:
     """Evaluation under way: what is found goes to a report, run by run and set by set."""
 
-    report: EvalReport
+    report: Report
     options: EvalOptions
     device: torch.device
     progress: Progress
@@ -149,12 +153,10 @@ class _Evaluation:
         """
         title = f"{run.name} on {data}, {eval_set.split}"
         self.report.section(title)
-        page = ResultPage(self.report, stem, title)
-        numbers = evaluate_run(run, eval_set, page, self.options, self.device, self.progress)
+        numbers = self._evaluate(run, eval_set, stem, title)
         runs = self.report.numbers["runs"]
         runs.setdefault(run.name, _describe_run(run) | {"data": {}})["data"][data] = numbers
         task = run.metadata.task
-        self.report.add_score(task.main_number, run.name, data, numbers[task.main_number])
         self.say(f"  {data}, {eval_set.split}: {task.summarise(numbers)}")
         if isinstance(task, Classifier):
             interval = numbers["accuracy_95"] or (nan, nan)
@@ -171,6 +173,30 @@ class _Evaluation:
                 f"the person and motion of {trained_on['scenes']}, were trained on: this does "
                 "not test on unseen data"
             )
+
+    def _evaluate(self, run: Run, eval_set: EvalSet, stem: str, title: str) -> dict[str, Any]:
+        """Add figures and tables of a run on a data set; return plain numbers for report.json."""
+        images, rows, metadata = eval_set.images, eval_set.rows, run.metadata
+        device, options, task = self.device, self.options, metadata.task
+        unit = "image" if images.is_pictures else "sequence"
+        self.progress.stage(title, len(rows), 0, unit)
+        counts = count_seen(run, images, rows)
+        predictions = predict(
+            run.model, metadata, images, rows, device, options.batch, self.progress
+        )
+        features = partial(last_features, run.model, metadata, images, device=device)
+        evaluation = Evaluation(
+            self.report, stem, title, predictions, task.groups(images, rows), options, features
+        )
+        return {
+            **task.report(evaluation),
+            **counts,
+            "main_number": task.main_number,
+            "split": eval_set.split,
+            "map": images.map,
+            "snr_db": images.snr_db,
+            "left_out": dict(images.left_out),
+        }
 
     def add_speed(self, run: Run, eval_set: EvalSet) -> None:
         """Time a run on the first image of a data set."""
@@ -194,7 +220,7 @@ def _chosen_by(run: Run, eval_set: EvalSet, numbers: Mapping[str, Any]) -> str:
     return f"{part} chose the epoch, {best}, so that this is optimistic; {cure}"
 
 
-def _list_networks(report: EvalReport) -> None:
+def _list_networks(report: Report) -> None:
     """Add the table of networks, and its file."""
     run_numbers = report.numbers["runs"].items()
     rows = [
@@ -207,7 +233,7 @@ def _list_networks(report: EvalReport) -> None:
     _show_networks(report, rows)
 
 
-def _show_networks(report: EvalReport, rows: Sequence[Sequence[object]]) -> None:
+def _show_networks(report: Report, rows: Sequence[Sequence[object]]) -> None:
     """Add the table of networks with a column for each run, in units that people read."""
     units = (
         *("network", "parameters", "multiply-adds of an image", "best epoch", "loading, s"),
@@ -249,7 +275,7 @@ def _describe_run(run: Run) -> dict[str, Any]:
 
 
 def _add_curves(
-    report: EvalReport, runs: Sequence[Run], accuracies: Mapping[str, Sequence[Point]]
+    report: Report, runs: Sequence[Run], accuracies: Mapping[str, Sequence[Point]]
 ) -> None:
     """Add the training curves, and the accuracy of runs over several data sets."""
     with_history = {run.name: run.history for run in runs if run.history}
@@ -272,7 +298,7 @@ def _add_curves(
         report.add(ReportTable(head, rows, file="robustness.csv", is_shown=False))
 
 
-def _show_filters(report: EvalReport, runs: Sequence[Run]) -> None:
+def _show_filters(report: Report, runs: Sequence[Run]) -> None:
     """Add the paper's figure of weights: a row for each network, a column for each filter."""
     weights = {run.name: filter_magnitudes(run.model) for run in runs}
     weights = {name: filters for name, filters in weights.items() if filters}
@@ -289,7 +315,7 @@ def _show_filters(report: EvalReport, runs: Sequence[Run]) -> None:
     report.add(ReportTable(["run", *keys], filter_rows, file="filters.csv", is_shown=False))
 
 
-def _add_audit(report: EvalReport, name: str, data: Path, single: bool) -> None:
+def _add_audit(report: Report, name: str, data: Path, single: bool) -> None:
     """Add the figure of what tells the classes besides the movement, if data have been audited.
 
     Args:

@@ -1,13 +1,18 @@
-"""The engine of studies: settings are tried one after the other, as far as the time goes."""
+"""The engine of studies: settings are tried one after the other, as far as the time goes.
+
+`radhar tradeoff` varies settings of a config, `radhar limits` sides of its numbers. Both give a
+function that yields ever better results of a setting; the last within its time counts.
+"""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import Generic, TypeVar
 
 from radhar_cli.errors import RadharError
 from radhar_cli.processes.progress import Progress
+from radhar_cli.processes.time_limit import time_limit
 
 S = TypeVar("S")
 R = TypeVar("R")
@@ -40,9 +45,18 @@ class TriedSetting(Generic[S, R]):
     seconds: float  # time that it had
 
 
+def last_within(seconds: float, results: Iterable[R]) -> R | None:
+    """Last of some results that there is after so many seconds; None where there is none."""
+    result: R | None = None
+    with time_limit(seconds):
+        for result in results:  # noqa: B007
+            pass
+    return result
+
+
 def try_settings(
     settings: Sequence[S],
-    measure: Callable[[S, float], R | None],
+    measure: Callable[[S], Iterable[R]],
     budget: Budget,
     progress: Progress,
     shares: float = inf,
@@ -51,18 +65,18 @@ def try_settings(
 
     Args:
         settings: the settings.
-        measure: measures a setting within so many seconds; returns None where they are too few.
+        measure: yields results of a setting, of which the last counts.
         budget: time for all of them.
         progress: is told of each that is done.
         shares: equal parts of the time left that one setting may take.
     """
     for number, setting in enumerate(settings):
-        seconds = budget.share(len(settings) - number, shares)
-        result, refusal = None, None
+        seconds, result, refusal = 0.0, None, None
         if budget.left > 0:
+            seconds = budget.share(len(settings) - number, shares)
             try:
-                result = measure(setting, seconds)
+                result = last_within(seconds, measure(setting))
             except RadharError as error:
                 refusal = error
-        yield TriedSetting(setting, result, refusal, seconds if budget.left > 0 else 0.0)
+        yield TriedSetting(setting, result, refusal, seconds)
         progress.advance(1)

@@ -28,13 +28,13 @@ from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.learning.adaptation import AdaptOptions, Mixed
 from radhar_cli.learning.adaptation import adapt as adapt_run
+from radhar_cli.learning.evaluated_run import EvalSet, open_eval_set, open_run
 from radhar_cli.learning.evaluation import open_training_images, predict_classes
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.intervals import wilson
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, load_best
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.single_result import EvalSet, open_eval_set, open_run
 from radhar_cli.learning.tasks.categories import require_classifier
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.learning.training import TrainOptions, train

@@ -60,7 +60,7 @@ class Brightness(Task):
     def report(self, evaluation: Evaluation) -> dict[str, Any]:
         found = evaluation.predictions
         error = found.values - np.array(self.targets(found.images))[found.rows]
-        evaluation.page.table("errors", ("image", "error"), zip(found.rows, error, strict=True))
+        evaluation.table("errors", ("image", "error"), zip(found.rows, error, strict=True))
         return {"images": len(error), "rms_error": float(np.sqrt(np.mean(error**2)))}
 
     def summarise(self, numbers: Mapping[str, Any]) -> str:

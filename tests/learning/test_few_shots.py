@@ -11,12 +11,12 @@ import torch
 from few_shots import drawn, few_shots, interval_of_repeats, learned_from, missing
 from learning.patterns import CLASSES, tree
 
+from radhar_cli.learning.evaluated_run import EvalSet
 from radhar_cli.learning.evaluation import open_for_model, open_training_images, predict_classes
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.sample_table import objects
 from radhar_cli.learning.intervals import wilson
 from radhar_cli.learning.run_folder import load_best
-from radhar_cli.learning.single_result import EvalSet
 
 CPU = torch.device("cpu")
 QUICK = ("epochs=2", "batch_size=12", "threads=1", "workers=0")

@@ -16,7 +16,6 @@ from radhar_cli.figures.evaluation import (
 )
 from radhar_cli.files.untrusted import escaped
 from radhar_cli.learning import metrics
-from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.tasks.predictions import ClassPredictions
 from radhar_cli.learning.tasks.task import Evaluation
@@ -39,10 +38,10 @@ def report_classes(evaluation: Evaluation, label_smoothing: float) -> dict[str, 
         Plain numbers by their keys in report.json.
     """
     predictions, options = ClassPredictions(**vars(evaluation.predictions)), evaluation.options
-    names, title = predictions.names, evaluation.page.title
+    names, title = predictions.names, evaluation.title
     truth, probabilities = predictions.truth, predictions.probabilities
     numbers = metrics.summarise(truth, probabilities, names, evaluation.groups)
-    figures = _ClassFigures(evaluation.page, predictions)
+    figures = _ClassFigures(evaluation, predictions)
     caption = f"Confusion matrix of {title}: counts, and shares of the true class."
     accuracy = f"{title}: {100 * numbers['accuracy']:.2f} % of {predictions.rows.size}"
     counts = np.array(numbers["confusion"])
@@ -54,7 +53,7 @@ def report_classes(evaluation: Evaluation, label_smoothing: float) -> dict[str, 
     if options.in_place_vs_moving:
         numbers["in_place_vs_moving"] = figures.draw_groups()
     if options.tsne:
-        numbers["silhouette"] = figures.draw_tsne(evaluation)
+        numbers["silhouette"] = figures.draw_tsne()
     return numbers
 
 
@@ -62,19 +61,19 @@ def report_classes(evaluation: Evaluation, label_smoothing: float) -> dict[str, 
 class _ClassFigures:
     """Figures and tables of predictions of classes."""
 
-    page: ResultPage
+    evaluation: Evaluation
     predictions: ClassPredictions
 
     def draw_confusion(
         self, name: str, caption: str, counts: NDArray[np.int64], classes: Sequence[str], title: str
     ) -> None:
         """Add counts [true class, predicted class] as a figure and a table, true classes down."""
-        self.page.figure(name, caption, confusion_png(counts, classes, title))
+        self.evaluation.figure(name, caption, confusion_png(counts, classes, title))
         rows = (
             [class_name, *row] for class_name, row in zip(classes, counts.tolist(), strict=True)
         )
         # Beside its figure the page has no use for the table.
-        self.page.table(name, ["true \\ predicted", *classes], rows)
+        self.evaluation.table(name, ["true \\ predicted", *classes], rows)
 
     def write_tables(self, classes: Mapping[str, Mapping[str, float]]) -> None:
         """Add the tables of the numbers of each class, and of the prediction of each image."""
@@ -83,7 +82,7 @@ class _ClassFigures:
             for name, class_numbers in classes.items()
         ]
         header = ("class", "precision", "recall", "f1", "images")
-        self.page.table("classes", header, class_rows, "Class by class")
+        self.evaluation.table("classes", header, class_rows, "Class by class")
         predictions = self.predictions
         image_names, names = predictions.images.samples.name, predictions.names
         columns = (
@@ -96,11 +95,11 @@ class _ClassFigures:
             (image_names[row], names[true], names[predicted], f"{probability:.6f}")
             for row, true, predicted, probability in zip(*columns, strict=True)
         )
-        self.page.table("predictions", ("image", "true", "predicted", "probability"), rows)
+        self.evaluation.table("predictions", ("image", "true", "predicted", "probability"), rows)
 
     def draw_reliability(self, smoothing: float) -> dict[str, list[float | None] | list[int]]:
         """Add the reliability diagram; return its bins: mean probability, accuracy, images."""
-        predictions, title = self.predictions, self.page.title
+        predictions, title = self.predictions, self.evaluation.title
         bins = metrics.calibration(predictions.truth, predictions.probabilities)
         remark = ""
         if smoothing:
@@ -117,7 +116,7 @@ class _ClassFigures:
             f"network gives it; {error} (mean distance from the line).{remark}"
         )
         png = reliability_png(bins.confidence, bins.accuracy, bins.count, f"{title}\n{error}")
-        self.page.figure("reliability", caption, png)
+        self.evaluation.figure("reliability", caption, png)
         confidence, accuracy = (
             [None if np.isnan(value) else value for value in column.tolist()]
             for column in (bins.confidence, bins.accuracy)
@@ -141,9 +140,11 @@ class _ClassFigures:
                 f"{escaped(images.samples.name[row])}\ntrue: {true}\nfound: {winner}, {probability}"
             )
             table.append((images.path_of(row), true, winner, probability))
-        png = captioned_png(pictures, captions, f"{heading}: {self.page.title}")
-        self.page.figure("hardest", f"{heading}, {self.page.title}.", png)
-        self.page.table("hardest", ("image", "true", "predicted", "probability"), table, heading)
+        png = captioned_png(pictures, captions, f"{heading}: {self.evaluation.title}")
+        self.evaluation.figure("hardest", f"{heading}, {self.evaluation.title}.", png)
+        self.evaluation.table(
+            "hardest", ("image", "true", "predicted", "probability"), table, heading
+        )
 
     def _select_hardest(self) -> tuple[str, Index]:
         """Heading, and places in the predictions, of the images of `draw_hardest`."""
@@ -164,14 +165,14 @@ class _ClassFigures:
         truth, predicted = group[self.predictions.truth], group[self.predictions.predicted]
         counts = confusion_matrix(truth, predicted, labels=[0, 1])
         share = 100 * np.trace(counts) / max(1, counts.sum())
-        title = self.page.title
+        title = self.evaluation.title
         caption = f"Standing activities (S1 to S7) against moving ones (S8 to S12), {title}."
         two_lines = title.replace(" on ", "\non ", 1) + f"\n{share:.2f} %"
         self.draw_confusion("in_place_vs_moving", caption, counts, GROUPS, two_lines)
         group_counts: list[list[int]] = counts.tolist()
         return group_counts
 
-    def draw_tsne(self, evaluation: Evaluation) -> dict[str, float | None]:
+    def draw_tsne(self) -> dict[str, float | None]:
         """Add t-SNE of maps and of features; return the silhouettes of the classes in both.
 
         Raises:
@@ -179,14 +180,14 @@ class _ClassFigures:
         """
         from radhar_cli.learning.embedding import embed, select_rows, separation, shrink
 
-        predictions, title = self.predictions, self.page.title
+        predictions, title = self.predictions, self.evaluation.title
         if predictions.rows.size < MIN_EMBEDDED:
             raise RunError(f"--tsne: needs at least {MIN_EMBEDDED} images; there is one")
         selected = select_rows(predictions.rows.size)
         rows, label = predictions.rows[selected], predictions.truth[selected]
         pixels = predictions.images.pixels
         maps = np.stack([shrink(pixels.read(int(row))) for row in rows])
-        features: Float = evaluation.features(rows)
+        features: Float = self.evaluation.features(rows)
         silhouettes = {"maps": separation(maps, label), "features": separation(features, label)}
         panels = {"input maps": embed(maps), "features before the last layer": embed(features)}
         in_words = " and ".join(
@@ -195,5 +196,7 @@ class _ClassFigures:
         caption = (
             f"t-SNE of {len(selected)} maps and of their features, {title}; silhouettes {in_words}."
         )
-        self.page.figure("tsne", caption, embeddings_png(panels, label, predictions.names, title))
+        self.evaluation.figure(
+            "tsne", caption, embeddings_png(panels, label, predictions.names, title)
+        )
         return silhouettes

@@ -14,7 +14,6 @@ from radhar_cli.figures.evaluation import confusion_png
 from radhar_cli.figures.page import png_bytes
 from radhar_cli.figures.stream_page import AT_REST, LabelledMap, draw_labelled_maps
 from radhar_cli.learning.intervals import Groups, numbers_of_share
-from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.segment_metrics import LabelSpan, edit_score, f1_of_segments, spans_of
 from radhar_cli.learning.tasks.predictions import Predictions
 from radhar_cli.learning.tasks.task import Evaluation
@@ -40,7 +39,7 @@ def report_frames(evaluation: Evaluation) -> dict[str, Any]:
     Returns:
         Plain numbers by their keys in report.json.
     """
-    predictions, page = evaluation.predictions, evaluation.page
+    predictions = evaluation.predictions
     names, streams = predictions.names, join_windows(evaluation.predictions)
     true, predicted = (
         np.concatenate([getattr(s, end) for s in streams]) for end in ("true", "predicted")
@@ -55,15 +54,15 @@ def report_frames(evaluation: Evaluation) -> dict[str, Any]:
     numbers = np.arange(len(names))
     counts = confusion_matrix(true, predicted, labels=numbers)
     accuracy = float(np.trace(counts) / max(1, counts.sum()))
-    title = f"{page.title}: {100 * accuracy:.2f} % of {true.size} frames"
-    caption = f"Confusion matrix of frames, {page.title}."
-    page.figure("confusion", caption, confusion_png(counts, names, title))
-    _draw_streams(page, predictions, streams)
+    title = f"{evaluation.title}: {100 * accuracy:.2f} % of {true.size} frames"
+    caption = f"Confusion matrix of frames, {evaluation.title}."
+    evaluation.figure("confusion", caption, confusion_png(counts, names, title))
+    _draw_streams(evaluation, predictions, streams)
     pairs = [_segments(stream, names) for stream in streams]
     by_class = _numbers_by_class(counts, names)
     header = ("class", "precision", "recall", "f1", "frames")
     table = [(name, *(values[key] for key in header[1:])) for name, values in by_class.items()]
-    page.table("frames", header, table, "Class by class, of frames")
+    evaluation.table("frames", header, table, "Class by class, of frames")
     occurring = [values["f1"] for values in by_class.values()]
     return {
         "images": int(predictions.rows.size),
@@ -129,7 +128,7 @@ def _numbers_by_class(counts: Index, names: tuple[str, ...]) -> dict[str, dict[s
 
 
 def _draw_streams(
-    page: ResultPage, predictions: Predictions, streams: list[LabelledStream]
+    evaluation: Evaluation, predictions: Predictions, streams: list[LabelledStream]
 ) -> None:
     """Add the first streams with true labels and predicted ones below."""
     images = predictions.images
@@ -144,8 +143,8 @@ def _draw_streams(
         for stream in streams[:DRAWN]
     ]
     figure = draw_labelled_maps(maps, predictions.names, images.colours or "viridis")
-    caption = f"True labels and those that were predicted, {page.title}."
-    page.figure("streams", caption, png_bytes(figure))
+    caption = f"True labels and those that were predicted, {evaluation.title}."
+    evaluation.figure("streams", caption, png_bytes(figure))
 
 
 def _pixels_of(predictions: Predictions, stream: LabelledStream) -> Levels:

@@ -33,7 +33,7 @@ def report_labels(evaluation: Evaluation) -> dict[str, Any]:
     Returns:
         Plain numbers by their keys in report.json.
     """
-    predictions, page = evaluation.predictions, evaluation.page
+    predictions = evaluation.predictions
     images, rows = predictions.images, predictions.rows
     is_true = images.multi_hot(predictions.names)[rows] > 0  # [N, classes]
     is_found = predictions.values > THRESHOLD
@@ -41,17 +41,17 @@ def report_labels(evaluation: Evaluation) -> dict[str, Any]:
     precision = [result.average_precision for result in results]
     header = ("class", "images", "average_precision")
     label_rows = ((r.name, r.images, f"{r.average_precision:.4f}") for r in results)
-    page.table("labels", header, label_rows, "Label by label")
+    evaluation.table("labels", header, label_rows, "Label by label")
     names = np.array(predictions.names)
     prediction_rows = (
         (images.samples.name[row], " ".join(names[true]), " ".join(names[found]))
         for row, true, found in zip(rows.tolist(), is_true, is_found, strict=True)
     )
-    page.table("predictions", ("image", "true", "found"), prediction_rows)
+    evaluation.table("predictions", ("image", "true", "found"), prediction_rows)
     percent = [100 * value for value in precision]
     quantity = "average precision (%)"
-    png = bars_png([result.name for result in results], percent, quantity, page.title)
-    page.figure("labels", f"Average precision of each label, {page.title}.", png)
+    png = bars_png([result.name for result in results], percent, quantity, evaluation.title)
+    evaluation.figure("labels", f"Average precision of each label, {evaluation.title}.", png)
     # A label that every image has says nothing: any network has all of its precision.
     informative = [r.average_precision for r in results if r.images < rows.size]
     is_exact = (is_found == is_true).all(axis=1)

@@ -81,7 +81,7 @@ class Persons(Classifier):
         ranks = {str(rank): float(shares[rank - 1]) for rank in RANKS if rank <= count}
         rows = ([rank, f"{100 * share:.2f}"] for rank, share in ranks.items())
         title = "Share of recordings whose person is among the likeliest"
-        evaluation.page.table("ranks", ("rank", "share, %"), rows, title)
+        evaluation.table("ranks", ("rank", "share, %"), rows, title)
         return numbers | {"rank": ranks, "chance": 1 / count}
 
     def summarise(self, numbers: Mapping[str, Any]) -> str:

@@ -9,7 +9,6 @@ from radhar_cli.figures.evaluation import bars_png
 from radhar_cli.figures.skeletons import skeletons_png
 from radhar_cli.learning.intervals import Groups, numbers_of_mean, numbers_of_share
 from radhar_cli.learning.metrics import NEAR_M
-from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.tasks.predictions import Predictions
 from radhar_cli.learning.tasks.task import Evaluation
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
@@ -32,7 +31,7 @@ def report_skeletons(evaluation: Evaluation) -> dict[str, Any]:
     Raises:
         FolderError: no frame has a true skeleton, as where nobody is in any of them.
     """
-    predictions, page = evaluation.predictions, evaluation.page
+    predictions = evaluation.predictions
     rows, names = predictions.rows, predictions.names
     skeletons = predictions.images.skeletons
     true = np.stack([skeletons[int(row)] for row in rows])  # [N, T, joint, 3], NaN after the end
@@ -48,10 +47,10 @@ def report_skeletons(evaluation: Evaluation) -> dict[str, Any]:
     header = ("joint", *(f"{axis}_cm" for axis in AXES), "mpjpe_cm")
     errors = list(zip(names, by_axis.tolist(), by_joint.tolist(), strict=True))
     table = [(name, *map("{:.2f}".format, (*axes, error))) for name, axes, error in errors]
-    page.table("joints", header, table, "Joint by joint, mean errors")
-    png = bars_png(names, by_joint.tolist(), DISTANCE, page.title)
-    page.figure("joints", f"Error of each joint, mean distance, {page.title}.", png)
-    _draw_skeletons(page, predictions, true, is_known)
+    evaluation.table("joints", header, table, "Joint by joint, mean errors")
+    png = bars_png(names, by_joint.tolist(), DISTANCE, evaluation.title)
+    evaluation.figure("joints", f"Error of each joint, mean distance, {evaluation.title}.", png)
+    _draw_skeletons(evaluation, predictions, true, is_known)
     return {
         "images": int(rows.size),
         "frames": int(is_known.sum()),
@@ -98,7 +97,7 @@ def _errors_by_class(
 
 
 def _draw_skeletons(
-    page: ResultPage, predictions: Predictions, true: Float, is_known: Bool
+    evaluation: Evaluation, predictions: Predictions, true: Float, is_known: Bool
 ) -> None:
     """Add found beside true skeletons [N, T, joint, 3] of some frames, evenly spread."""
     images, predicted = predictions.images, predictions.values
@@ -108,7 +107,6 @@ def _draw_skeletons(
         name = f"{images.samples.name[predictions.rows[row]]}, frame {frame}"
         pairs.append((true[row, frame], predicted[row, frame], name))
     parents = PARENTS if predictions.names == JOINTS else ()
-    caption = (
-        f"True skeletons (grey) and those found (red), from ahead and from the side, {page.title}."
-    )
-    page.figure("skeletons", caption, skeletons_png(pairs, parents, page.title))
+    title = evaluation.title
+    caption = f"True skeletons (grey) and those found (red), from ahead and from the side, {title}."
+    evaluation.figure("skeletons", caption, skeletons_png(pairs, parents, title))

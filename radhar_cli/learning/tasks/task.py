@@ -1,18 +1,19 @@
 """What a network learns of an input: a task has its outputs, targets, loss, score and report."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 from torch import Tensor
 
+from radhar_cli.figures.report.parts import ReportFigure, ReportTable
+from radhar_cli.figures.report.report import Report
 from radhar_cli.learning.batches import Targets
 from radhar_cli.learning.choices import TASKS, load_place
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.intervals import Groups, numbers_of_share
 from radhar_cli.learning.models.outputs import Outputs
-from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tasks.predictions import EvalOptions, Predictions
@@ -35,11 +36,35 @@ class Names(Protocol):
 class Evaluation:
     """One network on one data set, as a task reports on it."""
 
-    page: ResultPage  # receives figures and tables
+    report: Report  # receives figures and tables
+    stem: str  # end of the names of its files
+    title: str  # of its figures
     predictions: Predictions
     groups: Groups  # of the rows of the predictions
     options: EvalOptions
     features: Callable[[Index], Float]  # input [n, F] of the network's last layer, of n rows
+
+    def figure(self, name: str, caption: str, png: bytes) -> None:
+        """Add a figure: name without its end, caption, and content of the PNG."""
+        self.report.add(ReportFigure(f"{name}{self.stem}.png", caption, png))
+
+    def table(
+        self,
+        name: str,
+        header: Sequence[object],
+        rows: Iterable[Sequence[object]],
+        title: str | None = None,
+    ) -> None:
+        """Add a table.
+
+        Args:
+            name: name of its file, without its end.
+            header: names of the columns.
+            rows: cells, row by row.
+            title: title on the page; None leaves the table to its file.
+        """
+        file = f"{name}{self.stem}.csv"
+        self.report.add(ReportTable(header, [*rows], title or "", file, title is not None))
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,22 @@
-"""Margins: the fastest, farthest and nearest that a config draws, beside what its radar tells."""
+"""Margins: the fastest, farthest and nearest that a config draws, and the work of a sample."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
+from radhar_cli.config.data_set import Config
+from radhar_cli.config.radar import ArrayRadar
+from radhar_cli.errors import RadharError
+from radhar_cli.processing.map_kind import Transform, kind_of
 from radhar_cli.radar.propagation import bistatic_delay, leg
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene.assembly.motion import moving
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
+from radhar_cli.scene.assembly.processing import frames_of, fsst_frames_of
+from radhar_cli.scene.assembly.radar import antennas_of, board_of, waveform_of
 from radhar_cli.scene.checks.validity import MIN_DISTANCE_M
-from radhar_cli.scene.scene import Scene
+from radhar_cli.scene.scene import Scene, nominal_scene
 
 CHECKS_PER_S = 200.0
 MOST_CHECKS = 4000
@@ -57,30 +63,65 @@ def reach_of(scene: Scene) -> Reach:
 def margins_of(scenes: Sequence[Scene], reaches: Sequence[Reach]) -> list[Margin]:
     """Compare what scenes of a config draw with what its radar tells apart."""
     waveforms = [waveform_of(scene) for scene in scenes]
-    fastest = max(reach.fastest for reach in reaches)
     farthest = max(reach.farthest for reach in reaches)
-    nearest = min(reach.nearest for reach in reaches)
-    highest_speed = min(w.highest_speed for w in waveforms)
-    range_end = min(w.half_band_range for w in waveforms)
-    shortest_wave = min(w.wavelength for w in waveforms)
+    cycles = 2 * farthest / min(w.wavelength for w in waveforms)
     margins = [
         Margin(
-            *("fastest joint, along the line of sight", fastest, highest_speed, "m/s", "model"),
-            "its Doppler folds: warned",
+            "fastest joint, along the line of sight",
+            max(reach.fastest for reach in reaches),
+            min(w.highest_speed for w in waveforms),
+            *("m/s", "model", "its Doppler folds: warned"),
         ),
         Margin(
-            *("nearest joint to an antenna", nearest, MIN_DISTANCE_M, "m", "model"),
-            "the far field ends: drawn again, or refused",
+            *("farthest joint", farthest, min(w.half_band_range for w in waveforms), "m", "model"),
+            "its echo leaves the range axis: on_invalid decides, or warned",
         ),
         Margin(
-            *("cycles of phase of the farthest echo", 2 * farthest / shortest_wave, MOST_CYCLES),
-            *("", "arithmetic", "float64 is off by 1e-6 of a cycle: nothing says so"),
+            "nearest joint to an antenna",
+            min(reach.nearest for reach in reaches),
+            *(MIN_DISTANCE_M, "m", "model", "the far field ends: drawn again, or refused"),
+        ),
+        Margin(
+            *("cycles of phase of the farthest echo", cycles, MOST_CYCLES, "", "arithmetic"),
+            "float64 is off by 1e-6 of a cycle: nothing says so",
         ),
     ]
-    if not scenes[0].radar.has_range:
-        return margins
-    reach_margin = Margin(
-        *("farthest joint", farthest, range_end, "m", "model"),
-        "its echo leaves the range axis: on_invalid decides, or warned",
-    )
-    return [margins[0], reach_margin, *margins[1:]]
+    return margins if scenes[0].radar.has_range else [margins[0], *margins[2:]]
+
+
+def counted_work(config: Config) -> dict[str, float]:
+    """Numbers of what a sample of a config consists of; each costs in proportion, at most.
+
+    Pulses, samples of all chirps where they are held, windows times their length, pixels, people
+    and points of bodies; of the first activity, by the middle of all draws.
+    """
+    scene = nominal_scene(config, config.chosen_activities[0])
+    w, processing = waveform_of(scene), config.processing
+    is_array = isinstance(scene.radar, ArrayRadar)
+    channels = board_of(scene.radar, scene.seconds).channels if is_array else 1
+    is_cube = config.engine.kind == "cube" or processing.range_sum == "gated"
+    holds_samples = is_array or is_cube or "rtm" in config.maps
+    pulses = float(w.n_pulses)
+    counts = {
+        "pulses": pulses,
+        "samples": pulses * w.n_fft * channels if holds_samples else 1.0,
+        "pixels": float(config.image.size_px[0] * config.image.size_px[1]),
+        "people": 1.0 + len(config.people),
+        "points": float(config.body.points_per_segment),
+    }
+    kinds = [kind for name in config.maps if (kind := kind_of(name)) is not None]
+    for transform, make in ((Transform.STFT, frames_of), (Transform.FSST, fsst_frames_of)):
+        if any(kind.transform is transform for kind in kinds):
+            frames = make(config, w.duration, w.prf, w.f0)
+            length = processing.stft_fft_length or frames.length
+            counts[transform.name.lower()] = pulses / max(frames.hop, 1) * length
+    return counts
+
+
+def work_ratio(config: Config, base: dict[str, float]) -> float:
+    """How many times the work of another config one asks for, at most, by what grows most."""
+    try:
+        counts = counted_work(config)
+    except RadharError:
+        return inf
+    return max(counts[name] / base[name] for name in base if name in counts)

@@ -1,10 +1,9 @@
 """What a setting costs a network: accuracy of networks that learned from its images, by seed.
 
 A network learns from images of the setting and is tested on images of the config as it is, of other
-scenes: the price of cheap training data on good data. It is tested on images of the setting, too,
-where training and test are alike. Images of another size or with other axes are another question
-to the network, so that a setting that changes them is tested on its own images alone; so is one
-whose map or classes the config does not have.
+scenes: the price of cheap training data on good data. Images of another size or with other axes are
+another question to the network, so that a setting that changes them is tested on images of its own
+alone, where training and test are alike; so is one whose map or classes the config does not have.
 
 Seed i has the same scenes, the same split and the same first weights under every setting, so that
 differences from the default are paired. Data sets, networks and a record for each setting and seed
@@ -14,24 +13,23 @@ share the network.
 
 import hashlib
 import json
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from functools import cache, cached_property
-from math import inf
+from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field, TypeAdapter
 
-from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, Rows
 from radhar_cli.dataset.reading import open_dataset
-from radhar_cli.errors import RadharError
+from radhar_cli.errors import FolderError, RadharError
 from radhar_cli.files.replacing import write_result
+from radhar_cli.files.untrusted import read_json
 from radhar_cli.learning import run_files
 from radhar_cli.learning.evaluation import open_for_model, predict_classes
 from radhar_cli.learning.images.scan import content_hash
@@ -41,12 +39,10 @@ from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import train
 from radhar_cli.learning.training_set import open_training_set
 from radhar_cli.processes.progress import NoProgress, Progress
-from radhar_cli.study.tradeoff.intervals import Interval, mean_interval
-from radhar_cli.study.tradeoff.recommendation import saves
-from radhar_cli.study.tradeoff.row import AccuracyNumbers
-from radhar_cli.study.tradeoff.scenes import Scenes
-from radhar_cli.study.tradeoff.setting import Overrides
-from radhar_cli.study.tradeoff.sweep import Sweep
+from radhar_cli.study.tradeoff.samples import Scenes
+from radhar_cli.study.tradeoff.settings import DEFAULT, Overrides
+from radhar_cli.study.tradeoff.sweep import AccuracyNumbers, Interval, Sweep
+from radhar_cli.study.trials import Budget
 
 FEWEST_SEEDS = 2  # of which an interval can be made
 TEST_BATCH = 64
@@ -61,50 +57,13 @@ class Sizes:
     epochs: int = 20
 
 
-SIZES = Sizes()  # of `measure_accuracy`
-
-
 @dataclass(frozen=True)
 class SeedAccuracy:
     """Accuracies of one network, 0 to 1."""
 
-    on_default: float | None  # on images of the config as it is; None where they are not alike
-    on_own: float  # on images of the setting
-    count: int  # images of each test
-
-
-@dataclass(frozen=True)
-class SettingAccuracy:
-    """Accuracies of the networks of one setting, seed by seed."""
-
-    by_seed: tuple[float, ...]  # of what `tested_on` names, 0 to 1
-    own_by_seed: tuple[float, ...]  # on images of the setting
-    tested_on: str  # default: images of the config as it is; own: of the setting
-    count: int  # images of a test
-
-    @cached_property
-    def interval(self) -> Interval:
-        """Mean over the seeds, with its interval of 95 %."""
-        return mean_interval(self.by_seed)
-
-    @property
-    def mean(self) -> float:
-        """Mean over the seeds."""
-        return self.interval.mean
-
-    @property
-    def low(self) -> float:
-        """Lower end of the interval."""
-        return self.interval.low
-
-    @property
-    def high(self) -> float:
-        """Upper end of the interval."""
-        return self.interval.high
-
-    def numbers(self) -> AccuracyNumbers:
-        """Numbers of a row."""
-        return AccuracyNumbers(self.by_seed, *self.interval, self.tested_on)
+    # on images of the config as it is; None where they are not alike
+    on_default: Annotated[float, Field(ge=0, le=1)] | None
+    on_own: Annotated[float, Field(ge=0, le=1)]  # on images of the setting
 
 
 class _Quiet(NoProgress):
@@ -128,51 +87,57 @@ class _Quiet(NoProgress):
         """Nobody sees it."""
 
 
-class StudyData(NamedTuple):
-    """Data set of a study, in a folder that its identity names."""
-
-    folder: Path
-    config: Config
-
-    @property
-    def samples(self) -> int:
-        """Number of its samples."""
-        return len(Rows.of(self.config))
-
-    def build(self, progress: Progress) -> None:
-        """Make the data set, unless it is there."""
-        if not (self.folder / DATASET).exists():
-            build(self.config, self.folder, 1, _Quiet(progress))
-
-
 @dataclass(frozen=True)
 class AccuracyStudy:
     """Networks of the settings of one config, in a folder."""
 
-    path: Path  # config file
-    overrides: Overrides  # of every setting; those of a setting come after them
+    scenes: Scenes  # of which the config is
     folder: Path
-    progress: Progress
+    progress: Progress  # receives the networks done, and why there is no accuracy
     sizes: Sizes = Sizes()
 
-    def config(self, setting: Overrides = ()) -> Config:
-        """Config under a setting.
+    def measure(self, setting: Overrides, seeds: int, budget: Budget) -> AccuracyNumbers | None:
+        """Accuracy of networks that learned from a setting; what is there is not made again.
+
+        Args:
+            setting: overrides of the setting; none for the config as it is.
+            seeds: number of networks.
+            budget: time in which networks are begun.
+
+        Returns:
+            The accuracy; None where nothing can be learned, or there was no time for two networks.
 
         Raises:
-            ConfigError: the setting does not fit it.
+            ConfigError: the setting does not fit the config.
         """
-        return load_config(self.path, (*self.overrides, *setting))
+        name = " ".join(setting) or DEFAULT
+        why, results = self.obstacle(setting), list[SeedAccuracy]()
+        if why is None:
+            self.progress.stage(f"accuracy, {name}", seeds, 0, "network")
+            try:
+                while len(results) < seeds and budget.left > 0:
+                    results.append(self.measure_seed(setting, len(results) + 1))
+                    self.progress.advance(1)
+                if len(results) < min(seeds, FEWEST_SEEDS):
+                    why = f"the time was over after {len(results)} networks"
+            except RadharError as error:
+                why = str(error) if len(results) < min(seeds, FEWEST_SEEDS) else None
+        if why is not None:
+            self.progress.say(f"no accuracy of {name}: {why}")
+            return None
+        by_seed = tuple(result.on_default for result in results if result.on_default is not None)
+        tested_on = "default" if by_seed else "own"
+        by_seed = by_seed or tuple(result.on_own for result in results)
+        return AccuracyNumbers(by_seed, *Interval.of(by_seed), tested_on)
 
     def obstacle(self, setting: Overrides) -> str | None:
         """Why no network of classes can learn from a setting, in a few words; None if one can."""
-        config = self.config(setting)
+        config = self.scenes.config(setting)
         if config.stream is not None:
             return "streams have no single class"
         if not config.maps:
             return "no map is made"
-        if len(Rows.of(config).activities) < 2:
-            return "there is a single class"
-        return None
+        return "there is a single class" if len(Rows.of(config).activities) < 2 else None
 
     def measure_seed(self, setting: Overrides, number: int) -> SeedAccuracy:
         """Accuracies of the network of a setting and a seed, made here or found in the folder.
@@ -182,13 +147,14 @@ class AccuracyStudy:
         """
         record = self._record_path(setting, number)
         if record.exists():
-            return SeedAccuracy(**json.loads(record.read_text())["accuracy"])
-        parts = self._parts(setting, number)
-        for part in parts.values():
-            part.build(self.progress)
-        run = self._train(parts.pop("learned").folder, self._train_config(number))
-        shares = {name: measure_share(run, part.folder) for name, part in parts.items()}
-        accuracy = SeedAccuracy(shares.get("default"), shares["own"], parts["own"].samples)
+            try:
+                return TypeAdapter(SeedAccuracy).validate_python(read_json(record)["accuracy"])
+            except (FolderError, KeyError, TypeError, ValueError):
+                self.progress.say(f"{record}: is damaged; the network is tested again")
+        folders = {name: self._build(part) for name, part in self.parts(setting, number).items()}
+        run = self._train(folders.pop("learned"), self._train_config(number))
+        shares = {name: measure_share(run, folder) for name, folder in folders.items()}
+        accuracy = SeedAccuracy(shares.get("default"), shares["own"])
         about = {"setting": list(setting), "seed": number, "run": run.name}
         data = json.dumps({**about, "accuracy": asdict(accuracy)}, indent=2) + "\n"
         write_result(self.folder, record, data.encode())
@@ -196,33 +162,41 @@ class AccuracyStudy:
 
     def _record_path(self, setting: Overrides, number: int) -> Path:
         kinds = ((setting, False), (setting, True), ((), True))
-        names = [self._part(each, number, tested).folder.name for each, tested in kinds]
+        names = [self._data(self._part(each, number, tested)).name for each, tested in kinds]
         text = json.dumps([names, self._train_config(number).model_dump_json()])
         return self.folder / "records" / f"{_digest(text)}.json"
 
-    def _parts(self, setting: Overrides, number: int) -> dict[str, StudyData]:
-        """Data sets of a seed: learned from, and tested on, by name."""
+    def parts(self, setting: Overrides, number: int) -> dict[str, Config]:
+        """Configs of the data sets of a seed: learned from, and tested on, by name."""
         parts = {name: self._part(setting, number, name == "own") for name in ("learned", "own")}
         if self._is_alike(setting, number):
-            (name,) = parts["learned"].config.maps
+            (name,) = parts["learned"].maps
             parts["default"] = self._part((f"maps=[{name}]",), number, True)
         return parts
 
-    def _part(self, setting: Overrides, number: int, tested: bool) -> StudyData:
-        """Data set of a seed under a setting: of the first map, without PNGs."""
-        config = self.config(setting)
+    def _part(self, setting: Overrides, number: int, tested: bool) -> Config:
+        """Config of the data set of a seed under a setting: of the first map, without PNGs."""
+        config = self.scenes.config(setting)
         count = min(self.sizes.learned, max(Rows.of(config).counts))
-        if tested:
-            count = min(self.sizes.tested, count)
         further = (
             f"maps=[{config.maps[0]}]",
-            f"samples_per_class={count}",
+            f"samples_per_class={min(self.sizes.tested, count) if tested else count}",
             f"seed={config.seed + 2 * (number - 1) + tested}",
             "output.png=false",
             "split={train: 0.8, validation: 0.2}",
         )
-        part = self.config((*setting, *further))
-        return StudyData(self.folder / "data" / identity_hash(identity(part))[:24], part)
+        return self.scenes.config((*setting, *further))
+
+    def _data(self, part: Config) -> Path:
+        """Folder of a data set, which its identity names."""
+        return self.folder / "data" / identity_hash(identity(part))[:24]
+
+    def _build(self, part: Config) -> Path:
+        """Make a data set, unless it is there; return its folder."""
+        folder = self._data(part)
+        if not (folder / DATASET).exists():
+            build(part, folder, 1, _Quiet(self.progress))
+        return folder
 
     def _train_config(self, number: int) -> TrainConfig:
         epochs = self.sizes.epochs
@@ -242,19 +216,19 @@ class AccuracyStudy:
 
         Axes are alike where none of their ends differs by more than a pixel.
         """
-        default, config = self.config(), self.config(setting)
-        name = config.maps[0]
-        if name not in default.maps or config.image.size_px != default.image.size_px:
+        default, config = self.scenes.config(), self.scenes.config(setting)
+        name, size = config.maps[0], default.image.size_px
+        if name not in default.maps or config.image.size_px != size:
             return False
         if Rows.of(config).activities != Rows.of(default).activities:
             return False
-        parts = [self._part(each, number, True) for each in (setting, (f"maps=[{name}]",))]
-        for part in parts:
-            part.build(self.progress)
-        compared, ends = (_axis_ends(part.folder, name) for part in parts)
-        (left, right, low, high), (height, width) = ends, default.image.size_px
-        pixel = np.array([(right - left) / width] * 2 + [(high - low) / height] * 2)
-        return bool((np.abs(np.subtract(compared, ends)) <= np.abs(pixel)).all())
+        ends = [
+            _axis_ends(self._build(self._part(each, number, True)), name)
+            for each in (setting, (f"maps=[{name}]",))
+        ]
+        left, right, low, high = ends[1]
+        pixel = np.array([(right - left) / size[1]] * 2 + [(high - low) / size[0]] * 2)
+        return bool((np.abs(np.subtract(ends[0], ends[1])) <= np.abs(pixel)).all())
 
 
 @cache
@@ -279,86 +253,24 @@ def _digest(text: str) -> str:
 
 
 def measure_accuracies(
-    scenes: Scenes,
-    sweep: Sweep,
-    seeds: int,
-    folder: Path,
-    progress: Progress,
-    save: Callable[[], None],
-    seconds: float = inf,
+    study: AccuracyStudy, sweep: Sweep, seeds: int, budget: Budget, save: Callable[[], None]
 ) -> None:
     """Train networks on data of the config as it is, and of each setting that saves time.
 
-    Those of a setting are `seeds`; their data sets and runs lie in a folder. After so many seconds
-    no further network is begun.
+    Args:
+        study: where networks lie.
+        sweep: its rows receive the accuracies.
+        seeds: number of networks of a setting.
+        budget: time in which networks are begun.
+        save: keeps the sweep as it is.
     """
-    deadline = None if seconds == inf else time.monotonic() + seconds
     for number, row in enumerate(sweep.rows):
-        is_wanted = row.is_default or saves(row, sweep.blur)
+        is_wanted = row.is_default or row.saves(sweep.blur)
         if not is_wanted or (row.accuracy and len(row.accuracy.by_seed) >= seeds):
             continue
-        measured = measure_accuracy(
-            scenes.path, scenes.overrides, row.overrides, seeds, folder, progress, deadline
-        )
-        if measured is not None:
-            sweep.rows[number] = replace(row, accuracy=measured.numbers())
+        accuracy = study.measure(row.overrides, seeds, budget)
+        if accuracy is not None:
+            sweep.rows[number] = replace(row, accuracy=accuracy)
             save()
         elif row.is_default:
             return
-
-
-def measure_accuracy(
-    path: Path,
-    overrides: Overrides,
-    setting: Overrides,
-    seeds: int,
-    folder: Path,
-    progress: Progress,
-    deadline: float | None = None,
-) -> SettingAccuracy | None:
-    """Accuracy of networks that learned from a setting; what is in the folder is not made again.
-
-    Args:
-        path: config file.
-        overrides: overrides of every setting, those of the command line.
-        setting: overrides of the setting, which come after them; none for the config as it is.
-        seeds: number of networks.
-        folder: data sets, networks and records of all settings.
-        progress: receives the networks done, and why there is no accuracy.
-        deadline: time by `time.monotonic` at which no further network is begun; None is never.
-
-    Returns:
-        The accuracies; None where nothing can be learned, or there was no time for two networks.
-
-    Raises:
-        ConfigError: the setting does not fit the config.
-    """
-    study = AccuracyStudy(path, overrides, folder, progress, SIZES)
-    name = " ".join(setting) or "the config as it is"
-    why = study.obstacle(setting)
-    results: list[SeedAccuracy] = []
-    if why is None:
-        progress.stage(f"accuracy, {name}", seeds, 0, "network")
-        for number in range(1, seeds + 1):
-            if deadline is not None and time.monotonic() >= deadline:
-                break
-            try:
-                results.append(study.measure_seed(setting, number))
-            except RadharError as error:
-                why = str(error)
-                break
-            progress.advance(1)
-        if len(results) < min(seeds, FEWEST_SEEDS):
-            why = why or f"the time was over after {len(results)} networks"
-    if why is not None:
-        progress.say(f"no accuracy of {name}: {why}")
-        return None
-    return setting_accuracy(results)
-
-
-def setting_accuracy(results: Sequence[SeedAccuracy]) -> SettingAccuracy:
-    """Put the accuracies of the seeds of a setting together."""
-    own_by_seed = tuple(result.on_own for result in results)
-    by_seed = tuple(result.on_default for result in results if result.on_default is not None)
-    tested_on = "default" if by_seed else "own"
-    return SettingAccuracy(by_seed or own_by_seed, own_by_seed, tested_on, results[0].count)

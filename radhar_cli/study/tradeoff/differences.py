@@ -1,22 +1,36 @@
 """Differences of what two settings show: pictures, points, and the signals behind them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, log10
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from radhar_cli.config.radar import CwRadar, ImpulseRadar
 from radhar_cli.numerics.arrays import Bool, Complex, Float, Levels
 from radhar_cli.processing.points import Cloud
-from radhar_cli.study.tradeoff.pictures import BINS, Raw, ShownMap
+from radhar_cli.study.tradeoff.samples import (
+    BINS,
+    WORDS,
+    Raw,
+    Shown,
+    ShownMap,
+    draw_shown,
+    shown_names,
+)
 
 SSIM_WINDOW = 7
 MOST_TILES = 16  # frames of a board's map whose SSIM is taken
 STAYS_M = 0.01  # a point that moved by less stays
+LOWEST_DB, HIGHEST_DB = -140, 0  # between which the error is sought that images show
+VISIBLE = 0.01  # share of the pixels that differ by more than a level, or of points that move
+SEED = 48
 
 
-class MapDifference(NamedTuple):
+@dataclass(frozen=True)
+class MapDifference:
     """Difference of a map from another one of the same scene."""
 
     changed: float  # share of the pixels whose level differs
@@ -25,7 +39,8 @@ class MapDifference(NamedTuple):
     rms_levels: float  # root mean square of the difference, levels
 
 
-class PointDifference(NamedTuple):
+@dataclass(frozen=True)
+class PointDifference:
     """Difference of the points of a board from others of the same scene."""
 
     moved: float  # share of the points, of both, that have no other within STAYS_M in their frame
@@ -33,6 +48,31 @@ class PointDifference(NamedTuple):
     distance_m: float | None
     per_frame: float
     base_per_frame: float  # points a frame of the other cloud
+
+
+class SceneDifference(NamedTuple):
+    """What a setting changes of one scene."""
+
+    error_of: str  # signal whose error is measured, in words
+    # its relative error, dB; -inf of none, None where there is none to compare
+    error_db: float | None
+    stated_db: float | None  # error that the engine states itself
+    maps: Mapping[str, MapDifference]
+    points: PointDifference | None
+
+
+def compare_scene(raw: Raw, visible: Shown, base_raw: Raw, base: Shown) -> SceneDifference:
+    """Compare what a setting makes of a scene, and shows of it, with its base."""
+    name, error_db = signal_error(raw, base_raw)
+    maps = {
+        key: compare_pictures(picture, base.pictures[key])
+        for key, picture in visible.pictures.items()
+        if key in base.pictures
+    }
+    points = None
+    if visible.cloud is not None and base.cloud is not None:
+        points = compare_points(visible.cloud, base.cloud)
+    return SceneDifference(WORDS.get(name, name), error_db, raw.stated_db, maps, points)
 
 
 def relative_db(compared: Complex, exact: Complex, visible: Bool | None = None) -> float | None:
@@ -157,12 +197,37 @@ def _nearest_m(places: Float, others: Float) -> Float:
     return ways
 
 
-def worst_maps(differences: Sequence[MapDifference]) -> MapDifference:
-    """Worst of the differences of several scenes, number by number."""
-    similar = [difference.ssim for difference in differences if difference.ssim is not None]
-    return MapDifference(
-        max(difference.changed for difference in differences),
-        max(difference.over_one for difference in differences),
-        min(similar, default=None),
-        max(difference.rms_levels for difference in differences),
-    )
+def visible_errors(raw: Raw) -> Iterator[tuple[str, int]]:
+    """Yield the error of the signal, dB, from which on more than VISIBLE of a map changes.
+
+    White errors of known size are added to the raw products of a sample with its noise; a bisection
+    finds the least whole number of dB that shows. Of points it is the share that moves.
+
+    Yields:
+        Map and dB; HIGHEST_DB + 1 where none shows.
+    """
+    error = _unit_error(raw)
+    for name in shown_names(raw.scene.config):
+        base = draw_shown(raw, raw.noise, only=name)
+        low, high = LOWEST_DB, HIGHEST_DB + 1
+        while high - low > 1:
+            middle = (low + high) // 2
+            values = {key: x + 10 ** (middle / 20) * error[key] for key, x in raw.values.items()}
+            visible = draw_shown(raw, raw.noise, values, name)
+            difference = compare_scene(raw, visible, raw, base)
+            points = difference.points
+            share = points.moved if points else difference.maps[name].over_one
+            low, high = (low, middle) if share > VISIBLE else (middle, high)
+        yield name, high
+
+
+def _unit_error(raw: Raw) -> dict[str, Complex]:
+    """White error of the same L2 norm as each raw product; real where samples are."""
+    rng, radar = np.random.default_rng(SEED), raw.scene.config.radar
+    is_real = isinstance(radar, ImpulseRadar | CwRadar) and radar.output in ("rf", "real")
+    errors = dict[str, Complex]()
+    for name, x in raw.values.items():
+        imaginary = np.zeros(x.shape) if is_real else rng.standard_normal(x.shape)
+        error: Complex = rng.standard_normal(x.shape) + 1j * imaginary
+        errors[name] = error * float(np.linalg.norm(x) / np.linalg.norm(error))
+    return errors

@@ -1,26 +1,64 @@
-"""What a sweep recommends, in sentences that follow from its rows and their uncertainty.
+"""What a sweep recommends: a reason for each row, by its time and what it changes, in a sentence.
 
 A setting saves or costs time only where the whole interval of its ratio lies beyond what the config
 as it is differs from itself.
 """
 
-from collections.abc import Iterator, Sequence
-from math import inf, isfinite
+from collections.abc import Iterator
+from enum import StrEnum
+from math import inf
+from typing import NamedTuple
 
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.echo.accuracy import target_error_db
-from radhar_cli.study.tradeoff.floor import VISIBLE
-from radhar_cli.study.tradeoff.intervals import Interval, paired_difference
-from radhar_cli.study.tradeoff.row import Row
-from radhar_cli.study.tradeoff.setting import DEFAULT
-from radhar_cli.study.tradeoff.sweep import Sweep
-from radhar_cli.study.tradeoff.timing import LEAST_ROUNDS
+from radhar_cli.study.tradeoff.differences import VISIBLE
+from radhar_cli.study.tradeoff.settings import DEFAULT
+from radhar_cli.study.tradeoff.sweep import LEAST_ROUNDS, Row, Sweep
 
 MOST_SAVINGS, MOST_COSTS = 6, 3
 MOST_LOST = 0.02  # of accuracy, that may be lost by what is recommended
 COSTLY = 1.5  # times the time, from which on a setting is named as costly
-NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
-TOLERANCE = "engine.tolerance_db"
+
+
+class Verdict(StrEnum):
+    """What the times of a row say; the value is the sentence of it."""
+
+    SAVES = "`{name}` saves {saved} of the time and {price}."
+    SAME = "`{name}` is the same signal as the default's and saves nothing."
+    SLOWER = "`{name}` takes {times} times the time and {price}."
+    LEVEL = "`{name}` takes the same time within the blur and {price}."
+    UNSURE = "`{name}` was timed too seldom to say what it takes; it {price}."
+
+
+class Reason(NamedTuple):
+    """Why a setting is worth taking, or not."""
+
+    row: Row
+    verdict: Verdict
+    price: str  # what it changes, in words that follow the name
+    is_free: bool  # whether that is not seen, or surely costs little accuracy
+
+    @property
+    def sentence(self) -> str:
+        """The reason in words."""
+        ratios = (self.row.ratio or 0, self.row.ratio_high or 0, self.row.ratio_low or 0)
+        share, low, high = (100 * (1 - ratio) for ratio in ratios)
+        return self.verdict.format(
+            name=self.row.name,
+            saved=f"{share:.0f} % ({low:.0f} to {high:.0f})",
+            times=times_text(self.row),
+            price=self.price,
+        )
+
+
+def reasons_of(sweep: Sweep, engine: EngineConfig) -> list[Reason]:
+    """Reasons of all rows but that of the config as it is, in their order."""
+    default = sweep.row_of(DEFAULT)
+    return [
+        Reason(row, verdict_of(row, sweep.blur, engine), *_price(row, default))
+        for row in sweep.rows
+        if not row.is_default
+    ]
 
 
 def recommend(sweep: Sweep, engine: EngineConfig, cores: int = 0) -> list[str]:
@@ -31,116 +69,91 @@ def recommend(sweep: Sweep, engine: EngineConfig, cores: int = 0) -> list[str]:
         engine: engine of the config as it is.
         cores: cores of the machine, for the sentence on its load; 0 where nobody knows.
     """
+    reasons, blur = reasons_of(sweep, engine), sweep.blur
+    saving = [reason for reason in reasons if reason.verdict is Verdict.SAVES]
+    saving.sort(key=lambda reason: reason.row.ratio or 1)
+    others = [r for r in reasons if r.row.is_error and r.verdict is not Verdict.SAVES]
+    costly = [r.row for r in reasons if r.verdict is Verdict.SLOWER and not r.row.is_error]
+    costly = [row for row in costly if (row.ratio or 0) > COSTLY]
+    costly = sorted(costly, key=lambda row: -(row.ratio or 0))[:MOST_COSTS]
+    unsure = [r.row for r in reasons if r.verdict is Verdict.UNSURE and r.row.saves(blur, 1)]
+    notes = {
+        "Timed too seldom to say that it saves time, which more --minutes decide": [
+            f"`{row.name}`" for row in unsure
+        ],
+        "What is left out and would cost most, times the time": [
+            f"`{row.name}` {times_text(row)}" + f" of {row.base_name}" * (row.base_name != DEFAULT)
+            for row in costly
+        ],
+        "Not measured for lack of time": [f"`{omission.name}`" for omission in sweep.unmeasured],
+    }
     return [
         *_floor_sentences(sweep),
-        *_engine_sentences(sweep, engine),
-        *_saving_sentences(sweep),
-        *_cost_sentences(sweep),
-        *_blur_sentences(sweep, cores),
+        *(reason.sentence for reason in (*others, *saving[:MOST_SAVINGS])),
+        *_recommendation(saving),
+        *(f"{words}: {', '.join(names)}." for words, names in notes.items() if names),
+        *_blur_sentence(sweep, cores),
     ]
 
 
-def saves(row: Row, blur: float, least_rounds: int = LEAST_ROUNDS) -> bool:
-    """Whether a row takes less time than the config as it is, beyond its own interval and the blur.
-
-    Args:
-        row: the row.
-        blur: share by which the config as it is differs from itself.
-        least_rounds: rounds of timing without which nothing is concluded.
-    """
-    is_comparable = row.base_name == DEFAULT and not row.is_default and row.rounds >= least_rounds
-    return is_comparable and row.ratio_high is not None and row.ratio_high < 1 - blur
-
-
-def _costs(row: Row, blur: float) -> bool:
-    """Whether a row takes more time, beyond its own interval and the blur."""
-    is_timed = not row.is_default and row.rounds >= LEAST_ROUNDS
-    return is_timed and row.ratio_low is not None and row.ratio_low > 1 + blur
-
-
-def _floor_sentences(sweep: Sweep) -> Iterator[str]:
-    """Yield what 8 bits show at least, and where the config's own error lies."""
-    floors = sorted(sweep.floors.items(), key=lambda item: item[1])
-    maps = [item for item in floors if item[0] != "points"]
-    if maps:
-        (visible, map_floor), *others = maps
-        listed = "".join(f", {key} {value} dB" for key, value in others).replace(",", ";", 1)
-        yield (
-            f"At this config 8 bits cannot show an error of less than {map_floor} dB of the signal "
-            f"({visible}{listed}): below it fewer than {_percent(VISIBLE)} of the pixels differ by "
-            "more than a level."
-        )
-    if "points" in sweep.floors:
-        yield (
-            f"{_percent(VISIBLE)} of the points move by more than 1 cm from an error of "
-            f"{sweep.floors['points']} dB on."
-        )
-    row = sweep.row_of(DEFAULT)
-    if not floors or row is None or row.error_db is None:
-        return
-    (name, floor_db), scenes = floors[0], f"worst of {_counted(row.scenes, 'scene')}"
-    own_error = f"Its own error, {row.error_db:.0f} dB of {row.error_of} ({scenes}),"
-    if row.error_db == -inf:
-        yield f"The config as it is makes no error of computation ({scenes})."
-    elif row.error_db < floor_db:
-        yield f"{own_error} is {floor_db - row.error_db:.0f} dB below that."
-    else:
-        yield f"{own_error} shows in {name}: a tighter engine.tolerance_db is worth its time."
-
-
-def _engine_sentences(sweep: Sweep, engine: EngineConfig) -> Iterator[str]:
-    """Yield what other computations of the same physics cost, and whether they show.
-
-    Those that save time are named among what saves.
-    """
-    for row in sweep.rows:
-        is_other = row.is_error and not row.is_default and row.ratio is not None
-        if not is_other or saves(row, sweep.blur):
-            continue
-        if _is_same_signal(row, engine):
-            time = f" ({_times(row)} the time)" if row.rounds >= LEAST_ROUNDS else ""
-            yield f"`{row.name}` is the same signal as the default's and saves nothing{time}."
-            continue
-        words = "takes the same time within the blur"
-        if row.rounds < LEAST_ROUNDS:
-            words = "was timed too seldom to say what it takes"
-        elif _costs(row, sweep.blur):
-            words = f"takes {_times(row)} the time"
-        yield f"`{row.name}` {words}; {_shown_error(row)}."
-
-
-def _is_same_signal(row: Row, engine: EngineConfig) -> bool:
-    """Whether a row has another tolerance, for which the engine computes as for the config's.
-
-    Scenes that miss one tolerance and not the other are refused, unless the cube takes them over.
-    """
+def verdict_of(row: Row, blur: float, engine: EngineConfig) -> Verdict:
+    """What the time of a row says."""
+    if row.saves(blur):
+        return Verdict.SAVES
     key, _, value = row.name.partition(": ")
-    is_tolerance = key == TOLERANCE and engine.fallback == "refuse"
-    target_db = target_error_db(engine.tolerance_db)
-    return is_tolerance and target_error_db(float(value)) == target_db
+    if (
+        key == "engine.tolerance_db"
+        and engine.fallback == "refuse"  # else the cube takes over what misses one of the two
+        and target_error_db(float(value)) == target_error_db(engine.tolerance_db)
+    ):
+        return Verdict.SAME
+    if row.rounds < LEAST_ROUNDS:
+        return Verdict.UNSURE
+    return Verdict.SLOWER if row.costs(blur) else Verdict.LEVEL
 
 
-def _shown_error(row: Row) -> str:
-    """Whether an error of a row shows in pictures, in words."""
-    if row.over_one is None:
-        return "what it shows was not compared"
-    if row.over_one == 0:
-        return "no pixel is more than a level from the exact one"
-    return f"{_percent(row.over_one)} of the pixels are more than a level from the exact ones"
+def _price(row: Row, default: Row | None) -> tuple[str, bool]:
+    """What a row changes, as the end of a sentence, and whether that is free."""
+    over_one = row.over_one
+    if row.accuracy is not None and default is not None and default.accuracy is not None:
+        lost = default.accuracy.loss_of(row.accuracy)
+        amount = f"costs {100 * lost.mean:.0f} points"
+        if lost.low <= 0:
+            is_little = lost.high <= MOST_LOST
+            amount = (
+                "costs at most 2 points" if is_little else f"may cost {100 * lost.high:.0f} points"
+            )
+        test = ", tested on its own images" * (row.accuracy.tested_on == "own")
+        means = f"{100 * default.accuracy.mean:.0f} to {100 * row.accuracy.mean:.0f}"
+        seeds = f"{len(row.accuracy.by_seed)} seeds{test}"
+        return f"{amount} of accuracy ({means}, {seeds})", lost.high <= MOST_LOST
+    if over_one is None:
+        return f"was not compared{': ' * bool(row.note)}{row.note}", False
+    if over_one == 0:
+        staying = "of the maps that stay" if row.drops_map else "that is shown"
+        return f"changes nothing {staying}", not row.drops_map
+    if row.is_error or over_one <= VISIBLE:
+        is_free = over_one <= VISIBLE and not row.drops_map
+        return f"changes {percent_text(over_one)} of the pixels by more than a level", is_free
+    return f"gives another picture ({'; '.join(_picture_words(row))})", False
 
 
-def _saving_sentences(sweep: Sweep) -> Iterator[str]:
-    """Yield what saves time, at what price, and what to take."""
-    saving = [row for row in sweep.rows if saves(row, sweep.blur)]
-    saving.sort(key=lambda row: row.ratio or 1)
-    default = sweep.row_of(DEFAULT)
-    for row in saving[:MOST_SAVINGS]:
-        yield f"`{row.name}` saves {_saved(row)} of the time{_price(row, default)}."
-    if len(saving) > MOST_SAVINGS:
-        yield f"Others that save less: {_names(saving[MOST_SAVINGS:])}."
-    free = [row for row in saving if _is_free(row, default)]
+def _picture_words(row: Row) -> Iterator[str]:
+    """Yield how much another picture differs, in words."""
+    if row.maps:
+        name, numbers = max(row.maps.items(), key=lambda item: item[1].over_one_median)
+        over_one, size = numbers.shown(is_worst=False)
+        yield f"{name}: {percent_text(over_one)} of the pixels, {size}"
+    if row.points is not None:
+        number = f"{row.points.per_frame:.1f} a frame instead of {row.points.base_per_frame:.1f}"
+        yield f"{percent_text(row.points.moved)} of the points, {number}"
+
+
+def _recommendation(saving: list[Reason]) -> Iterator[str]:
+    """Yield what to take, and that networks were not asked."""
+    free = [f"`{reason.row.name}`" for reason in saving if reason.is_free]
     if free:
-        yield f"Recommended: {_names(free, ' or ')}."
+        yield f"Recommended: {' or '.join(free)}."
     elif saving:
         yield (
             "Recommended: the config as it is; what saves time gives other pictures, which are "
@@ -148,140 +161,55 @@ def _saving_sentences(sweep: Sweep) -> Iterator[str]:
         )
     else:
         yield "Recommended: the config as it is; nothing that was tried saves time beyond the blur."
-    undecided = [
-        row
-        for row in sweep.rows
-        if row.rounds < LEAST_ROUNDS and saves(row, sweep.blur, least_rounds=1)
-    ]
-    if undecided:
-        listed = _names(undecided)
-        yield f"Timed too seldom to say that it saves time: {listed}; more --minutes decide."
-    if saving and not any(row.accuracy for row in saving):
+    if saving and not any(reason.row.accuracy for reason in saving):
         yield (
             "The effect on a network was not measured; `--accuracy 5` trains networks on data of "
             "each of them."
         )
 
 
-def _is_free(row: Row, default: Row | None) -> bool:
-    """Whether a row that saves time costs nothing that is shown, or surely little accuracy."""
-    lost = _lost(row, default)
-    if lost is not None:
-        return lost.high <= MOST_LOST
-    return bool(row.maps or row.points) and (row.over_one or 0) <= VISIBLE and not drops_map(row)
+def _floor_sentences(sweep: Sweep) -> Iterator[str]:
+    """Yield what 8 bits show at least, and where the config's own error lies."""
+    floors = sorted(sweep.floors_db.items(), key=lambda item: item[1])
+    row = sweep.row_of(DEFAULT)
+    if not floors or row is None:
+        return
+    name, floor_db = floors[0]
+    yield (
+        "8 bits show an error of the signal from "
+        f"{', '.join(f'{db} dB ({key})' for key, db in floors)} on: more than "
+        f"{percent_text(VISIBLE)} of the pixels are then more than a level off, or of the points "
+        "more than 1 cm."
+    )
+    if row.error_db is not None:
+        error = "none" if row.error_db == -inf else f"{row.error_db:.0f} dB of {row.error_of}"
+        below = f"{floor_db - row.error_db:.0f} dB below that"
+        if row.error_db >= floor_db:
+            below = f"and shows in {name}: a tighter engine.tolerance_db is worth its time"
+        yield f"The config's own error, worst of {row.scenes} scenes, is {error}, {below}."
 
 
-def drops_map(row: Row) -> bool:
-    """Whether a row has fewer maps than the config, so that what stays is not all."""
-    return row.name.startswith("maps without ")
-
-
-def _price(row: Row, default: Row | None) -> str:
-    """What a row that saves time changes, as the end of a sentence."""
-    lost, over_one = _lost(row, default), row.over_one or 0
-    if lost is not None:
-        assert row.accuracy is not None
-        assert default is not None
-        assert default.accuracy is not None
-        seeds = _counted(len(row.accuracy.by_seed), "seed")
-        means = f"{100 * default.accuracy.mean:.0f} to {100 * row.accuracy.mean:.0f}, {seeds}"
-        if row.accuracy.tested_on == "own":
-            means += ", tested on its own images"
-        if lost.low > 0:
-            return f" and costs {_counted(round(100 * lost.mean), 'point')} of accuracy ({means})"
-        if lost.high <= MOST_LOST:
-            return f" and costs at most {100 * MOST_LOST:.0f} points of accuracy ({means})"
-        return f" and may cost up to {100 * lost.high:.0f} points of accuracy, or none ({means})"
-    if not row.maps and row.points is None:
-        return f"; {row.note}" if row.note else ""
-    if over_one == 0:
-        staying = "of the maps that stay" if drops_map(row) else "that is shown"
-        return f" and changes nothing {staying}"
-    if row.is_error or over_one <= VISIBLE:
-        return f" and changes {_percent(over_one)} of the pixels by more than a level"
-    return f" and gives another picture ({'; '.join(_picture_words(row))})"
-
-
-def _picture_words(row: Row) -> Iterator[str]:
-    """Yield how much another picture differs, in words."""
-    if row.maps:
-        name, worst = max(row.maps.items(), key=lambda item: item[1].over_one_median)
-        size = f"{worst.rms_levels_median:.0f} levels"
-        if worst.rms_median_db is not None:
-            size = f"{worst.rms_median_db:.1f} dB rms"
-        yield f"{name}: {_percent(worst.over_one_median)} of the pixels, {size}"
-    if row.points is not None:
-        yield (
-            f"{_percent(row.points.moved)} of the points, {row.points.per_frame:.1f} a frame "
-            f"instead of {row.points.base_per_frame:.1f}"
-        )
-
-
-def _lost(row: Row, default: Row | None) -> Interval | None:
-    """Accuracy that a row loses against the default, paired by seed; None where not measured."""
-    if row.accuracy is None or default is None or default.accuracy is None:
-        return None
-    return paired_difference(default.accuracy.by_seed, row.accuracy.by_seed)
-
-
-def _cost_sentences(sweep: Sweep) -> Iterator[str]:
-    """Yield what costs many times the time: physics and transforms that the config leaves out."""
-    costly = [row for row in sweep.rows if _costs(row, sweep.blur) and not row.is_error]
-    costly = [row for row in costly if (row.ratio or 0) > COSTLY]
-    costly.sort(key=lambda row: -(row.ratio or 0))
-    if costly:
-        listed = "; ".join(
-            f"`{row.name}` {_times(row)}"
-            + ("" if row.base_name == DEFAULT else f" (of {row.base_name})")
-            for row in costly[:MOST_COSTS]
-        )
-        yield f"What is left out and would cost most: {listed} the time."
-
-
-def _blur_sentences(sweep: Sweep, cores: int) -> Iterator[str]:
-    """Yield how sure the times are, and what was not measured."""
-    loads = [load for load in sweep.loads if isfinite(load)]
-    load = ""
-    if loads:
-        on = f" on {_counted(cores, 'core')}" if cores else ""
-        load = f", load {min(loads):.1f} to {max(loads):.1f}{on}"
+def _blur_sentence(sweep: Sweep, cores: int) -> Iterator[str]:
+    """Yield how sure the times are."""
+    loads = [load for load in sweep.loads if load is not None]
+    load = f", load {min(loads):.1f} to {max(loads):.1f}" if loads else ""
+    load += f" on {cores} cores" if loads and cores else ""
     if sweep.pairs:
-        pairs = _counted(len(sweep.pairs), "comparison")
         yield (
-            f"The config differs from itself by up to {_percent(sweep.blur)} in time ({pairs}"
-            f"{load}): smaller differences say nothing."
+            f"The config differs from itself by up to {percent_text(sweep.blur)} in time "
+            f"({len(sweep.pairs)} comparisons{load}): smaller differences say nothing."
         )
-    if sweep.unmeasured:
-        names = ", ".join(f"`{name}`" for name, _ in sweep.unmeasured)
-        yield f"Not measured for lack of time: {names}."
 
 
-def _names(rows: Sequence[Row], between: str = ", ") -> str:
-    return between.join(f"`{row.name}`" for row in rows)
-
-
-def _saved(row: Row) -> str:
-    """Share of the time that a row saves, with its interval: 18 % (16 to 20)."""
-    ratios = (row.ratio or 0, row.ratio_high or 0, row.ratio_low or 0)
-    share, low, high = (100 * (1 - ratio) for ratio in ratios)
-    return f"{share:.0f} % ({low:.0f} to {high:.0f})"
-
-
-def _times(row: Row) -> str:
-    """How many times the time a row takes: 1.52 times, 19 times."""
+def times_text(row: Row) -> str:
+    """How many times the time a row takes: 1.52, 19."""
     ratio = row.ratio or 0.0
-    return f"{ratio:.0f} times" if ratio >= 10 else f"{ratio:.2f} times"
+    return f"{ratio:.0f}" if ratio >= 10 else f"{ratio:.2f}"
 
 
-def _percent(share: float) -> str:
+def percent_text(share: float) -> str:
     """A share in percent, with two digits where it is small."""
     percent = 100 * share
     if 0 < percent < 0.01:
         return "less than 0.01 %"
     return f"{percent:.0f} %" if percent >= 10 or percent == 0 else f"{percent:.2g} %"
-
-
-def _counted(count: int, noun: str) -> str:
-    """A number in words and its noun: five seeds."""
-    number = NUMBERS[count] if count < len(NUMBERS) else str(count)
-    return f"{number} {noun}{'s' * (count != 1)}"

@@ -2,8 +2,8 @@
 
 import json
 
+from radhar_cli.figures.report.report import Report
 from radhar_cli.learning.report import _add_audit
-from radhar_cli.learning.result_page import EvalReport as Report
 
 LINE = {"part": "numbers", "name": "motion.range_m", "share": 0.25, "low": 0.2, "high": 0.3}
 LINE |= {"chance": 0.1, "verdict": "tells some of the class", "cure": "motion.range_m: 2"}

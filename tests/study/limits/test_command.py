@@ -10,16 +10,9 @@ from helpers.slow import slow
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.reading import config_of_values, read_values
 from radhar_cli.schema.number import MAX_NUMBER
-from radhar_cli.study.limits.keys import PEOPLE, acting_numbers, with_number
-from radhar_cli.study.limits.limit import (
-    CLEAN,
-    KEY_ENDS,
-    Consequence,
-    Judgement,
-    Limit,
-    Origin,
-    RangeSide,
-)
+from radhar_cli.study.limits.judging import CLEAN, Consequence, Judgement, Origin
+from radhar_cli.study.limits.keys import PEOPLE, NumberKey, acting_numbers, with_number
+from radhar_cli.study.limits.study import KEY_ENDS, Limit, RangeSide
 
 ROOT = Path(__file__).resolve().parents[3]
 CONFIGS = sorted(
@@ -132,10 +125,12 @@ def test_numbers_that_have_no_effect_are_left_out() -> None:
 
 def test_a_limit_in_words() -> None:
     beyond = Judgement(Consequence.WARNED, Origin.MODEL, "Doppler folds")
-    limit = Limit("motion.walking.speed_mps", RangeSide.HIGH, 7.4, beyond)
+    limit = Limit(NumberKey("motion.walking.speed_mps", 1, 0, 9), RangeSide.HIGH, 7.4, beyond)
     assert limit.sentence == "up to 7.4 (Doppler folds: warned)"
     slower = Judgement(Consequence.SLOWER, Origin.TIME, "10 times the work")
-    limit = Limit("duration_s", RangeSide.HIGH, 60.0, slower, 600.0, KEY_ENDS, 9.04, True)
+    limit = Limit(
+        NumberKey("duration_s", 1, 0, 9), RangeSide.HIGH, 60.0, slower, 600.0, KEY_ENDS, 9.04, True
+    )
     assert limit.sentence == (
         "up to 60 (10 times the work: slower; there 9 times as slow; beyond 600 as far as the key "
         "goes: refused)"

@@ -21,10 +21,9 @@ from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.visibility import CHEST_M
 from radhar_cli.scene.checks.warnings import config_warnings, scene_warnings
 from radhar_cli.scene.products.table import plan_images
-from radhar_cli.study.limits.limit import Consequence, Limit, RangeSide
+from radhar_cli.study.limits.judging import ConfigTrial, Consequence
 from radhar_cli.study.limits.search import GAP
-from radhar_cli.study.limits.study import study_limits
-from radhar_cli.study.limits.trial import ConfigTrial
+from radhar_cli.study.limits.study import Limit, RangeSide, study_limits
 
 FAULT = re.compile(r"^extreme\.yaml: [\w.]+ = .+: .+")
 BLACK = "black"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from radhar_cli.study.limits.limit import CLEAN, Consequence, Judgement
+from radhar_cli.study.limits.judging import CLEAN, Consequence, Judgement
 from radhar_cli.study.limits.search import GAP, End, Path, find_end, find_end_at_zero
 
 BEYOND = Judgement(Consequence.WARNED, reason="beyond")

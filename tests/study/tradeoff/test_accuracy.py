@@ -1,19 +1,15 @@
 """Accuracy of networks by setting: what is tested on what, and what is made once."""
 
 import json
-import time
 
 import pytest
 from helpers.listener import Listener
 
 from radhar_cli.errors import ConfigError
 from radhar_cli.study.tradeoff import accuracy
-from radhar_cli.study.tradeoff.accuracy import (
-    AccuracyStudy,
-    Sizes,
-    measure_accuracy,
-    setting_accuracy,
-)
+from radhar_cli.study.tradeoff.accuracy import AccuracyStudy, SeedAccuracy, Sizes
+from radhar_cli.study.tradeoff.samples import Scenes
+from radhar_cli.study.trials import Budget
 
 CONFIG = """
 motion: {model: paper}
@@ -25,12 +21,6 @@ maps: [stft, fsst]
 image: {size_px: 16}
 """
 SIZES = Sizes(learned=8, tested=2, epochs=1)
-
-
-@pytest.fixture(autouse=True)
-def small(monkeypatch):
-    """One epoch."""
-    monkeypatch.setattr(accuracy, "SIZES", SIZES)
 
 
 @pytest.fixture(scope="module")
@@ -46,12 +36,12 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("networks")
 
 
-def study(config, folder, **more):
-    return AccuracyStudy(config, (), folder, Listener(), SIZES, **more)
+def study(config, folder, listener=None):
+    return AccuracyStudy(Scenes(config, (), False), folder, listener or Listener(), SIZES)
 
 
-def measure(config, folder, *setting, seeds=1, **more):
-    return measure_accuracy(config, (), setting, seeds, folder, Listener(), **more)
+def measure(config, folder, *setting, seeds=1, listener=None, minutes=10):
+    return study(config, folder, listener).measure(setting, seeds, Budget(60 * minutes))
 
 
 def folders(folder, name):
@@ -60,10 +50,8 @@ def folders(folder, name):
 
 def test_the_config_as_it_is(config, folder):
     result = measure(config, folder, seeds=2)
-    assert len(result.by_seed) == len(result.own_by_seed) == 2
-    assert result.by_seed == result.own_by_seed
+    assert len(result.by_seed) == 2
     assert result.tested_on == "default"
-    assert result.count == 4
     assert result.low <= result.mean <= result.high
     assert all(0 <= share <= 1 for share in result.by_seed)
 
@@ -113,34 +101,33 @@ def test_settings_of_the_same_images_share_the_network(config, folder):
     ],
 )
 def test_what_is_tested_on_what(config, folder, setting, tested_on):
-    parts = study(config, folder)._parts((setting,), 1)
+    parts = study(config, folder).parts((setting,), 1)
     assert ("default" in parts) == (tested_on == "default")
-    learned, own = parts["learned"].config, parts["own"].config
+    learned, own = parts["learned"], parts["own"]
     assert learned.seed != own.seed
     assert learned.maps == own.maps
     if tested_on == "default":
-        right = parts["default"].config
+        right = parts["default"]
         assert right.seed == own.seed
         assert right.maps == own.maps
-        assert right.snr_db == study(config, folder).config().snr_db
+        assert right.snr_db == study(config, folder).scenes.config().snr_db
 
 
 def test_a_setting_of_its_own_axes(config, folder):
     result = measure(config, folder, "image.size_px=24")
     assert result.tested_on == "own"
-    assert result.by_seed == result.own_by_seed
 
 
 def test_seeds_are_of_other_scenes_and_the_same_under_every_setting(config, folder):
     networks = study(config, folder)
     seeds = {
-        (number, name): part.config.seed
+        (number, name): part.seed
         for number in (1, 2)
-        for name, part in networks._parts((), number).items()
+        for name, part in networks.parts((), number).items()
     }
     assert len(set(seeds.values())) == 4
     for (number, name), seed in seeds.items():
-        assert networks._parts(("snr_db=0",), number)[name].config.seed == seed
+        assert networks.parts(("snr_db=0",), number)[name].seed == seed
 
 
 @pytest.mark.parametrize(
@@ -152,7 +139,7 @@ def test_seeds_are_of_other_scenes_and_the_same_under_every_setting(config, fold
 )
 def test_nothing_to_learn_is_said_in_a_line(config, folder, setting, why):
     listener = Listener()
-    assert measure_accuracy(config, (), setting, 2, folder, listener) is None
+    assert measure(config, folder, *setting, seeds=2, listener=listener) is None
     assert listener.messages == [f"no accuracy of {' '.join(setting)}: {why}"]
 
 
@@ -163,8 +150,7 @@ def test_a_setting_that_does_not_fit(config, folder):
 
 def test_no_time(config, folder):
     listener = Listener()
-    late = time.monotonic()
-    assert measure_accuracy(config, (), (), 5, folder, listener, late) is None
+    assert measure(config, folder, seeds=5, listener=listener, minutes=0) is None
     assert listener.messages == [
         "no accuracy of the config as it is: the time was over after 0 networks"
     ]
@@ -172,14 +158,26 @@ def test_no_time(config, folder):
 
 def test_a_network_that_cannot_be_built_is_said(config, folder):
     listener = Listener()
-    assert measure_accuracy(config, (), ("image.size_px=8",), 2, folder, listener) is None
+    assert measure(config, folder, "image.size_px=8", seeds=2, listener=listener) is None
     (message,) = listener.messages
     assert "both sides should have at least 16" in message
 
 
-def test_both_accuracies_are_put_together():
-    results = [accuracy.SeedAccuracy(0.5, 0.6, 10), accuracy.SeedAccuracy(0.7, 0.8, 10)]
-    together = setting_accuracy(results)
+def test_accuracies_on_images_of_the_config_count_before_those_on_own_ones(
+    config, tmp_path, monkeypatch
+):
+    results = iter([SeedAccuracy(0.5, 0.6), SeedAccuracy(0.7, 0.8)])
+    monkeypatch.setattr(AccuracyStudy, "measure_seed", lambda *_: next(results))
+    together = measure(config, tmp_path, seeds=2)
     assert together.by_seed == (0.5, 0.7)
-    assert together.own_by_seed == (0.6, 0.8)
     assert together.mean == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize("damage", ["", "[1]", '{"accuracy": {"on_default": 7, "on_own": 0.5}}'])
+def test_a_damaged_record_is_said_and_measured_again(config, folder, damage):
+    first, listener = measure(config, folder), Listener()
+    for record in (folder / "records").iterdir():
+        record.write_text(damage)
+    assert measure(config, folder, listener=listener) == first
+    (message,) = listener.messages
+    assert message.endswith(".json: is damaged; the network is tested again")

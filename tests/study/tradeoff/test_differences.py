@@ -8,8 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from radhar_cli.processing.points import COLUMNS, Cloud
-from radhar_cli.study.tradeoff.differences import compare_pictures, compare_points, relative_db
-from radhar_cli.study.tradeoff.pictures import ShownMap
+from radhar_cli.study.tradeoff.differences import (
+    MapDifference,
+    PointDifference,
+    compare_pictures,
+    compare_points,
+    relative_db,
+)
+from radhar_cli.study.tradeoff.samples import ShownMap
 
 
 def rng():
@@ -52,7 +58,7 @@ class TestPictures:
 
     def test_the_same(self):
         same = compare_pictures(picture(self.levels), picture(self.levels))
-        assert same == (0, 0, pytest.approx(1), 0)
+        assert same == MapDifference(0, 0, pytest.approx(1), 0)
 
     def test_one_level_everywhere(self):
         other = np.where(self.levels < 255, self.levels + 1, 254).astype(np.uint8)
@@ -83,8 +89,7 @@ class TestPictures:
         """Half the PRF shows half the speeds."""
         wide = picture(self.levels, (-2, 2), (0, 1))
         narrow = picture(self.levels[8:24], (-1, 1), (0, 1))
-        assert compare_pictures(narrow, wide)[:2] == (0, 0)
-        assert compare_pictures(narrow, wide).ssim is None
+        assert compare_pictures(narrow, wide) == MapDifference(0, 0, None, 0)
 
 
 def cloud(*frames):
@@ -95,12 +100,12 @@ def cloud(*frames):
 class TestPoints:
     def test_the_same(self):
         same = cloud([[1, 0, 0], [2, 0, 0]], [])
-        assert compare_points(same, same) == (0, None, 1, 1)
+        assert compare_points(same, same) == PointDifference(0, None, 1, 1)
 
     def test_how_many_move_and_how_far(self):
         before = cloud([[1, 0, 0], [2, 0, 0]])
         after = cloud([[1, 0, 0.05], [2, 0, 0]])
-        assert compare_points(after, before) == (0.5, pytest.approx(0.05), 2, 2)
+        assert compare_points(after, before) == PointDifference(0.5, pytest.approx(0.05), 2, 2)
 
     def test_one_that_is_lost_has_moved_without_a_way(self):
         difference = compare_points(cloud([]), cloud([[1, 0, 0]]))

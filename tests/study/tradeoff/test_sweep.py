@@ -10,13 +10,14 @@ from helpers.slow import slow_but
 from typer.testing import CliRunner
 
 from radhar_cli.cli import program
+from radhar_cli.errors import ConfigError
 from radhar_cli.scene.scene import scene_numbers
 from radhar_cli.study.tradeoff import study
-from radhar_cli.study.tradeoff.row import Row
-from radhar_cli.study.tradeoff.scenes import Scenes, SweepSample
-from radhar_cli.study.tradeoff.setting import DEFAULT, Change
-from radhar_cli.study.tradeoff.settings import settings_of
-from radhar_cli.study.tradeoff.sweep import Sweep
+from radhar_cli.study.tradeoff.differences import signal_error
+from radhar_cli.study.tradeoff.samples import ScenePlace, Scenes
+from radhar_cli.study.tradeoff.settings import DEFAULT, Change, settings_of
+from radhar_cli.study.tradeoff.sweep import AccuracyNumbers, Row, Sweep
+from radhar_cli.study.trials import Budget
 
 FMCW = """
 motion: {model: paper}
@@ -70,7 +71,7 @@ def few(monkeypatch):
     monkeypatch.setattr(study, "settings_of", tried)
     monkeypatch.setattr(study, "LEAST_PAIRS", 1)
     monkeypatch.setattr(study, "MOST_ROUNDS", 1)
-    monkeypatch.setattr("radhar_cli.study.tradeoff.timing.SECONDS", 0.0)
+    monkeypatch.setattr("radhar_cli.study.tradeoff.study.ROUND_S", 0.0)
 
 
 def write(folder, kind):
@@ -84,7 +85,7 @@ def numbers_of(out):
 
 
 def rows_of(out):
-    return {row["name"]: Row.read(row) for row in numbers_of(out)["settings"]}
+    return {row.name: row for row in Sweep.read(numbers_of(out)).rows}
 
 
 @pytest.mark.parametrize("kind", slow_but(KINDS, ("fmcw", "board")))
@@ -123,24 +124,22 @@ class TestGate:
     def test_its_error_is_that_of_the_bins_that_frames_show(self, tmp_path):
         """An error in a bin that no frame shows does not count; in one that is shown it does."""
         scenes = Scenes(write(tmp_path, "gated"), (), quick=True)
-        recorder = study.Recorder(scenes, SweepSample("walking"))
-        raw = recorder.simulate(("engine.kind=cube",))
+        raw = ScenePlace(scenes, "walking").simulate(("engine.kind=cube",))
         bins = raw.values["range_signals"]
         assert raw.needed.any()
         assert not raw.needed.all()
         for shown, error_db in ((False, float("-inf")), (True, None)):
             changed = bins + (raw.needed if shown else ~raw.needed) * abs(bins).max()
             other = raw._replace(values={"range_signals": changed})
-            name, measured_db = study.signal_error(other, raw)
+            name, measured_db = signal_error(other, raw)
             assert name == "range_signals"
             assert measured_db == error_db or measured_db > -20
 
 
-def test_networks_are_trained_for_what_saves_time(tmp_path, monkeypatch):
+def test_networks_are_trained_for_what_saves_time():
     """The config as it is comes first; what saves nothing is not learned."""
-    from radhar_cli.study.tradeoff import accuracy
+    from radhar_cli.study.tradeoff.accuracy import measure_accuracies
 
-    scenes = Scenes(write(tmp_path, "fmcw"), (), quick=True)
     times = {"sample_ms": 8.0, "rounds": 5}
     default = Row("default", DEFAULT, (), DEFAULT, Change.ERROR, is_default=True)
     fast, slow = (
@@ -152,17 +151,16 @@ def test_networks_are_trained_for_what_saves_time(tmp_path, monkeypatch):
     )
     learned = []
 
-    def learn(path, overrides, setting, *more):
-        learned.append(setting)
-        return accuracy.SettingAccuracy((0.8, 0.9), (0.8, 0.9), "default", 10)
+    class Networks:
+        def measure(self, setting, seeds, budget):
+            learned.append(setting)
+            return AccuracyNumbers((0.8, 0.9), 0.85, 0.2, 1.5)
 
-    monkeypatch.setattr(accuracy, "measure_accuracy", learn)
     sweep = Sweep([default, fast, slow])
-    accuracy.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
-    assert learned == [(), ("fast",)]
-    assert [row.accuracy is not None for row in sweep.rows] == [True, True, False]
-    accuracy.measure_accuracies(scenes, sweep, 2, tmp_path, Listener(), lambda: None)
-    assert len(learned) == 2  # what is there is not made again
+    for _ in range(2):  # what is there is not made again
+        measure_accuracies(Networks(), sweep, 2, Budget(60), lambda: None)
+        assert learned == [(), ("fast",)]
+        assert [row.accuracy is not None for row in sweep.rows] == [True, True, False]
 
 
 class TestStops:
@@ -170,22 +168,22 @@ class TestStops:
         self, few, tmp_path, monkeypatch
     ):
         config, out = write(tmp_path, "fmcw"), tmp_path / "out"
-        measure, calls = study.TradeoffStudy._measure, []
+        measure, calls = study.TradeoffStudy.measure, []
 
-        def stop_at_third(self, setting, limit, refuse=False):
+        def stop_at_third(self, setting):
             calls.append(setting.name)
             if len(calls) == 3:
                 raise KeyboardInterrupt
-            return measure(self, setting, limit, refuse)
+            return measure(self, setting)
 
-        monkeypatch.setattr(study.TradeoffStudy, "_measure", stop_at_third)
+        monkeypatch.setattr(study.TradeoffStudy, "measure", stop_at_third)
         stopped = tradeoff(config, out)
         assert stopped.exit_code == 130
         assert "the same command resumes" in stopped.output
         kept = rows_of(out)
         assert list(kept) == calls[:2]
         assert "## Settings" in (out / "tradeoff.md").read_text()  # readable as it is
-        monkeypatch.setattr(study.TradeoffStudy, "_measure", measure)
+        monkeypatch.setattr(study.TradeoffStudy, "measure", measure)
         assert tradeoff(config, out).exit_code == 0
         done = rows_of(out)
         assert {name: done[name] for name in kept} == kept
@@ -216,12 +214,12 @@ class TestStops:
         config = write(tmp_path, "fmcw")
         sweep = Sweep()
         scenes = Scenes(config, (), quick=True)
-        study.TradeoffStudy(scenes, sweep, study.Budget(0.0), Listener(), lambda: None).run()
+        study.TradeoffStudy(scenes, sweep, Budget(0.0), Listener(), lambda: None).run()
         assert [row.name for row in sweep.rows] == [DEFAULT]
         assert sweep.rows[0].scenes == 1  # of three, which would leave no time for settings
-        resumed = study.TradeoffStudy(scenes, sweep, study.Budget(60.0), Listener(), lambda: None)
-        assert len(resumed._comparisons) == 1
-        assert "engine.precision: double" in {name for name, _ in sweep.unmeasured}
+        resumed = study.TradeoffStudy(scenes, sweep, Budget(60.0), Listener(), lambda: None)
+        assert len(resumed.comparisons) == 1
+        assert "engine.precision: double" in {omission.name for omission in sweep.unmeasured}
 
 
 class TestSettings:
@@ -236,20 +234,27 @@ class TestSettings:
     def test_a_setting_that_the_config_forbids_is_named_with_its_reason(self, tmp_path):
         listener, sweep = Listener(), Sweep()
         scenes = self.scenes(tmp_path, "fmcw", "processing.highpass.cutoff_hz=300")
-        allowed = study.TradeoffStudy(scenes, sweep, study.Budget(0), listener, lambda: None)
-        names = {setting.name for setting in allowed._allowed_settings()}
+        allowed = study.TradeoffStudy(scenes, sweep, Budget(0), listener, lambda: None)
+        names = {setting.name for setting in allowed.allowed_settings()}
         assert "processing.clutter: highpass" not in names
         messages = [message for message in listener.messages if "highpass" in message]
         assert len(messages) == 1
         assert messages[0].startswith("left out: processing.clutter: highpass: ")
         assert "\n" not in messages[0]
 
+    def test_a_reason_that_follows_a_list_of_names_is_told_whole(self):
+        error = ConfigError(
+            "c.yaml:7: maps = []: should be some of rtm, stft: no cloud.chain: best"
+        )
+        assert study.reason_of(error) == "no cloud.chain: best"
+        assert study.reason_of(ConfigError("c.yaml:7: x = 1: should be 2")) == "should be 2"
+
     def test_scenes_do_not_depend_on_engine_and_maps(self, tmp_path):
         scenes = self.scenes(tmp_path, "fmcw")
-        usual = scene_numbers(scenes.draw(SweepSample("walking"), scenes.config()))
+        usual = scene_numbers(ScenePlace(scenes, "walking").draw())
         for setting in settings_of(scenes.config()):
-            if setting.group in ("engine", "maps", "processing"):
-                scene = scenes.draw(SweepSample("walking"), scenes.config(setting.overrides))
+            if setting.group in ("engine", "maps", "image", "processing"):
+                scene = ScenePlace(scenes, "walking").draw(setting.overrides)
                 assert usual.items() <= scene_numbers(scene).items()
 
     def test_what_a_config_does_not_have_is_tried(self, tmp_path):
@@ -278,8 +283,8 @@ SHIPPED = sorted(
 def test_every_shipped_config(path, tmp_path, monkeypatch):
     """All settings of all configs, with the smallest effort: a row, or a line that says why not."""
     monkeypatch.setattr(study, "MOST_ROUNDS", 1)
-    monkeypatch.setattr("radhar_cli.study.tradeoff.timing.SECONDS", 0.0)
-    monkeypatch.setattr(Scenes, "samples", lambda self: [SweepSample(first_slug(self))])
+    monkeypatch.setattr("radhar_cli.study.tradeoff.study.ROUND_S", 0.0)
+    monkeypatch.setattr(Scenes, "samples", lambda self: [ScenePlace(self, first_slug(self))])
     outcome = tradeoff(path, tmp_path / "out")
     assert outcome.exit_code == 0, outcome.output
     numbers = numbers_of(tmp_path / "out")

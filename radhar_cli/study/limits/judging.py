@@ -5,9 +5,10 @@ import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from enum import StrEnum
 from pathlib import Path
 from time import process_time
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -22,19 +23,72 @@ from radhar_cli.scene.checks.flags import Flags, describe_flag
 from radhar_cli.scene.checks.warnings import warnings_of_signal
 from radhar_cli.scene.products.table import plan_images
 from radhar_cli.study.limits.keys import OF_PEOPLE, with_number
-from radhar_cli.study.limits.limit import CLEAN, Consequence, Judgement, Origin
 
 ATTEMPTS = 8  # draws of a scene on the way to a limit, where a data set takes a thousand
 SAMPLES = 2  # of each class that are drawn at a limit
 NOISE_ALONE = "noise alone"
 FINAL = "nothing is drawn again"
 LAST_DRAW = re.compile(r"no scene inside the model in .*; the last: ")
-PLACE_DRAWN = re.compile(r", with (?:people\.\d+\.)?motion\.\S+ = .*$")
-REACHES = re.compile(r" \(this one reaches from .*?\)")
-CURES = re.compile(r"; (?:a (?:smaller|longer|radar)|motion\.|people\.|on_invalid|their ).*$")
-SAMPLE = re.compile(r"^(?:sample )?([\w.-]+/\d+): ")
+SAMPLE = re.compile(r"^(?:sample )?([\w.-]+)/\d+: ")
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+# What a message says of this sample alone, and how it might be cured.
+DETAILS = re.compile(
+    r" \(this one reaches from .*?\)|, with (?:people\.\d+\.)?motion\.\S+ = .*$"
+    r"|; (?:a (?:smaller|longer|radar)|motion\.|people\.|on_invalid|their ).*$"
+)
+MOST_WORDS = 160  # characters of a reason
 
-Place = tuple[Activity, int]  # class of a sample, and its number within the class
+Place: TypeAlias = tuple[Activity, int]  # class of a sample, and its number within the class
+
+
+class Consequence(StrEnum):
+    """What happens beyond a limit."""
+
+    REFUSED = "refused"
+    WARNED = "warned"
+    REDRAWN = "drawn again, in vain"
+    SLOWER = "slower"
+    EXACT_ENGINE = "computed by the exact engine"
+    BLACK = "a map is black"
+    INEXACT = "numbers end"
+
+
+class Origin(StrEnum):
+    """What ends at a limit."""
+
+    KEY = "bounds of the key"
+    MODEL = "model"
+    NOISE = "noise"
+    ENGINE = "engine"
+    ARITHMETIC = "arithmetic"
+    TIME = "time"
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What a config with another number comes to."""
+
+    effect: Consequence | None = None  # what happens; None where it is as with the present number
+    source: Origin = Origin.MODEL  # what has ended
+    reason: str = ""
+
+    @property
+    def is_clean(self) -> bool:
+        """Whether nothing happens that does not happen with the present number."""
+        return self.effect is None
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether there is no sample."""
+        return self.effect in (Consequence.REFUSED, Consequence.REDRAWN)
+
+    @property
+    def sentence(self) -> str:
+        """What happens, and why, as it stands in brackets."""
+        return f"{self.reason}: {self.effect}" if self.reason else f"{self.effect}"
+
+
+CLEAN = Judgement()
 
 
 @dataclass
@@ -69,21 +123,20 @@ class ConfigTrial:
             SceneError: no class of it has a scene that can be drawn.
         """
         trial = cls(values, folder, config_of_values(values, folder))
-        trial.known = {_without_numbers(line) for line in _config_lines(trial.config)}
-        error: RadharError | None = None
+        lines, error = _config_lines(trial.config), None
         for activity in trial.config.chosen_activities:
-            for index in range(SAMPLES):
-                try:
+            try:
+                for index in range(SAMPLES):
                     flags = draw_valid_scene(trial.config, activity, index)[1]
-                except RadharError as refusal:
-                    error, trial.troubled[activity.slug] = refusal, _in_short(str(refusal))
-                    break
-                trial.known |= {_without_numbers(one) for one in _flag_lines(flags, trial.config)}
+                    lines += _flag_lines(flags, trial.config)
+            except RadharError as refusal:
+                error, trial.troubled[activity.slug] = refusal, _in_short(str(refusal))
         if error is not None and len(trial.troubled) == len(trial.config.chosen_activities):
             raise error
+        trial.known = {NUMBER.sub("#", line) for line in lines}
         return trial
 
-    def places(self, key: str, samples: int = SAMPLES) -> list[Place]:
+    def places(self, key: str) -> list[Place]:
         """Samples of every class that depends on a key: the first of each, then the second."""
         classes = [
             activity
@@ -91,7 +144,7 @@ class ConfigTrial:
             if activity.slug not in self.troubled
             and (not key.startswith(OF_PEOPLE) or self.config.depends_on(activity, key))
         ]
-        return [(activity, index) for index in range(samples) for activity in classes]
+        return [(activity, index) for index in range(SAMPLES) for activity in classes]
 
     def config_with(self, key: str, number: float) -> Config:
         """Config with a number in place of a key's.
@@ -103,76 +156,68 @@ class ConfigTrial:
 
     def judge(self, config: Config, places: Iterable[Place]) -> Judgement:
         """Judge a config with another number, without simulating: by warnings and by scenes."""
-        warned = CLEAN
-        for line in _config_lines(config):
-            if _without_numbers(line) not in self.known:
-                source = Origin.NOISE if NOISE_ALONE in line else Origin.MODEL
-                warned = Judgement(Consequence.WARNED, source, _in_short(line))
-                break
-        for activity, index in places:
-            judgement = self.judge_scene(config, activity, index)
-            if judgement.effect in (Consequence.REFUSED, Consequence.REDRAWN):
+        warned, line = CLEAN, self._first_new(_config_lines(config))
+        if line is not None:
+            source = Origin.NOISE if NOISE_ALONE in line else Origin.MODEL
+            warned = Judgement(Consequence.WARNED, source, _in_short(line))
+        for place in places:
+            judgement = self.judge_scene(config, place)
+            if judgement.is_refused:
                 return judgement
             warned = judgement if warned.is_clean else warned
         return warned
 
-    def judge_scene(self, config: Config, activity: Activity, index: int) -> Judgement:
+    def judge_scene(self, config: Config, place: Place) -> Judgement:
         """Judge whether a scene can be drawn, and what is warned of in it."""
-        same = next((a for a in config.chosen_activities if a.slug == activity.slug), None)
-        if same is None:
+        (slug, index), classes = (place[0].slug, place[1]), config.chosen_activities
+        activity = next((each for each in classes if each.slug == slug), None)
+        if activity is None:
             return CLEAN
         try:
             with _overflows() as messages:
-                flags = draw_valid_scene(config, same, index, ATTEMPTS)[1]
+                flags = draw_valid_scene(config, activity, index, ATTEMPTS)[1]
         except RadharError as error:
             is_redrawn = LAST_DRAW.search(str(error)) and FINAL not in str(error)
             effect = Consequence.REDRAWN if is_redrawn else Consequence.REFUSED
             return Judgement(effect, Origin.MODEL, _in_short(str(error)))
         if messages:
             return Judgement(Consequence.INEXACT, Origin.ARITHMETIC, messages[0])
-        for line in _flag_lines(flags, config):
-            if _without_numbers(line) not in self.known:
-                return Judgement(
-                    Consequence.WARNED, Origin.MODEL, f"{same.slug}: {_in_short(line)}"
-                )
-        return CLEAN
+        line = self._first_new(_flag_lines(flags, config))
+        if line is None:
+            return CLEAN
+        return Judgement(Consequence.WARNED, Origin.MODEL, f"{slug}: {_in_short(line)}")
 
-    def simulate(self, key: str, number: float, place: Place) -> tuple[Judgement, float]:
-        """Simulate a sample; judge it, and return the processor time that it took, s."""
-        config = self.config_with(key, number)
-        try:
-            return judge_sample(config, place)
-        except RadharError as error:
-            return Judgement(Consequence.REFUSED, Origin.ENGINE, _in_short(str(error))), 0.0
+    def _first_new(self, lines: Iterable[str]) -> str | None:
+        """First of some warnings that the config itself does not give, whatever their numbers."""
+        return next((line for line in lines if NUMBER.sub("#", line) not in self.known), None)
 
 
 def judge_sample(config: Config, place: Place) -> tuple[Judgement, float]:
-    """Simulate a sample; judge whether it is whole, and return the processor time, s.
-
-    Raises:
-        RadharError: it is refused.
-    """
-    slug, index = place[0].slug, place[1]
-    activity = next(one for one in config.chosen_activities if one.slug == slug)
-    scene = draw_valid_scene(config, activity, index, ATTEMPTS)[0]
-    start = process_time()
-    with _overflows() as messages:
-        sample = synthesise(scene, plan_images(config), config)
+    """Simulate a sample; judge whether it is whole, and return the processor time, s."""
+    slug, start = place[0].slug, process_time()
+    try:
+        activity = next(each for each in config.chosen_activities if each.slug == slug)
+        scene = draw_valid_scene(config, activity, place[1], ATTEMPTS)[0]
+        start = process_time()
+        with _overflows() as messages:
+            sample = synthesise(scene, plan_images(config), config)
+    except RadharError as error:
+        return Judgement(Consequence.REFUSED, Origin.ENGINE, _in_short(str(error))), 0.0
     seconds = process_time() - start
-    if messages:
-        return Judgement(Consequence.INEXACT, Origin.ARITHMETIC, messages[0]), seconds
     for name, value in sample.columns.items():
         array = np.asarray(value)
         if array.dtype.kind == "f" and np.isnan(array).any() and not name.startswith("entropy/"):
-            reason = f"{name} is no number"
-            return Judgement(Consequence.INEXACT, Origin.ARITHMETIC, reason), seconds
+            messages.append(f"{name} is no number")
     black = [name for name, image in sample.images.items() if not image.levels.any()]
-    if black and not scene.is_empty:
-        return Judgement(Consequence.BLACK, Origin.MODEL, ", ".join(black)), seconds
-    if sample.fell_back:
+    judgement = CLEAN
+    if messages:
+        judgement = Judgement(Consequence.INEXACT, Origin.ARITHMETIC, messages[0])
+    elif black and not scene.is_empty:
+        judgement = Judgement(Consequence.BLACK, Origin.MODEL, ", ".join(black))
+    elif sample.fell_back:
         reason = "engine.tolerance_db cannot be kept"
-        return Judgement(Consequence.EXACT_ENGINE, Origin.ENGINE, reason), seconds
-    return CLEAN, seconds
+        judgement = Judgement(Consequence.EXACT_ENGINE, Origin.ENGINE, reason)
+    return judgement, seconds
 
 
 @contextmanager
@@ -182,7 +227,7 @@ def _overflows() -> Iterator[list[str]]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         yield messages
-    messages += [str(one.message) for one in caught if issubclass(one.category, RuntimeWarning)]
+    messages += [str(each.message) for each in caught if issubclass(each.category, RuntimeWarning)]
 
 
 def _config_lines(config: Config) -> list[str]:
@@ -191,11 +236,6 @@ def _config_lines(config: Config) -> list[str]:
 
 def _flag_lines(flags: Flags, config: Config) -> list[str]:
     return [describe_flag(flag, config) for flag in Flags if flag in flags]
-
-
-def _without_numbers(line: str) -> str:
-    """A warning without its numbers, so that the same one of another number counts as the same."""
-    return re.sub(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?", "#", line)
 
 
 def refusal_of(error: ConfigError, key: str) -> Judgement:
@@ -214,11 +254,7 @@ def refusal_of(error: ConfigError, key: str) -> Judgement:
 
 
 def _in_short(message: str) -> str:
-    """A message without the sample, its place and cures that it names, at most 160 characters."""
-    text = LAST_DRAW.sub("", message.splitlines()[0])
-    sample = SAMPLE.match(text)
-    if sample is not None:
-        text = f"{sample[1].partition('/')[0]}: {text[sample.end() :]}"
-    text = REACHES.sub("", CURES.sub("", text))
-    text = PLACE_DRAWN.sub("", text)
-    return text if len(text) <= 160 else f"{text[:157]}..."
+    """A message without the sample, its place and cures that it names."""
+    text = SAMPLE.sub(r"\1: ", LAST_DRAW.sub("", message.splitlines()[0]))
+    text = DETAILS.sub("", text)
+    return text if len(text) <= MOST_WORDS else f"{text[: MOST_WORDS - 3]}..."

@@ -1,18 +1,16 @@
-"""One run on one data set: its numbers and figures."""
+"""Runs that are evaluated, the images they are evaluated on, and which of these they have seen."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import torch
 from torch import nn
 
-from radhar_cli.learning.evaluation import last_features, open_for_model, predict, rows_of
+from radhar_cli.learning.evaluation import open_for_model, rows_of
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
-from radhar_cli.learning.result_page import ResultPage
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.run_folder import (
     Epoch,
@@ -22,9 +20,7 @@ from radhar_cli.learning.run_folder import (
     read_trained_on,
 )
 from radhar_cli.learning.tasks.predictions import EvalOptions
-from radhar_cli.learning.tasks.task import Evaluation
 from radhar_cli.numerics.arrays import Index
-from radhar_cli.processes.progress import Progress
 
 
 @dataclass(frozen=True)
@@ -91,43 +87,6 @@ def open_run(name: str, path: Path, device: torch.device) -> Run:
     except RunError:
         history = []  # weights alone, copied from elsewhere
     return Run(name, path, metadata, model.to(device), history)
-
-
-def evaluate_run(
-    run: Run,
-    eval_set: EvalSet,
-    page: ResultPage,
-    options: EvalOptions,
-    device: torch.device,
-    progress: Progress,
-) -> dict[str, Any]:
-    """Evaluate one run on one data set.
-
-    Args:
-        run: network.
-        eval_set: images, whose classes the network knows.
-        page: receives figures and tables, under its title.
-        options: which figures are drawn.
-        device: where the network is.
-        progress: receives the images done.
-
-    Returns:
-        Plain numbers by their keys in report.json.
-    """
-    images, rows, metadata = eval_set.images, eval_set.rows, run.metadata
-    progress.stage(page.title, len(rows), 0, "image" if images.is_pictures else "sequence")
-    counts = count_seen(run, images, rows)
-    predictions = predict(run.model, metadata, images, rows, device, options.batch, progress)
-    features = partial(last_features, run.model, metadata, images, device=device)
-    groups = metadata.task.groups(images, rows)
-    numbers = metadata.task.report(Evaluation(page, predictions, groups, options, features))
-    return numbers | {
-        **counts,
-        "split": eval_set.split,
-        "map": images.map,
-        "snr_db": images.snr_db,
-        "left_out": dict(images.left_out),
-    }
 
 
 def count_seen(run: Run, images: ImageSet, rows: Index) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from radhar_cli.motion.movements.falling import FALLS, Falls
 from radhar_cli.motion.movements.running import RUNNING_SPEED
 from radhar_cli.motion.movements.walking import WALKING_SPEED
 from radhar_cli.motion.skeleton import default_weight
-from radhar_cli.numerics.randomness import PERSON, SCENE, stream
+from radhar_cli.numerics.randomness import NOISE, PERSON, SCENE, stream
 from radhar_cli.schema.annotations import Mark, of_kind
 from radhar_cli.schema.number import Choice, Number, is_fixed, nominal, quantile, uniform
 from radhar_cli.schema.section import for_activity
@@ -338,6 +338,22 @@ class Scene:
     def present(self) -> tuple[Person, ...]:
         """Everybody who makes an echo: `people`, and nobody in an empty scene."""
         return () if self.is_empty else self.people
+
+    def noise_stream(self, name: str, channel: object = "") -> np.random.Generator:
+        """Random stream of the noise of the scene's radar, of several its own.
+
+        Args:
+            name: what the noise is.
+            channel: name of the receive channel; "" for the antennas of the config.
+        """
+        name = f"{name} channel {channel}" if channel else name
+        if self.config.radar_name is not None:
+            name = f"{name} radar {self.config.radar_name}"
+        return self.surroundings_stream(name)
+
+    def surroundings_stream(self, name: str) -> np.random.Generator:
+        """Random stream of what moves besides people, the same for all radars of the scene."""
+        return stream(self.config.seed, NOISE, self.activity.index, self.index, name=name)
 
 
 def draw_scene(

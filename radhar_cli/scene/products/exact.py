@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from operator import attrgetter
 from typing import NamedTuple
 
 from radhar_cli.config.data_set import Config
@@ -47,7 +48,7 @@ def exact_products(config: Config) -> Iterator[Product]:
     does = "the whole beat matrix, cancelled, compressed"
     yield Product("beat_cube", of_paths, compute, does)
     does = "its sum over the kept bins"
-    yield Product("signal", ("beat_cube",), sum_of_beat, does, is_array=True)
+    yield Product("signal", ("beat_cube",), attrgetter("signal"), does, is_array=True)
     profiles = partial(choose_profiles, width=width, motion_in_chirp=moves)
     needs = ("beat_cube", *of_paths)
     yield Product("range_profiles", needs, profiles, "its range bins", is_array=True)
@@ -103,11 +104,6 @@ def compute_beat_signals(
         looks.append(look_at_profiles(waveform, canceller, width))
     signal, *profiles = compute_exact_signals(paths, canceller, receiver, looks, motion_in_chirp)
     return BeatSignals(signal, profiles[0] if profiles else None)
-
-
-def sum_of_beat(beat: BeatSignals) -> Signal:
-    """Sum over range of a beat matrix."""
-    return beat.signal
 
 
 def choose_profiles(

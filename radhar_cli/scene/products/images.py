@@ -19,8 +19,6 @@ from radhar_cli.processing.image import (
 )
 from radhar_cli.processing.power_map import MapImage, PowerMap
 from radhar_cli.processing.scale import CfarMask, DecibelScale, Reference, Scale
-from radhar_cli.scene.assembly.processing import cfar_of
-from radhar_cli.scene.scene import Scene
 from radhar_cli.schema.number import nominal
 
 # Resizes a function of the power, or for None the power itself.
@@ -51,7 +49,7 @@ class ImageForm:
 def scale_of(config: AnyConfig) -> Scale:
     """Scale of the images of a config; numbers still to be drawn are taken at their middle."""
     if config.image.kind == "cfar":
-        return CfarMask(cfar_of(config))
+        return CfarMask(config.image.cfar.make_detector())
     return level_scale_of(config)
 
 
@@ -62,16 +60,6 @@ def level_scale_of(config: AnyConfig) -> DecibelScale:
         transmitted_dbm = nominal(config.radar.transmit_power_dbm)
         return DecibelScale(image.dynamic_range_db, image.reference.dbm - transmitted_dbm)
     return DecibelScale(image.dynamic_range_db, Reference(image.reference))
-
-
-def scale_of_scene(scene: Scene) -> Scale:
-    """Scale of the images of a scene, by the numbers that it has drawn."""
-    return scale_of(scene.config)
-
-
-def level_scale_of_scene(scene: Scene) -> DecibelScale:
-    """Scale of the grey levels of a scene, by the transmitted power that it has drawn."""
-    return level_scale_of(scene.config)
 
 
 def draw_measured_map(config: AnyConfig, power_map: PowerMap) -> MapImage:

@@ -1,6 +1,5 @@
 """Rate of the knots at which the direct engine evaluates positions."""
 
-from dataclasses import dataclass
 from math import inf
 
 from radhar_cli.config.data_set import Config
@@ -11,29 +10,12 @@ from radhar_cli.echo.paths import PathSource
 from radhar_cli.radar.waveform import Waveform
 
 
-@dataclass(frozen=True)
-class KnotRate:
-    """Rate of the knots of an echo.
+def knots_per_second(paths: PathSource, waveform: Waveform, config: Config) -> float:
+    """Knots per second of the echo of some paths by the engine of a config; inf for every pulse.
 
-    Attributes:
-        tolerance_db: tolerance of the engine (`engine.tolerance_db`).
-        is_gated: whether the engine makes the bins of a gate, rather than their sum.
+    Every pulse is evaluated where a wide band needs knots closer than the echo's.
     """
-
-    tolerance_db: float
-    is_gated: bool
-
-    @classmethod
-    def of(cls, config: Config) -> "KnotRate":
-        """Read tolerance and gate of a config."""
-        return cls(config.engine.tolerance_db, config.processing.range_sum == "gated")
-
-    def per_second(self, paths: PathSource, waveform: Waveform) -> float:
-        """Knots per second of the echo of some paths; inf for every pulse.
-
-        Every pulse is evaluated where a wide band needs knots closer than the echo's.
-        """
-        chosen = settings(first_aim(self.tolerance_db), waveform, paths.highest_frequency)
-        rate = chosen.spacing.per_second
-        fewest_pulses = (GatedEcho if self.is_gated else DirectEcho).min_step
-        return rate if waveform.prf >= fewest_pulses * rate else inf
+    aim = first_aim(config.engine.tolerance_db)
+    rate = settings(aim, waveform, paths.highest_frequency).spacing.per_second
+    engine = GatedEcho if config.processing.range_sum == "gated" else DirectEcho
+    return rate if waveform.prf >= engine.min_step * rate else inf

@@ -23,7 +23,7 @@ from radhar_cli.radar.layers import Layers
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.room import echo_ways_of
+from radhar_cli.scene.room import echo_ways_of
 from radhar_cli.scene.scene import Scene
 
 NEAREST_WALL_M = 0.05

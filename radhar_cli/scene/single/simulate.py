@@ -21,14 +21,13 @@ from radhar_cli.radar.board import Board
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.aspect import aspect_of
-from radhar_cli.scene.assembly.bodies import Link, make_path_sources
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.room import reflectors_of
 from radhar_cli.scene.checks.flags import BLACK
 from radhar_cli.scene.checks.warnings import scene_warnings
+from radhar_cli.scene.motion import aspect_of, motion_of
+from radhar_cli.scene.paths import Link, make_path_sources
 from radhar_cli.scene.products.fallback import EchoAccuracy, Fallback
 from radhar_cli.scene.products.run import Results, record
+from radhar_cli.scene.room import reflectors_of
 from radhar_cli.scene.scene import Person, Scene
 from radhar_cli.scene.single.raw_echo import RAW_ECHO, RAW_PROFILES
 from radhar_cli.scene.single.request import ProductNames, SceneRequest

@@ -6,7 +6,6 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import RadharError
 from radhar_cli.processing.map_kind import Transform, kind_of
-from radhar_cli.scene.assembly.processing import frames_of, fsst_frames_of
 from radhar_cli.scene.assembly.radar import board_of, waveform_of
 from radhar_cli.scene.scene import nominal_scene
 
@@ -21,7 +20,7 @@ def counted_work(config: Config) -> Counts:
     """
     scene = nominal_scene(config, config.chosen_activities[0])
     w = waveform_of(scene)
-    channels = 1
+    processing, channels = config.processing, 1
     if isinstance(scene.radar, ArrayRadar):
         board = board_of(scene.radar, scene.seconds)
         channels = board.channels
@@ -29,7 +28,7 @@ def counted_work(config: Config) -> Counts:
         isinstance(scene.radar, ArrayRadar)
         or config.engine.kind == "cube"
         or "rtm" in config.maps
-        or config.processing.range_sum == "gated"
+        or processing.range_sum == "gated"
     )
     pulses = float(w.n_pulses)
     counts = {
@@ -39,11 +38,14 @@ def counted_work(config: Config) -> Counts:
         "people": 1.0 + len(config.people),
         "points": float(config.body.points_per_segment),
     }
-    for transform, make in ((Transform.STFT, frames_of), (Transform.FSST, fsst_frames_of)):
+    for transform, make in (
+        (Transform.STFT, processing.make_frames),
+        (Transform.FSST, processing.make_fsst_frames),
+    ):
         kinds = [kind for name in config.maps if (kind := kind_of(name)) is not None]
         if any(kind.transform is transform for kind in kinds):
-            frames = make(config, w.duration, w.prf, w.f0)
-            length = config.processing.stft_fft_length or frames.length
+            frames = make(w.duration, w.prf, w.f0)
+            length = processing.stft_fft_length or frames.length
             counts[transform.name.lower()] = pulses / max(frames.hop, 1) * length
     return counts
 

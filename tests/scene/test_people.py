@@ -21,10 +21,10 @@ from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.falling import FALLS
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
-from radhar_cli.scene.assembly.motion import motion_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.flags import Flags
 from radhar_cli.scene.checks.validity import check_scene
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import (
     PERSONAL,

@@ -33,9 +33,8 @@ from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Leg
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.motion import body_of
-from radhar_cli.scene.assembly.processing import frames_of
-from radhar_cli.scene.assembly.room import ways_of
+from radhar_cli.scene.motion import body_of
+from radhar_cli.scene.room import ways_of
 from radhar_cli.scene.scene import Person, Scene
 
 POINTS = 14  # of a surface
@@ -215,7 +214,7 @@ def make_body_paths(
         surface = draw_surface(len(body.segments), min(largest_count, POINTS), rng)
         return SurfacePaths(body, surface, antennas, waveform.fc, wall, numbers)
     duration, prf = waveform.duration, waveform.prf
-    window = frames_of(config, duration, prf, waveform.f0).length / prf
+    window = config.processing.make_frames(duration, prf, waveform.f0).length / prf
     counts = point_counts(
         body, first or antennas, waveform.wavelength, window, duration, largest_count
     )

@@ -15,7 +15,7 @@ from sklearn.tree import DecisionTreeClassifier
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset.scene_fields import movement_onset
-from radhar_cli.scene.assembly.motion import moving
+from radhar_cli.scene.motion import moving
 from radhar_cli.scene.scene import draw_scene, scene_numbers
 from radhar_cli.study.audit.scene_numbers import is_of_movement
 

@@ -20,9 +20,9 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.table import entries
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.activities.activity import activity_named
-from radhar_cli.scene.assembly.motion import motion_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.unused_keys import unused_keys
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import Scene, draw_scene
 

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal
 from pydantic import Field
 
 from radhar_cli.motion.movements import catalogue
+from radhar_cli.motion.movements.running import RUNNING_SPEED
+from radhar_cli.motion.movements.walking import WALKING_SPEED
 from radhar_cli.schema.annotations import ByModel, NeedsNullKey, Paper, People, Unless
 from radhar_cli.schema.number import (
     ANGLE,
@@ -197,6 +199,12 @@ class TimingConfig(Section, Generic[B]):
     of a fall to the side: its number is what it got."""
 
 
+FALL = "motion.falling.direction"
+# Speeds that follow the stature, as a config does not say how fast people are.
+USUAL_SPEEDS = {
+    "motion.walking.speed_mps": WALKING_SPEED,
+    "motion.running.speed_mps": RUNNING_SPEED,
+}
 # Where keys of earlier versions are; the random streams of numbers keep those names.
 EARLIER_KEYS = {
     "motion.walking.speed_mps": "motion.speed_mps",

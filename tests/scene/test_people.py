@@ -37,7 +37,7 @@ from radhar_cli.scene.scene import (
 from radhar_cli.scene.single.scene_file import write_all
 from radhar_cli.scene.single.simulate import simulate
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[2]
 FREE_SPACE = ROOT / "configs/human/free_space_77GHz.yaml"
 WALL = ROOT / "configs/human/through_wall_2GHz.yaml"
 TWELVE = [activity.slug for activity in ACTIVITIES]

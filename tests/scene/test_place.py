@@ -18,7 +18,7 @@ from radhar_cli.scene.scene import draw_scene, scene_numbers
 SLUGS = [activity.slug for activity in ACTIVITIES]
 MOVING = SLUGS[7:]
 KEYS = "range_m", "instant"
-QUICKSTART = Path(__file__).parents[3] / "configs" / "quickstart.yaml"
+QUICKSTART = Path(__file__).parents[2] / "configs" / "quickstart.yaml"
 ROOM = {
     "radar": {"tx_m": [0.2, -0.02, 1.5], "rx_m": [0.2, 0.02, 1.5]},
     "motion": {"place": {"range_m": {"uniform": [2, 8]}}, "walking": {"speed_mps": 0.7}},

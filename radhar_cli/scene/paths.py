@@ -91,12 +91,6 @@ def make_path_sources(
     """Make the paths of everything in a scene: of who moves, and of what stands in the room.
 
     Where that is nothing, as in an empty scene without reflectors, there is a path of no power.
-
-    Args:
-        scene: what is simulated.
-        motions: motions of its people, or of parts of one.
-        link: antennas, wall and waveform of a channel.
-        room: what stands in the room.
     """
     sources = [] if scene.is_empty else trace_people(scene, motions, link)
     if room is not None:

@@ -270,13 +270,6 @@ def make_channels(
 
     Of two transmitters that send together a channel has the paths of both.
 
-    Args:
-        scene: what is simulated.
-        motions: motions of its people, or of parts of one.
-        board: the board.
-        wall: wall that the paths cross, or None.
-        room: what stands in the room.
-
     Returns:
         The paths of the virtual channels, in the order of `board.pairs`.
     """
@@ -290,14 +283,7 @@ def make_channels(
 def make_snr_channels(
     scene: Scene, motions: tuple[Motion, ...], board: Board, wall: Wall | None
 ) -> list[PathSource]:
-    """Make the paths of every virtual channel whose power is P_s.
-
-    Args:
-        scene: what is simulated.
-        motions: motions of its people, of which the first counts.
-        board: the board.
-        wall: wall that the paths cross, or None.
-    """
+    """Make the paths of every virtual channel whose power is P_s."""
     motion, first = (cache_motion(motions[0]),), board.antennas(*board.pairs[0])
     sources = [
         make_snr_paths(scene, motion, board.antennas(k, r), wall, board.path_waveform, first)

@@ -116,15 +116,7 @@ def compute_profiles(
     receiver: tuple[Impairment, ...],
     width: int,
 ) -> Signal:
-    """Compute the range profiles that a range-time map shows, from exact beats.
-
-    Args:
-        paths: paths of the echo.
-        waveform: waveform of the radar.
-        canceller: canceller of static echoes.
-        receiver: impairments.
-        width: width of the map's image in pixels.
-    """
+    """Compute the range profiles that a range-time map shows, from exact beats."""
     look = look_at_profiles(waveform, canceller, width)
     if not isinstance(canceller, Fir):
         (x,) = exact_echo(paths, [look], static=not canceller.removes_static)

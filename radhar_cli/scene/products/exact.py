@@ -89,16 +89,7 @@ def compute_beat_signals(
     width: int,
     motion_in_chirp: bool = False,
 ) -> BeatSignals:
-    """Compute the sum over range, and where one pass will do the range profiles, too.
-
-    Args:
-        paths: paths of the echo.
-        waveform: waveform of the radar.
-        canceller: canceller of static echoes.
-        receiver: impairments.
-        width: width of the range-time map's image in pixels.
-        motion_in_chirp: whether paths go on moving during a chirp.
-    """
+    """Compute the sum over range, and where one pass will do the range profiles, too."""
     looks = [Look.of_all("slow_time", RangeSum(waveform), taps_before_range(canceller))]
     if isinstance(canceller, Fir):
         looks.append(look_at_profiles(waveform, canceller, width))
@@ -115,17 +106,7 @@ def choose_profiles(
     width: int,
     motion_in_chirp: bool = False,
 ) -> Signal:
-    """Choose the range profiles of a beat matrix; computed again where they were not kept.
-
-    Args:
-        beat: signals of the first pass.
-        paths: paths of the echo.
-        waveform: waveform of the radar.
-        canceller: canceller of static echoes.
-        receiver: impairments.
-        width: width of the range-time map's image in pixels.
-        motion_in_chirp: whether paths go on moving during a chirp.
-    """
+    """Choose the range profiles of a beat matrix; computed again where they were not kept."""
     if beat.profiles is not None:
         return beat.profiles
     look = look_at_profiles(waveform, canceller, width)
@@ -141,16 +122,7 @@ def compute_gate_bins(
     receiver: tuple[Impairment, ...],
     motion_in_chirp: bool = False,
 ) -> Signal:
-    """Compute the range bins of a gate, referred to mid-chirp, at every pulse.
-
-    Args:
-        gate: range bins that frames show.
-        paths: paths of the echo.
-        waveform: waveform of the radar.
-        canceller: canceller of static echoes.
-        receiver: impairments.
-        motion_in_chirp: whether paths go on moving during a chirp.
-    """
+    """Compute the range bins of a gate, referred to mid-chirp, at every pulse."""
     bins = RangeBins(replace(waveform, centred=True), gate.bins)
     look = Look.of_all("range_signals", bins, taps_before_range(canceller))
     return compute_exact_signals(paths, canceller, receiver, [look], motion_in_chirp)[0]

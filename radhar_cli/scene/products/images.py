@@ -68,13 +68,7 @@ def draw_measured_map(config: AnyConfig, power_map: PowerMap) -> MapImage:
 
 
 def draw_map(power_map: PowerMap, scale: Scale, form: ImageForm) -> MapImage:
-    """Resize a map and turn its power, or its samples with their sign, into grey levels.
-
-    Args:
-        power_map: the map.
-        scale: law from power to levels.
-        form: size of the image, and whether it has decibels.
-    """
+    """Resize a map and turn its power, or its samples with their sign, into grey levels."""
     if power_map.real is not None:
         grey = signed_levels(power_map.real, form.size_px, form.clipped, power_map.image_rows)
         return MapImage(grey, power_map.entropy, power_map.extent)
@@ -84,13 +78,7 @@ def draw_map(power_map: PowerMap, scale: Scale, form: ImageForm) -> MapImage:
 
 
 def draw_doppler_image(power: DopplerPower, scale: Scale, form: ImageForm) -> MapImage:
-    """Resize a Doppler-time map, block by block, and turn its power into grey levels.
-
-    Args:
-        power: power of the map.
-        scale: law from power to levels.
-        form: size of the image, and whether it has decibels.
-    """
+    """Resize a Doppler-time map, block by block, and turn its power into grey levels."""
 
     def resize(function: Callable[[Float], Float] | None) -> Reduced:
         return reduced(power.blocks(), power.frames, form.size_px, function)

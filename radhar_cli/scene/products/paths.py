@@ -62,16 +62,7 @@ def make_paths(
     waveform: Waveform,
     room: Reflectors | None = None,
 ) -> PathSource:
-    """Make the paths of everything in a scene.
-
-    Args:
-        scene: what is simulated.
-        motions: motions of its people, or of parts of one.
-        antennas: antennas between which the paths run.
-        wall: wall between, or None.
-        waveform: waveform of the radar.
-        room: what stands in the room, or None.
-    """
+    """Make the paths of everything in a scene."""
     return sum_of_paths(make_path_sources(scene, motions, Link(antennas, wall, waveform), room))
 
 

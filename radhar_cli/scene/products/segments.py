@@ -24,12 +24,7 @@ def label_names(config: Config) -> tuple[str, ...]:
 
 
 def make_segments(scene: Scene, motions: tuple[Motion, ...]) -> Float:
-    """Segments [n, 4] of everybody: start and stop (s), label, and number of the person.
-
-    Args:
-        scene: the scene.
-        motions: motions of its people, the sample's own person first.
-    """
+    """Segments [n, 4] of everybody: start and stop (s), label, and number of the person."""
     names = label_names(scene.config)
     rows = [
         (segment.start, segment.stop, names.index(segment.label), person.number)

@@ -52,15 +52,7 @@ def add_static_returns(
     antennas: Antennas,
     wall: Wall | None,
 ) -> tuple[Impairment, ...]:
-    """Add what stands still to the impairments of a receiver.
-
-    Args:
-        receiver: impairments of the receiver.
-        scene: the scene.
-        waveform: chirps or pulses.
-        antennas: antennas, which leak.
-        wall: wall, which echoes by itself, or None.
-    """
+    """Add what stands still to the impairments of a receiver."""
     return (*receiver, make_static_returns(scene, waveform, antennas, wall))
 
 

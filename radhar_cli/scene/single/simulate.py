@@ -199,16 +199,7 @@ def _simulation_of(
     results: Results,
     scene_notes: list[str],
 ) -> Simulation:
-    """Put the products of a scene together with its truth.
-
-    Args:
-        scene: the scene.
-        motions: motions of everybody, the main person's first.
-        joint: the only scatterer that was kept, or None.
-        names: names of the products.
-        results: the products.
-        scene_notes: warnings of the scene itself.
-    """
+    """Put the products of a scene together with its truth."""
     radar = {name: results[name] for name in ("antennas", "wall", "waveform")}
     truths = [evaluate_truth(motion, **radar) for motion in motions]
     if scene.config.radar_name is not None:
@@ -248,13 +239,7 @@ def _simulation_of(
 
 
 def _result_warnings(names: ProductNames, results: Results, is_empty: bool) -> list[str]:
-    """Warn of an engine that the direct one fell back to, and of maps without any power.
-
-    Args:
-        names: names of the products.
-        results: the products.
-        is_empty: whether nobody is in the scene, so that maps may be black.
-    """
+    """Warn of an engine that the direct one fell back to, and of maps without any power."""
     warnings = []
     accuracy = results.products.get("accuracy")
     if isinstance(accuracy, Fallback):

@@ -2,25 +2,18 @@
 
 The packages, in the order in which imports go (docs/reference/architecture.md):
 
-    motion        `Motion`: scatterers over time; the paper's model, the human one, their skeleton
-    activities    the twelve activities, other movements, and user-defined classes
-    radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel)
-    config        the schema of the YAML file, its checks, and how it is read
-    scene         (config, class, index) -> one scene: a config with nothing left to draw
+    motion        `Motion`: scatterers over time; the paper's model, the human one, the activities
+    radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel), boards
     processing    cancellers, range compression, compensation, STFT, FSST, entropy, image
-    receiver      impairments between echo and processing; noise
-    echo          paths -> echo: exact (the reference), direct (closed form), gated, impulse, boards
-    bodies        motion -> paths: points, ellipsoids, surfaces; delay and amplitude over time
-    assembly      numbers of a scene -> objects of physics: radar, wall, room, people, receiver
-    products      scene -> maps: the table of products, the plan of a request, its run
-    scene_checks  where a scene leaves its models, what noise hides, which keys do nothing
-    single_scene  one scene with its truth, and its files
-    figures       panels, animations, confusion matrices, curves
+    readers       files that anyone may have written: movements, captures, points, .cfg
+    echo          motion -> paths -> echo: exact (the reference), direct, gated, impulse; receiver
+    config        the YAML file: sections that build objects of the above, checks, how it is read
+    scene         (config, class, index) -> one scene, its products, its limits, its truth
+    figures       panels, animations, confusion matrices, curves, reports
     dataset       many scenes -> shards -> dataset.h5 and PNG; resume, verify, estimate
     capture       recordings of real radars -> maps, fitted configs, data sets
     learning      images -> trained networks and reports; the only package with PyTorch
-    two_sample    statistics of two sets of maps, and whether they can be told apart
-    tradeoff      what accuracy costs
+    study         what tells classes apart, two sets compared, what accuracy costs
     commands      one file per subcommand of the `radhar` program
 
 Symbols (SI units, radians)::

@@ -13,7 +13,7 @@ from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion
 from radhar_cli.motion.segments import landmark_names, segments_between, thickness
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.propagation import Antennas
-from radhar_cli.scene.assembly.radar import antennas_of
+from radhar_cli.scene.radar import antennas_of
 from radhar_cli.scene.scene import Person, Scene
 
 SHOULDERS = ("right_shoulder", "left_shoulder")

@@ -15,7 +15,7 @@ import numpy as np
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.propagation import Antennas
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
+from radhar_cli.scene.radar import antennas_of, waveform_of
 from radhar_cli.scene.room import wall_of
 from radhar_cli.scene.scene import Person, Scene
 

@@ -5,7 +5,7 @@ import numpy as np
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.radar.room import Leg, names_of
 from radhar_cli.radar.wall import Wall
-from radhar_cli.scene.assembly.radar import antennas_of
+from radhar_cli.scene.radar import antennas_of
 from radhar_cli.scene.scene import Scene
 
 

@@ -8,11 +8,11 @@ import pytest
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.motion.activities.activity import ACTIVITIES, activity_named
-from radhar_cli.scene.assembly.radar import antennas_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.validity import check_scene
 from radhar_cli.scene.motion import moving
 from radhar_cli.scene.place import NEAREST_M, distance_ahead, zone_of
+from radhar_cli.scene.radar import antennas_of
 from radhar_cli.scene.scene import draw_scene, scene_numbers
 
 SLUGS = [activity.slug for activity in ACTIVITIES]

@@ -17,12 +17,12 @@ from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.room import Box
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
 from radhar_cli.scene.checks.check_grid import CheckGrid, check_grids
 from radhar_cli.scene.checks.flags import BEHIND_M, BODY_RADIUS_M, WORDING, Flags
 from radhar_cli.scene.checks.sweep import sweep_shift
 from radhar_cli.scene.motion import body_of, moving
 from radhar_cli.scene.place import distance_ahead
+from radhar_cli.scene.radar import antennas_of, waveform_of
 from radhar_cli.scene.room import reflectors_of, wall_of
 from radhar_cli.scene.scene import Person, Scene
 

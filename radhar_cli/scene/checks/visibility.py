@@ -27,9 +27,9 @@ from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import amplitude, leg
 from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene.assembly.radar import antennas_of, board_of, waveform_of
 from radhar_cli.scene.checks.validity import MIN_DISTANCE_M
 from radhar_cli.scene.products.noise import noise_law_of
+from radhar_cli.scene.radar import antennas_of, board_of, waveform_of
 from radhar_cli.scene.room import wall_of
 from radhar_cli.scene.scene import Person, Scene, nominal_scene
 

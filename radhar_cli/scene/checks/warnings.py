@@ -16,12 +16,12 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.errors import SceneError
 from radhar_cli.radar.propagation import leg
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
 from radhar_cli.scene.checks.drawing import CROWDED, describe_crowd, find_crowded, suggest_cure
 from radhar_cli.scene.checks.flags import Flags, describe_flag, describe_flags
 from radhar_cli.scene.checks.validity import check_scene
 from radhar_cli.scene.checks.visibility import chest_point, looks_away, noise_alone
 from radhar_cli.scene.motion import motion_of
+from radhar_cli.scene.radar import antennas_of, waveform_of
 from radhar_cli.scene.room import ways_of
 from radhar_cli.scene.scene import Scene, nominal_scene
 

@@ -50,7 +50,6 @@ from radhar_cli.radar.chirp_window import RECTANGULAR, ChirpWindow
 from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
 from radhar_cli.radar.wall import Wall
-from radhar_cli.scene.assembly.radar import board_of, detection_of, waveform_of
 from radhar_cli.scene.paths import Link, make_path_sources, sum_of_paths
 from radhar_cli.scene.products.board_people import (
     assign_points,
@@ -69,6 +68,7 @@ from radhar_cli.scene.products.signal_power import (
     needs_other_paths,
     power_product,
 )
+from radhar_cli.scene.radar import board_of, detection_of, waveform_of
 from radhar_cli.scene.room import echo_ways_of
 from radhar_cli.scene.scene import Scene
 

@@ -14,13 +14,13 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
 from radhar_cli.scene.motion import moving
 from radhar_cli.scene.paths import Link, make_path_sources, sum_of_paths
 from radhar_cli.scene.products.knot_rate import knots_per_second
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.segments import make_segments
 from radhar_cli.scene.products.signal_power import make_snr_paths, needs_other_paths
+from radhar_cli.scene.radar import antennas_of, waveform_of
 from radhar_cli.scene.room import reflectors_of, wall_of
 from radhar_cli.scene.scene import Scene
 

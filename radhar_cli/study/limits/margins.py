@@ -7,9 +7,9 @@ import numpy as np
 
 from radhar_cli.radar.propagation import bistatic_delay, leg
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
 from radhar_cli.scene.checks.validity import MIN_DISTANCE_M
 from radhar_cli.scene.motion import moving
+from radhar_cli.scene.radar import antennas_of, waveform_of
 from radhar_cli.scene.scene import Scene
 
 CHECKS_PER_S = 200.0

@@ -6,7 +6,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import RadharError
 from radhar_cli.processing.map_kind import Transform, kind_of
-from radhar_cli.scene.assembly.radar import board_of, waveform_of
+from radhar_cli.scene.radar import board_of, waveform_of
 from radhar_cli.scene.scene import nominal_scene
 
 Counts = dict[str, float]

@@ -9,10 +9,10 @@ from helpers.slow import slow
 from radhar_cli.config import Config, load_config, load_radars
 from radhar_cli.config.several_radars import OWN_SECTIONS
 from radhar_cli.errors import SceneError
-from radhar_cli.scene.assembly.radar import antennas_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.flags import Flags
 from radhar_cli.scene.motion import motion_of
+from radhar_cli.scene.radar import antennas_of
 from radhar_cli.scene.scene import draw_scene
 from radhar_cli.scene.single.simulate import simulate
 

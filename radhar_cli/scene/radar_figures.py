@@ -7,7 +7,7 @@ import numpy as np
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.board import Board
-from radhar_cli.scene.assembly.radar import board_of, waveform_of
+from radhar_cli.scene.radar import board_of, waveform_of
 from radhar_cli.scene.scene import Scene
 
 HALF_POWER = 0.5

@@ -9,7 +9,6 @@ from helpers.command_line import ok, radhar
 from helpers.listener import Listener
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
 from helpers.small import fingerprint
-from radhar_cli.scene import motion_files
 
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
@@ -19,6 +18,7 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.split import split_rows, split_warnings
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError, MotionFileError
+from radhar_cli.scene import motion_files
 
 CONFIG = """
 seed: 5

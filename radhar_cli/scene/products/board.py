@@ -186,7 +186,7 @@ def _cloud_rows(config: Config) -> Iterator[Product]:
     radar, cloud = config.radar, config.cloud
     assert isinstance(radar, ArrayRadar)
     detection = detection_of(radar, config.processing)
-    find = partial(find_points, radar=radar, cloud=cloud, detection=detection)
+    find = partial(find_points, radar=radar, settings=cloud, detection=detection)
     does = f"points of the frames, chain: {cloud.chain}"
     yield Product("cloud", ("cube", "board"), find, does)
     yield Product("points", ("cloud",), attrgetter("points"), "of all frames", is_array=True)
@@ -425,7 +425,7 @@ def make_frame_maps(
 
 
 def find_points(
-    cube: Complex, board: Board, radar: ArrayRadar, cloud: CloudConfig, detection: Detection
+    cube: Complex, board: Board, radar: ArrayRadar, settings: CloudConfig, detection: Detection
 ) -> Cloud:
     """Find the points of the frames of a cube, as well as the data allow or as firmware does.
 
@@ -435,27 +435,27 @@ def find_points(
         cube: raw samples [frame, loop, virtual, sample].
         board: board of the cube.
         radar: radar of the board, whose .cfg may set firmware and a box of the room.
-        cloud: chain, and what of its points is kept.
+        settings: chain, and what of its points is kept.
         detection: settings of an out-of-box demo's .cfg.
     """
-    carrier = board.start if cloud.doppler_carrier == "start" else None
+    carrier = board.start if settings.doppler_carrier == "start" else None
     header = radar.header if isinstance(radar, BoardRadar) else None
-    if header is None or cloud.chain == "best" or radar.firmware is None:
+    if header is None or settings.chain == "best" or radar.firmware is None:
         bias, removes_mean = detection.bias, detection.remove_mean
-        found = best_points(cube, board, removes_mean, cloud.pfa, carrier, bias)
-        found = keep_in_view(found, detection)
+        cloud = best_points(cube, board, removes_mean, settings.pfa, carrier, bias)
+        cloud = keep_in_view(cloud, detection)
     elif isinstance(header.people, PeopleTracking):
-        found = track_people(cube, board, header.people, carrier)
+        cloud = track_people(cube, board, header.people, carrier)
     elif isinstance(header.people, PeopleCounting):
-        found = count_people(cube, board, header.people, detection.remove_mean, carrier)
+        cloud = count_people(cube, board, header.people, detection.remove_mean, carrier)
     else:
-        found = board_points(cube, board, detection, cloud.quantise, carrier)
+        cloud = board_points(cube, board, detection, settings.quantise, carrier)
     if board.roll != 0:
-        upright = np.hstack([board.without_roll(found.points[:, :3]), found.points[:, 3:]])
-        found = Cloud(upright, found.start)
-    if header is None or header.box is None or not cloud.boundary_box:
-        return found
-    return keep_in_box(found, header.box, board)
+        upright = np.hstack([board.without_roll(cloud.points[:, :3]), cloud.points[:, 3:]])
+        cloud = Cloud(upright, cloud.start)
+    if header is None or header.box is None or not settings.boundary_box:
+        return cloud
+    return keep_in_box(cloud, header.box, board)
 
 
 def compute_range_bins(

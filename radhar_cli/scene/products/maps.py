@@ -87,12 +87,12 @@ def map_products(config: AnyConfig) -> Iterator[Product]:
 
 def scale_products() -> Iterator[Product]:
     """Rows of the scales of images, and of frame maps, which are no masks."""
-    for name, make, what in (
+    for name, make, output in (
         ("image_scale", scale_of, "image"),
         ("level_scale", level_scale_of, "grey levels"),
     ):
         scale = partial(_make_scale, make=make)
-        yield Product(name, ("scene",), scale, f"law from power to {what}")
+        yield Product(name, ("scene",), scale, f"law from power to {output}")
 
 
 def _make_scale(scene: Scene, make: Callable[[AnyConfig], Scale]) -> Scale:
@@ -102,9 +102,9 @@ def _make_scale(scene: Scene, make: Callable[[AnyConfig], Scale]) -> Scale:
 
 def window_products() -> Iterator[Product]:
     """Rows of the windows of the Doppler-time maps of one channel."""
-    for name, make, what in WINDOWS:
+    for name, make, transform in WINDOWS:
         windows = partial(make_windows, make=make)
-        yield Product(name, ("scene", "waveform"), windows, f"of the {what}")
+        yield Product(name, ("scene", "waveform"), windows, f"of the {transform}")
 
 
 def make_windows(scene: Scene, waveform: Waveform, make: MakeFrames) -> Frames:

@@ -19,6 +19,7 @@ from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.products.fallback import EchoAccuracy, fall_back
+from radhar_cli.scene.products.knot_rate import knot_rate_of
 from radhar_cli.scene.products.looks import look_at_profiles
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.receiver import name_of_impairments
@@ -63,7 +64,7 @@ def direct_products(config: Config) -> Iterator[Product]:
     yield power_product(  # from the knots that are there anyway
         config,
         PowerSource(("gated" if is_gated else "direct",), methodcaller("signal_power")),
-        PowerSource(("snr_paths", "waveform"), partial(power_at_knots, config=config)),
+        PowerSource(("snr_paths", "waveform"), partial(power_at_knots, rate=knot_rate_of(config))),
     )
     needs = ("gated_echo" if is_gated else "echo",)
     yield Product("accuracy", needs, attrgetter("accuracy"), "its measured error")

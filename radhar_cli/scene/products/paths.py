@@ -16,7 +16,7 @@ from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.motion import moving
 from radhar_cli.scene.paths import Link, make_path_sources, sum_of_paths
-from radhar_cli.scene.products.knot_rate import knots_per_second
+from radhar_cli.scene.products.knot_rate import KnotRate, knot_rate_of
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.segments import make_segments
 from radhar_cli.scene.products.signal_power import make_snr_paths, needs_other_paths
@@ -44,8 +44,8 @@ def scene_products(config: Config) -> Iterator[Product]:
     if needs_other_paths(config):
         does = "paths of people, for the SNR"
         yield Product("snr_paths", ("scene", *needs), make_snr_paths, does)
-    between_knots = config if config.engine.kind == "direct" else None
-    track = partial(track_torso, between_knots=between_knots)
+    rate = knot_rate_of(config) if config.engine.kind == "direct" else None
+    track = partial(track_torso, rate=rate)
     yield Product("torso_track", needs, track, "delay of the torso at every pulse", is_array=True)
 
 
@@ -71,7 +71,7 @@ def track_torso(
     antennas: Antennas,
     wall: Wall | None,
     waveform: Waveform,
-    between_knots: Config | None = None,
+    rate: KnotRate | None = None,
 ) -> Float:
     """Compute the delay of the first person's torso at every pulse [M], s.
 
@@ -80,10 +80,7 @@ def track_torso(
         antennas: antennas of the radar.
         wall: wall between, or None.
         waveform: waveform of the radar.
-        between_knots: config of the direct engine, between whose knots delays are interpolated;
-            None for every pulse.
+        rate: rate of the knots between which delays are interpolated; None for every pulse.
     """
     torso = TorsoPath(motions[0], antennas, wall)
-    if between_knots is None:
-        return delay_track(torso, waveform, inf)
-    return delay_track(torso, waveform, knots_per_second(torso, waveform, between_knots))
+    return delay_track(torso, waveform, inf if rate is None else rate(torso, waveform))

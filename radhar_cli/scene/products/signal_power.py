@@ -21,7 +21,7 @@ from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.paths import Link, sum_of_paths, trace_people
-from radhar_cli.scene.products.knot_rate import knots_per_second
+from radhar_cli.scene.products.knot_rate import KnotRate
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.scene import Scene
 
@@ -75,9 +75,9 @@ def power_at_pulses(paths: PathSource, waveform: Waveform) -> float:
     return signal_power(paths, waveform)
 
 
-def power_at_knots(paths: PathSource, waveform: Waveform, config: Config) -> float:
+def power_at_knots(paths: PathSource, waveform: Waveform, rate: KnotRate) -> float:
     """P_s of paths: mean over the pulses of sum_i A_i^2, interpolated between knots."""
-    return mean_power(paths, waveform, knots_per_second(paths, waveform, config))
+    return mean_power(paths, waveform, rate(paths, waveform))
 
 
 def has_nobody(config: Config) -> bool:

@@ -29,8 +29,8 @@ def make_segments(scene: Scene, motions: tuple[Motion, ...]) -> Float:
     rows = [
         (segment.start, segment.stop, names.index(segment.label), person.number)
         for person, motion in zip(scene.people, motions, strict=False)
-        if isinstance(motion, StreamMotion)
-        for segment in segments_of(motion, scene.seconds, names)
+        if hasattr(motion, "labels")  # one that is cached is no StreamMotion
+        for segment in segments_of(motion, scene.seconds, names)  # type: ignore[arg-type]
     ]
     return np.array(rows, float).reshape(-1, len(SEGMENT_COLUMNS))
 

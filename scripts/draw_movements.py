@@ -27,8 +27,8 @@ from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.movements.catalogue import MOVEMENTS, users_of
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.numerics.arrays import Float, Levels
-from radhar_cli.scene.assembly.motion import motion_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.table import plan_images
 from radhar_cli.scene.scene import Scene
 from radhar_cli.schema.annotations import People, of_kind

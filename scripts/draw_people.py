@@ -20,7 +20,7 @@ from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -31,7 +31,7 @@ from radhar_cli.config.starting_file import of_board
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
-from radhar_cli.scene.assembly.radar_figures import RadarFigures, describe_figures, figures_of
+from radhar_cli.scene.radar_figures import RadarFigures, describe_figures, figures_of
 from radhar_cli.scene.scene import draw_scene
 from radhar_cli.scene.single.simulate import Simulation, simulate
 

@@ -22,10 +22,10 @@ from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.layers import Layer, Layers
 from radhar_cli.radar.propagation import leg
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.radar import antennas_of
-from radhar_cli.scene.assembly.room import ways_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record
+from radhar_cli.scene.radar import antennas_of
+from radhar_cli.scene.room import ways_of
 from radhar_cli.scene.scene import Scene, nominal_scene
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -26,9 +26,9 @@ from radhar_cli.errors import RadharError
 from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
-from radhar_cli.scene.assembly.motion import motion_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.warnings import config_warnings
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.products.table import plan_images, products
 from radhar_cli.scene.scene import draw_scene

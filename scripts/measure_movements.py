@@ -22,7 +22,7 @@ from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.segments import unit
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import draw_scene
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/reference/movement_figures.md"

@@ -15,7 +15,7 @@ from radhar_cli.config.radar import BoardRadar
 from radhar_cli.errors import CaptureError
 from radhar_cli.readers.ti.ti_cfg import parse_ti_cfg
 from radhar_cli.readers.ti.ti_commands import COMMANDS, Argument, Command, Effect
-from radhar_cli.scene.assembly.radar import board_of
+from radhar_cli.scene.radar import board_of
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs/reference/ti_commands.md"

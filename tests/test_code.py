@@ -40,7 +40,7 @@ PACKAGES = (
 # The same within rooms that have floors of their own; "" are the modules of the room itself.
 FLOORS = {
     "echo": ("receiver", "", "bodies"),
-    "scene": ("", "assembly", "products", "checks", "single"),
+    "scene": ("", "products", "checks", "single"),
 }
 
 

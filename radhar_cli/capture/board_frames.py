@@ -23,12 +23,12 @@ from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.scene.assembly.radar import board_of
 from radhar_cli.scene.products.board import products_of_frames
 from radhar_cli.scene.products.images import level_scale_of, scale_of
 from radhar_cli.scene.products.plan import plan
 from radhar_cli.scene.products.run import run
 from radhar_cli.scene.products.table import products
+from radhar_cli.scene.radar import board_of
 from radhar_cli.scene.scene import fixed_radar
 
 # {map of a board: products of its recording that are behind it}

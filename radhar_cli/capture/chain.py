@@ -28,14 +28,8 @@ from radhar_cli.processing.track import StandingTrack
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.processing import (
-    canceller_of,
-    chirp_window_of,
-    frames_of,
-    fsst_frames_of,
-)
-from radhar_cli.scene.assembly.radar import board_of
 from radhar_cli.scene.products.run import process
+from radhar_cli.scene.radar import board_of
 from radhar_cli.scene.scene import fixed_radar
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once
@@ -170,7 +164,7 @@ def maps_of(
     _refuse_doppler_of_magnitudes(recording, signal, names)
     # The mean is taken out here; difference and windows cross no gap.
     clutter = config.processing.clutter
-    canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, signal.prf)
+    canceller = NO_CANCELLER if clutter == "mean" else config.processing.make_canceller(signal.prf)
     signal = _without_mean(signal, config) if clutter == "mean" else signal
     maps: dict[str, PowerMap] = {}
     rtm = str(RTM)
@@ -244,7 +238,7 @@ def _range_signal(
             )
         waveform = replace(board.waveform, centred=centred)
     if isinstance(content, Beat):
-        waveform = replace(waveform, window=chirp_window_of(processing))
+        waveform = replace(waveform, window=processing.make_chirp_window())
     x = bins_of_part(part, content, waveform)
     is_real = isinstance(content, RangeProfiles) and part.recording.samples.parts == 1
     has_signs = is_real and bool((x.real < 0).any())  # magnitudes have none
@@ -398,8 +392,8 @@ def _windows_of_config(signal: Signal, config: AnyConfig) -> list[Frames]:
     duration = signal.pulses / signal.prf
     if isinstance(radar, ArrayRadar) and radar.frames_apart:
         duration = float(times.start[-1] - times.start[0]) + radar.header.period_s
-    arguments = config, duration, signal.prf, signal.f0
-    windows = [frames_of(*arguments), fsst_frames_of(*arguments)]
+    processing, arguments = config.processing, (duration, signal.prf, signal.f0)
+    windows = [processing.make_frames(*arguments), processing.make_fsst_frames(*arguments)]
     if not isinstance(radar, ArrayRadar):
         return windows
     are_apart = radar.frames_apart and len(times) > 1

@@ -50,7 +50,7 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
             if maps.board is not None:
                 assert isinstance(config.radar, ArrayRadar)
                 end = config.radar.ends_in_files[""]
-                write_frames(file, {end: (maps.board, maps.frames)}, config)
+                write_frames(file, {end: (maps.board, maps.frames)}, config.radar)
             if maps.track is not None:
                 for name, unit in TRACK_UNITS.items():
                     file[f"track/{name}"] = getattr(maps.track, name)

@@ -149,7 +149,7 @@ def _describe_written(name: str) -> str:
     from radhar_cli.config import load_config
     from radhar_cli.config.documents import PRESETS
     from radhar_cli.config.starting_file import describe_written
-    from radhar_cli.scene.assembly.radar_figures import describe_figures, figures_of
+    from radhar_cli.scene.radar_figures import describe_figures, figures_of
     from radhar_cli.scene.scene import draw_scene
 
     config = load_config(PRESETS[f"boards/{name}"])

@@ -204,7 +204,7 @@ def _radar_name(config: "AnyConfig") -> str | None:
 def _config_of_recordings(config: "Config", manifest: Path) -> "tuple[AnyConfig, RowFactory]":
     """The config of a data set of recordings, and what makes its rows."""
     from radhar_cli.capture.windows import WindowFactory, warnings_of, with_recordings
-    from radhar_cli.scene.checks.unused_keys import unused_keys
+    from radhar_cli.config.checks.unused_keys import unused_keys
 
     measured = with_recordings(config, manifest)
     unused = unused_keys(config)

@@ -69,9 +69,9 @@ def process(
     from radhar_cli.capture.recording import Recording
     from radhar_cli.capture.usual_config import has_usual_config
     from radhar_cli.config import resolved
+    from radhar_cli.config.checks.unused_keys import unused_keys
     from radhar_cli.config.data_set import ProcessedConfig
     from radhar_cli.config.reading import validated
-    from radhar_cli.scene.checks.unused_keys import unused_keys
     from radhar_cli.scene.scene import nominal_scene
     from radhar_cli.scene.single.request import map_names
 

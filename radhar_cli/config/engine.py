@@ -36,3 +36,8 @@ class EngineConfig(Section):
     """Arithmetic of the direct engine: single where the tolerance allows it, or float64 always."""
     motion_in_chirp: Flag = False
     """Whether paths go on moving during a chirp, with `kind: cube`."""
+
+    @property
+    def is_double(self) -> bool:
+        """Whether sums are made in double precision whatever the tolerance."""
+        return self.precision == "double"

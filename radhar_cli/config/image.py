@@ -6,8 +6,19 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, field_validator
 
 from radhar_cli.config.acting import CADENCES, OVER_RANGE, RANGES, SPECTRA
 from radhar_cli.errors import did_you_mean
+from radhar_cli.processing.cfar import CellAveraging
 from radhar_cli.schema.annotations import NeedsKey
-from radhar_cli.schema.number import DECIBEL, POSITIVE, Real, require, uniform, value_error, within
+from radhar_cli.schema.number import (
+    DECIBEL,
+    POSITIVE,
+    Number,
+    Real,
+    nominal,
+    require,
+    uniform,
+    value_error,
+    within,
+)
 from radhar_cli.schema.section import N, Section, default_draw, defaults_of
 
 DEFAULT_COLOUR_MAP = "viridis"
@@ -41,6 +52,17 @@ class CfarConfig(Section, Generic[N]):
     of decibels."""
     edges: Literal["wrap", "shrink"] = "wrap"
     """What stands for cells beyond an edge: those of the opposite edge, or none."""
+
+    def make_detector(self: "CfarConfig[Number]") -> CellAveraging:
+        """Make the detector; numbers that are still to be drawn are taken at their middle."""
+        return CellAveraging(
+            guard=self.guard,
+            training=self.training,
+            pfa=nominal(self.pfa),
+            decibel=self.domain == "decibel",
+            floor_db=nominal(self.floor_db),
+            wrap=self.edges == "wrap",
+        )
 
 
 class AbsoluteReference(Section):

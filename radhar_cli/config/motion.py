@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal
 from pydantic import Field
 
 from radhar_cli.motion.movements import catalogue
+from radhar_cli.motion.movements.running import RUNNING_SPEED
+from radhar_cli.motion.movements.walking import WALKING_SPEED
 from radhar_cli.schema.annotations import ByModel, NeedsNullKey, People, Unless
 from radhar_cli.schema.number import ANGLE, COORDINATE, Choice, uniform, within
 from radhar_cli.schema.section import B, ByActivity, Section, default_draw, defaults_of
@@ -108,6 +110,12 @@ class TimingConfig(Section, Generic[B]):
         }
 
 
+FALL = "motion.falling.direction"
+# Speeds that follow the stature, as a config does not say how fast people are.
+USUAL_SPEEDS = {
+    "motion.walking.speed_mps": WALKING_SPEED,
+    "motion.running.speed_mps": RUNNING_SPEED,
+}
 # Keys that had no section in earlier versions, and other names that some of them had; the random
 # streams of numbers keep those names.
 _ONCE_WITHOUT_SECTION = {

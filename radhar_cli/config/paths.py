@@ -8,6 +8,21 @@ from radhar_cli.schema.section import Section
 
 T = TypeVar("T")
 
+# The keys of a config whose numbers may be drawn, scene by scene.
+SCENE_KEYS = (
+    "duration_s",
+    "radar",
+    "subject",
+    "motion",
+    "timing",
+    "classes",
+    "wall",
+    "room",
+    "snr_db",
+    "receiver",
+    "image.cfar",
+)
+
 
 def changed(value: T, parts: Mapping[str, Any]) -> T:
     """Copy a config, or part of one, with other values under some dotted keys.
@@ -58,3 +73,20 @@ def each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any:
             }
         )
     return change(key, value)
+
+
+def numbers(config: Section) -> list[tuple[str, Any]]:
+    """List all numbers of a config that may be drawn, as (dotted key, number or PerActivity).
+
+    They are in the order of the schema. Vectors come as `radar.tx_m.0` and so on; keys that are
+    null are left out.
+    """
+    drawable: list[tuple[str, Any]] = []
+
+    def add(key: str, number: Any) -> Any:
+        drawable.append((key, number))
+        return number
+
+    for key in SCENE_KEYS:
+        each_number(at(config, key), key, add)
+    return drawable

@@ -19,7 +19,9 @@ from radhar_cli.config.acting import (
 from radhar_cli.config.radar import MIN_WINDOW
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import half_up
-from radhar_cli.radar.chirp_window import WindowName
+from radhar_cli.processing import canceller
+from radhar_cli.processing.frames import Frames
+from radhar_cli.radar.chirp_window import ChirpWindow, WindowName
 from radhar_cli.radar.detection import Chain
 from radhar_cli.schema.annotations import ByModel, NeedsKey
 from radhar_cli.schema.number import value_error
@@ -54,9 +56,10 @@ class HighpassConfig(Section):
     """Whether the mean is taken out first; false starts from rest as MATLAB's `filter`: static
     echoes ring."""
 
-    def cutoff(self, prf: float) -> float:
-        """Cut-off of the filter as a fraction of PRF/2, for `prf` pulses a second."""
-        return DEFAULT_CUTOFF if self.cutoff_hz is None else 2 * self.cutoff_hz / prf
+    def make_canceller(self, prf: float) -> canceller.HighPass:
+        """Make the filter for `prf` pulses a second."""
+        cutoff = DEFAULT_CUTOFF if self.cutoff_hz is None else 2 * self.cutoff_hz / prf
+        return canceller.HighPass(self.order, cutoff, self.zero_phase, self.remove_mean)
 
 
 DEFAULT_CUTOFF = 0.0075  # of PRF/2
@@ -160,6 +163,31 @@ class ProcessingConfig(Section):
             return half_up(self.window_s, prf)
         seconds = sqrt(2 * SPEED_OF_LIGHT / f0 / LIMB_ACCELERATION)
         return max(half_up(min(seconds, MAX_WINDOW_SHARE * duration), prf), MIN_WINDOW)
+
+    def make_frames(self, duration: float, prf: float, f0: float) -> Frames:
+        """Make the windows of the STFT, of `window_pulses`."""
+        return Frames.of(self.window_pulses(duration, prf, f0), self.overlap_fraction)
+
+    def make_fsst_frames(self, duration: float, prf: float, f0: float) -> Frames:
+        """Make the windows of the FSST: those of the STFT, with a hop of its own if it has one."""
+        frames, hop = self.make_frames(duration, prf, f0), self.fsst_hop_pulses
+        return frames if hop is None else Frames(frames.length, hop)
+
+    def make_canceller(self, prf: float) -> canceller.Canceller:
+        """Make the canceller of static echoes for `prf` pulses a second."""
+        match self.clutter:
+            case "difference":
+                return canceller.FIRST_DIFFERENCE
+            case "mean":
+                return canceller.MeanRemoval()
+            case "none":
+                return canceller.NO_CANCELLER
+        return self.highpass.make_canceller(prf)
+
+    def make_chirp_window(self) -> ChirpWindow:
+        """Make the window before range compression."""
+        assert self.range_window is not None  # filled in where the config was read
+        return ChirpWindow(self.range_window, self.range_sidelobes_db)
 
 
 class CloudConfig(Section):

@@ -1,11 +1,19 @@
 """The wall in front of people, and the room around them."""
 
+from collections.abc import Iterator
+from math import inf
 from typing import Annotated, Any, Generic, Literal
 
+import numpy as np
 from pydantic import Discriminator, Field, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema
 
-from radhar_cli.radar.materials import Material
+from radhar_cli.motion.reflectors import TONES, Reflectors
+from radhar_cli.numerics.arrays import Float
+from radhar_cli.radar.layers import Layer, Layers
+from radhar_cli.radar.materials import Material, permittivity
+from radhar_cli.radar.room import FACES, Box, Face, Leg, reflected_legs
+from radhar_cli.radar.wall import Wall
 from radhar_cli.schema.annotations import GIVEN, ByModel, NeedsKey
 from radhar_cli.schema.number import (
     AT_LEAST_ONE,
@@ -30,6 +38,13 @@ class LayerConfig(Section, Generic[N]):
     """Relative permittivity of the layer, where no material is named."""
     loss_tangent: Annotated[N, NOT_NEGATIVE, within(0, 1e12)] = default_draw(0.0)
     """Loss tangent of the layer, used with eps_r."""
+
+    def make_layer(self: "LayerConfig[float]") -> Layer:
+        """Make the layer."""
+        if self.material is not None:
+            return Layer(self.thickness_m, self.material)
+        assert self.eps_r is not None  # refused where the config is read
+        return Layer(self.thickness_m, self.eps_r * (1 - 1j * self.loss_tangent))
 
 
 _NO_LAYERS = NeedsKey("wall.layers", None)
@@ -73,6 +88,36 @@ class WallConfig(Section, Generic[N]):
     """Layers of the wall, nearest first, with echoes: exact; null is one layer of size_m, eps_r and
     loss_tangent."""
 
+    def make_wall(self: "WallConfig[float]", middle_hz: float, polarisation: str) -> Wall:
+        """Make the wall; layers are one slab of their mean refractive index besides.
+
+        Args:
+            middle_hz: middle of the radar's band, at which that index is taken.
+            polarisation: vertical or horizontal.
+        """
+        depth, width, height = self.size_m
+        eps_r, loss_tangent = self.eps_r, self.loss_tangent
+        if self.layers is None:
+            assert depth is not None  # refused where the config is read
+            layers: tuple[Layer, ...] = (Layer(depth, eps_r * (1 - 1j * loss_tangent)),)
+        else:
+            layers = tuple(layer.make_layer() for layer in self.layers)
+            depth = sum(layer.thickness for layer in layers)
+            middle = np.array(middle_hz)
+            n = sum(layer.thickness * np.sqrt(layer.eps(middle)) for layer in layers) / depth
+            eps = complex(n * n)
+            eps_r, loss_tangent = eps.real, -eps.imag / eps.real
+        exact = Layers(layers, parallel=polarisation == "horizontal")
+        return Wall(
+            center=self.center_m,
+            size=(depth, width, height),
+            eps_r=eps_r,
+            loss_tangent=loss_tangent,
+            rays=self.rays,
+            fresnel=self.fresnel,
+            layers=exact if self.echoes == "exact" else None,
+        )
+
 
 class ReflectorConfig(Section, Generic[N]):
     """Something that stands in the room, with a residual motion along the line of sight."""
@@ -110,6 +155,10 @@ class BoxConfig(Section, Generic[N]):
     """Cross-ranges of the right and the left face, m."""
     height: Annotated[N, POSITIVE] = default_draw(2.8)
     """Height of the ceiling, m."""
+
+    def make_box(self: "BoxConfig[float]") -> Box:
+        """Make the box of the faces."""
+        return Box(self.x, self.y, self.height)
 
 
 def _material_kind(value: Any) -> str:
@@ -156,6 +205,29 @@ class FacesConfig(Section, Generic[N]):
             name: material for name in type(self).model_fields if (material := getattr(self, name))
         }
 
+    def make_faces(
+        self: "FacesConfig[float]", box: Box | None, middle_hz: float, polarisation: str
+    ) -> Iterator[Face]:
+        """Make the faces that reflect.
+
+        Args:
+            box: where they are; None for a floor alone.
+            middle_hz: middle of the radar's band, at which permittivities are taken.
+            polarisation: vertical or horizontal.
+        """
+        face_offsets = {"floor": 0.0} if box is None else box.face_offsets
+        normal = FACES["floor" if polarisation == "vertical" else "left"]
+        for name, material in self.reflecting.items():
+            parallel, reflection_coefficient = FACES[name] != normal, None
+            if material == "metal":
+                reflection_coefficient = -1.0 if parallel else 1.0
+            if isinstance(material, str):
+                eps = complex(permittivity(material, np.array(middle_hz)))
+            else:
+                eps = complex(material.eps_r * (1 - 1j * material.loss_tangent))
+            offset = face_offsets[name]
+            yield Face(name, FACES[name], offset, eps, parallel, reflection_coefficient)
+
 
 class RoomConfig(Section, Generic[N]):
     """What stands in the room, what its faces echo, or a wall behind people."""
@@ -176,3 +248,48 @@ class RoomConfig(Section, Generic[N]):
         N, within(-120, 0, "dB"), NeedsKey("room.back_wall_m", GIVEN)
     ] = default_draw(-8.0)
     """Reflection loss of the rear wall, applied twice to the mirrored echo."""
+
+    def make_box(self: "RoomConfig[float]") -> Box | None:
+        """Make the box of the faces; None without faces, or for a floor alone."""
+        return None if self.faces is None or self.box_m is None else self.box_m.make_box()
+
+    def find_ways(
+        self: "RoomConfig[float]", nearest_m: float, middle_hz: float, polarisation: str
+    ) -> list[tuple[Leg, Leg]]:
+        """Find the ways of the transmitter's and the receiver's leg by faces, or by a back wall.
+
+        Args:
+            nearest_m: least x of an antenna; before the front face a radar looks into the room.
+            middle_hz: middle of the radar's band, at which permittivities are taken.
+            polarisation: vertical or horizontal.
+        """
+        if self.back_wall_m is not None:
+            reflection = 10 ** (self.back_wall_reflection_db / 20)
+            face = Face("back", FACES["back"], self.back_wall_m, constant_reflection=reflection)
+            return [(Leg((face,)), Leg((face,)))]
+        if self.faces is None:
+            return []
+        box = self.make_box()
+        faces = [*self.faces.make_faces(box, middle_hz, polarisation)]
+        is_outside = nearest_m < (-inf if box is None else box.x[0])
+        return list(reflected_legs(faces, self.order, is_outside))
+
+    def make_reflectors(
+        self: "RoomConfig[float]", towards: Float, rng: np.random.Generator
+    ) -> Reflectors:
+        """Make the reflectors that stand in the room.
+
+        Args:
+            towards: middle of the antennas [3], m, along the line of sight to which they move.
+            rng: draws their small motions.
+        """
+        each = self.reflectors
+        return Reflectors(
+            places=np.array([one.position_m for one in each]),
+            rcs=10 ** (np.array([one.rcs_dbsm for one in each]) / 10),
+            sd=np.array([one.residual_m for one in each]),
+            fastest=np.array([one.highest_hz for one in each]),
+            fractions=rng.random((len(each), TONES)),
+            phases=rng.random((len(each), TONES)),
+            towards=towards,
+        )

@@ -19,9 +19,10 @@ from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.processing.points import COLUMNS
 from radhar_cli.processing.scale import NOISE_PLACE
-from radhar_cli.scene.assembly.room import kinds_of
 from radhar_cli.scene.products.segments import SEGMENT_COLUMNS
 from radhar_cli.scene.products.segments import label_names as stream_label_names
+from radhar_cli.scene.room import names_of_ways
+from radhar_cli.scene.scene import nominal_scene
 from radhar_cli.schema.annotations import value_text
 
 BLOCK = 4096  # rows of a column read at once
@@ -171,7 +172,8 @@ def _describe_products(file: h5py.File, config: Config) -> None:
     recorded = any(config.files_of(activity) is not None for activity in config.chosen_activities)
     for end in ends:
         if f"products/points_kind{end}" in file:
-            file[f"products/points_kind{end}"].attrs["kinds"] = kinds_of(config)
+            scene = nominal_scene(config, config.chosen_activities[0])
+            file[f"products/points_kind{end}"].attrs["kinds"] = names_of_ways(scene)
         if f"products/skeleton{end}" in file and not recorded:
             file[f"products/skeleton{end}"].attrs["joint_names"] = [*JOINTS]
     if config.people:

@@ -14,9 +14,11 @@ import numpy as np
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.numerics.arrays import Index
+from radhar_cli.numerics.rounding import half_up
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import ANGLES, FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import CADENCE_KINDS, MAP_KINDS, kind_of
+from radhar_cli.schema.number import support
 
 # Of dataset.h5; 3: labels are 0 to C - 1 in the order of the config.
 SCHEMA_VERSION = 3
@@ -54,10 +56,14 @@ def large_datasets(config: AnyConfig) -> Parts:
     if config.output.power is not None:
         parts |= {f"power/{name}": ("<f2", size) for name in config.maps}
     if config.output.slow_time:
-        from radhar_cli.scene.assembly.processing import max_samples
-
-        parts["slow_time"] = ("<c8", (max_samples(config),))
+        parts["slow_time"] = ("<c8", (_most_samples(config),))
     return parts
+
+
+def _most_samples(config: AnyConfig) -> int:
+    """Length of the longest slow-time signal after the canceller that a config draws."""
+    pulses = half_up(support(config.duration_s)[1], support(config.radar.prf_hz)[1])
+    return pulses - 1 if config.processing.clutter == "difference" else pulses
 
 
 def checksum_of(name: str) -> str:

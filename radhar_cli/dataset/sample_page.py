@@ -23,9 +23,9 @@ from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.radar import board_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.motion import motion_of
+from radhar_cli.scene.radar import board_of
 from radhar_cli.scene.scene import Scene, fixed_radar, nominal_scene
 
 MOST = 50  # samples of a page

@@ -15,12 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.config.data_set import AnyConfig, Config, MeasuredConfig
-from radhar_cli.config.motion import EARLIER_KEYS
+from radhar_cli.config.motion import EARLIER_KEYS, FALL
+from radhar_cli.config.paths import numbers
 from radhar_cli.config.room import FacesConfig
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene.assembly.aspect import aspect_at_middle
-from radhar_cli.scene.assembly.motion import moving
-from radhar_cli.scene.scene import FALL, Scene, file_keys, keys_of_people, number_at, numbers
+from radhar_cli.scene.motion import aspect_at_middle, moving
+from radhar_cli.scene.scene import Scene, file_keys, keys_of_people, number_at
 
 _UNITS = {name: name for name in ("m", "s", "kg")} | {"hz": "Hz", "mps": "m/s", "deg": "rad"}
 _UNITS |= {"db": "dB", "dbi": "dBi", "dbsm": "dBsm"}

@@ -6,11 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from radhar_cli.config.data_set import AnyConfig, Config
+from radhar_cli.config.motion import FALL
+from radhar_cli.config.paths import numbers
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.errors import FolderError
-from radhar_cli.scene.scene import FALL, numbers
 from radhar_cli.schema.number import support
 from radhar_cli.schema.section import for_activity
 

@@ -11,8 +11,14 @@ import numpy as np
 
 from radhar_cli.config.classes import FilesConfig
 from radhar_cli.config.data_set import AnyConfig, Config
-from radhar_cli.config.motion import EARLIER_KEYS, MotionConfig, TimingConfig
-from radhar_cli.config.paths import at, changed, each_number
+from radhar_cli.config.motion import (
+    EARLIER_KEYS,
+    FALL,
+    USUAL_SPEEDS,
+    MotionConfig,
+    TimingConfig,
+)
+from radhar_cli.config.paths import SCENE_KEYS, at, changed, each_number, numbers
 from radhar_cli.config.people import PersonConfig, SubjectConfig
 from radhar_cli.config.radar import SceneRadar
 from radhar_cli.config.receiver import ReceiverConfig
@@ -22,28 +28,12 @@ from radhar_cli.config.stream import draw_stream
 from radhar_cli.motion.activities.activity import STREAM, Activity
 from radhar_cli.motion.human.physique import froude_scale
 from radhar_cli.motion.movements.falling import FALLS, Falls
-from radhar_cli.motion.movements.running import RUNNING_SPEED
-from radhar_cli.motion.movements.walking import WALKING_SPEED
 from radhar_cli.motion.skeleton import default_weight
-from radhar_cli.numerics.randomness import PERSON, SCENE, stream
+from radhar_cli.numerics.randomness import NOISE, PERSON, SCENE, stream
 from radhar_cli.schema.annotations import Mark, of_kind
 from radhar_cli.schema.number import Choice, Number, is_fixed, nominal, quantile, uniform
 from radhar_cli.schema.section import for_activity
 
-# The keys of a config whose numbers may be drawn, scene by scene.
-SCENE_KEYS = (
-    "duration_s",
-    "radar",
-    "subject",
-    "motion",
-    "timing",
-    "classes",
-    "wall",
-    "room",
-    "snr_db",
-    "receiver",
-    "image.cfar",
-)
 # Keys of what is a radar's own, where there are several.
 RADAR_KEYS = ("radar.", "snr_db", "receiver.", "image.cfar.")
 OTHER_RADARS = "other_radars"
@@ -53,7 +43,6 @@ PERSONAL, UNSTEADY = (
 )
 # Redrawing a scene outside the model changes what the person does, not the radar or the person.
 REDRAWN = ("motion.", "timing.", "classes.", "stream.")
-FALL = "motion.falling.direction"
 INSTANT, PLACE_RANGE = "motion.place.instant", "motion.place.range_m"
 # What a walk may overlap, by at most MAX_OVERLAP of its duration, as low down no legs are long
 # enough for a step; falls to the side not at all, as their feet are not planted.
@@ -65,11 +54,6 @@ OVERLAPPED = {
 }
 MAX_OVERLAP = 0.3
 START_M = 0.6  # from the edge of a zone at which a stream begins, at least
-# Speeds that follow the stature, as a config does not say how fast people are.
-USUAL_SPEEDS = {
-    "motion.walking.speed_mps": WALKING_SPEED,
-    "motion.running.speed_mps": RUNNING_SPEED,
-}
 MAX_PLACES = 100  # drawn for a person who comes too near to others
 
 
@@ -339,6 +323,22 @@ class Scene:
         """Everybody who makes an echo: `people`, and nobody in an empty scene."""
         return () if self.is_empty else self.people
 
+    def noise_stream(self, name: str, channel: object = "") -> np.random.Generator:
+        """Random stream of the noise of the scene's radar, of several its own.
+
+        Args:
+            name: what the noise is.
+            channel: name of the receive channel; "" for the antennas of the config.
+        """
+        name = f"{name} channel {channel}" if channel else name
+        if self.config.radar_name is not None:
+            name = f"{name} radar {self.config.radar_name}"
+        return self.surroundings_stream(name)
+
+    def surroundings_stream(self, name: str) -> np.random.Generator:
+        """Random stream of what moves besides people, the same for all radars of the scene."""
+        return stream(self.config.seed, NOISE, self.activity.index, self.index, name=name)
+
 
 def draw_scene(
     config: Config,
@@ -506,23 +506,6 @@ def _with_file(config: Config, activity: Activity, draw: Draw, subject: int | No
 def subject_of(config: Config, index: int) -> int | None:
     """Number of the person in sample `index` of any class, or None without named persons."""
     return None if config.split.subjects is None else index % config.split.subjects
-
-
-def numbers(config: Config) -> list[tuple[str, Any]]:
-    """List all numbers of a config that may be drawn, as (dotted key, number or PerActivity).
-
-    They are in the order of the schema. Vectors come as `radar.tx_m.0` and so on; keys that are
-    null are left out.
-    """
-    drawable: list[tuple[str, Any]] = []
-
-    def add(key: str, number: Any) -> Any:
-        drawable.append((key, number))
-        return number
-
-    for key in SCENE_KEYS:
-        each_number(at(config, key), key, add)
-    return drawable
 
 
 def number_at(scene: Scene, key: str) -> float:

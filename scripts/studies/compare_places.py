@@ -16,8 +16,8 @@ from shared import ROOT
 
 from radhar_cli.config import load_config
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene.assembly.motion import moving
 from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.motion import moving
 
 POINTS = 61  # instants of a recording
 QUANTITIES = (

@@ -13,7 +13,7 @@ from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import nominal_scene
 
 SPACING = 0.002  # between antennas, m

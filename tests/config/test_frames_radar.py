@@ -19,9 +19,9 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, range_doppler
 from radhar_cli.radar.board import Board
-from radhar_cli.scene.assembly.radar import antennas_of, board_of
 from radhar_cli.scene.checks.warnings import warnings_of_signal
 from radhar_cli.scene.products.run import record
+from radhar_cli.scene.radar import antennas_of, board_of
 from radhar_cli.scene.scene import nominal_scene
 
 BGT60: dict[str, Any] = {

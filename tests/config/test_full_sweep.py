@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from radhar_cli.config import Config
-from radhar_cli.scene.assembly.radar import waveform_of
+from radhar_cli.scene.radar import waveform_of
 from radhar_cli.scene.scene import nominal_scene
 
 

@@ -15,7 +15,7 @@ from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.motion.recorded.clip import make_clip
 from radhar_cli.motion.recorded.keypoints import make_keypoints
 from radhar_cli.motion.recorded.names import WANTED
-from radhar_cli.scene.assembly.motion_files import file_motion
+from radhar_cli.scene.motion_files import file_motion
 from radhar_cli.scene.scene import draw_scene, nominal_scene
 
 TEXT = """

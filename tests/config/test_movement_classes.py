@@ -13,7 +13,7 @@ from radhar_cli.config.classes import movement_class
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.activities.activity import ACTIVITIES
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import Scene, draw_scene, nominal_scene, scene_numbers
 from radhar_cli.scene.single.request import activity_of
 

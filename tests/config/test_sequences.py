@@ -12,7 +12,7 @@ from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.activities.links import is_link, links_between
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
-from radhar_cli.scene.assembly.people import human_motion
+from radhar_cli.scene.people import human_motion
 from radhar_cli.scene.scene import Scene, draw_scene, nominal_scene
 
 PARTS = [

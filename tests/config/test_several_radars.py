@@ -9,7 +9,7 @@ import yaml
 from radhar_cli.config import Config, load_config, load_radars, resolved
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.errors import ConfigError
-from radhar_cli.scene.assembly.radar import antennas_of
+from radhar_cli.scene.radar import antennas_of
 from radhar_cli.scene.scene import nominal_scene
 
 BOARD = "{cfg: iwr1843boost, device: IWR1843BOOST}"

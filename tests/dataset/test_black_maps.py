@@ -9,7 +9,7 @@ from helpers.listener import Listener
 from radhar_cli.config import Config
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import RadharError, SceneError
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import draw_scene
 from radhar_cli.scene.single.simulate import simulate

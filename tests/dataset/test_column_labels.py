@@ -20,7 +20,7 @@ from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.phases import PHASES
 from radhar_cli.motion.protocol import ScattererSubset
 from radhar_cli.processing.power_map import MapImage
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import nominal_scene
 from radhar_cli.scene.single.simulate import simulate
 

@@ -18,7 +18,7 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.split import split_rows, split_warnings
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError, MotionFileError
-from radhar_cli.scene.assembly import motion_files
+from radhar_cli.scene import motion_files
 
 CONFIG = """
 seed: 5

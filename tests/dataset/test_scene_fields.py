@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.config import Config
+from radhar_cli.config.paths import numbers
 from radhar_cli.dataset.scene_fields import TAKEN, fields, values
 from radhar_cli.motion.activities.activity import ACTIVITIES, activity_named
-from radhar_cli.scene.scene import draw_scene, numbers, scene_numbers
+from radhar_cli.scene.scene import draw_scene, scene_numbers
 
 EVERYTHING = Config(motion={"model": "paper"}, wall={})
 

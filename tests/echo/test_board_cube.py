@@ -20,7 +20,7 @@ from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
-from radhar_cli.scene.assembly.radar import board_of
+from radhar_cli.scene.radar import board_of
 
 # Of a program of other authors; [frame, loop, virtual, sample].
 KNOWN = {

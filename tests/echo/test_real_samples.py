@@ -13,8 +13,8 @@ from radhar_cli.echo.receiver.noise import circular_gaussian
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.frame_maps import range_doppler
 from radhar_cli.radar.board import Board
-from radhar_cli.scene.assembly.radar import board_of
 from radhar_cli.scene.products.board import compute_range_bins
+from radhar_cli.scene.radar import board_of
 
 REAL = """
 channelCfg 15 1 0

@@ -14,8 +14,8 @@ from radhar_cli.echo.receiver.noise import circular_gaussian
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.frame_maps import range_angle, range_doppler, spectra
 from radhar_cli.radar.board import Board
-from radhar_cli.scene.assembly.radar import board_of
 from radhar_cli.scene.products.board import apply_channel_errors, compute_range_bins
+from radhar_cli.scene.radar import board_of
 
 CFG = (Path(__file__).parents[1] / "radar/cfg/people_isk_bpm.cfg").read_text()
 # Of a program of other authors; [frame, loop, virtual, sample].

@@ -39,13 +39,13 @@ from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.track import StandingTrack
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
-from radhar_cli.scene.assembly.receiver import impairments_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.plan import Product
+from radhar_cli.scene.products.receiver import make_impairments
 from radhar_cli.scene.products.run import process, record
 from radhar_cli.scene.products.table import plan_images
+from radhar_cli.scene.radar import antennas_of, waveform_of
 from radhar_cli.scene.scene import Person, Scene, nominal_scene
 from radhar_cli.scene.single.raw_echo import RAW_ECHO
 
@@ -342,7 +342,7 @@ def points(signal: Signal) -> Float:
 
 
 def offset_and_noise(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impairment, ...]:
-    return noise, *impairments_of(scene, noise, w), DcOffset()
+    return *make_impairments(scene, noise, w), DcOffset()
 
 
 @pytest.fixture

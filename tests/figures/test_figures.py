@@ -26,7 +26,7 @@ from radhar_cli.figures.sides import UNCHANGED, gif_blocks
 from radhar_cli.figures.stickman import draw_stickman, frame_count
 from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.processing.power_map import Axis, PowerMap
-from radhar_cli.scene.assembly.radar import waveform_of
+from radhar_cli.scene.radar import waveform_of
 from radhar_cli.scene.scene import draw_scene
 from radhar_cli.scene.single.simulate import simulate
 

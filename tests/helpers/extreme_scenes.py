@@ -7,7 +7,7 @@ from helpers import reference as ref
 
 from radhar_cli.config import Config
 from radhar_cli.motion.activities.activity import activity_named
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import Results
 from radhar_cli.scene.products.run import record as record_scene
 from radhar_cli.scene.scene import nominal_scene, scene_numbers

@@ -12,7 +12,7 @@ from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.motion.recorded.writing import bvh_text
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import nominal_scene
 from radhar_cli.scene.single.motion_file import sample_joints
 

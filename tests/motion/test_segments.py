@@ -18,7 +18,7 @@ from radhar_cli.motion.segments import (
     thickness,
 )
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import nominal_scene
 
 STATURE = 1.75

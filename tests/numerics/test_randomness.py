@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from radhar_cli.config import Config
+from radhar_cli.config.paths import numbers
 from radhar_cli.numerics.randomness import NOISE, PERSON, SCENE, SPLIT, stream
-from radhar_cli.scene.scene import numbers
 
 
 def test_the_same_name_yields_the_same_numbers_whatever_was_drawn_before() -> None:

@@ -8,7 +8,7 @@ import pytest
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.errors import CaptureError
 from radhar_cli.readers.ti.ti_cfg import parse_ti_cfg
-from radhar_cli.scene.assembly.radar import board_of
+from radhar_cli.scene.radar import board_of
 
 FILES = Path(__file__).with_name("cfg")
 TURNS = "".join(f"chirpCfg {n} {n} 0 0 0 0 0 {1 << n}\n" for n in range(3))

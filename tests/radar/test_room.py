@@ -153,7 +153,7 @@ def test_an_image_and_the_antennas_image_are_as_far() -> None:
 
 
 def test_beam_at_half_its_width() -> None:
-    half = np.sqrt(np.log(2) * 20 / (6 * np.log(10)))  # as assembly/radar.py has it
+    half = np.sqrt(np.log(2) * 20 / (6 * np.log(10)))  # as scene/radar.py has it
     aim = Aim((0, 0, 1), boresight_axes(0.0, 0.0), (35 * half, 15 * half), 10 ** (-30 / 10))
     angle = np.radians(35)
     aside = np.array([np.cos(angle), np.sin(angle), 1])[:, None]

@@ -6,7 +6,8 @@ import bench_rooms as bench
 import pytest
 
 from radhar_cli.config import load_config
-from radhar_cli.scene.assembly.room import kinds_of
+from radhar_cli.scene.room import names_of_ways
+from radhar_cli.scene.scene import nominal_scene
 
 
 @pytest.mark.parametrize("name", bench.DOCUMENTS)
@@ -14,7 +15,7 @@ def test_a_room_of_six_faces_before_an_isk(name: str, tmp_path: Path) -> None:
     path = tmp_path / "scene.yaml"
     path.write_text(bench.DOCUMENTS[name])
     config = load_config(path)
-    assert len(kinds_of(config)) == 13
+    assert len(names_of_ways(nominal_scene(config, config.chosen_activities[0]))) == 13
     assert len(config.people) == (name in ("people", "dry"))
 
 

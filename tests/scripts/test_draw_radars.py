@@ -8,7 +8,7 @@ import pytest
 from draw_radars import CALCULATED, MEMORY
 
 from radhar_cli.config.documents import RADARS, WRITTEN_RADARS
-from radhar_cli.scene.assembly.radar_figures import RadarFigures, beam_width_deg, describe_figures
+from radhar_cli.scene.radar_figures import RadarFigures, beam_width_deg, describe_figures
 
 NAMES = (*WRITTEN_RADARS, *RADARS)
 SHEETS, SOURCES, TOLERANCES = draw_radars.read_sheets()

@@ -1,9 +1,10 @@
 """What is right but hardly meant, as sentences for the user."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.config.request import Request
+from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.schema.number import nominal, support
@@ -48,6 +49,17 @@ def tone_warnings(c: Request) -> list[str]:
         for number, tone in enumerate(c.receiver.tones)
         if max(map(abs, support(tone.doppler_hz))) > highest
     ]
+
+
+def tolerance_warnings(c: Request) -> Iterator[str]:
+    """Say that a tolerance looser than the default runs as the default."""
+    tolerance_db = c.engine.tolerance_db
+    computed = c.engine.kind == "direct" and not isinstance(c.radar, ImpulseRadar)
+    if computed and tolerance_db > LOOSEST_DB:
+        yield (
+            f"engine.tolerance_db: {tolerance_db:g} is looser than the default and runs as "
+            f"{LOOSEST_DB:g}: a larger error would save less than a tenth of a sample's time"
+        )
 
 
 def timing_warnings(c: Request, activities: Iterable[Activity] | None = None) -> list[str]:

@@ -2,7 +2,6 @@
 
 from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
 from radhar_cli.config.request import AnyRequest
-from radhar_cli.processing.frames import Frames
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.schema.number import support
@@ -39,8 +38,7 @@ def fewest_windows(c: AnyRequest) -> int:
         header = c.radar.header
         fitting = int(w.duration / header.period_s + 1e-9)
         return min(header.frames, fitting) if header.frames else fitting
-    length = c.processing.window_pulses(w.duration, w.prf, w.f0)
-    windows = Frames.of(length, c.processing.overlap_fraction)
+    windows = c.processing.make_frames(w.duration, w.prf, w.f0)
     if isinstance(c.radar, ArrayRadar):
         windows = windows.within(c.radar.header.loops, are_apart=False)
     pulses = w.n_pulses - (c.processing.clutter == "difference")

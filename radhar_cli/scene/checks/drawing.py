@@ -11,7 +11,6 @@ from radhar_cli.errors import SceneError
 from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene.assembly.motion import moving
 from radhar_cli.scene.checks.check_grid import GRID_HZ
 from radhar_cli.scene.checks.flags import Flags
 from radhar_cli.scene.checks.validity import (
@@ -20,6 +19,7 @@ from radhar_cli.scene.checks.validity import (
     SceneCheck,
     check_by_each_radar,
 )
+from radhar_cli.scene.motion import moving
 from radhar_cli.scene.scene import MAX_PLACES, Person, Redrawn, Scene, draw_scene, redrawn
 
 MAX_ATTEMPTS = 1000

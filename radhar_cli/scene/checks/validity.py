@@ -17,13 +17,13 @@ from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.room import Box
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene.assembly.motion import body_of, moving
-from radhar_cli.scene.assembly.place import distance_ahead
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
-from radhar_cli.scene.assembly.room import box_of, reflectors_of, wall_of
 from radhar_cli.scene.checks.check_grid import CheckGrid, check_grids
 from radhar_cli.scene.checks.flags import BEHIND_M, BODY_RADIUS_M, WORDING, Flags
 from radhar_cli.scene.checks.sweep import sweep_shift
+from radhar_cli.scene.motion import body_of, moving
+from radhar_cli.scene.place import distance_ahead
+from radhar_cli.scene.radar import antennas_of, waveform_of
+from radhar_cli.scene.room import reflectors_of, wall_of
 from radhar_cli.scene.scene import Person, Scene
 
 HALF_BAND = "half-band"  # a miss that is of the radar alone
@@ -215,7 +215,7 @@ class Surroundings:
         return cls(
             antennas=antennas_of(scene),
             wall=wall_of(scene),
-            box=box_of(scene),
+            box=scene.room.make_box(),
             waveform=waveform_of(scene),
             body=body_of(person, moving(person)) if has_segments else None,
             gate_m=gate_m if is_gated and isinstance(gate_m, tuple) else None,

@@ -27,11 +27,10 @@ from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import amplitude, leg
 from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene.assembly.processing import frames_of
-from radhar_cli.scene.assembly.radar import antennas_of, board_of, waveform_of
-from radhar_cli.scene.assembly.room import wall_of
 from radhar_cli.scene.checks.validity import MIN_DISTANCE_M
 from radhar_cli.scene.products.noise import noise_law_of
+from radhar_cli.scene.radar import antennas_of, board_of, waveform_of
+from radhar_cli.scene.room import wall_of
 from radhar_cli.scene.scene import Person, Scene, nominal_scene
 
 # SNR of a cell with all of the echo, below which images are those of noise: people fill many cells,
@@ -172,9 +171,10 @@ def _pulse(w: Impulse) -> Float:
 def _window_pulses(scene: Scene, w: Waveform) -> int:
     """Pulses of a window of the Doppler maps; those of a board end with the frame."""
     if not isinstance(scene.radar, ArrayRadar):
-        return frames_of(scene.config, w.duration, w.prf, w.f0).length
+        return scene.config.processing.make_frames(w.duration, w.prf, w.f0).length
     board = board_of(scene.radar, scene.seconds)
-    frames = frames_of(scene.config, board.frames * board.period, 1 / board.loop, board.centre)
+    seconds = board.frames * board.period
+    frames = scene.config.processing.make_frames(seconds, 1 / board.loop, board.centre)
     return min(frames.length, board.loops)
 
 

@@ -1,15 +1,17 @@
 """Products of a board: channels, cube, frame maps, points, skeletons, and Doppler maps' signals."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from math import inf, sqrt
+from operator import attrgetter, methodcaller
 from typing import NamedTuple
 
 import numpy as np
 
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.maps import FRAME_MAPS
+from radhar_cli.config.processing import CloudConfig
 from radhar_cli.config.radar import ArrayRadar, BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import (
@@ -26,7 +28,7 @@ from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.receiver.noise import WhiteNoise
 from radhar_cli.motion.protocol import Motion, cache_motion
 from radhar_cli.motion.reflectors import Reflectors
-from radhar_cli.numerics.arrays import Complex, Float, Index
+from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.randomness import NOISE, stream
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS, angle_time
@@ -45,38 +47,29 @@ from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.track import PulseTrack
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.chirp_window import RECTANGULAR, ChirpWindow
-from radhar_cli.radar.detection import Detection, Firmware
-from radhar_cli.radar.frame_header import RoomBox
+from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
 from radhar_cli.radar.wall import Wall
-from radhar_cli.scene.assembly.bodies import Link, make_path_sources, sum_of_paths
-from radhar_cli.scene.assembly.processing import chirp_window_of, frames_of, fsst_frames_of
-from radhar_cli.scene.assembly.radar import board_of, detection_of, waveform_of
-from radhar_cli.scene.assembly.receiver import noise_stream
-from radhar_cli.scene.assembly.room import echo_ways_of
+from radhar_cli.scene.paths import Link, make_path_sources, sum_of_paths
 from radhar_cli.scene.products.board_people import (
     assign_points,
-    kinds_of_points,
     locate_skeletons,
-    persons_of,
-    positions_of,
-    velocities_of,
 )
-from radhar_cli.scene.products.fallback import EchoAccuracy, Tolerance
+from radhar_cli.scene.products.fallback import EchoAccuracy, fall_back
 from radhar_cli.scene.products.gated import gate_in_windows
 from radhar_cli.scene.products.images import ImageForm, draw_map
-from radhar_cli.scene.products.maps import image_name
+from radhar_cli.scene.products.maps import WINDOWS, MakeFrames, image_name
 from radhar_cli.scene.products.noise import noise_products
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.receiver import make_canceller
-from radhar_cli.scene.products.signal import choose_columns, sum_over_range
 from radhar_cli.scene.products.signal_power import (
     PowerSource,
     make_snr_paths,
     needs_other_paths,
-    power_of_echo,
     power_product,
 )
+from radhar_cli.scene.radar import board_of, detection_of, waveform_of
+from radhar_cli.scene.room import echo_ways_of
 from radhar_cli.scene.scene import Scene
 
 
@@ -92,53 +85,6 @@ class BoardEcho(NamedTuple):
     cube: Complex
     power: float
     accuracy: EchoAccuracy
-
-    def signal_power(self) -> float:
-        """Mean P_s of a raw sample, for unit transmit power."""
-        return self.power
-
-
-@dataclass(frozen=True)
-class CloudChain:
-    """How points are found in the frames of a board.
-
-    Attributes:
-        detection: settings of an out-of-box demo's .cfg.
-        pfa: rate of false alarms of a cell, where not the firmware finds them.
-        quantises: whether numbers are rounded as the firmware's are.
-        refers_to_start: whether speeds refer to the frequency at which ramps start.
-        firmware: whose firmware finds them; None for as well as the data allow.
-        people: settings of people tracking or counting; None for neither.
-        box: box of the room whose points alone are kept; None for all points.
-    """
-
-    detection: Detection
-    pfa: float
-    quantises: bool
-    refers_to_start: bool
-    firmware: Firmware | None = None
-    people: PeopleTracking | PeopleCounting | None = None
-    box: RoomBox | None = None
-
-    @classmethod
-    def of(cls, config: Config) -> "CloudChain":
-        """Read `cloud` and, of a board, the detection and the box of `radar.cfg`."""
-        radar, cloud = config.radar, config.cloud
-        assert isinstance(radar, ArrayRadar)
-        chain = cls(
-            detection=detection_of(radar, config.processing),
-            pfa=cloud.pfa,
-            quantises=cloud.quantise,
-            refers_to_start=cloud.doppler_carrier == "start",
-        )
-        if not isinstance(radar, BoardRadar):
-            return chain
-        return replace(
-            chain,
-            firmware=None if cloud.chain == "best" else radar.firmware,
-            people=radar.header.people,
-            box=radar.header.box if cloud.boundary_box else None,
-        )
 
 
 def board_products(config: Config) -> Iterator[Product]:
@@ -191,18 +137,17 @@ def _echo_rows(config: Config) -> Iterator[Product]:
     yield Product("channels", needs, make_channels, "paths of every virtual channel")
     needs = ("channels", "board", "scene")
     if config.engine.kind == "direct":
-        compute = partial(compute_fast_echo, tolerance=Tolerance.of(config))
-        yield Product("echo", needs, compute, "raw samples, sums in matrix products")
+        yield Product("echo", needs, compute_fast_echo, "raw samples, sums in matrix products")
     else:
         yield Product("echo", needs[:2], compute_exact_echo, "raw samples, exact sums")
-    yield Product("accuracy", ("echo",), accuracy_of_board, "its measured error")
+    yield Product("accuracy", ("echo",), attrgetter("accuracy"), "its measured error")
     if needs_other_paths(config):
         needs = ("scene", "motions", "board", "wall")
         does = "paths of the own person in every channel, for the SNR"
         yield Product("snr_channels", needs, make_snr_channels, does)
     yield power_product(
         config,
-        PowerSource(("echo",), power_of_echo),
+        PowerSource(("echo",), attrgetter("power")),
         PowerSource(("snr_channels", "board"), mean_power),
     )
     yield from noise_products(config)
@@ -238,11 +183,15 @@ def _frame_map_rows(config: AnyConfig) -> Iterator[Product]:
 
 def _cloud_rows(config: Config) -> Iterator[Product]:
     """Rows of the points of frames, and of their sheet."""
-    find = partial(find_points, chain=CloudChain.of(config))
-    does = f"points of the frames, chain: {config.cloud.chain}"
+    radar, cloud = config.radar, config.cloud
+    assert isinstance(radar, ArrayRadar)
+    detection = detection_of(radar, config.processing)
+    find = partial(find_points, radar=radar, settings=cloud, detection=detection)
+    does = f"points of the frames, chain: {cloud.chain}"
     yield Product("cloud", ("cube", "board"), find, does)
-    yield Product("points", ("cloud",), points_of, "of all frames", is_array=True)
-    yield Product("points_start", ("cloud",), starts_of, "first of each frame", is_array=True)
+    yield Product("points", ("cloud",), attrgetter("points"), "of all frames", is_array=True)
+    starts, does = attrgetter("start"), "first of each frame"
+    yield Product("points_start", ("cloud",), starts, does, is_array=True)
     sheet = partial(cloud_sheet, size=config.image.size_px)
     yield Product(image_name("points"), ("cloud",), sheet, "front views of frames")
 
@@ -264,33 +213,34 @@ def _angle_time_rows(config: AnyConfig) -> Iterator[Product]:
 
 def _people_rows() -> Iterator[Product]:
     """Rows of skeletons, and of the people whose the points are."""
-    needs: tuple[str, ...] = ("scene", "motions", "board")
+    needs = ("scene", "motions", "board")
     yield Product("skeletons", needs, locate_skeletons, "joints in each frame's middle")
-    joints = ("skeletons",)
-    yield Product("skeleton", joints, positions_of, "positions of joints", is_array=True)
-    yield Product("skeleton_velocity", joints, velocities_of, "their velocities", is_array=True)
-    needs = ("cloud", "skeletons", "board", "scene")
-    yield Product("owners", needs, assign_points, "nearest joint of each point, or its image")
-    owners = ("owners",)
-    yield Product("points_person", owners, persons_of, "whose each point is", is_array=True)
-    yield Product("points_kind", owners, kinds_of_points, "by way of which faces", is_array=True)
+    owner_needs = ("cloud", "skeletons", "board", "scene")
+    yield Product("owners", owner_needs, assign_points, "nearest joint of each point, or its image")
+    for name, need, part, does in (
+        ("skeleton", "skeletons", "positions", "positions of joints"),
+        ("skeleton_velocity", "skeletons", "velocities", "their velocities"),
+        ("points_person", "owners", "person", "whose each point is"),
+        ("points_kind", "owners", "kind", "by way of which faces"),
+    ):
+        yield Product(name, (need,), attrgetter(part), does, is_array=True)
 
 
 def _signal_rows(config: Config) -> Iterator[Product]:
     """Rows of the signals that range-time and Doppler-time maps show, and of their windows."""
     yield Product("canceller", ("scene", "waveform"), make_canceller, "canceller of each frame")
     does = "range bins of every channel"
-    window = chirp_window_of(config.processing)
+    window = config.processing.make_chirp_window()
     compress = partial(compute_range_bins, window=window)
     yield Product("board_bins", ("cube", "board"), compress, does, is_array=True)
     does = "sum over range, uncancelled"
-    yield Product("slow_time", ("board_bins",), sum_over_range, does, is_array=True)
+    yield Product("slow_time", ("board_bins",), Signal.summed, does, is_array=True)
     needs: tuple[str, ...] = ("cube", "board", "canceller")
     does = "its range bins after the canceller"
     yield Product("range_signals", needs, compress, does, is_array=True)
     bins = ("range_signals",)
-    yield Product("signal", bins, sum_over_range, "their coherent sum", is_array=True)
-    choose = partial(choose_columns, width=config.image.size_px[1])
+    yield Product("signal", bins, Signal.summed, "their coherent sum", is_array=True)
+    choose = methodcaller("columns", config.image.size_px[1])
     yield Product("range_profiles", bins, choose, "some pulses", is_array=True)
     needs, does = ("motions", "board", "wall"), "delay of the torso"
     yield Product("torso_track", needs, track_torso_of_board, does, is_array=True)
@@ -298,9 +248,9 @@ def _signal_rows(config: Config) -> Iterator[Product]:
         make = partial(make_gate_of_board, gate_m=config.processing.gate_m)
         needs = ("range_signals", "frames", "torso_track")
         yield Product("gate", needs, make, "range bins of each window")
-    needs, does = ("scene", "board"), "windows, within frames"
-    yield Product("frames", needs, make_stft_windows, does)
-    yield Product("fsst_frames", needs, make_fsst_windows, does)
+    for name, make_windows, _ in WINDOWS:
+        windows = partial(make_board_windows, make=make_windows)
+        yield Product(name, ("scene", "board"), windows, "windows, within frames")
 
 
 def make_board(scene: Scene) -> Board:
@@ -320,13 +270,6 @@ def make_channels(
 
     Of two transmitters that send together a channel has the paths of both.
 
-    Args:
-        scene: what is simulated.
-        motions: motions of its people, or of parts of one.
-        board: the board.
-        wall: wall that the paths cross, or None.
-        room: what stands in the room.
-
     Returns:
         The paths of the virtual channels, in the order of `board.pairs`.
     """
@@ -340,14 +283,7 @@ def make_channels(
 def make_snr_channels(
     scene: Scene, motions: tuple[Motion, ...], board: Board, wall: Wall | None
 ) -> list[PathSource]:
-    """Make the paths of every virtual channel whose power is P_s.
-
-    Args:
-        scene: what is simulated.
-        motions: motions of its people, of which the first counts.
-        board: the board.
-        wall: wall that the paths cross, or None.
-    """
+    """Make the paths of every virtual channel whose power is P_s."""
     motion, first = (cache_motion(motions[0]),), board.antennas(*board.pairs[0])
     sources = [
         make_snr_paths(scene, motion, board.antennas(k, r), wall, board.path_waveform, first)
@@ -356,24 +292,22 @@ def make_snr_channels(
     return combine_transmitters(sources, board)
 
 
-def compute_fast_echo(
-    channels: Sequence[PathSource], board: Board, scene: Scene, tolerance: Tolerance
-) -> BoardEcho:
+def compute_fast_echo(channels: Sequence[PathSource], board: Board, scene: Scene) -> BoardEcho:
     """Sum up the paths of all channels by matrix products, or exactly where those will not do.
 
     Args:
         channels: paths of every virtual channel.
         board: the board.
-        scene: scene that a message names.
-        tolerance: largest error, and what happens where it cannot be kept.
+        scene: scene whose engine says the largest error, and what happens where it is larger.
 
     Raises:
         SceneError: the tolerance cannot be kept, and such scenes are refused.
     """
+    engine = scene.config.engine
     try:
-        cube, power, error_db = fast_cube(channels, board, tolerance.tolerance_db)
+        cube, power, error_db = fast_cube(channels, board, engine.tolerance_db)
     except AccuracyError as error:
-        fallback = tolerance.fall_back(scene.name, error)
+        fallback = fall_back(engine, scene.name, error)
         return compute_exact_echo(channels, board)._replace(accuracy=fallback)
     return BoardEcho(cube, power, Accuracy(1, 1, cube.dtype == np.complex64, error_db))
 
@@ -382,11 +316,6 @@ def compute_exact_echo(channels: Sequence[PathSource], board: Board) -> BoardEch
     """Sum up the paths of all channels sample by sample."""
     cube, power = exact_cube(channels, board)
     return BoardEcho(cube, power, Accuracy(1, 1, False, -inf))
-
-
-def accuracy_of_board(echo: BoardEcho) -> EchoAccuracy:
-    """Measured error of an echo, or why the exact sum was made."""
-    return echo.accuracy
 
 
 def compute_faces_echo(scene: Scene, board: Board, wall: Wall | None) -> Complex:
@@ -463,7 +392,7 @@ def draw_channel_errors(scene: Scene, channels: int) -> Complex | None:
     if receiver.channel_gain_db <= 0 and receiver.channel_phase_deg <= 0:
         return None
     name = "receiver.channel_errors"
-    rng = noise_stream(scene, name)
+    rng = scene.noise_stream(name)
     if receiver.channel_errors == "data_set":
         radar = scene.config.radar_name
         name = name if radar is None else f"{name} radar {radar}"
@@ -495,56 +424,38 @@ def make_frame_maps(
     return replace(maps, limits=limits_m if maps.rows.name == "range" else None)
 
 
-def find_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:
-    """Find the points of the frames of a cube, in a box of the room if so chosen.
+def find_points(
+    cube: Complex, board: Board, radar: ArrayRadar, settings: CloudConfig, detection: Detection
+) -> Cloud:
+    """Find the points of the frames of a cube, as well as the data allow or as firmware does.
+
+    Points of a board that is rolled are turned to the axes before the roll.
 
     Args:
         cube: raw samples [frame, loop, virtual, sample].
         board: board of the cube.
-        chain: how they are found.
+        radar: radar of the board, whose .cfg may set firmware and a box of the room.
+        settings: chain, and what of its points is kept.
+        detection: settings of an out-of-box demo's .cfg.
     """
-    cloud = find_all_points(cube, board, chain)
-    cloud = Cloud(turn_points(cloud.points, board), cloud.start)
-    return cloud if chain.box is None else keep_in_box(cloud, chain.box, board)
-
-
-def turn_points(points: Float, board: Board) -> Float:
-    """Turn points [N, 8] from the axes of a board that is rolled to those before the roll."""
-    if board.roll == 0:
-        return points
-    return np.hstack([board.without_roll(points[:, :3]), points[:, 3:]])
-
-
-def find_all_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:
-    """Find the points of the frames of a cube, by a chain, in the axes of the board.
-
-    Args:
-        cube: raw samples [frame, loop, virtual, sample].
-        board: board of the cube.
-        chain: how they are found.
-    """
-    carrier = board.start if chain.refers_to_start else None
-    detection = chain.detection
-    if chain.firmware is None:
+    carrier = board.start if settings.doppler_carrier == "start" else None
+    header = radar.header if isinstance(radar, BoardRadar) else None
+    if header is None or settings.chain == "best" or radar.firmware is None:
         bias, removes_mean = detection.bias, detection.remove_mean
-        cloud = best_points(cube, board, removes_mean, chain.pfa, carrier, bias)
-        return keep_in_view(cloud, detection)
-    match chain.people:
-        case PeopleTracking():
-            return track_people(cube, board, chain.people, carrier)
-        case PeopleCounting():
-            return count_people(cube, board, chain.people, detection.remove_mean, carrier)
-    return board_points(cube, board, detection, chain.quantises, carrier)
-
-
-def points_of(cloud: Cloud) -> Float:
-    """Points of all frames [N, 8]."""
-    return cloud.points
-
-
-def starts_of(cloud: Cloud) -> Index:
-    """Number of the first point of each frame, and of all points [frame + 1]."""
-    return cloud.start
+        cloud = best_points(cube, board, removes_mean, settings.pfa, carrier, bias)
+        cloud = keep_in_view(cloud, detection)
+    elif isinstance(header.people, PeopleTracking):
+        cloud = track_people(cube, board, header.people, carrier)
+    elif isinstance(header.people, PeopleCounting):
+        cloud = count_people(cube, board, header.people, detection.remove_mean, carrier)
+    else:
+        cloud = board_points(cube, board, detection, settings.quantise, carrier)
+    if board.roll != 0:
+        upright = np.hstack([board.without_roll(cloud.points[:, :3]), cloud.points[:, 3:]])
+        cloud = Cloud(upright, cloud.start)
+    if header is None or header.box is None or not settings.boundary_box:
+        return cloud
+    return keep_in_box(cloud, header.box, board)
 
 
 def compute_range_bins(
@@ -602,20 +513,8 @@ def make_gate_of_board(
     return gate_in_windows(bins, frames, PulseTrack(bins.t, torso_track), gate_m)
 
 
-def make_stft_windows(scene: Scene, board: Board) -> Frames:
-    """Make the windows of the STFT of a board's signal."""
+def make_board_windows(scene: Scene, board: Board, make: MakeFrames) -> Frames:
+    """Make the windows of a Doppler-time map of a board, within its frames."""
     seconds = board.frames * board.period
-    return keep_within_frames(frames_of(scene.config, seconds, 1 / board.loop, board.centre), board)
-
-
-def make_fsst_windows(scene: Scene, board: Board) -> Frames:
-    """Make the windows of the FSST of a board's signal."""
-    seconds = board.frames * board.period
-    return keep_within_frames(
-        fsst_frames_of(scene.config, seconds, 1 / board.loop, board.centre), board
-    )
-
-
-def keep_within_frames(windows: Frames, board: Board) -> Frames:
-    """Keep windows within the frames of a board."""
+    windows = make(scene.config.processing, seconds, 1 / board.loop, board.centre)
     return windows.within(board.loops, are_apart=len(board.pulses) > 1)

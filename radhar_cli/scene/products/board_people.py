@@ -11,7 +11,7 @@ from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processing.points import Cloud
 from radhar_cli.radar.board import Board, longest_rows
 from radhar_cli.radar.room import DIRECT_LEG, Leg
-from radhar_cli.scene.assembly.room import ways_of
+from radhar_cli.scene.room import ways_of
 from radhar_cli.scene.scene import Scene
 
 VELOCITY_STEP_S = 1e-3
@@ -40,7 +40,7 @@ class Owners(NamedTuple):
 
     Attributes:
         person: number of the person [N].
-        kind: number of the legs by which the joint is seen [N], in `kinds_of` the config.
+        kind: number of the legs by which the joint is seen [N], in `names_of_ways` of the scene.
     """
 
     person: Index
@@ -76,16 +76,6 @@ def locate_skeletons(scene: Scene, motions: tuple[Motion, ...], board: Board) ->
         positions[:, number, joints] = now[:, joints].T
         velocities[:, number, joints] = speeds[:, joints].T
     return Skeletons(positions, velocities, names)
-
-
-def positions_of(skeletons: Skeletons) -> Float:
-    """Positions of the joints [frame, person, joint, 3], m."""
-    return skeletons.positions
-
-
-def velocities_of(skeletons: Skeletons) -> Float:
-    """Velocities of the joints [frame, person, joint, 3], m/s."""
-    return skeletons.velocities
 
 
 def assign_points(cloud: Cloud, skeletons: Skeletons, board: Board, scene: Scene) -> Owners:
@@ -125,16 +115,6 @@ def assign_points(cloud: Cloud, skeletons: Skeletons, board: Board, scene: Scene
         owners.person[nearer], owners.kind[nearer] = person[nearer], kinds[nearer]
         best = np.minimum(best, nearest)
     return owners
-
-
-def persons_of(owners: Owners) -> Index:
-    """Number of the person whose each point is [N]."""
-    return owners.person
-
-
-def kinds_of_points(owners: Owners) -> Index:
-    """Number of the legs by which each point is seen [N]."""
-    return owners.kind
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 from functools import partial
+from operator import attrgetter, methodcaller
 from typing import NamedTuple
 
 import numpy as np
 
 from radhar_cli.config.data_set import Config
+from radhar_cli.config.engine import EngineConfig
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.exact import beat_at, exact_echo
@@ -16,8 +18,8 @@ from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.products.fallback import EchoAccuracy, Tolerance
-from radhar_cli.scene.products.knot_rate import KnotRate
+from radhar_cli.scene.products.fallback import EchoAccuracy, fall_back
+from radhar_cli.scene.products.knot_rate import knot_rate_of
 from radhar_cli.scene.products.looks import look_at_profiles
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.receiver import name_of_impairments
@@ -25,7 +27,6 @@ from radhar_cli.scene.products.signal import receive_echo, signal_of_look
 from radhar_cli.scene.products.signal_power import (
     PowerSource,
     power_at_knots,
-    power_of_echo,
     power_product,
 )
 from radhar_cli.scene.scene import Scene
@@ -45,19 +46,16 @@ class MeasuredEcho(NamedTuple):
 
 def direct_products(config: Config) -> Iterator[Product]:
     """Rows of the direct engine but for the bins of a gate (`gated.py`)."""
-    tolerance, is_gated = Tolerance.of(config), config.processing.range_sum == "gated"
-    make = partial(make_direct_echo, tolerance=tolerance)
+    is_gated = config.processing.range_sum == "gated"
+    make = partial(make_direct_echo, engine=config.engine)
     needs: tuple[str, ...] = ("paths", "waveform", "canceller")
     yield Product("direct", needs, make, "closed form of the echo at knots")
-    compute = partial(compute_echo, tolerance=tolerance)
     does = "samples and their measured error, of the sum over range"
-    yield Product("echo", ("direct", "scene"), compute, does)
+    yield Product("echo", ("direct", "scene"), compute_echo, does)
     does = "slow-time signal without noise"
     yield Product("slow_time", ("echo", "direct"), make_noiseless_signal, does, is_array=True)
-    needs, does = (
-        ("echo", "direct", "canceller", name_of_impairments(config)),
-        "receiver, then canceller",
-    )
+    needs = ("echo", "direct", "canceller", name_of_impairments(config))
+    does = "receiver, then canceller"
     yield Product("signal", needs, receive_measured_echo, does, is_array=True)
     needs = ("paths", "waveform", "canceller", name_of_impairments(config))
     profiles = partial(compute_profiles, width=config.image.size_px[1])
@@ -65,34 +63,26 @@ def direct_products(config: Config) -> Iterator[Product]:
     yield Product("range_profiles", needs, profiles, does, is_array=True)
     yield power_product(  # from the knots that are there anyway
         config,
-        PowerSource(("gated" if is_gated else "direct",), power_of_echo),
-        PowerSource(("snr_paths", "waveform"), partial(power_at_knots, rate=KnotRate.of(config))),
+        PowerSource(("gated" if is_gated else "direct",), methodcaller("signal_power")),
+        PowerSource(("snr_paths", "waveform"), partial(power_at_knots, rate=knot_rate_of(config))),
     )
     needs = ("gated_echo" if is_gated else "echo",)
-    yield Product("accuracy", needs, accuracy_of, "its measured error")
+    yield Product("accuracy", needs, attrgetter("accuracy"), "its measured error")
 
 
 def make_direct_echo(
-    paths: PathSource, waveform: Waveform, canceller: Canceller, tolerance: Tolerance
+    paths: PathSource, waveform: Waveform, canceller: Canceller, engine: EngineConfig
 ) -> DirectEcho:
-    """Make the closed form of the sum over range of an echo.
-
-    Args:
-        paths: paths of the echo.
-        waveform: waveform of the radar.
-        canceller: canceller after which the signal will be seen.
-        tolerance: largest error after it, and the precision of sums.
-    """
-    return DirectEcho(paths, waveform, tolerance.tolerance_db, tolerance.is_double, canceller)
+    """Make the closed form of the sum over range, within a tolerance after the canceller."""
+    return DirectEcho(paths, waveform, engine.tolerance_db, engine.is_double, canceller)
 
 
-def compute_echo(direct: DirectEcho, scene: Scene, tolerance: Tolerance) -> MeasuredEcho:
+def compute_echo(direct: DirectEcho, scene: Scene) -> MeasuredEcho:
     """Compute samples by the direct engine, or exactly where it cannot keep the tolerance.
 
     Args:
         direct: closed form of the echo.
-        scene: scene that a message names.
-        tolerance: what happens where it cannot be kept.
+        scene: scene whose engine says what happens where the tolerance cannot be kept.
 
     Raises:
         SceneError: it cannot be kept, and such scenes are refused.
@@ -100,7 +90,7 @@ def compute_echo(direct: DirectEcho, scene: Scene, tolerance: Tolerance) -> Meas
     try:
         return MeasuredEcho(*direct.rows())
     except AccuracyError as error:
-        fallback = tolerance.fall_back(scene.name, error)
+        fallback = fall_back(scene.config.engine, scene.name, error)
         static = not direct.canceller.removes_static
         return MeasuredEcho(exact_echo(direct.source, [direct.look], static=static)[0], fallback)
 
@@ -127,23 +117,10 @@ def compute_profiles(
     receiver: tuple[Impairment, ...],
     width: int,
 ) -> Signal:
-    """Compute the range profiles that a range-time map shows, from exact beats.
-
-    Args:
-        paths: paths of the echo.
-        waveform: waveform of the radar.
-        canceller: canceller of static echoes.
-        receiver: impairments.
-        width: width of the map's image in pixels.
-    """
+    """Compute the range profiles that a range-time map shows, from exact beats."""
     look = look_at_profiles(waveform, canceller, width)
     if not isinstance(canceller, Fir):
         (x,) = exact_echo(paths, [look], static=not canceller.removes_static)
         return receive_echo(x, look, receiver, canceller).columns(width)
     x = look.fast(beat_at(paths, waveform, np.asarray(look.pulses), look.taps))
     return receive_echo(x, look, receiver)
-
-
-def accuracy_of(echo: MeasuredEcho) -> EchoAccuracy:
-    """Measured error of an echo, or why the exact engine made it."""
-    return echo.accuracy

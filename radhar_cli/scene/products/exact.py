@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from operator import attrgetter
 from typing import NamedTuple
 
 from radhar_cli.config.data_set import Config
@@ -47,7 +48,7 @@ def exact_products(config: Config) -> Iterator[Product]:
     does = "the whole beat matrix, cancelled, compressed"
     yield Product("beat_cube", of_paths, compute, does)
     does = "its sum over the kept bins"
-    yield Product("signal", ("beat_cube",), sum_of_beat, does, is_array=True)
+    yield Product("signal", ("beat_cube",), attrgetter("signal"), does, is_array=True)
     profiles = partial(choose_profiles, width=width, motion_in_chirp=moves)
     needs = ("beat_cube", *of_paths)
     yield Product("range_profiles", needs, profiles, "its range bins", is_array=True)
@@ -88,26 +89,12 @@ def compute_beat_signals(
     width: int,
     motion_in_chirp: bool = False,
 ) -> BeatSignals:
-    """Compute the sum over range, and where one pass will do the range profiles, too.
-
-    Args:
-        paths: paths of the echo.
-        waveform: waveform of the radar.
-        canceller: canceller of static echoes.
-        receiver: impairments.
-        width: width of the range-time map's image in pixels.
-        motion_in_chirp: whether paths go on moving during a chirp.
-    """
+    """Compute the sum over range, and where one pass will do the range profiles, too."""
     looks = [Look.of_all("slow_time", RangeSum(waveform), taps_before_range(canceller))]
     if isinstance(canceller, Fir):
         looks.append(look_at_profiles(waveform, canceller, width))
     signal, *profiles = compute_exact_signals(paths, canceller, receiver, looks, motion_in_chirp)
     return BeatSignals(signal, profiles[0] if profiles else None)
-
-
-def sum_of_beat(beat: BeatSignals) -> Signal:
-    """Sum over range of a beat matrix."""
-    return beat.signal
 
 
 def choose_profiles(
@@ -119,17 +106,7 @@ def choose_profiles(
     width: int,
     motion_in_chirp: bool = False,
 ) -> Signal:
-    """Choose the range profiles of a beat matrix; computed again where they were not kept.
-
-    Args:
-        beat: signals of the first pass.
-        paths: paths of the echo.
-        waveform: waveform of the radar.
-        canceller: canceller of static echoes.
-        receiver: impairments.
-        width: width of the range-time map's image in pixels.
-        motion_in_chirp: whether paths go on moving during a chirp.
-    """
+    """Choose the range profiles of a beat matrix; computed again where they were not kept."""
     if beat.profiles is not None:
         return beat.profiles
     look = look_at_profiles(waveform, canceller, width)
@@ -145,16 +122,7 @@ def compute_gate_bins(
     receiver: tuple[Impairment, ...],
     motion_in_chirp: bool = False,
 ) -> Signal:
-    """Compute the range bins of a gate, referred to mid-chirp, at every pulse.
-
-    Args:
-        gate: range bins that frames show.
-        paths: paths of the echo.
-        waveform: waveform of the radar.
-        canceller: canceller of static echoes.
-        receiver: impairments.
-        motion_in_chirp: whether paths go on moving during a chirp.
-    """
+    """Compute the range bins of a gate, referred to mid-chirp, at every pulse."""
     bins = RangeBins(replace(waveform, centred=True), gate.bins)
     look = Look.of_all("range_signals", bins, taps_before_range(canceller))
     return compute_exact_signals(paths, canceller, receiver, [look], motion_in_chirp)[0]

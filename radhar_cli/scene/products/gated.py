@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 from functools import partial
+from operator import methodcaller
 from typing import NamedTuple
 
 import numpy as np
 
 from radhar_cli.config.data_set import AnyConfig, Config
+from radhar_cli.config.engine import EngineConfig
 from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.numerics.arrays import Float, Index
@@ -18,7 +20,6 @@ from radhar_cli.processing.stft import Stft
 from radhar_cli.processing.track import Track
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.products.direct import compute_echo, receive_measured_echo
-from radhar_cli.scene.products.fallback import Tolerance
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.receiver import name_of_impairments
 
@@ -39,7 +40,8 @@ def gate_products(config: AnyConfig) -> Iterator[Product]:
     """Rows of the gate of one channel; none where all bins are summed."""
     if config.processing.range_sum != "gated":
         return
-    yield Product("range_axis", ("waveform",), range_axis_of, "ranges of the bins", is_array=True)
+    ranges = methodcaller("range_axis")  # an impulse radar's begins elsewhere
+    yield Product("range_axis", ("waveform",), ranges, "ranges of the bins", is_array=True)
     limits = config.processing.gate_m
     if isinstance(limits, tuple):
         nearest, farthest = limits
@@ -55,24 +57,17 @@ def gate_products(config: AnyConfig) -> Iterator[Product]:
 
 def gated_direct_products(config: Config) -> Iterator[Product]:
     """Rows of a gate's bins by the direct engine."""
-    tolerance = Tolerance.of(config)
     find = partial(find_needed_bins, margin=config.processing.savgol.frame)
     needs: tuple[str, ...] = ("gate", "frames", "waveform", "canceller")
     yield Product("gate_needed", needs, find, "its bins that frames show, pulse by pulse")
-    make = partial(make_gated_echo, tolerance=tolerance)
+    make = partial(make_gated_echo, engine=config.engine)
     needs = ("paths", "waveform", "canceller", "gate", "gate_needed")
     yield Product("gated", needs, make, "closed form of them at knots")
-    compute = partial(compute_echo, tolerance=tolerance)
     does = "samples and their measured error, of the gate's bins"
-    yield Product("gated_echo", ("gated", "scene"), compute, does)
+    yield Product("gated_echo", ("gated", "scene"), compute_echo, does)
     needs = ("gated_echo", "gated", "canceller", name_of_impairments(config))
     does = "receiver, then canceller, of the gate's bins"
     yield Product("range_signals", needs, receive_measured_echo, does, is_array=True)
-
-
-def range_axis_of(waveform: Waveform) -> Float:
-    """Ranges of the bins of a waveform [K], m."""
-    return waveform.range_axis()  # an impulse radar's begins elsewhere
 
 
 def make_fixed_gate(ranges: Float, limits_m: tuple[float, float]) -> Gate:
@@ -150,7 +145,7 @@ def make_gated_echo(
     canceller: Canceller,
     gate: Gate,
     needed: NeededBins | None,
-    tolerance: Tolerance,
+    engine: EngineConfig,
 ) -> GatedEcho:
     """Make the closed form of the range bins of a gate.
 
@@ -160,13 +155,13 @@ def make_gated_echo(
         canceller: canceller after which the bins will be seen.
         gate: range bins that frames show.
         needed: bins that are needed at each pulse; None for all at all.
-        tolerance: largest error after the canceller, and the precision of sums.
+        engine: largest error after the canceller, and the precision of sums.
     """
     return GatedEcho(
         paths,
         waveform,
-        tolerance.tolerance_db,
-        tolerance.is_double,
+        engine.tolerance_db,
+        engine.is_double,
         canceller,
         gate.bins,
         needed,

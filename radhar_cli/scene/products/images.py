@@ -19,8 +19,6 @@ from radhar_cli.processing.image import (
 )
 from radhar_cli.processing.power_map import MapImage, PowerMap
 from radhar_cli.processing.scale import CfarMask, DecibelScale, Reference, Scale
-from radhar_cli.scene.assembly.processing import cfar_of
-from radhar_cli.scene.scene import Scene
 from radhar_cli.schema.number import nominal
 
 # Resizes a function of the power, or for None the power itself.
@@ -51,7 +49,7 @@ class ImageForm:
 def scale_of(config: AnyConfig) -> Scale:
     """Scale of the images of a config; numbers still to be drawn are taken at their middle."""
     if config.image.kind == "cfar":
-        return CfarMask(cfar_of(config))
+        return CfarMask(config.image.cfar.make_detector())
     return level_scale_of(config)
 
 
@@ -64,29 +62,13 @@ def level_scale_of(config: AnyConfig) -> DecibelScale:
     return DecibelScale(image.dynamic_range_db, Reference(image.reference))
 
 
-def scale_of_scene(scene: Scene) -> Scale:
-    """Scale of the images of a scene, by the numbers that it has drawn."""
-    return scale_of(scene.config)
-
-
-def level_scale_of_scene(scene: Scene) -> DecibelScale:
-    """Scale of the grey levels of a scene, by the transmitted power that it has drawn."""
-    return level_scale_of(scene.config)
-
-
 def draw_measured_map(config: AnyConfig, power_map: PowerMap) -> MapImage:
     """Draw the image of a measured map as a data set of a config has it."""
     return draw_map(power_map, scale_of(config), ImageForm.of(config))
 
 
 def draw_map(power_map: PowerMap, scale: Scale, form: ImageForm) -> MapImage:
-    """Resize a map and turn its power, or its samples with their sign, into grey levels.
-
-    Args:
-        power_map: the map.
-        scale: law from power to levels.
-        form: size of the image, and whether it has decibels.
-    """
+    """Resize a map and turn its power, or its samples with their sign, into grey levels."""
     if power_map.real is not None:
         grey = signed_levels(power_map.real, form.size_px, form.clipped, power_map.image_rows)
         return MapImage(grey, power_map.entropy, power_map.extent)
@@ -96,13 +78,7 @@ def draw_map(power_map: PowerMap, scale: Scale, form: ImageForm) -> MapImage:
 
 
 def draw_doppler_image(power: DopplerPower, scale: Scale, form: ImageForm) -> MapImage:
-    """Resize a Doppler-time map, block by block, and turn its power into grey levels.
-
-    Args:
-        power: power of the map.
-        scale: law from power to levels.
-        form: size of the image, and whether it has decibels.
-    """
+    """Resize a Doppler-time map, block by block, and turn its power into grey levels."""
 
     def resize(function: Callable[[Float], Float] | None) -> Reduced:
         return reduced(power.blocks(), power.frames, form.size_px, function)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from functools import partial
 from math import inf
+from operator import methodcaller
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.direct import Accuracy
@@ -14,7 +15,7 @@ from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.receiver import name_of_impairments
-from radhar_cli.scene.products.signal import choose_columns, receive_echo, sum_over_range
+from radhar_cli.scene.products.signal import receive_echo
 from radhar_cli.scene.products.signal_power import PowerSource, power_at_pulses, power_product
 
 
@@ -27,17 +28,16 @@ def impulse_products(config: Config) -> Iterator[Product]:
         PowerSource(("paths", "waveform"), power_at_pulses),
         PowerSource(("snr_paths", "waveform"), power_at_pulses),
     )
-    needs, does = (
-        ("profiles", "waveform", "canceller", name_of_impairments(config)),
-        "receiver, then canceller",
-    )
+    needs = ("profiles", "waveform", "canceller", name_of_impairments(config))
+    does = "receiver, then canceller"
     yield Product("range_signals", needs, receive_profiles, does, is_array=True)
-    choose = partial(choose_columns, width=config.image.size_px[1])
+    choose = methodcaller("columns", config.image.size_px[1])
     does = "those that the map shows"
     yield Product("range_profiles", ("range_signals",), choose, does, is_array=True)
     does = "their sum over range"
-    yield Product("signal", ("range_signals",), sum_over_range, does, is_array=True)
-    yield Product("accuracy", (), accuracy_at_pulses, "paths at every pulse")
+    yield Product("signal", ("range_signals",), Signal.summed, does, is_array=True)
+    accuracy = partial(Accuracy, step=1, table_oversampling=0, single=False, error_db=-inf)
+    yield Product("accuracy", (), accuracy, "paths at every pulse")
 
 
 def receive_profiles(
@@ -53,8 +53,3 @@ def receive_profiles(
     """
     look = Look.of_all("profiles", ProfileSamples(waveform))
     return receive_echo(profiles.astype(complex), look, receiver, canceller)
-
-
-def accuracy_at_pulses() -> Accuracy:
-    """Accuracy of an echo of which all paths are computed at every pulse."""
-    return Accuracy(1, 0, False, -inf)

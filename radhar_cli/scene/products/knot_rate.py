@@ -1,7 +1,9 @@
 """Rate of the knots at which the direct engine evaluates positions."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import partial
 from math import inf
+from typing import TypeAlias
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.accuracy import first_aim, settings
@@ -10,30 +12,24 @@ from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.radar.waveform import Waveform
 
+# Knots per second of the echo of some paths; inf for every pulse.
+KnotRate: TypeAlias = Callable[[PathSource, Waveform], float]
 
-@dataclass(frozen=True)
-class KnotRate:
-    """Rate of the knots of an echo.
 
-    Attributes:
-        tolerance_db: tolerance of the engine (`engine.tolerance_db`).
-        is_gated: whether the engine makes the bins of a gate, rather than their sum.
+def knot_rate_of(config: Config) -> KnotRate:
+    """Rate of the knots of the direct engine, of the sum over range or of the bins of a gate."""
+    engine = GatedEcho if config.processing.range_sum == "gated" else DirectEcho
+    tolerance_db, min_step = config.engine.tolerance_db, engine.min_step
+    return partial(knots_per_second, tolerance_db=tolerance_db, min_step=min_step)
+
+
+def knots_per_second(
+    paths: PathSource, waveform: Waveform, tolerance_db: float, min_step: int
+) -> float:
+    """Knots per second of the echo of some paths within a tolerance; inf for every pulse.
+
+    Every pulse is evaluated where knots are closer than `min_step` pulses, as of a wide band.
     """
-
-    tolerance_db: float
-    is_gated: bool
-
-    @classmethod
-    def of(cls, config: Config) -> "KnotRate":
-        """Read tolerance and gate of a config."""
-        return cls(config.engine.tolerance_db, config.processing.range_sum == "gated")
-
-    def per_second(self, paths: PathSource, waveform: Waveform) -> float:
-        """Knots per second of the echo of some paths; inf for every pulse.
-
-        Every pulse is evaluated where a wide band needs knots closer than the echo's.
-        """
-        chosen = settings(first_aim(self.tolerance_db), waveform, paths.highest_frequency)
-        rate = chosen.spacing.per_second
-        fewest_pulses = (GatedEcho if self.is_gated else DirectEcho).min_step
-        return rate if waveform.prf >= fewest_pulses * rate else inf
+    chosen = settings(first_aim(tolerance_db), waveform, paths.highest_frequency)
+    rate = chosen.spacing.per_second
+    return rate if waveform.prf >= min_step * rate else inf

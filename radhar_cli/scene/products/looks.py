@@ -13,11 +13,6 @@ def look_at_profiles(waveform: Waveform, canceller: Canceller, width: int) -> Lo
 
     After a `Fir` these are the pulses of the map's columns; before another canceller all pulses,
     on which its output depends. Of the pulses that are not shown, the mean depends on the sum.
-
-    Args:
-        waveform: waveform of the radar.
-        canceller: canceller of static echoes.
-        width: width of the map's image in pixels.
     """
     if not isinstance(canceller, Fir):
         spans = [slice(0, waveform.n_pulses)] * waveform.n_bins

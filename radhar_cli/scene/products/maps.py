@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from radhar_cli.config.data_set import AnyConfig
+from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.extensions import own_products
 from radhar_cli.processing.cadence import cadence_map
 from radhar_cli.processing.doppler_power import (
@@ -13,25 +14,29 @@ from radhar_cli.processing.doppler_power import (
     compute_stft_power,
 )
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.gate import Gate
 from radhar_cli.processing.map_kind import CADENCE_KINDS, RTM, MapKind, Transform
 from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
 from radhar_cli.processing.scale import Scale
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.processing import frames_of, fsst_frames_of
 from radhar_cli.scene.products.images import (
     ImageForm,
     draw_doppler_image,
     draw_map,
-    level_scale_of_scene,
-    scale_of_scene,
+    level_scale_of,
+    scale_of,
 )
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.signal import bins_name, signal_name
 from radhar_cli.scene.scene import Scene
 
 SINGLE_RANGE_DB = 70.0  # of images in float32, in which a pixel in 1e5 differs by a level
+# Makes windows for a duration (s), pulses a second and a carrier (Hz).
+MakeFrames: TypeAlias = Callable[[ProcessingConfig, float, float, float], Frames]
+WINDOWS: tuple[tuple[str, MakeFrames, str], ...] = (
+    ("frames", ProcessingConfig.make_frames, "STFT"),
+    ("fsst_frames", ProcessingConfig.make_fsst_frames, "FSST"),
+)
 
 
 class DopplerTransform(NamedTuple):
@@ -71,38 +76,40 @@ def map_products(config: AnyConfig) -> Iterator[Product]:
     yield from scale_products()
     draw = partial(draw_map, form=ImageForm.of(config))
     for name in (str(RTM), *(product.name for product in own_products())):
-        yield Product(
-            image_name(name), (name, "image_scale"), draw, f"its {_describe_image(config)}"
-        )
+        needs = (name, "image_scale")
+        yield Product(image_name(name), needs, draw, f"its {_describe_image(config)}")
     for name, kind in CADENCE_KINDS.items():
         transform = doppler_transform(config, kind)
         if transform is not None:
             yield from _doppler_rows(config, kind, transform, is_held=name in config.maps)
-            yield from _cadence_rows(config, name, kind, transform)
+            yield from _cadence_rows(config, name, kind)
 
 
 def scale_products() -> Iterator[Product]:
     """Rows of the scales of images, and of frame maps, which are no masks."""
-    yield Product("image_scale", ("scene",), scale_of_scene, "law from power to image")
-    does = "law from power to grey levels"
-    yield Product("level_scale", ("scene",), level_scale_of_scene, does)
+    for name, make, output in (
+        ("image_scale", scale_of, "image"),
+        ("level_scale", level_scale_of, "grey levels"),
+    ):
+        scale = partial(_make_scale, make=make)
+        yield Product(name, ("scene",), scale, f"law from power to {output}")
+
+
+def _make_scale(scene: Scene, make: Callable[[AnyConfig], Scale]) -> Scale:
+    """Make a scale of images by the numbers that a scene has drawn."""
+    return make(scene.config)
 
 
 def window_products() -> Iterator[Product]:
     """Rows of the windows of the Doppler-time maps of one channel."""
-    needs = ("scene", "waveform")
-    yield Product("frames", needs, make_stft_frames, "of the STFT")
-    yield Product("fsst_frames", needs, make_fsst_frames, "of the FSST")
+    for name, make, transform in WINDOWS:
+        windows = partial(make_windows, make=make)
+        yield Product(name, ("scene", "waveform"), windows, f"of the {transform}")
 
 
-def make_stft_frames(scene: Scene, waveform: Waveform) -> Frames:
-    """Make the windows of the STFT of a recording."""
-    return frames_of(scene.config, waveform.duration, waveform.prf, waveform.f0)
-
-
-def make_fsst_frames(scene: Scene, waveform: Waveform) -> Frames:
-    """Make the windows of the FSST of a recording."""
-    return fsst_frames_of(scene.config, waveform.duration, waveform.prf, waveform.f0)
+def make_windows(scene: Scene, waveform: Waveform, make: MakeFrames) -> Frames:
+    """Make the windows of a Doppler-time map of a recording."""
+    return make(scene.config.processing, waveform.duration, waveform.prf, waveform.f0)
 
 
 def make_range_time_map(
@@ -159,37 +166,33 @@ def doppler_transform(config: AnyConfig, kind: MapKind) -> DopplerTransform | No
 def _doppler_rows(
     config: AnyConfig, kind: MapKind, transform: DopplerTransform, is_held: bool
 ) -> Iterator[Product]:
-    """Rows of a Doppler-time map, in float64, and of its image, from float32 where that will do."""
+    """Rows of a Doppler-time map, in float64, and of its image, from float32 where that will do.
+
+    The power behind the image is computed where it is read, block by block, or once and held for
+    the cadences, too.
+    """
     does = f"power of the {transform.description}"
     make = partial(make_doppler_map, compute=transform.compute)
     yield Product(str(kind), transform.needs, make, does, is_array=True)
     single = fits_single(config)
-    draw = partial(
-        draw_doppler_map,
-        compute=partial(transform.compute, single=single),
-        form=ImageForm.of(config),
-    )
-    does += f"{', in float32' * single}; its {_describe_image(config)}"
-    if is_held:  # for its cadences, too
-        draw = partial(draw_held_power, form=ImageForm.of(config))
-        yield Product(image_name(str(kind)), (power_name(kind), "image_scale"), draw, does)
-        return
-    yield Product(image_name(str(kind)), ("image_scale", *transform.needs), draw, does)
+    compute = partial(transform.compute, single=single)
+    if is_held:
+        compute = partial(hold_power, compute=compute)
+    does = f"the same{', in float32' * single}, {'held' if is_held else 'when read'}"
+    yield Product(power_name(kind), transform.needs, compute, does)
+    draw = partial(draw_doppler_image, form=ImageForm.of(config))
+    needs = (power_name(kind), "image_scale")
+    yield Product(image_name(str(kind)), needs, draw, f"its {_describe_image(config)}")
 
 
-def _cadence_rows(
-    config: AnyConfig, name: str, kind: MapKind, transform: DopplerTransform
-) -> Iterator[Product]:
-    """Rows of the cadences of a Doppler-time map, and of their image, which share its power."""
+def _cadence_rows(config: AnyConfig, name: str, kind: MapKind) -> Iterator[Product]:
+    """Rows of the cadences of a Doppler-time map, and of their image."""
     highest_hz = config.image.cadence_limit_hz
-    compute = partial(transform.compute, single=fits_single(config))
-    hold = partial(hold_power, compute=compute)
-    yield Product(power_name(kind), transform.needs, hold, f"power of the {kind}, held")
     make = partial(cadence_map, highest_hz=highest_hz)
     yield Product(name, (str(kind),), make, f"cadences of the {kind}", is_array=True)
     draw = partial(draw_cadences, form=ImageForm.of(config), highest_hz=highest_hz)
-    does = f"their {_describe_image(config)}"
-    yield Product(image_name(name), (power_name(kind), "image_scale"), draw, does)
+    needs, does = (power_name(kind), "image_scale"), f"their {_describe_image(config)}"
+    yield Product(image_name(name), needs, draw, does)
 
 
 def fits_single(config: AnyConfig) -> bool:
@@ -204,81 +207,21 @@ def fits_single(config: AnyConfig) -> bool:
     return config.image.dynamic_range_db <= SINGLE_RANGE_DB
 
 
-def make_doppler_map(
-    signal: Signal,
-    frames: Frames,
-    gate: Gate | None = None,
-    *,
-    compute: Callable[..., DopplerPower],
-) -> PowerMap:
-    """Make a Doppler-time map of a signal in float64.
-
-    Args:
-        signal: signal, or range bins of a gate.
-        frames: windows.
-        gate: range bins that each window adds up; None for a signal of one row.
-        compute: computes the power.
-    """
-    return _compute(signal, frames, gate, compute).as_map()
+def make_doppler_map(*inputs: Any, compute: Callable[..., DopplerPower]) -> PowerMap:
+    """Make a Doppler-time map of the inputs of a transform."""
+    return compute(*inputs).as_map()
 
 
-def draw_doppler_map(
-    scale: Scale,
-    signal: Signal,
-    frames: Frames,
-    gate: Gate | None = None,
-    *,
-    compute: Callable[..., DopplerPower],
-    form: ImageForm,
-) -> MapImage:
-    """Draw the image of a Doppler-time map of a signal, which is not held as a whole.
-
-    Args:
-        scale: law from power to levels.
-        signal: signal, or range bins of a gate.
-        frames: windows.
-        gate: range bins that each window adds up; None for a signal of one row.
-        compute: computes the power.
-        form: size of the image, and whether it has decibels.
-    """
-    return draw_doppler_image(_compute(signal, frames, gate, compute), scale, form)
-
-
-def hold_power(
-    signal: Signal,
-    frames: Frames,
-    gate: Gate | None = None,
-    *,
-    compute: Callable[..., DopplerPower],
-) -> DopplerPower:
-    """Compute the power of a Doppler-time map once, for all that is made of it.
-
-    Args:
-        signal: signal, or range bins of a gate.
-        frames: windows.
-        gate: range bins that each window adds up; None for a signal of one row.
-        compute: computes the power.
-    """
-    return _compute(signal, frames, gate, compute).hold_power()
-
-
-def draw_held_power(power: DopplerPower, scale: Scale, form: ImageForm) -> MapImage:
-    """Draw the image of a Doppler-time map whose power is held."""
-    return draw_doppler_image(power, scale, form)
+def hold_power(*inputs: Any, compute: Callable[..., DopplerPower]) -> DopplerPower:
+    """Compute the power of a Doppler-time map once, for all that is made of it."""
+    return compute(*inputs).hold_power()
 
 
 def draw_cadences(
     power: DopplerPower, scale: Scale, form: ImageForm, highest_hz: float
 ) -> MapImage:
-    """Draw the cadence-velocity diagram of a Doppler-time map whose power is held."""
+    """Draw the cadence-velocity diagram of a Doppler-time map."""
     return draw_map(cadence_map(power.as_map(), highest_hz), scale, form)
-
-
-def _compute(
-    signal: Signal, frames: Frames, gate: Gate | None, compute: Callable[..., DopplerPower]
-) -> DopplerPower:
-    """Compute the power of a signal, or of the range bins of a gate."""
-    return compute(signal, frames) if gate is None else compute(signal, frames, gate)
 
 
 def _describe_image(config: AnyConfig) -> str:

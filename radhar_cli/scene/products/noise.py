@@ -8,7 +8,6 @@ from radhar_cli.echo.receiver.noise import WhiteNoise
 from radhar_cli.echo.receiver.noise_law import NoiseLaw, Silent, Snr, Thermal
 from radhar_cli.errors import SceneError
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.receiver import noise_stream
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.scene import Scene
 from radhar_cli.schema.number import nominal
@@ -63,7 +62,7 @@ def compute_noise_sigma(scene: Scene, waveform: Waveform, signal_power: float = 
 
 def make_white_noise(scene: Scene, sigma: float, channel: object = "") -> WhiteNoise:
     """Make the white noise of a receive channel of a scene, of standard deviation sigma."""
-    return WhiteNoise(sigma, partial(noise_stream, scene, channel=channel))
+    return WhiteNoise(sigma, partial(scene.noise_stream, channel=channel))
 
 
 def _describe_law(law: NoiseLaw) -> str:

@@ -14,14 +14,14 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.bodies import Link, make_path_sources, sum_of_paths
-from radhar_cli.scene.assembly.motion import moving
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
-from radhar_cli.scene.assembly.room import reflectors_of, wall_of
-from radhar_cli.scene.products.knot_rate import KnotRate
+from radhar_cli.scene.motion import moving
+from radhar_cli.scene.paths import Link, make_path_sources, sum_of_paths
+from radhar_cli.scene.products.knot_rate import KnotRate, knot_rate_of
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.segments import make_segments
 from radhar_cli.scene.products.signal_power import make_snr_paths, needs_other_paths
+from radhar_cli.scene.radar import antennas_of, waveform_of
+from radhar_cli.scene.room import reflectors_of, wall_of
 from radhar_cli.scene.scene import Scene
 
 
@@ -44,9 +44,9 @@ def scene_products(config: Config) -> Iterator[Product]:
     if needs_other_paths(config):
         does = "paths of people, for the SNR"
         yield Product("snr_paths", ("scene", *needs), make_snr_paths, does)
-    rate = KnotRate.of(config) if config.engine.kind == "direct" else None
-    track, does = partial(track_torso, rate=rate), "delay of the torso at every pulse"
-    yield Product("torso_track", needs, track, does, is_array=True)
+    rate = knot_rate_of(config) if config.engine.kind == "direct" else None
+    track = partial(track_torso, rate=rate)
+    yield Product("torso_track", needs, track, "delay of the torso at every pulse", is_array=True)
 
 
 def make_motions(scene: Scene) -> tuple[Motion, ...]:
@@ -62,16 +62,7 @@ def make_paths(
     waveform: Waveform,
     room: Reflectors | None = None,
 ) -> PathSource:
-    """Make the paths of everything in a scene.
-
-    Args:
-        scene: what is simulated.
-        motions: motions of its people, or of parts of one.
-        antennas: antennas between which the paths run.
-        wall: wall between, or None.
-        waveform: waveform of the radar.
-        room: what stands in the room, or None.
-    """
+    """Make the paths of everything in a scene."""
     return sum_of_paths(make_path_sources(scene, motions, Link(antennas, wall, waveform), room))
 
 
@@ -92,5 +83,4 @@ def track_torso(
         rate: rate of the knots between which delays are interpolated; None for every pulse.
     """
     torso = TorsoPath(motions[0], antennas, wall)
-    per_second = inf if rate is None else rate.per_second(torso, waveform)
-    return delay_track(torso, waveform, per_second)
+    return delay_track(torso, waveform, inf if rate is None else rate(torso, waveform))

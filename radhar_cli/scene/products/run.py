@@ -8,7 +8,6 @@ from typing import Any
 from radhar_cli.config.data_set import AnyConfig
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.processing.signal import Signal
-from radhar_cli.scene.assembly.processing import canceller_of, frames_of, fsst_frames_of
 from radhar_cli.scene.products.gated import gate_in_windows
 from radhar_cli.scene.products.images import level_scale_of, scale_of
 from radhar_cli.scene.products.plan import Plan, Product, plan
@@ -102,11 +101,11 @@ def process(
         RadharError: a product would need a scene.
     """
     table = products_of_signals(config) | {product.name: product for product in more}
-    duration = signal.pulses / signal.prf
+    processing, timing = config.processing, (signal.pulses / signal.prf, signal.prf, signal.f0)
     inputs = {
-        "frames": frames_of(config, duration, signal.prf, signal.f0),
-        "fsst_frames": fsst_frames_of(config, duration, signal.prf, signal.f0),
-        "canceller": canceller_of(config, signal.prf),
+        "frames": processing.make_frames(*timing),
+        "fsst_frames": processing.make_fsst_frames(*timing),
+        "canceller": processing.make_canceller(signal.prf),
         "image_scale": scale_of(config),
         "level_scale": level_scale_of(config),
         **inputs,
@@ -118,9 +117,9 @@ def process(
     if signal.ranges is None:
         inputs = {"signal": signal, **inputs}
     else:
-        if track is not None and config.processing.range_sum == "gated":
-            gate_m = config.processing.gate_m
-            inputs["gate"] = gate_in_windows(after, inputs["frames"], track, gate_m)
+        if track is not None and processing.range_sum == "gated":
+            gate = gate_in_windows(after, inputs["frames"], track, processing.gate_m)
+            inputs["gate"] = gate
         profiles = after.columns(config.image.size_px[1])
         signals = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
         inputs = {**signals, "range_axis": signal.ranges, **inputs}

@@ -104,16 +104,6 @@ def keep_in_phase(signal: Signal) -> Signal:
     return signal.with_samples(signal.x.real.astype(complex))
 
 
-def sum_over_range(signal: Signal) -> Signal:
-    """Sum the range bins of a signal up coherently, into one row."""
-    return signal.summed()
-
-
-def choose_columns(signal: Signal, width: int) -> Signal:
-    """Choose the pulses of a signal that a range-time map of a width in pixels shows."""
-    return signal.columns(width)
-
-
 def compensate_torso(signal: Signal, torso_track: Float) -> Signal:
     """Take the bulk Doppler of the torso out of a signal.
 

@@ -1,13 +1,13 @@
 """P_s, the power of the echo that an SNR refers to: of the simulated echo, or of other paths.
 
-It has one producer for each kind of echo: `power_at_pulses` and `power_at_knots` of paths,
-`power_of_echo` of an echo that knows its power.
+Paths have theirs by `power_at_pulses` or `power_at_knots`; the echo of the direct engine, and of a
+board, knows its own.
 """
 
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar
@@ -20,17 +20,10 @@ from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.bodies import Link, sum_of_paths, trace_people
+from radhar_cli.scene.paths import Link, sum_of_paths, trace_people
 from radhar_cli.scene.products.knot_rate import KnotRate
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.scene import Scene
-
-
-class EchoOfKnownPower(Protocol):
-    """An echo that knows the mean power of its samples."""
-
-    def signal_power(self) -> float:
-        """Mean P_s of a raw sample, for unit transmit power."""
 
 
 class PowerSource(NamedTuple):
@@ -84,12 +77,7 @@ def power_at_pulses(paths: PathSource, waveform: Waveform) -> float:
 
 def power_at_knots(paths: PathSource, waveform: Waveform, rate: KnotRate) -> float:
     """P_s of paths: mean over the pulses of sum_i A_i^2, interpolated between knots."""
-    return mean_power(paths, waveform, rate.per_second(paths, waveform))
-
-
-def power_of_echo(echo: EchoOfKnownPower) -> float:
-    """P_s of an echo that knows its power."""
-    return echo.signal_power()
+    return mean_power(paths, waveform, rate(paths, waveform))
 
 
 def has_nobody(config: Config) -> bool:

@@ -23,7 +23,7 @@ from radhar_cli.radar.layers import Layers
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.room import echo_ways_of
+from radhar_cli.scene.room import echo_ways_of
 from radhar_cli.scene.scene import Scene
 
 NEAREST_WALL_M = 0.05
@@ -52,15 +52,7 @@ def add_static_returns(
     antennas: Antennas,
     wall: Wall | None,
 ) -> tuple[Impairment, ...]:
-    """Add what stands still to the impairments of a receiver.
-
-    Args:
-        receiver: impairments of the receiver.
-        scene: the scene.
-        waveform: chirps or pulses.
-        antennas: antennas, which leak.
-        wall: wall, which echoes by itself, or None.
-    """
+    """Add what stands still to the impairments of a receiver."""
     return (*receiver, make_static_returns(scene, waveform, antennas, wall))
 
 

@@ -1,18 +1,16 @@
 """Frames of a board in an HDF5 file: cube, maps, points, skeletons, and what they mean."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import h5py
 import numpy as np
 
-from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import ArrayRadar, BoardRadar
+from radhar_cli.config.radar import BoardRadar, Radar
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import COLUMNS, Cloud
 from radhar_cli.radar.board import Board
-from radhar_cli.scene.assembly.room import kinds_of
 from radhar_cli.scene.products.board_people import Skeletons
 from radhar_cli.scene.single.single_precision import in_single
 
@@ -21,7 +19,10 @@ DOPPLER_SIGN = "positive approaching"
 
 
 def write_frames(
-    file: h5py.File, subframes: Mapping[str, tuple[Board, Mapping[str, Any]]], config: Config
+    file: h5py.File,
+    subframes: Mapping[str, tuple[Board, Mapping[str, Any]]],
+    radar: Radar,
+    ways: Sequence[str] = (),
 ) -> None:
     """Write /cube, /range_doppler and so on, /points, /points_start, /points_person, /skeleton.
 
@@ -30,12 +31,11 @@ def write_frames(
         subframes: {end of names: board, products} of each subframe that there is, the products
             {name: product} of FrameMaps, `cube`, `cloud`, `skeletons`, `points_person`,
             `points_kind`, as far as they were made.
-        config: config of the scene, or of the processing of a recording.
+        radar: radar of the scene, or of a recording.
+        ways: names of the ways by which people are seen, where `points_kind` was made.
     """
     for end, (board, frames) in subframes.items():
-        write_subframe(file, frames, board, config, end)
-    radar = config.radar
-    assert isinstance(radar, ArrayRadar)
+        _write_subframe(file, frames, board, ways, end)
     if isinstance(radar, BoardRadar):
         file.attrs["cfg"] = radar.cfg
         file.attrs["cfg_sha256"] = hashlib.sha256(radar.cfg.encode()).hexdigest()
@@ -53,18 +53,10 @@ def write_frames(
     )
 
 
-def write_subframe(
-    file: h5py.File, frames: Mapping[str, Any], board: Board, config: Config, end: str = ""
+def _write_subframe(
+    file: h5py.File, frames: Mapping[str, Any], board: Board, ways: Sequence[str], end: str
 ) -> None:
-    """Write the products of a board's frames, or of a subframe, with an end to each name.
-
-    Args:
-        file: HDF5 file, open for writing.
-        frames: {name: product}, as `write_frames` has them.
-        board: board that the frames are of.
-        config: config of the scene, or of the processing of a recording.
-        end: end of the names.
-    """
+    """Write the products of a board's frames, or of a subframe, with an end to each name."""
     for key, product in frames.items():
         name = key + end
         if isinstance(product, FrameMaps):
@@ -81,7 +73,7 @@ def write_subframe(
                 file[name].attrs["bpm"] = board.bpm
         elif key == "points_kind":
             file[name] = product
-            file[name].attrs["kinds"] = kinds_of(config)
+            file[name].attrs["kinds"] = [*ways]
         else:
             file[name] = product
             file[name].attrs["meaning"] = "number of the person, -1 of none"

@@ -15,7 +15,7 @@ from radhar_cli.motion.recorded.recording import MAX_FRAMES
 from radhar_cli.motion.recorded.writing import bvh_text
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.single.request import activity_of, scene_of
 
 _HIP = JOINTS.index("hip")

@@ -18,6 +18,7 @@ from radhar_cli.files.replacing import replacing, write_text
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.recorded.motion import FileMotion
 from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.scene.room import names_of_ways
 from radhar_cli.scene.scene import scene_numbers
 from radhar_cli.scene.single.board_file import write_frames
 from radhar_cli.scene.single.simulate import Simulation
@@ -41,7 +42,8 @@ def write_scene(simulation: Simulation, path: Path) -> None:
         for name, signal in simulation.signals.items():
             file[f"slow_time/{name}"] = signal.x[0, 0]
         if simulation.board is not None:
-            write_frames(file, simulation.all_subframes, simulation.config)
+            ways = names_of_ways(simulation.scene)
+            write_frames(file, simulation.all_subframes, simulation.config.radar, ways)
         _write_truth(file, simulation)
         file.attrs["scene"] = json.dumps(describe(simulation))
         config = keep_used_files(simulation.config, simulation.activity.slug)

@@ -21,14 +21,13 @@ from radhar_cli.radar.board import Board
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.aspect import aspect_of
-from radhar_cli.scene.assembly.bodies import Link, make_path_sources
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.room import reflectors_of
 from radhar_cli.scene.checks.flags import BLACK
 from radhar_cli.scene.checks.warnings import scene_warnings
+from radhar_cli.scene.motion import aspect_of, motion_of
+from radhar_cli.scene.paths import Link, make_path_sources
 from radhar_cli.scene.products.fallback import EchoAccuracy, Fallback
 from radhar_cli.scene.products.run import Results, record
+from radhar_cli.scene.room import reflectors_of
 from radhar_cli.scene.scene import Person, Scene
 from radhar_cli.scene.single.raw_echo import RAW_ECHO, RAW_PROFILES
 from radhar_cli.scene.single.request import ProductNames, SceneRequest
@@ -200,16 +199,7 @@ def _simulation_of(
     results: Results,
     scene_notes: list[str],
 ) -> Simulation:
-    """Put the products of a scene together with its truth.
-
-    Args:
-        scene: the scene.
-        motions: motions of everybody, the main person's first.
-        joint: the only scatterer that was kept, or None.
-        names: names of the products.
-        results: the products.
-        scene_notes: warnings of the scene itself.
-    """
+    """Put the products of a scene together with its truth."""
     radar = {name: results[name] for name in ("antennas", "wall", "waveform")}
     truths = [evaluate_truth(motion, **radar) for motion in motions]
     if scene.config.radar_name is not None:
@@ -249,13 +239,7 @@ def _simulation_of(
 
 
 def _result_warnings(names: ProductNames, results: Results, is_empty: bool) -> list[str]:
-    """Warn of an engine that the direct one fell back to, and of maps without any power.
-
-    Args:
-        names: names of the products.
-        results: the products.
-        is_empty: whether nobody is in the scene, so that maps may be black.
-    """
+    """Warn of an engine that the direct one fell back to, and of maps without any power."""
     warnings = []
     accuracy = results.products.get("accuracy")
     if isinstance(accuracy, Fallback):

@@ -16,7 +16,7 @@ from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Leg, names_of
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene.assembly.bodies import OwnedPaths
+from radhar_cli.scene.paths import OwnedPaths
 
 RATE_STEP_S = 1e-5
 WHOLE = "the whole activity"

@@ -12,10 +12,9 @@ from radhar_cli.errors import RadharError
 from radhar_cli.processing.map_kind import Transform, kind_of
 from radhar_cli.radar.propagation import bistatic_delay, leg
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
-from radhar_cli.scene.assembly.motion import moving
-from radhar_cli.scene.assembly.processing import frames_of, fsst_frames_of
-from radhar_cli.scene.assembly.radar import antennas_of, board_of, waveform_of
 from radhar_cli.scene.checks.validity import MIN_DISTANCE_M
+from radhar_cli.scene.motion import moving
+from radhar_cli.scene.radar import antennas_of, board_of, waveform_of
 from radhar_cli.scene.scene import Scene, nominal_scene
 
 CHECKS_PER_S = 200.0
@@ -110,9 +109,12 @@ def counted_work(config: Config) -> dict[str, float]:
         "points": float(config.body.points_per_segment),
     }
     kinds = [kind for name in config.maps if (kind := kind_of(name)) is not None]
-    for transform, make in ((Transform.STFT, frames_of), (Transform.FSST, fsst_frames_of)):
+    for transform, make in (
+        (Transform.STFT, processing.make_frames),
+        (Transform.FSST, processing.make_fsst_frames),
+    ):
         if any(kind.transform is transform for kind in kinds):
-            frames = make(config, w.duration, w.prf, w.f0)
+            frames = make(w.duration, w.prf, w.f0)
             length = processing.stft_fft_length or frames.length
             counts[transform.name.lower()] = pulses / max(frames.hop, 1) * length
     return counts

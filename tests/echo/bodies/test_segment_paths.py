@@ -30,9 +30,9 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
-from radhar_cli.scene.assembly.bodies import Link, make_body_paths
-from radhar_cli.scene.assembly.motion import motion_of
 from radhar_cli.scene.checks.warnings import scene_warnings
+from radhar_cli.scene.motion import motion_of
+from radhar_cli.scene.paths import Link, make_body_paths
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import Scene, draw_scene, nominal_scene
 from radhar_cli.scene.single.simulate import simulate

@@ -9,9 +9,9 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.echo.bodies.motion_paths import leg
 from radhar_cli.echo.bodies.surface_paths import DEPTH, FACING_DBSM, SurfacePaths, draw_surface
 from radhar_cli.motion.protocol import cache_motion
-from radhar_cli.scene.assembly.bodies import Link, make_body_paths
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
+from radhar_cli.scene.motion import motion_of
+from radhar_cli.scene.paths import Link, make_body_paths
+from radhar_cli.scene.radar import antennas_of, waveform_of
 from radhar_cli.scene.scene import Scene, draw_scene
 
 T = np.linspace(0, 1, 7)

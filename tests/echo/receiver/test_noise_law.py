@@ -8,9 +8,9 @@ import pytest
 from helpers.boards import CFG
 from helpers.command_line import ROOT
 
+from radhar_cli.config.checks.unused_keys import unused_keys
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.receiver.noise_law import Silent, Snr, Thermal
-from radhar_cli.scene.checks.unused_keys import unused_keys
 from radhar_cli.scene.checks.warnings import config_warnings
 from radhar_cli.scene.products.noise import noise_law_of
 from radhar_cli.scene.products.run import record

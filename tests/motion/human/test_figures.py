@@ -25,7 +25,7 @@ from radhar_cli.motion.movements.striking import Kick, Punch
 from radhar_cli.motion.movements.stumbling import STUMBLES
 from radhar_cli.motion.movements.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import draw_scene
 
 DT = 1e-3

@@ -23,7 +23,7 @@ from radhar_cli.motion.movements.sitting import Seat, Sit
 from radhar_cli.motion.movements.transfer import EDGE, GoToBed, LeaveBed
 from radhar_cli.motion.segments import segment_positions, segments_between, thickness
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import draw_scene
 
 TORSO = JOINTS.index("torso")

@@ -13,7 +13,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.motion.human import minimum_jerk as steps_module
 from radhar_cli.motion.human.minimum_jerk import Course, Step, StepsInOrder
 from radhar_cli.motion.human.motion import HumanMotion
-from radhar_cli.scene.assembly.people import human_motion
+from radhar_cli.scene.people import human_motion
 from radhar_cli.scene.scene import draw_scene
 
 INSTANTS = 4096

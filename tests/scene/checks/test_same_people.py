@@ -9,11 +9,10 @@ from helpers.slow import slow
 from radhar_cli.config import Config, load_config, load_radars
 from radhar_cli.config.several_radars import OWN_SECTIONS
 from radhar_cli.errors import SceneError
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.radar import antennas_of
-from radhar_cli.scene.assembly.receiver import noise_stream
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.flags import Flags
+from radhar_cli.scene.motion import motion_of
+from radhar_cli.scene.radar import antennas_of
 from radhar_cli.scene.scene import draw_scene
 from radhar_cli.scene.single.simulate import simulate
 
@@ -110,7 +109,7 @@ def test_numbers_and_noise_of_radars_are_independent(tmp_path):
     scenes = [draw_scene(one, one.chosen_activities[0], 0) for one in configs.values()]
     places = [antennas_of(scene).tx[0] for scene in scenes]
     assert places[0] != places[1]
-    noise = [noise_stream(scene, "noise").standard_normal(8) for scene in scenes]
+    noise = [scene.noise_stream("noise").standard_normal(8) for scene in scenes]
     assert not np.isclose(*noise).any()
     again = configs_of(tmp_path, MOTIONS["places"], b=law, a=law)
     scene = draw_scene(again["a"], again["a"].chosen_activities[0], 0)

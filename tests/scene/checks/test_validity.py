@@ -20,9 +20,6 @@ from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.wall import crossing, extra_delay
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.radar import waveform_of
-from radhar_cli.scene.assembly.room import wall_of
 from radhar_cli.scene.checks import drawing
 from radhar_cli.scene.checks.check_grid import check_grids
 from radhar_cli.scene.checks.drawing import draw_valid_scene
@@ -30,7 +27,10 @@ from radhar_cli.scene.checks.flags import BEHIND_M, Flags
 from radhar_cli.scene.checks.sweep import sweep_shift
 from radhar_cli.scene.checks.validity import Approach, SceneCheck, check_scene
 from radhar_cli.scene.checks.warnings import collect_warnings, config_warnings, scene_warnings
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record
+from radhar_cli.scene.radar import waveform_of
+from radhar_cli.scene.room import wall_of
 from radhar_cli.scene.scene import Scene, draw_scene, nominal_scene, scene_numbers
 
 C = 299_792_458.0

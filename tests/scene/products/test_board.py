@@ -16,9 +16,9 @@ from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.skeleton import PARENTS
 from radhar_cli.processing.frame_sheets import BONE, bones_sheet, cloud_sheet
 from radhar_cli.processing.points import Cloud
-from radhar_cli.scene.assembly.radar import board_of
 from radhar_cli.scene.products.fallback import Fallback
 from radhar_cli.scene.products.run import record
+from radhar_cli.scene.radar import board_of
 from radhar_cli.scene.scene import Scene, draw_scene
 from radhar_cli.scene.single.scene_file import describe
 from radhar_cli.scene.single.simulate import simulate

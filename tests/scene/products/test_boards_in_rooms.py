@@ -9,7 +9,7 @@ import pytest
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.board_cube import combine_transmitters, exact_cube, fast_cube, mean_power
 from radhar_cli.motion.activities.activity import activity_named
-from radhar_cli.scene.assembly.bodies import Link, make_path_sources, sum_of_paths
+from radhar_cli.scene.paths import Link, make_path_sources, sum_of_paths
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import Scene, nominal_scene
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from radhar_cli.config.engine import EngineConfig
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.receiver.impairment import Impairment
@@ -21,7 +22,7 @@ from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.products.exact import compute_beat_signals, compute_gate_bins
-from radhar_cli.scene.products.fallback import Fallback, Tolerance
+from radhar_cli.scene.products.fallback import Fallback, fall_back
 from radhar_cli.scene.products.gated import (
     find_needed_bins,
     make_fixed_gate,
@@ -35,11 +36,10 @@ from radhar_cli.scene.products.signal import (
     receive_echo,
     smooth_signal,
 )
-from radhar_cli.scene.products.signal_power import power_at_pulses, power_of_echo
+from radhar_cli.scene.products.signal_power import power_at_pulses
 
 F0, PRF, PULSES = 10e9, 500.0, 400
 WAVEFORM = Waveform(fc=F0, bandwidth=1e9, chirp=40e-6, adc_rate=2e6, prf=PRF, duration=0.4)
-SLOPPY = Tolerance(tolerance_db=-80, is_double=False, refuses=False)
 
 
 class Still:
@@ -221,18 +221,12 @@ def test_a_kind_of_echo_has_one_power() -> None:
     pulses = Impulse(7e9, 1.5e9, 1e-6, 2e6, PRF, 0.1, profile=(0.5, 6.0), samples=800)
     assert power_at_pulses(Still(), pulses) == pytest.approx(12.5)
 
-    class Echo:
-        def signal_power(self) -> float:
-            return 7.0
-
-    assert power_of_echo(Echo()) == 7.0
-
 
 def test_a_tolerance_falls_back_or_refuses() -> None:
     error = AccuracyError(-250.0)
-    assert SLOPPY.fall_back("walking/0", error) == Fallback(str(error))
-    strict = replace(SLOPPY, tolerance_db=-300, refuses=True)
+    sloppy, strict = EngineConfig(fallback="cube"), EngineConfig(tolerance_db=-300)
+    assert fall_back(sloppy, "walking/0", error) == Fallback(str(error))
     with pytest.raises(
         SceneError, match=r"sample walking/0: engine\.tolerance_db = -300: should be"
     ):
-        strict.fall_back("walking/0", error)
+        fall_back(strict, "walking/0", error)

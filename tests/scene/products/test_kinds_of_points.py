@@ -14,8 +14,8 @@ from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.room import Leg, names_of
-from radhar_cli.scene.assembly.room import ways_of
 from radhar_cli.scene.products.board_people import Skeletons, assign_points
+from radhar_cli.scene.room import ways_of
 from radhar_cli.scene.scene import Scene, nominal_scene
 
 ISK = replace(

@@ -6,8 +6,8 @@ from dataclasses import fields
 import numpy as np
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
+from radhar_cli.scene.motion import motion_of
+from radhar_cli.scene.radar import antennas_of, waveform_of
 from radhar_cli.scene.scene import draw_scene
 from radhar_cli.scene.single.truth import Truth, evaluate_truth
 

@@ -8,7 +8,7 @@ from helpers.small import small_config
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.errors import ConfigError
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.single.request import SceneRequest
 from radhar_cli.scene.single.simulate import simulate, simulate_scene
 

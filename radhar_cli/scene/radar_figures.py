@@ -7,8 +7,7 @@ import numpy as np
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.board import Board
-from radhar_cli.scene.assembly.processing import frames_of
-from radhar_cli.scene.assembly.radar import board_of, waveform_of
+from radhar_cli.scene.radar import board_of, waveform_of
 from radhar_cli.scene.scene import Scene
 
 HALF_POWER = 0.5
@@ -53,7 +52,7 @@ def figures_of(scene: Scene) -> RadarFigures:
     if isinstance(scene.radar, ArrayRadar):
         return _figures_of_board(board_of(scene.radar), has_range)
     waveform = waveform_of(scene)
-    window = frames_of(scene.config, scene.seconds, waveform.prf, waveform.f0).length
+    window = scene.config.processing.make_frames(scene.seconds, waveform.prf, waveform.f0).length
     return RadarFigures(
         range_step_m=waveform.range_step if has_range else None,
         last_range_m=waveform.half_band_range if has_range else None,

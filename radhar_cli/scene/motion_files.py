@@ -12,7 +12,7 @@ from radhar_cli.motion.recorded.clip import Clip, make_clip, require_complete
 from radhar_cli.motion.recorded.cycle import find_cycle
 from radhar_cli.motion.recorded.motion import FileMotion
 from radhar_cli.readers.motion.reading import read_motion
-from radhar_cli.scene.assembly.place import start_of
+from radhar_cli.scene.place import start_of
 from radhar_cli.scene.scene import Person
 
 CACHE_BYTES = 2**26  # size of the cache of clips in a process

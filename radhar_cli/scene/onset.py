@@ -73,13 +73,7 @@ def stop_onset(person: Person, duration: float) -> float:
 
 
 def sequence_onset(person: Person, steps: Sequence[SequenceStep], motion: HumanMotion) -> float:
-    """When the sequence of a person's class begins, s.
-
-    Args:
-        person: person whose class is a sequence.
-        steps: movements of the sequence.
-        motion: what they make of the person, from 0 s on.
-    """
+    """When the sequence of a person's class begins, s."""
     parts = list[Stretch]()
     for step, (part, _) in zip(steps, motion.parts, strict=False):
         kind = MOVEMENTS[step.name]

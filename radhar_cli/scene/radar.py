@@ -26,7 +26,6 @@ from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.processing import chirp_window_of
 from radhar_cli.scene.scene import Scene
 
 Vector: TypeAlias = tuple[float, float, float]
@@ -106,7 +105,7 @@ def waveform_of(scene: Scene) -> Waveform:
     match radar:
         case ArrayRadar():
             waveform = board_of(radar, scene.seconds).waveform
-            return replace(waveform, window=chirp_window_of(processing))
+            return replace(waveform, window=processing.make_chirp_window())
         case ImpulseRadar():
             kind = partial(
                 Impulse,
@@ -118,7 +117,7 @@ def waveform_of(scene: Scene) -> Waveform:
             centred = False
         case FmcwRadar() | SfcwRadar():
             residual_video_phase = radar.residual_video_phase
-            window = chirp_window_of(processing)
+            window = processing.make_chirp_window()
         case _:
             assert_never(radar)
     return kind(

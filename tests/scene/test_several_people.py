@@ -15,14 +15,14 @@ from helpers.small import fingerprint, full_disk_after, small_config
 
 from radhar_cli import open_dataset, simulate
 from radhar_cli.config import Config, load_config
+from radhar_cli.config.checks.unused_keys import unused_keys
 from radhar_cli.config.identity import resolved
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.table import entries
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.activities.activity import activity_named
-from radhar_cli.scene.assembly.motion import motion_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
-from radhar_cli.scene.checks.unused_keys import unused_keys
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import Scene, draw_scene
 

@@ -17,9 +17,10 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
-from radhar_cli.scene.assembly.motion import motion_of
-from radhar_cli.scene.assembly.streams import StreamMotion, segments_of
+from radhar_cli.scene.motion import motion_of
+from radhar_cli.scene.products.segments import segments_of
 from radhar_cli.scene.scene import Scene, draw_scene, nominal_scene
+from radhar_cli.scene.streams import StreamMotion
 
 CHOSEN = ("walking", "sitting_down", "grabbing", "punching", "walking_to_falling")
 OUTSIDE_M = 0.3  # by which a torso may leave its zone: bouts that begin seated cannot turn first

@@ -10,7 +10,7 @@ from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Float, Index
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import draw_scene
 
 SECONDS = 6.0

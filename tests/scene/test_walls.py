@@ -10,13 +10,13 @@ import yaml
 from helpers.boards import CFG
 
 from radhar_cli.config import load_config
+from radhar_cli.config.checks.unused_keys import unused_keys
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.exact import signal_power
 from radhar_cli.echo.static_returns import leakage
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.activities.activity import activity_named
-from radhar_cli.scene.checks.unused_keys import unused_keys
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import nominal_scene
 from radhar_cli.scene.single.scene_file import write_all

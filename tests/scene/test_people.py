@@ -21,10 +21,10 @@ from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.falling import FALLS
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
-from radhar_cli.scene.assembly.motion import motion_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.flags import Flags
 from radhar_cli.scene.checks.validity import check_scene
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import (
     PERSONAL,
@@ -37,7 +37,7 @@ from radhar_cli.scene.scene import (
 from radhar_cli.scene.single.scene_file import write_all
 from radhar_cli.scene.single.simulate import simulate
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[2]
 FREE_SPACE = ROOT / "configs/human/free_space_77GHz.yaml"
 WALL = ROOT / "configs/human/through_wall_2GHz.yaml"
 TWELVE = [activity.slug for activity in ACTIVITIES]

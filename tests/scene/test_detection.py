@@ -5,7 +5,7 @@ from helpers.boards import CFG
 
 from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.config.radar import BoardRadar
-from radhar_cli.scene.assembly.radar import detection_of
+from radhar_cli.scene.radar import detection_of
 
 LIMITS = "aoaFovCfg -1 -60 60 -30 30\ncfarFovCfg -1 0 0.5 6\ncfarFovCfg -1 1 -3 3\n"
 

@@ -8,17 +8,17 @@ import pytest
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.motion.activities.activity import ACTIVITIES, activity_named
-from radhar_cli.scene.assembly.motion import moving
-from radhar_cli.scene.assembly.place import NEAREST_M, distance_ahead, zone_of
-from radhar_cli.scene.assembly.radar import antennas_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.validity import check_scene
+from radhar_cli.scene.motion import moving
+from radhar_cli.scene.place import NEAREST_M, distance_ahead, zone_of
+from radhar_cli.scene.radar import antennas_of
 from radhar_cli.scene.scene import draw_scene, scene_numbers
 
 SLUGS = [activity.slug for activity in ACTIVITIES]
 MOVING = SLUGS[7:]
 KEYS = "range_m", "instant"
-QUICKSTART = Path(__file__).parents[3] / "configs" / "quickstart.yaml"
+QUICKSTART = Path(__file__).parents[2] / "configs" / "quickstart.yaml"
 ROOM = {
     "radar": {"tx_m": [0.2, -0.02, 1.5], "rx_m": [0.2, 0.02, 1.5]},
     "motion": {"place": {"range_m": {"uniform": [2, 8]}}, "walking": {"speed_mps": 0.7}},

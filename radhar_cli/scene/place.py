@@ -15,8 +15,8 @@ import numpy as np
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.radar.propagation import Antennas
-from radhar_cli.scene.assembly.radar import antennas_of, waveform_of
-from radhar_cli.scene.assembly.room import box_of, wall_of
+from radhar_cli.scene.radar import antennas_of, waveform_of
+from radhar_cli.scene.room import wall_of
 from radhar_cli.scene.scene import Person, Scene
 
 INSTANTS = 25  # at which people may be at their place
@@ -73,7 +73,7 @@ def zone_of(scene: Scene, place: tuple[float, float]) -> Zone:
         scene: the scene.
         place: place of a person (m), before which each of several radars is.
     """
-    wall, box, x, y = wall_of(scene), box_of(scene), (-inf, inf), (-inf, inf)
+    wall, box, x, y = wall_of(scene), scene.room.make_box(), (-inf, inf), (-inf, inf)
     farthest = waveform_of(scene).half_band_range - MARGIN_M
     if wall is not None:
         depth = wall.size[0]

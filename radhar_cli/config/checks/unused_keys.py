@@ -8,11 +8,11 @@ from typing import Any
 from pydantic import BaseModel
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.motion import MotionConfig
+from radhar_cli.config.motion import FALL, USUAL_SPEEDS, MotionConfig
+from radhar_cli.config.paths import numbers
 from radhar_cli.config.range_zone import range_zone
 from radhar_cli.config.room import WallConfig
 from radhar_cli.motion.activities.activity import Activity
-from radhar_cli.scene.scene import FALL, USUAL_SPEEDS, numbers
 from radhar_cli.schema.annotations import (
     OnlyMaps,
     annotations,

@@ -13,12 +13,12 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.scene_fields import fields
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.activities.activity import activity_named
-from radhar_cli.scene.assembly.radar import antennas_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.flags import Flags
 from radhar_cli.scene.checks.validity import check_scene
 from radhar_cli.scene.checks.warnings import config_warnings
 from radhar_cli.scene.products.run import record
+from radhar_cli.scene.radar import antennas_of
 from radhar_cli.scene.scene import draw_scene, nominal_scene
 from radhar_cli.scene.single.scene_file import write_all
 from radhar_cli.scene.single.simulate import simulate

@@ -33,9 +33,8 @@ from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Leg
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene.assembly.motion import body_of
-from radhar_cli.scene.assembly.processing import frames_of
-from radhar_cli.scene.assembly.room import ways_of
+from radhar_cli.scene.motion import body_of
+from radhar_cli.scene.room import ways_of
 from radhar_cli.scene.scene import Person, Scene
 
 POINTS = 14  # of a surface
@@ -92,12 +91,6 @@ def make_path_sources(
     """Make the paths of everything in a scene: of who moves, and of what stands in the room.
 
     Where that is nothing, as in an empty scene without reflectors, there is a path of no power.
-
-    Args:
-        scene: what is simulated.
-        motions: motions of its people, or of parts of one.
-        link: antennas, wall and waveform of a channel.
-        room: what stands in the room.
     """
     sources = [] if scene.is_empty else trace_people(scene, motions, link)
     if room is not None:
@@ -215,7 +208,7 @@ def make_body_paths(
         surface = draw_surface(len(body.segments), min(largest_count, POINTS), rng)
         return SurfacePaths(body, surface, antennas, waveform.fc, wall, numbers)
     duration, prf = waveform.duration, waveform.prf
-    window = frames_of(config, duration, prf, waveform.f0).length / prf
+    window = config.processing.make_frames(duration, prf, waveform.f0).length / prf
     counts = point_counts(
         body, first or antennas, waveform.wavelength, window, duration, largest_count
     )

@@ -4,7 +4,7 @@ Where people walk and whither they turn is planned bout by bout: of headings in 
 walks with and without half turns, the first is taken in which the torso stays in the zone.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import cos, inf, pi, radians, sin
 from typing import NamedTuple
@@ -12,16 +12,16 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.config.sequence import SequenceConfig, SequenceStep
-from radhar_cli.config.stream import LEAD_S, TRANSITION, TURN, ZoneConfig, label_of_pause
+from radhar_cli.config.stream import LEAD_S, TRANSITION, TURN, ZoneConfig
 from radhar_cli.motion.human.idle import NO_SWAY, Idle
 from radhar_cli.motion.human.lane import Lane
 from radhar_cli.motion.human.motion import HumanMotion
-from radhar_cli.motion.human.part import STANDING, Movement, Place, kind_of_rest, place_after
+from radhar_cli.motion.human.part import STANDING, Movement, Place, place_after
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.turning_around import make_turn
 from radhar_cli.motion.movements.walking import Gait
-from radhar_cli.scene.assembly.people import idle_of_stream, movement_of
+from radhar_cli.scene.people import idle_of_stream, movement_of
 from radhar_cli.scene.scene import Person
 
 HEADINGS = 16  # that are tried for a bout
@@ -75,48 +75,6 @@ def stream_motion(person: Person) -> StreamMotion:
         pauses=pauses,
         labels=labels,
     )
-
-
-class LabelledSegment(NamedTuple):
-    """What a person does from one time to another."""
-
-    start: float  # s
-    stop: float  # s
-    label: str  # class, PAUSE or TRANSITION
-
-
-def segments_of(
-    motion: StreamMotion, seconds: float, classes: Sequence[str]
-) -> list[LabelledSegment]:
-    """What a person of a stream does in a recording, without gaps.
-
-    Args:
-        motion: motion of the person.
-        seconds: duration of the recording, s.
-        classes: names of the labels; that of keeping still stands for pauses, if it is there.
-    """
-    parts = [part for part, _ in motion.parts]
-    segments = [
-        LabelledSegment(
-            -inf, parts[0].begin, label_of_pause(kind_of_rest(parts[0].before), classes)
-        )
-    ]
-    ends = [part.begin for part in parts[1:]] + [inf]
-    for part, label, end in zip(parts, motion.labels, ends, strict=False):
-        segments.append(LabelledSegment(part.begin, part.end, label))
-        segments.append(
-            LabelledSegment(part.end, end, label_of_pause(kind_of_rest(part.after), classes))
-        )
-    joined = list[LabelledSegment]()
-    for segment in segments:
-        start, stop = max(0.0, segment.start), min(seconds, segment.stop)
-        if start >= stop:
-            continue
-        if joined and joined[-1].label == segment.label:
-            joined[-1] = joined[-1]._replace(stop=stop)
-        else:
-            joined.append(LabelledSegment(start, stop, segment.label))
-    return joined
 
 
 def zone_of(person: Person) -> ZoneConfig:

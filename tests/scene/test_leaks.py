@@ -15,11 +15,11 @@ from sklearn.tree import DecisionTreeClassifier
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset.scene_fields import movement_onset
-from radhar_cli.scene.assembly.motion import moving
+from radhar_cli.scene.motion import moving
 from radhar_cli.scene.scene import draw_scene, scene_numbers
 from radhar_cli.study.audit.scene_numbers import is_of_movement
 
-QUICKSTART = Path(__file__).parents[3] / "configs" / "quickstart.yaml"
+QUICKSTART = Path(__file__).parents[2] / "configs" / "quickstart.yaml"
 SAMPLES = examples(150)  # of each class
 MOST = 0.14
 ON_CUE_S = 0.25

@@ -15,7 +15,7 @@ from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO, links
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import Scene, draw_scene, nominal_scene
 
 SLUGS = [activity.slug for activity in ACTIVITIES]

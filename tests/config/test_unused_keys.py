@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
+from radhar_cli.config.checks.unused_keys import unused_keys
 from radhar_cli.config.data_set import Config
-from radhar_cli.scene.checks.unused_keys import unused_keys
 
 PUNCHING: dict[str, Any] = {"activities": ["punching"]}
 

@@ -14,7 +14,7 @@ from radhar_cli.motion.human.physique import Physique, froude_scale
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.scene.assembly.motion import motion_of
+from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import Scene, draw_scene, nominal_scene, scene_numbers
 
 GAITS = (

@@ -21,8 +21,8 @@ from radhar_cli.motion.movements.catalogue import MOVEMENTS
 from radhar_cli.motion.movements.idle import low_pass_waves
 from radhar_cli.motion.movements.joining import join_on_floor
 from radhar_cli.motion.movements.standing import Stand
-from radhar_cli.scene.assembly.mover import SceneMover
-from radhar_cli.scene.assembly.onset import (
+from radhar_cli.scene.mover import SceneMover
+from radhar_cli.scene.onset import (
     Bout,
     bout_of,
     bout_onset,
@@ -31,7 +31,7 @@ from radhar_cli.scene.assembly.onset import (
     sequence_onset,
     stop_onset,
 )
-from radhar_cli.scene.assembly.place import start_of
+from radhar_cli.scene.place import start_of
 from radhar_cli.scene.scene import Person
 
 SHUFFLE_S = 0.9  # duration of a shuffle

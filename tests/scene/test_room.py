@@ -13,9 +13,9 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.activities.activity import activity_named
-from radhar_cli.scene.assembly.room import reflectors_of
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.products.run import record
+from radhar_cli.scene.room import reflectors_of
 from radhar_cli.scene.scene import Scene, draw_scene, scene_numbers
 
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500, "adc_rate_hz": 1e6}

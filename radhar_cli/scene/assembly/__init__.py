@@ -1,1 +1,0 @@
-"""Objects of physics, assembled from the numbers of a scene."""

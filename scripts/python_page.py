@@ -28,8 +28,8 @@ config = radhar.load_config("quickstart").replace({"samples_per_class": 10, "ima
 for snr_db in (30, 10):
     radhar.generate(config.replace(snr_db=snr_db), f"sweep/{snr_db}dB")
 radhar.train("sweep/30dB", "sweep/run", {"epochs": 2})
-report = radhar.evaluate("sweep/run", ["sweep/30dB", "sweep/10dB"])
-print(report.scores["accuracy"])
+evaluated = radhar.evaluate("sweep/run", ["sweep/30dB", "sweep/10dB"])
+print(evaluated.scores["accuracy"])
 ```
 """
 SECTIONS = {
@@ -41,6 +41,7 @@ SECTIONS = {
     "Feed PyTorch": ("Samples", "Sequences", "torch_dataset"),
     "What they return": (
         "radhar_cli.learning.trained_run.TrainedRun",
+        "radhar_cli.learning.interface.EvaluatedRuns",
         "radhar_cli.learning.trained_run.EstimatedClasses",
         "radhar_cli.learning.estimated_joints.EstimatedJoints",
         "radhar_cli.scene.single.simulate.Simulation",

@@ -82,8 +82,8 @@ def test_a_sweep_over_noise_is_built_trained_evaluated_and_audited(tmp_path: Pat
     assert [len(data) for data in sets] == [40, 40]
     run = radhar.train(tmp_path / "snr30", tmp_path / "run", {"epochs": 1})
     assert set(run.classes) == {"walking", "punching"}
-    report = radhar.evaluate(tmp_path / "run", [tmp_path / "snr30", tmp_path / "snr10"])
-    (accuracies,) = report.scores["accuracy"].values()
+    evaluated = radhar.evaluate(tmp_path / "run", [tmp_path / "snr30", tmp_path / "snr10"])
+    (accuracies,) = evaluated.scores["accuracy"].values()
     assert accuracies.keys() == {"snr30", "snr10"}
     assert not (tmp_path / "run" / "eval").exists()
     audit = radhar.audit(tmp_path / "snr30", max_samples=8)

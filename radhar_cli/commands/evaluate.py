@@ -78,6 +78,7 @@ def evaluate(
     from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.report import evaluate as evaluate_runs
+    from radhar_cli.learning.report import main_scores
     from radhar_cli.learning.tasks.predictions import EvalOptions
 
     runs, data = split_runs_and_data(paths)
@@ -103,18 +104,8 @@ def evaluate(
     evaluation.numbers |= inputs
     evaluation.write(folder)
     files = {"page": folder / "report.html", "numbers": folder / "report.json"}
-    report(**files, **_scores(evaluation.numbers["runs"]))
+    report(**files, **main_scores(evaluation.numbers["runs"]))
     tell(f"{folder / 'report.html'}: {len(evaluation.figures)} figures; numbers in report.json")
-
-
-def _scores(runs: dict[str, Any]) -> dict[str, dict[str, dict[str, float]]]:
-    """{score: {run: {data set: value}}}: the number by which each result is summed up."""
-    scores = dict[str, dict[str, dict[str, float]]]()
-    for run, of_run in runs.items():
-        for data, numbers in of_run["data"].items():
-            score = numbers["main_number"]
-            scores.setdefault(score, {}).setdefault(run, {})[data] = numbers[score]
-    return scores
 
 
 def _refuse_another_report(folder: Path, about: dict[str, Any], replace: bool) -> None:

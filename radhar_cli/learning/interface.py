@@ -1,15 +1,17 @@
 """Training and evaluation from Python: `radhar.train`, `radhar.evaluate`."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from radhar_cli.config.reading import load_section
+from radhar_cli.figures.report.report import Report
 from radhar_cli.learning import training
 from radhar_cli.learning.images.image_set import check_split_name
 from radhar_cli.learning.machine import choose_device
 from radhar_cli.learning.report import evaluate as evaluate_runs
-from radhar_cli.learning.result_page import EvalReport
+from radhar_cli.learning.report import main_scores
 from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tasks.predictions import EvalOptions
@@ -30,6 +32,22 @@ class NoTrainingProgress(NoProgress):
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
         """Nobody sees it."""
+
+
+@dataclass(frozen=True)
+class EvaluatedRuns:
+    """Networks that were evaluated on data sets.
+
+    Attributes:
+        report: numbers, sentences, tables and figures, which `report.write(folder)` writes.
+    """
+
+    report: Report
+
+    @property
+    def scores(self) -> dict[str, dict[str, dict[str, float]]]:
+        """{score: {run: {data set: value}}}: the number by which each result is summed up."""
+        return main_scores(self.report.numbers["runs"])
 
 
 def train(
@@ -72,7 +90,7 @@ def evaluate(
     split: str | None = None,
     device: str = "auto",
     progress: Progress = NO_PROGRESS,
-) -> EvalReport:
+) -> EvaluatedRuns:
     """Evaluate trained networks on data sets, as the command `radhar eval`.
 
     Args:
@@ -83,9 +101,6 @@ def evaluate(
         device: auto, cpu or cuda.
         progress: is told of the lines of the report and the images done.
 
-    Returns:
-        The report, with its `numbers`, and `scores` by run and data set.
-
     Raises:
         RadharError: as the command; its message says what is wrong.
     """
@@ -93,7 +108,7 @@ def evaluate(
     report = evaluate_runs(_paths(runs), _paths(data), options, choose_device(device), progress)
     if folder is not None:
         report.write(Path(folder))
-    return report
+    return EvaluatedRuns(report)
 
 
 def _paths(paths: Paths) -> list[Path]:

@@ -91,6 +91,16 @@ def evaluate(
     return report
 
 
+def main_scores(runs: dict[str, Any]) -> dict[str, dict[str, dict[str, float]]]:
+    """{score: {run: {data set: value}}}: the number by which each result is summed up."""
+    scores = dict[str, dict[str, dict[str, float]]]()
+    for run, of_run in runs.items():
+        for data, numbers in of_run["data"].items():
+            score = numbers["main_number"]
+            scores.setdefault(score, {}).setdefault(run, {})[data] = numbers[score]
+    return scores
+
+
 def _begin_report(
     runs: Sequence[str], data: Sequence[str], options: EvalOptions, device: torch.device
 ) -> Report:

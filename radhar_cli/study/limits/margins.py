@@ -96,8 +96,9 @@ def counted_work(config: Config) -> dict[str, float]:
     """
     scene = nominal_scene(config, config.chosen_activities[0])
     w, processing = waveform_of(scene), config.processing
-    is_array = isinstance(scene.radar, ArrayRadar)
-    channels = board_of(scene.radar, scene.seconds).channels if is_array else 1
+    radar = scene.radar
+    is_array = isinstance(radar, ArrayRadar)
+    channels = board_of(radar, scene.seconds).channels if isinstance(radar, ArrayRadar) else 1
     is_cube = config.engine.kind == "cube" or processing.range_sum == "gated"
     holds_samples = is_array or is_cube or "rtm" in config.maps
     pulses = float(w.n_pulses)

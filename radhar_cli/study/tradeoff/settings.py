@@ -293,7 +293,10 @@ def _wall(config: Config) -> Iterator[Setting]:
         plain = ("wall.echoes=none", "wall.layers=null", size)
         name = "wall.echoes: none"
         if config.engine.kind != "direct":
-            plain, name = (*plain, "engine.kind=direct"), f"{name}, engine.kind: direct"
+            yield Setting(
+                (*plain, "engine.kind=direct"), Worth.SAVES, f"{name}, engine.kind: direct"
+            )
+            return
         yield Setting(plain, Worth.SAVES, name)
         return
     for key, kinds in (("rays", RAYS), ("fresnel", ("perpendicular", "parallel"))):

@@ -93,8 +93,7 @@ def test_imports_follow_the_layers() -> None:
         for path in files()
         if path != PACKAGE / "__init__.py"
         for module in imports(path)
-        if module.startswith("radhar_cli.")
-        and floor(module) > floor(module_of(path))
+        if module.startswith("radhar_cli.") and floor(module) > floor(module_of(path))
     ]
     assert not back
 
@@ -120,9 +119,7 @@ def imported_modules(path: Path) -> set[str]:
 def test_no_module_imports_itself_through_others() -> None:
     """Not even where a function imports, which only hides a circle."""
     graph = {
-        module_of(path): imported_modules(path)
-        for path in files()
-        if path.name != "__init__.py"
+        module_of(path): imported_modules(path) for path in files() if path.name != "__init__.py"
     }
     assert list(graphlib.TopologicalSorter(graph).static_order())  # raises CycleError
 

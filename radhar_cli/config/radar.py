@@ -30,6 +30,7 @@ from pydantic import (
 
 from radhar_cli.config.maps import MIN_LOOPS
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.numerics.rounding import half_up
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, RANGE
 from radhar_cli.processing.map_kind import MapKind, Transform
@@ -46,8 +47,7 @@ from radhar_cli.radar.board import (
     sidelobe,
 )
 from radhar_cli.radar.detection import Chain, Firmware
-from radhar_cli.radar.frame_header import FrameHeader
-from radhar_cli.radar.written_frames import WrittenFrames
+from radhar_cli.radar.frame_timing import FrameTiming, Sampling
 from radhar_cli.schema.annotations import GIVEN, ByModel, NeedsAnyKey, NeedsKey
 from radhar_cli.schema.number import (
     ANGLE,
@@ -394,7 +394,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
     chirps_key: ClassVar[str]  # as messages name what says how many loops a frame has
 
     @property
-    def header(self) -> FrameHeader:
+    def timing(self) -> FrameTiming:
         """Chirps, frames and samples of the radar."""
         raise NotImplementedError
 
@@ -436,7 +436,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
     @property
     def frames_apart(self) -> bool:
         """Whether the radar pauses between its frames."""
-        return self.header.frames_apart
+        return self.timing.frames_apart
 
     @property
     def place_keys(self) -> tuple[str, ...]:
@@ -451,23 +451,23 @@ class ArrayRadar(_Emission[N], Generic[N]):
     @property
     def virtual_places(self) -> Places:
         """Places of the virtual elements, half wavelengths; none where elements are missing."""
-        array, header = self.elements, self.header
+        array, timing = self.elements, self.timing
         if array is None:
             return ()
-        if max(header.order) >= len(array.tx) or max(header.receivers) >= len(array.rx):
+        if max(timing.order) >= len(array.tx) or max(timing.receivers) >= len(array.rx):
             return ()
         scale = 1.0
         if self.half_wavelength_m is not None:
-            scale = self.half_wavelength_m * 2 * header.centre_hz / SPEED_OF_LIGHT
+            scale = self.half_wavelength_m * 2 * timing.centre_hz / SPEED_OF_LIGHT
         return tuple(
             (scale * (array.tx[t][0] + array.rx[r][0]), scale * (array.tx[t][1] + array.rx[r][1]))
-            for t in header.order
-            for r in header.receivers
+            for t in timing.order
+            for r in timing.receivers
         )
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
         """Say why the radar does not make a map: its frames may be too short for a window."""
-        if kind.is_doppler_time and self.header.loops < MIN_WINDOW:
+        if kind.is_doppler_time and self.timing.loops < MIN_WINDOW:
             return (
                 f"the {self._loops} of a frame ({self.chirps_key}) are fewer than "
                 f"{MIN_WINDOW} pulses"
@@ -481,7 +481,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
         """
         kind = FRAME_MAP_KINDS.get(name)  # none of the points
         shows_doppler = name == "points" or (kind is not None and kind.shows_doppler)
-        if shows_doppler and 1 < self.header.loops < MIN_LOOPS:  # a window keeps a loop of one
+        if shows_doppler and 1 < self.timing.loops < MIN_LOOPS:  # a window keeps a loop of one
             return (
                 f"the {self._loops} of a frame ({self.chirps_key}) show no Doppler; "
                 f"{MIN_LOOPS} do, or 1, whose Doppler is 0"
@@ -533,7 +533,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
 
     @property
     def _loops(self) -> str:
-        return f"{self.header.loops} loop{'s' * (self.header.loops > 1)}"
+        return f"{self.timing.loops} loop{'s' * (self.timing.loops > 1)}"
 
 
 def _array_of(places: "ArrayConfig | ElementsConfig") -> Array:
@@ -585,6 +585,11 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
         return parse_ti_cfg(self.cfg, device=self.device, subframe=self.subframe)
 
     @property
+    def timing(self) -> FrameTiming:
+        """Chirps, frames and samples that `cfg` describes."""
+        return self.header.timing
+
+    @property
     def firmware(self) -> Firmware | None:
         """Chain of TI's firmware whose commands `cfg` has; None without any."""
         return self.header.firmware
@@ -602,7 +607,7 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
     @property
     def other_subframes(self) -> dict[str, int]:
         """Numbers of the subframes of the .cfg but the chosen one, {end of products: number}."""
-        numbers = range(self.header.subframes)
+        numbers = range(self.timing.subframes)
         return {f"_sf{number}": number for number in numbers if number != self.subframe}
 
     @property
@@ -623,27 +628,27 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
     @property
     def carrier_hz(self) -> float:  # type: ignore[override]
         """Frequency at the first sample of a chirp that is kept, Hz."""
-        return self.header.carrier_hz
+        return self.timing.carrier_hz
 
     @property
     def bandwidth_hz(self) -> float:  # type: ignore[override]
         """Bandwidth that a chirp sweeps while it is sampled, Hz."""
-        return self.header.slope_hz * self.chirp_s
+        return self.timing.bandwidth_hz
 
     @property
     def prf_hz(self) -> float:  # type: ignore[override]
         """Loops per second within a frame."""
-        return self.header.prf_hz
+        return self.timing.prf_hz
 
     @property
     def adc_rate_hz(self) -> float:  # type: ignore[override]
         """Sampling rate of the ADC, Hz."""
-        return self.header.adc_rate_hz
+        return self.timing.adc_rate_hz
 
     @property
     def chirp_s(self) -> float:  # type: ignore[override]
         """Duration for which a chirp is sampled, s."""
-        return self.header.samples / self.header.adc_rate_hz
+        return self.timing.chirp_s
 
     @property
     def usual_noise_figure_db(self) -> float:
@@ -666,17 +671,17 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
 
         The out-of-box firmware takes two chirps alone, of TX1 and TX3, on a 1642 of TX1 and TX2.
         """
-        header = self.header
+        timing = self.timing
         firmware = self.firmware if chain == "board" else chain
-        if header.bpm is None or firmware not in ("sdk1", "sdk3"):
+        if timing.bpm is None or firmware not in ("sdk1", "sdk3"):
             return None
         masks = {"16": (3,), "18": (5,), "68": (5,)}.get(str(self.device)[3:5], (3, 5, 6))
         right = "two chirps of the same two transmitters"
-        if len(header.masks) == 2:
-            if header.masks[0] in masks:
+        if len(timing.masks) == 2:
+            if timing.masks[0] in masks:
                 return None
             right = f"the mask {masks[0]}"
-        masks_given = " ".join(map(str, header.masks))
+        masks_given = " ".join(map(str, timing.masks))
         return (
             f"bpmCfg with the masks {masks_given} (chirpCfg txEnable): the out-of-box firmware "
             f"takes {right} (cloud.chain: {chain})"
@@ -778,20 +783,24 @@ class FramesRadar(_FrameStart[N], Generic[N]):
         return self.chirp_s
 
     @property
-    def header(self) -> FrameHeader:
-        """Header of these frames."""
-        return WrittenFrames(
+    def timing(self) -> FrameTiming:
+        """Chirps, frames and samples of the radar."""
+        transmitters, chirps = len(self.array.tx), self.frame.chirps
+        pause_free_s = chirps * transmitters * self.interval_s
+        return FrameTiming(
+            start_hz=self.carrier_hz,
             carrier_hz=self.carrier_hz,
-            bandwidth_hz=self.bandwidth_hz,
+            slope_hz=self.bandwidth_hz / self.chirp_s,
+            samples=max(half_up(self.adc_rate_hz, self.chirp_s), 1),
             adc_rate_hz=self.adc_rate_hz,
-            chirp_s=self.chirp_s,
-            interval_s=self.interval_s,
-            chirps=self.frame.chirps,
-            period_s=self.frame.period_s,
-            transmitters=len(self.array.tx),
-            receivers=len(self.array.rx),
-            is_real=self.output == "real",
-        ).header
+            slot_s=self.interval_s,
+            masks=tuple(1 << n for n in range(transmitters)),
+            receivers=tuple(range(len(self.array.rx))),
+            loops=chirps,
+            frames=0,
+            period_s=pause_free_s if self.frame.period_s is None else self.frame.period_s,
+            sampling=Sampling.REAL if self.output == "real" else Sampling.COMPLEX,
+        )
 
     @property
     def place_keys(self) -> tuple[str, ...]:

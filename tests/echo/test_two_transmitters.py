@@ -28,7 +28,7 @@ KNOWN = {
 PAIR = board_of(
     BoardRadar[float](cfg=CFG, device="IWR6843ISK", position_m=(0.0, 0.0, 0.0)), 0.11
 )  # masks 5, 2, 5
-TURNS = replace(PAIR, bpm=None)  # masks 1, 2, 4
+TURNS = replace(PAIR, bpm=None, masks=(1, 2, 4))
 
 
 def test_samples_are_those_of_the_chirps_as_sent() -> None:

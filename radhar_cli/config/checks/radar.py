@@ -138,15 +138,15 @@ def _step_problems(radar: ImpulseRadar) -> Iterator[Problem]:
 
 def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     """Find what a board cannot have, or what is not simulated for boards."""
-    board = radar.header
+    board, timing = radar.header, radar.timing
     if radar.elements is None:
         right = (
             f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
         )
         yield Problem("radar.device", radar.device, right)
         return
-    if radar.subframe >= board.subframes:
-        right = f"should be below {board.subframes}, the number of subframes of radar.cfg"
+    if radar.subframe >= timing.subframes:
+        right = f"should be below {timing.subframes}, the number of subframes of radar.cfg"
         yield Problem("radar.subframe", radar.subframe, right)
     device = DEVICES.get(str(radar.device))
     if device is not None and board.family not in (Family.ANY, *device.families):
@@ -155,11 +155,11 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
         yield Problem("radar.device", radar.device, right)
         return
     tx, rx = len(radar.elements.tx), len(radar.elements.rx)
-    if max(board.order) >= tx or max(board.receivers) >= rx:
-        masks = [1 << n for n in board.order]
+    if max(timing.order) >= tx or max(timing.receivers) >= rx:
+        masks = [1 << n for n in timing.order]
         right = (
             f"should name transmitters and receivers of the array, {tx} and {rx}: it has the "
-            f"masks {masks} and receivers {[n + 1 for n in board.receivers]}"
+            f"masks {masks} and receivers {[n + 1 for n in timing.receivers]}"
         )
         yield Problem("radar.cfg", "chirpCfg, channelCfg", right)
         return
@@ -257,7 +257,7 @@ def _unit_problems(radar: ArrayRadar) -> Iterator[Problem]:
     array = radar.elements
     if array is None:
         return
-    used = [array.rx[r] for r in radar.header.receivers if r < len(array.rx)]
+    used = [array.rx[r] for r in radar.timing.receivers if r < len(array.rx)]
     if len({*used}) < len(used) or (extent == 0 and len(radar.virtual_places) > 1):
         count = len(radar.virtual_places)
         nouns = f"all {count} elements" if extent == 0 else "two receivers"
@@ -274,17 +274,17 @@ def _unit_problems(radar: ArrayRadar) -> Iterator[Problem]:
 
 def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
     """Find what does not fit frames: durations, clutter."""
-    clutter, board = c.processing.clutter, radar.header
-    if support(c.duration_s)[0] < board.period_s:
-        frame = show_beside(board.period_s, support(c.duration_s)[0])
+    clutter, timing = c.processing.clutter, radar.timing
+    if support(c.duration_s)[0] < timing.period_s:
+        frame = show_beside(timing.period_s, support(c.duration_s)[0])
         right = f"should hold a frame of {frame} s"
         yield Problem("duration_s", c.duration_s, right)
-    elif board.loops == 1 and support(c.duration_s)[0] < 2 * board.period_s:
-        frames = show_beside(2 * board.period_s, support(c.duration_s)[0])
+    elif timing.loops == 1 and support(c.duration_s)[0] < 2 * timing.period_s:
+        frames = show_beside(2 * timing.period_s, support(c.duration_s)[0])
         right = f"should hold two frames of a loop, {frames} s"
         yield Problem("duration_s", c.duration_s, right)
-    chirps = support(c.duration_s)[1] / board.period_s * board.loops * len(board.order)
-    samples = chirps * len(board.receivers) * board.samples
+    chirps = support(c.duration_s)[1] / timing.period_s * timing.loops * len(timing.masks)
+    samples = chirps * len(timing.receivers) * timing.samples
     if samples > MAX_CUBE:
         seconds = support(c.duration_s)[1] * MAX_CUBE / samples
         right = f"should be at most {seconds:.3g} s: a cube of {MAX_CUBE} samples is held at once"

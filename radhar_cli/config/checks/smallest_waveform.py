@@ -29,20 +29,20 @@ def waveform_at(c: AnyRequest, *largest: str) -> Waveform:
 def window_pulses(c: AnyRequest, w: Waveform) -> int:
     """Pulses of the STFT's window of a waveform, at most those of a board's frame."""
     length = c.processing.window_pulses(w.duration, w.prf, w.f0)
-    return min(length, c.radar.header.loops) if isinstance(c.radar, ArrayRadar) else length
+    return min(length, c.radar.timing.loops) if isinstance(c.radar, ArrayRadar) else length
 
 
 def fewest_windows(c: AnyRequest) -> int:
     """Fewest windows of a Doppler-time map of a config: of radars that pause, one a frame."""
     w = waveform_at(c)
     if isinstance(c.radar, ArrayRadar) and c.radar.frames_apart:
-        header = c.radar.header
-        fitting = int(w.duration / header.period_s + 1e-9)
-        return min(header.frames, fitting) if header.frames else fitting
+        timing = c.radar.timing
+        fitting = int(w.duration / timing.period_s + 1e-9)
+        return min(timing.frames, fitting) if timing.frames else fitting
     length = c.processing.window_pulses(w.duration, w.prf, w.f0)
     windows = Frames.of(length, c.processing.overlap_fraction)
     if isinstance(c.radar, ArrayRadar):
-        windows = windows.within(c.radar.header.loops, are_apart=False)
+        windows = windows.within(c.radar.timing.loops, are_apart=False)
     pulses = w.n_pulses - (c.processing.clutter == "difference")
     return max(0, (pulses - windows.length) // windows.hop + 1)
 

@@ -22,7 +22,6 @@ from radhar_cli.config.radar import (
 from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.chirp_window import RECTANGULAR
 from radhar_cli.radar.detection import Detection
-from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.waveform import Waveform
@@ -34,23 +33,14 @@ Vector: TypeAlias = tuple[float, float, float]
 
 def board_of(radar: ArrayRadar[float], seconds: float = 0.0) -> Board:
     """Make the board of a radar with frames, as many as so many seconds have, at least one."""
-    header, array = radar.header, radar.elements
+    timing, array = radar.timing, radar.elements
     assert array is not None  # refused where the config is read
     ends = ends_of(radar)
-    frames = max(int(seconds / header.period_s + 1e-9), 1)
+    frames = max(int(seconds / timing.period_s + 1e-9), 1)
+    of_frames = vars(timing) | {"frames": min(frames, timing.frames or frames)}
     return Board(
+        **of_frames,
         array=array,
-        start=header.start_hz,
-        fc=header.carrier_hz,
-        slope=header.slope_hz,
-        adc_rate=header.adc_rate_hz,
-        samples=header.samples,
-        slot=header.slot_s,
-        order=header.order,
-        receivers=header.receivers,
-        loops=header.loops,
-        frames=min(frames, header.frames or frames),
-        period=header.period_s,
         position=radar.position_m if ends is None else middle_of(*ends),
         yaw=radians(radar.yaw_deg),
         tilt=radians(radar.tilt_deg),
@@ -58,15 +48,6 @@ def board_of(radar: ArrayRadar[float], seconds: float = 0.0) -> Board:
         half_power_deg=radar.half_power_deg,
         half_wavelength=radar.half_wavelength_m,
         gain=10 ** (radar.antenna_gain_dbi / 10),
-        backoff_db=header.profile.backoff_db,
-        bpm=header.bpm,
-        is_real=header.sampling is Sampling.REAL,
-        keeps_half=header.sampling is not Sampling.COMPLEX,
-        averaged=header.averaged,
-        chirp_starts=header.chirp_starts_s,
-        burst_s=header.loop_s if header.has_bursts else None,
-        delay=header.delay_s,
-        subframe=header.subframe,
         ends=ends,
     )
 

@@ -174,7 +174,9 @@ def _window_pulses(scene: Scene, w: Waveform) -> int:
     if not isinstance(scene.radar, ArrayRadar):
         return frames_of(scene.config, w.duration, w.prf, w.f0).length
     board = board_of(scene.radar, scene.seconds)
-    frames = frames_of(scene.config, board.frames * board.period, 1 / board.loop, board.centre)
+    frames = frames_of(
+        scene.config, board.frames * board.period_s, 1 / board.loop_s, board.centre_hz
+    )
     return min(frames.length, board.loops)
 
 

@@ -46,8 +46,8 @@ from radhar_cli.processing.track import PulseTrack
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.chirp_window import RECTANGULAR, ChirpWindow
 from radhar_cli.radar.detection import Detection, Firmware
-from radhar_cli.radar.frame_header import RoomBox
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
+from radhar_cli.radar.room import RoomBox
 from radhar_cli.radar.wall import Wall
 from radhar_cli.scene.assembly.bodies import Link, make_path_sources, sum_of_paths
 from radhar_cli.scene.assembly.processing import chirp_window_of, frames_of, fsst_frames_of
@@ -401,7 +401,7 @@ def compute_faces_echo(scene: Scene, board: Board, wall: Wall | None) -> Complex
         wall: wall that the paths cross, or None.
     """
     ways, fc = echo_ways_of(scene), board.path_waveform.fc
-    latest = 2 * board.range_step * board.n_bins / SPEED_OF_LIGHT
+    latest = 2 * board.range_step_m * board.n_bins / SPEED_OF_LIGHT
     pairs = [echoes_of_faces(board.antennas(k, r), ways, wall, fc, latest) for k, r in board.pairs]
     return still_samples(combine_transmitters(pairs, board), board)
 
@@ -523,7 +523,7 @@ def find_all_points(cube: Complex, board: Board, chain: CloudChain) -> Cloud:
         board: board of the cube.
         chain: how they are found.
     """
-    carrier = board.start if chain.refers_to_start else None
+    carrier = board.start_hz if chain.refers_to_start else None
     detection = chain.detection
     if chain.firmware is None:
         bias, removes_mean = detection.bias, detection.remove_mean
@@ -604,15 +604,17 @@ def make_gate_of_board(
 
 def make_stft_windows(scene: Scene, board: Board) -> Frames:
     """Make the windows of the STFT of a board's signal."""
-    seconds = board.frames * board.period
-    return keep_within_frames(frames_of(scene.config, seconds, 1 / board.loop, board.centre), board)
+    seconds = board.frames * board.period_s
+    return keep_within_frames(
+        frames_of(scene.config, seconds, 1 / board.loop_s, board.centre_hz), board
+    )
 
 
 def make_fsst_windows(scene: Scene, board: Board) -> Frames:
     """Make the windows of the FSST of a board's signal."""
-    seconds = board.frames * board.period
+    seconds = board.frames * board.period_s
     return keep_within_frames(
-        fsst_frames_of(scene.config, seconds, 1 / board.loop, board.centre), board
+        fsst_frames_of(scene.config, seconds, 1 / board.loop_s, board.centre_hz), board
     )
 
 

@@ -26,19 +26,19 @@ def board_settings(radar: BoardRadar, config: Config) -> Iterator[Setting]:
         radar: radar of the config.
         config: config of the data set.
     """
-    header = radar.header
+    timing = radar.timing
     changed = {
         "half as many frames": _scaled("frameCfg", {PERIOD: 2}),
-        f"{header.loops // 2} loops a frame": _scaled("frameCfg", {LOOPS: 0.5}),
+        f"{timing.loops // 2} loops a frame": _scaled("frameCfg", {LOOPS: 0.5}),
         "half as many samples a chirp": _scaled("profileCfg", {SAMPLES: 0.5, RATE: 0.5}),
     }
-    transmitters = len(header.masks)
+    transmitters = len(timing.masks)
     for count in range(transmitters - 1, 0, -1):
         name = f"{count} transmitter{'s' * (count > 1)}"
         changed[name] = _set("frameCfg", {CHIRP_END: count - 1})
-    receivers = len(header.receivers)
+    receivers = len(timing.receivers)
     if receivers > 2:
-        mask = sum(1 << receiver for receiver in header.receivers[: receivers // 2])
+        mask = sum(1 << receiver for receiver in timing.receivers[: receivers // 2])
         changed[f"{receivers // 2} receivers"] = _set("channelCfg", {RX_MASK: mask})
     for name, change in changed.items():
         text = change(radar.cfg)
@@ -55,10 +55,10 @@ def frame_settings(radar: FramesRadar, config: Config) -> Iterator[Setting]:
         radar: radar of the config.
         config: config of the data set.
     """
-    header = radar.header
-    yield keyed("radar", f"radar.frame.period_s={2 * header.period_s:g}", Worth.SAVES)
-    if header.loops > 1:
-        yield keyed("radar", f"radar.frame.chirps={header.loops // 2}", Worth.SAVES)
+    timing = radar.timing
+    yield keyed("radar", f"radar.frame.period_s={2 * timing.period_s:g}", Worth.SAVES)
+    if timing.loops > 1:
+        yield keyed("radar", f"radar.frame.chirps={timing.loops // 2}", Worth.SAVES)
     if isinstance(radar, StepFramesRadar):
         yield half_as_many_steps(radar)
     elif isinstance(radar, ChirpFramesRadar):

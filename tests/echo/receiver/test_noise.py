@@ -43,9 +43,7 @@ def scene_of(
     engine: str = "direct", slug: str = "walking", index: int = 0, **more: object
 ) -> Scene:
     document = {"radar": RADAR, "engine": {"kind": engine}, "duration_s": 4.0} | more
-    windowless = {
-        "range_window": "rectangular"
-    }  # of windows: scene/products/test_range_window.py
+    windowless = {"range_window": "rectangular"}  # of windows: scene/products/test_range_window.py
     document["processing"] = windowless | dict(document.get("processing", {}))
     return draw_scene(Config.model_validate(document), activity_named(slug), index)
 

@@ -357,7 +357,7 @@ def _board(recording: Recording, note: Mapping[str, Any]) -> dict[str, Any]:
     return section
 
 
-def read_radar(section: Mapping[str, Any], where: str = "radar") -> AnyRadar[Any]:
+def read_radar(section: Mapping[str, Any], where: str = "radar") -> AnyRadar:
     """Read a section `radar` of a config.
 
     Raises:
@@ -367,7 +367,7 @@ def read_radar(section: Mapping[str, Any], where: str = "radar") -> AnyRadar[Any
     return validated(Config, {"radar": dict(section), "maps": maps}, where, {}).radar
 
 
-def has_beam(radar: AnyRadar[Any]) -> bool:
+def has_beam(radar: AnyRadar) -> bool:
     """Whether the antennas of a radar take a part of what comes from beside their boresight."""
     return isinstance(radar, ArrayRadar) or getattr(radar, "beam", None) is not None
 
@@ -378,7 +378,7 @@ def keeps_whole_band(section: Mapping[str, Any]) -> bool:
     return isinstance(radar, ArrayRadar) and radar.timing.sampling is Sampling.COMPLEX
 
 
-def place_of(radar: AnyRadar[Any]) -> float:
+def place_of(radar: AnyRadar) -> float:
     """Distance x of the antennas of a radar along the x axis, m, numbers at their middle."""
     places = [getattr(radar, key) for key in radar.place_keys]
     return float(np.mean([nominal(place[0]) for place in places]))

@@ -13,9 +13,11 @@ from typing import (
     ClassVar,
     Generic,
     Literal,
-    NamedTuple,
+    Protocol,
     Self,
     TypeAlias,
+    Union,
+    get_args,
 )
 
 from pydantic import (
@@ -48,6 +50,8 @@ from radhar_cli.radar.board import (
 )
 from radhar_cli.radar.detection import Chain, Firmware
 from radhar_cli.radar.frame_timing import FrameTiming, Sampling
+from radhar_cli.radar.impulse import Impulse, impulse
+from radhar_cli.radar.waveform import Waveform
 from radhar_cli.schema.annotations import GIVEN, ByModel, NeedsAnyKey, NeedsKey
 from radhar_cli.schema.number import (
     ANGLE,
@@ -110,25 +114,49 @@ class BeamConfig(Section, Generic[N]):
     """Largest loss: no direction gets less than this below the gain of the boresight."""
 
 
-class AnyRadar(Section, Generic[N]):
-    """What every kind of radar answers, each by its own keys."""
+class PulseNumbers(Protocol):
+    """Numbers of the pulses of any radar of a scene."""
+
+    @property
+    def carrier_hz(self) -> float: ...
+    @property
+    def bandwidth_hz(self) -> float: ...
+    @property
+    def prf_hz(self) -> float: ...
+    @property
+    def adc_rate_hz(self) -> float: ...
+    @property
+    def chirp_s(self) -> float: ...
+
+
+class AnyRadar(Section):
+    """Questions that every kind of radar answers by its own keys."""
 
     kind: ClassVar[str]
     named: ClassVar[str]  # as messages name it: the key, and value, that tell the kind
     has_range: ClassVar[bool] = True  # whether pulses have a band, whose echoes tell ranges
+    sweeps: ClassVar[bool] = True  # whether pulses sweep their band, and a beat is sampled
 
-    if TYPE_CHECKING:  # keys of some kinds, which follow from others' keys
+    def make_waveform(
+        self: PulseNumbers, seconds: float, fft_length: int | None, centred: bool
+    ) -> Waveform:
+        """Make the waveform of the pulses of a recording of so many seconds.
 
-        @property
-        def carrier_hz(self) -> N: ...
-        @property
-        def bandwidth_hz(self) -> N: ...
-        @property
-        def prf_hz(self) -> N: ...
-        @property
-        def adc_rate_hz(self) -> N: ...
-        @property
-        def chirp_s(self) -> N: ...
+        Args:
+            seconds: Duration of the recording.
+            fft_length: Length of the transform over a chirp; None is the number of samples.
+            centred: Whether ranges refer to the middle of the chirp.
+        """
+        return Waveform(
+            fc=self.carrier_hz,
+            bandwidth=self.bandwidth_hz,
+            chirp=self.chirp_s,
+            adc_rate=self.adc_rate_hz,
+            prf=self.prf_hz,
+            duration=seconds,
+            fft_length=fft_length,
+            centred=centred,
+        )
 
     @property
     def frames_apart(self) -> bool:
@@ -162,7 +190,7 @@ class AnyRadar(Section, Generic[N]):
         )
 
 
-class _Pulses(AnyRadar[N], Generic[N]):
+class _Pulses(AnyRadar, Generic[N]):
     """Keys of radars that send pulse after pulse."""
 
     carrier_hz: Annotated[N, POSITIVE, within(1e6, 1e13, "Hz")] = default_draw(77e9)
@@ -188,7 +216,7 @@ class _Band(_Pulses[N], Generic[N]):
     30 m are seen with 1 GHz, up to 7.5 m with 4 GHz."""
 
 
-class _AntennaPair(AnyRadar[N], Generic[N]):
+class _AntennaPair(AnyRadar, Generic[N]):
     """Keys of a transmitting and a receiving antenna."""
 
     tx_m: VectorOf[N] = default_draw((0.4, -0.1, 1.5))
@@ -204,7 +232,7 @@ class _AntennaPair(AnyRadar[N], Generic[N]):
     """Beam of both antennas; null radiates evenly."""
 
 
-class _Emission(AnyRadar[N], Generic[N]):
+class _Emission(AnyRadar, Generic[N]):
     """Keys of the field that a radar sends out."""
 
     polarisation: Annotated[
@@ -225,14 +253,14 @@ class _Emission(AnyRadar[N], Generic[N]):
     which image.reference has its dBm."""
 
 
-class _Sweep(_Band[N], Generic[N]):
+class Sweep(_Band[N], Generic[N]):
     """Keys of pulses that sweep their band, whose beat is sampled."""
 
     residual_video_phase: Flag = False
     """Whether the beat keeps the residual video phase, the term pi K tau^2."""
 
 
-class FmcwRadar(_Emission[N], _AntennaPair[N], _Sweep[N], Generic[N]):
+class FmcwRadar(_Emission[N], _AntennaPair[N], Sweep[N], Generic[N]):
     """A radar that sends chirps: antennas, gains, and a linear sweep sampled by an ADC."""
 
     kind: ClassVar[str] = "fmcw"
@@ -253,7 +281,7 @@ def _require_waveform(schema: dict[str, Any]) -> None:
     schema["required"] = [*schema.get("required", ()), "waveform"]
 
 
-class _Steps(AnyRadar[N], Generic[N]):
+class Steps(AnyRadar, Generic[N]):
     """Keys of sweeps that are steps of frequency."""
 
     waveform: Literal["sfcw"] = "sfcw"
@@ -264,17 +292,17 @@ class _Steps(AnyRadar[N], Generic[N]):
     """Time that the radar stays on each frequency."""
 
     @property
-    def adc_rate_hz(self) -> float:  # type: ignore[override]
+    def adc_rate_hz(self) -> float:
         """Samples per second of a sweep."""
         return 1 / self.dwell_s
 
     @property
-    def chirp_s(self) -> float:  # type: ignore[override]
+    def chirp_s(self) -> float:
         """Duration of a sweep, s."""
         return self.steps * self.dwell_s
 
 
-class SfcwRadar(_Steps[N], _Emission[N], _AntennaPair[N], _Sweep[N], Generic[N]):
+class SfcwRadar(Steps[N], _Emission[N], _AntennaPair[N], Sweep[N], Generic[N]):
     """A radar that steps through frequencies and takes a sample at each."""
 
     kind: ClassVar[str] = "sfcw"
@@ -282,45 +310,36 @@ class SfcwRadar(_Steps[N], _Emission[N], _AntennaPair[N], _Sweep[N], Generic[N])
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
 
-class OneSample(NamedTuple):
-    """A pulse of one sample, whose length and band change nothing.
+class Tone(AnyRadar):
+    """Keys of radars that send one frequency: pulses of a sample, whose band changes nothing."""
 
-    Attributes:
-        adc_rate_hz: Sampling rate, Hz.
-        chirp_s: Length, s.
-        bandwidth_hz: Band, Hz.
-    """
+    has_range: ClassVar[bool] = False
+    sweeps: ClassVar[bool] = False
+    adc_rate_hz: ClassVar[float] = 1e9
+    chirp_s: ClassVar[float] = 1e-9
+    bandwidth_hz: ClassVar[float] = 1e3
 
-    adc_rate_hz: float = 1e9
-    chirp_s: float = 1e-9
-    bandwidth_hz: float = 1e3
+    waveform: Literal["cw"] = "cw"
+    """Kind of the radar."""
+
+    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
+        """Say why the radar does not make a map: it has no range."""
+        return NO_RANGE if kind.transform is Transform.RTM else super().why_no_map(kind, gating)
 
 
-ONE_SAMPLE = OneSample()
-
-
-class CwRadar(_Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
+class CwRadar(Tone, _Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
     """A radar that sends one frequency and takes one sample a pulse; it has no range."""
 
     kind: ClassVar[str] = "cw"
     named: ClassVar[str] = "radar.waveform: cw"
-    has_range: ClassVar[bool] = False
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
-    waveform: Literal["cw"] = "cw"
-    """Kind of the radar."""
     output: Literal["iq", "real"] = "iq"
     """Output of the mixer: iq, or real for the in-phase channel alone, whose Doppler is
     symmetric."""
 
-    adc_rate_hz: ClassVar[float] = ONE_SAMPLE.adc_rate_hz  # type: ignore[assignment]
-    chirp_s: ClassVar[float] = ONE_SAMPLE.chirp_s  # type: ignore[assignment]
-    bandwidth_hz: ClassVar[float] = ONE_SAMPLE.bandwidth_hz  # type: ignore[assignment]
-
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map: it has no range, real samples no direction."""
-        if kind.transform is Transform.RTM:
-            return NO_RANGE
+        """Say why the radar does not make a map: real samples have no direction of motion."""
         if self.output == "real" and kind.treatment.compensated:
             return "radar.output: real has no sign of the Doppler"
         return super().why_no_map(kind, gating)
@@ -331,6 +350,7 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
 
     kind: ClassVar[str] = "impulse"
     named: ClassVar[str] = "radar.waveform: impulse"
+    sweeps: ClassVar[bool] = False
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
     waveform: Literal["impulse"] = "impulse"
@@ -344,8 +364,8 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
     """Number of range samples in a profile."""
 
     # A pulse of one sample, whose middle is that of the band.
-    adc_rate_hz: ClassVar[float] = 1e9  # type: ignore[assignment]
-    chirp_s: ClassVar[float] = 2e-9  # type: ignore[assignment]
+    adc_rate_hz: ClassVar[float] = 1e9
+    chirp_s: ClassVar[float] = 2e-9
 
     @field_validator("profile_m")
     @classmethod
@@ -353,6 +373,20 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
         if not 0 <= value[0] < value[1]:
             raise value_error("should be [from, to], 0 <= from < to, with radar.waveform: impulse")
         return value
+
+    def make_waveform(
+        self: "ImpulseRadar[float]", seconds: float, fft_length: int | None, centred: bool
+    ) -> Impulse:
+        """Make the waveform of the pulses, which have no chirp to transform or refer to."""
+        return impulse(
+            fc=self.carrier_hz,
+            bandwidth=self.bandwidth_hz,
+            prf=self.prf_hz,
+            duration=seconds,
+            profile=self.profile_m,
+            samples=self.profile_samples,
+            is_iq=self.output == "iq",
+        )
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
         """Say why the radar does not make a map of its samples; of complex ones it makes all."""
@@ -371,7 +405,7 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
 class ArrayRadar(_Emission[N], Generic[N]):
     """A radar that sends frames of chirps and receives them by an array: what all of them are."""
 
-    waveform: Literal["fmcw"] = "fmcw"
+    waveform: Literal["fmcw", "sfcw", "cw"] = "fmcw"
     """Waveform of a radar with frames: fmcw sends chirps, sfcw sweeps of steps, cw one
     frequency."""
     position_m: VectorOf[N] = default_draw((0.0, 0.0, 1.0))
@@ -548,6 +582,7 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
     named: ClassVar[str] = "radar.cfg"
     chirps_key: ClassVar[str] = "radar.cfg, frameCfg"
 
+    waveform: Literal["fmcw"] = "fmcw"
     cfg: Annotated[str, Field(min_length=1, max_length=2**16)]
     """The .cfg of a TI board, which gives the waveform: a path from this file's folder on, or a
     known radar (docs/guide/boards.md). A config that is written has its text."""
@@ -626,27 +661,27 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
         return self.model_copy(update={"subframe": 0})
 
     @property
-    def carrier_hz(self) -> float:  # type: ignore[override]
+    def carrier_hz(self) -> float:
         """Frequency at the first sample of a chirp that is kept, Hz."""
         return self.timing.carrier_hz
 
     @property
-    def bandwidth_hz(self) -> float:  # type: ignore[override]
+    def bandwidth_hz(self) -> float:
         """Bandwidth that a chirp sweeps while it is sampled, Hz."""
         return self.timing.bandwidth_hz
 
     @property
-    def prf_hz(self) -> float:  # type: ignore[override]
+    def prf_hz(self) -> float:
         """Loops per second within a frame."""
         return self.timing.prf_hz
 
     @property
-    def adc_rate_hz(self) -> float:  # type: ignore[override]
+    def adc_rate_hz(self) -> float:
         """Sampling rate of the ADC, Hz."""
         return self.timing.adc_rate_hz
 
     @property
-    def chirp_s(self) -> float:  # type: ignore[override]
+    def chirp_s(self) -> float:
         """Duration for which a chirp is sampled, s."""
         return self.timing.chirp_s
 
@@ -719,23 +754,32 @@ class _FrameStart(ArrayRadar[N], Generic[N]):
     frame: FrameConfig
     """Frames of the radar, which range-Doppler and angle maps, cubes, points and skeletons are
     of."""
-    carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True), FIXED] = 77e9  # type: ignore[assignment]
+    carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True), FIXED] = 77e9
     """Frequency at the first sample of a chirp, of the first step, or of cw."""
+
+    if TYPE_CHECKING:  # of each waveform, in its own way
+
+        @property
+        def bandwidth_hz(self) -> float: ...
+        @property
+        def adc_rate_hz(self) -> float: ...
+        @property
+        def chirp_s(self) -> float: ...
 
 
 class _SweptBand(_FrameStart[N], Generic[N]):
     """Band of radars with frames that sweep it."""
 
-    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True), FIXED] = 1e9  # type: ignore[assignment]
+    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True), FIXED] = 1e9
     """Bandwidth that a chirp sweeps while it is sampled, or the steps cover."""
 
 
 class _SampledChirps(_SweptBand[N], Generic[N]):
     """Samples of radars with frames of chirps."""
 
-    adc_rate_hz: Annotated[float, Field(ge=1e-3, le=1e13, strict=True), FIXED] = 10e6  # type: ignore[assignment]
+    adc_rate_hz: Annotated[float, Field(ge=1e-3, le=1e13, strict=True), FIXED] = 10e6
     """Sampling rate of the ADC within a chirp."""
-    chirp_s: Annotated[float, Field(ge=1e-12, le=1e4, strict=True), FIXED] = 40e-6  # type: ignore[assignment]
+    chirp_s: Annotated[float, Field(ge=1e-12, le=1e4, strict=True), FIXED] = 40e-6
     """Duration of the sampled sweep."""
 
 
@@ -745,7 +789,9 @@ class FramesRadar(_FrameStart[N], Generic[N]):
     named: ClassVar[str] = "radar.frame"
     chirps_key: ClassVar[str] = "radar.frame.chirps"
 
-    prf_hz: Annotated[float, Field(ge=1e-3, le=1e7, strict=True), FIXED] | None = None  # type: ignore[assignment]
+    prf_hz: Filled[Annotated[float, Field(ge=1e-3, le=1e7, strict=True), FIXED]] = default_draw(
+        None
+    )
     """Chirps of each transmitter per second, within a frame; null is by frame.interval_s."""
     output: Literal["iq", "real"] = "iq"
     """Samples of the receivers: iq, or real for one channel of the mixer, whose range bins are
@@ -756,15 +802,6 @@ class FramesRadar(_FrameStart[N], Generic[N]):
     """Place of one transmitter in the scene, with rx_m instead of array and position_m."""
     rx_m: VectorOf[N] | None = None
     """Place of one receiver in the scene."""
-
-    if TYPE_CHECKING:  # of each kind, in its own way
-
-        @property
-        def bandwidth_hz(self) -> float: ...  # type: ignore[override]
-        @property
-        def adc_rate_hz(self) -> float: ...  # type: ignore[override]
-        @property
-        def chirp_s(self) -> float: ...  # type: ignore[override]
 
     @model_validator(mode="after")
     def _fill_prf(self) -> Self:
@@ -814,37 +851,30 @@ class FramesRadar(_FrameStart[N], Generic[N]):
         return _array_of(self.array)
 
 
-class ChirpFramesRadar(FramesRadar[N], _SampledChirps[N], Generic[N]):  # type: ignore[override]
+class ChirpFramesRadar(FramesRadar[N], _SampledChirps[N], Generic[N]):
     """A radar that sends frames of chirps."""
 
     kind: ClassVar[str] = "frames"
 
+    waveform: Literal["fmcw"] = "fmcw"
 
-class StepFramesRadar(FramesRadar[N], _Steps[N], _SweptBand[N], Generic[N]):  # type: ignore[override]
+
+class StepFramesRadar(FramesRadar[N], Steps[N], _SweptBand[N], Generic[N]):
     """A radar that sends frames of sweeps, each of steps of frequency with a sample."""
 
     kind: ClassVar[str] = "sfcw_frames"
     named: ClassVar[str] = "radar.frame of waveform: sfcw"
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
-    waveform: Literal["sfcw"] = "sfcw"  # type: ignore[assignment]
-    """Kind of the radar."""
+    waveform: Literal["sfcw"] = "sfcw"
 
 
-class CwFramesRadar(FramesRadar[N], Generic[N]):
+class CwFramesRadar(Tone, FramesRadar[N], Generic[N]):
     """A radar that sends one frequency, whose samples are taken in frames: it has no range."""
 
     kind: ClassVar[str] = "cw_frames"
     named: ClassVar[str] = "radar.frame of waveform: cw"
-    has_range: ClassVar[bool] = False
     model_config = ConfigDict(json_schema_extra=_require_waveform)
-
-    waveform: Literal["cw"] = "cw"  # type: ignore[assignment]
-    """Kind of the radar."""
-
-    adc_rate_hz: ClassVar[float] = ONE_SAMPLE.adc_rate_hz
-    chirp_s: ClassVar[float] = ONE_SAMPLE.chirp_s
-    bandwidth_hz: ClassVar[float] = ONE_SAMPLE.bandwidth_hz
 
     @model_validator(mode="before")
     @classmethod
@@ -859,12 +889,6 @@ class CwFramesRadar(FramesRadar[N], Generic[N]):
                 )
         return value
 
-    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map: it has no range."""
-        if kind.transform is Transform.RTM:
-            return NO_RANGE
-        return super().why_no_map(kind, gating)
-
     def why_no_frames(self, name: str) -> str | None:
         """Say why the radar does not make a map of its frames: it has no range."""
         kind = FRAME_MAP_KINDS.get(name)
@@ -877,16 +901,17 @@ class CwFramesRadar(FramesRadar[N], Generic[N]):
         return NO_RANGE
 
 
-RADARS: tuple[type[AnyRadar[Any]], ...] = (
-    FmcwRadar,
-    SfcwRadar,
-    CwRadar,
-    ImpulseRadar,
-    BoardRadar,
-    ChirpFramesRadar,
-    StepFramesRadar,
-    CwFramesRadar,
+Kind: TypeAlias = (
+    FmcwRadar[N]
+    | SfcwRadar[N]
+    | CwRadar[N]
+    | ImpulseRadar[N]
+    | BoardRadar[N]
+    | ChirpFramesRadar[N]
+    | StepFramesRadar[N]
+    | CwFramesRadar[N]
 )
+RADARS: tuple[type[AnyRadar], ...] = get_args(Kind)
 # {waveform: kind} of the radars that have frames in the config.
 KINDS_WITH_FRAMES = {
     "fmcw": ChirpFramesRadar.kind,
@@ -897,7 +922,7 @@ for _kind in RADARS:
     _kind.ALTERNATIVES = tuple(other for other in RADARS if other is not _kind)
 
 
-def class_of_radar(value: Any) -> type[AnyRadar[Any]] | None:
+def class_of_radar(value: Any) -> type[AnyRadar] | None:
     """Return the class of a radar, or of a mapping that describes one; None of an unknown kind."""
     if isinstance(value, AnyRadar):
         return type(value)
@@ -940,29 +965,19 @@ def _without_null(value: Any) -> Any:
 
 
 # What `radar:` may be: of a config, and with its numbers as floats of a scene.
-Radar: TypeAlias = Annotated[
-    Annotated[FmcwRadar[N], Tag("<fmcw>")]
-    | Annotated[SfcwRadar[N], Tag("<sfcw>")]
-    | Annotated[CwRadar[N], Tag("<cw>")]
-    | Annotated[ImpulseRadar[N], Tag("<impulse>")]
-    | Annotated[BoardRadar[N], Tag("<board>")]
-    | Annotated[ChirpFramesRadar[N], Tag("<frames>")]
-    | Annotated[StepFramesRadar[N], Tag("<sfcw_frames>")]
-    | Annotated[CwFramesRadar[N], Tag("<cw_frames>")],
-    Discriminator(
-        _tag_of_radar,
-        custom_error_type="wrong",
-        custom_error_message="should have a waveform: fmcw, sfcw, cw or impulse; or cfg, or frame",
-    ),
-    BeforeValidator(_without_null),
-]
-SceneRadar: TypeAlias = (
-    FmcwRadar[float]
-    | SfcwRadar[float]
-    | CwRadar[float]
-    | ImpulseRadar[float]
-    | BoardRadar[float]
-    | ChirpFramesRadar[float]
-    | StepFramesRadar[float]
-    | CwFramesRadar[float]
-)
+if TYPE_CHECKING:
+    Radar: TypeAlias = Kind[N]
+    SceneRadar: TypeAlias = Kind[float]
+else:
+    Radar = Annotated[
+        Union[tuple(Annotated[radar, Tag(f"<{radar.kind}>")] for radar in RADARS)],  # noqa: UP007
+        Discriminator(
+            _tag_of_radar,
+            custom_error_type="wrong",
+            custom_error_message=(
+                "should have a waveform: fmcw, sfcw, cw or impulse; or cfg, or frame"
+            ),
+        ),
+        BeforeValidator(_without_null),
+    ]
+    SceneRadar = Kind

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from math import ceil
-from typing import Any, assert_never
+from typing import assert_never
 
 from radhar_cli.config.checks.smallest_waveform import ENDS, waveform_at
 from radhar_cli.config.maps import FRAME_MAPS, OF_FRAMES, OF_POINTS
@@ -11,13 +11,12 @@ from radhar_cli.config.radar import (
     AnyRadar,
     ArrayRadar,
     BoardRadar,
-    CwFramesRadar,
     CwRadar,
     FmcwRadar,
     FramesRadar,
     ImpulseRadar,
     SfcwRadar,
-    StepFramesRadar,
+    Steps,
 )
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.numerics.rounding import half_up, show_beside
@@ -75,7 +74,7 @@ def _cw_problems(c: Request) -> Iterator[Problem]:
         yield Problem("engine.motion_in_chirp", True, right)
 
 
-def _cw_frames_problems(radar: CwFramesRadar) -> Iterator[Problem]:
+def _cw_frames_problems(radar: FramesRadar) -> Iterator[Problem]:
     """Find what needs both channels of the mixers."""
     if radar.output == "real":
         right = (
@@ -173,7 +172,7 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
 def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
     """Find what a radar with frames cannot have, or numbers that do not fit together."""
     yield from _place_problems(radar)
-    if isinstance(radar, CwFramesRadar):
+    if not radar.has_range:
         yield from _cw_problems(c)
         yield from _cw_frames_problems(radar)
     transmitters, samples = len(radar.array.tx), half_up(radar.adc_rate_hz, radar.chirp_s)
@@ -208,7 +207,7 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
 
 def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
     """Say that a chirp of a radar with frames has too few samples, or too many."""
-    if isinstance(radar, StepFramesRadar):
+    if isinstance(radar, Steps):
         right = f"should be at most {MAX_SAMPLES} with radar.frame"
         return Problem("radar.steps", radar.steps, right)
     right = (
@@ -217,9 +216,7 @@ def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
     return Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
 
 
-def _problem_of_length(
-    radar: AnyRadar[Any], longest: float, interval: float, right: str
-) -> Problem:
+def _problem_of_length(radar: AnyRadar, longest: float, interval: float, right: str) -> Problem:
     """Say that a chirp, or a sweep of steps, is too long.
 
     Args:
@@ -228,7 +225,7 @@ def _problem_of_length(
         interval: the shortest time to the next one, s.
         right: how long it may be.
     """
-    if isinstance(radar, SfcwRadar | StepFramesRadar):
+    if isinstance(radar, Steps):
         right = f"{right} (steps * dwell_s is {show_beside(longest, interval)} s)"
         return Problem("radar.steps", radar.steps, right)
     return Problem("radar.chirp_s", radar.chirp_s, right)
@@ -361,7 +358,7 @@ def _missing_on_board(c: Request) -> Iterator[Problem]:
 def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
     """Find what does not fit the pulses: chirps that are too long, FFTs that are too short."""
     radar, fft_length = c.radar, c.processing.range_fft_length
-    if isinstance(radar, ImpulseRadar) or not radar.has_range:
+    if not radar.sweeps:
         right = f"should be left out with {radar.named}, which has no chirp"
         for key in ("processing.range_fft_length", "processing.range_reference"):
             if at(c, key) not in (None, "centre"):

@@ -1,10 +1,8 @@
 """Waveform, antennas, board and detection of a scene's radar."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from math import log, radians, sqrt
-from typing import TypeAlias, assert_never
+from typing import TypeAlias
 
 import numpy as np
 
@@ -13,16 +11,11 @@ from radhar_cli.config.radar import (
     ArrayRadar,
     BeamConfig,
     BoardRadar,
-    CwRadar,
-    FmcwRadar,
     FramesRadar,
-    ImpulseRadar,
-    SfcwRadar,
+    Sweep,
 )
 from radhar_cli.radar.board import DEVICES, Board
-from radhar_cli.radar.chirp_window import RECTANGULAR
 from radhar_cli.radar.detection import Detection
-from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.assembly.processing import chirp_window_of
@@ -81,38 +74,17 @@ def detection_of(radar: ArrayRadar, processing: ProcessingConfig) -> Detection:
 def waveform_of(scene: Scene) -> Waveform:
     """Make the waveform of a scene."""
     radar, processing = scene.radar, scene.config.processing
-    kind: Callable[..., Waveform] = Waveform
-    residual_video_phase, centred = False, processing.range_reference == "centre"
-    window = RECTANGULAR
-    match radar:
-        case ArrayRadar():
-            waveform = board_of(radar, scene.seconds).waveform
-            return replace(waveform, window=chirp_window_of(processing))
-        case ImpulseRadar():
-            kind = partial(
-                Impulse,
-                profile=radar.profile_m,
-                samples=radar.profile_samples,
-                is_iq=radar.output == "iq",
-            )
-        case CwRadar():
-            centred = False
-        case FmcwRadar() | SfcwRadar():
-            residual_video_phase = radar.residual_video_phase
-            window = chirp_window_of(processing)
-        case _:
-            assert_never(radar)
-    return kind(
-        fc=radar.carrier_hz,
-        bandwidth=radar.bandwidth_hz,
-        chirp=radar.chirp_s,
-        adc_rate=radar.adc_rate_hz,
-        prf=radar.prf_hz,
-        duration=scene.seconds,
-        fft_length=processing.range_fft_length,
-        centred=centred,
-        residual_video_phase=residual_video_phase,
-        window=window,
+    if isinstance(radar, ArrayRadar):
+        waveform = board_of(radar, scene.seconds).waveform
+        return replace(waveform, window=chirp_window_of(processing))
+    centred = processing.range_reference == "centre" and radar.has_range
+    waveform = radar.make_waveform(scene.seconds, processing.range_fft_length, centred)
+    if not isinstance(radar, Sweep):
+        return waveform
+    return replace(
+        waveform,
+        residual_video_phase=radar.residual_video_phase,
+        window=chirp_window_of(processing),
     )
 
 

@@ -196,11 +196,7 @@ def _angle_warnings(config: Config, radar: ArrayRadar) -> Iterator[str]:
 
 def _folding_warnings(config: Config) -> list[str]:
     """Say that some echoes by way of faces come from beyond the ranges that the radar has."""
-    if (
-        config.room.faces is None
-        or isinstance(config.radar, ImpulseRadar)
-        or not config.radar.has_range
-    ):
+    if config.room.faces is None or not config.radar.sweeps:
         return []
     farthest, reach = 0.0, 0.0
     for activity in config.chosen_activities:

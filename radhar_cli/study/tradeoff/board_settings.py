@@ -9,8 +9,7 @@ from radhar_cli.config.radar import (
     BoardRadar,
     ChirpFramesRadar,
     FramesRadar,
-    SfcwRadar,
-    StepFramesRadar,
+    Steps,
 )
 from radhar_cli.study.tradeoff.setting import Setting, Worth, keyed
 
@@ -59,7 +58,7 @@ def frame_settings(radar: FramesRadar, config: Config) -> Iterator[Setting]:
     yield keyed("radar", f"radar.frame.period_s={2 * timing.period_s:g}", Worth.SAVES)
     if timing.loops > 1:
         yield keyed("radar", f"radar.frame.chirps={timing.loops // 2}", Worth.SAVES)
-    if isinstance(radar, StepFramesRadar):
+    if isinstance(radar, Steps):
         yield half_as_many_steps(radar)
     elif isinstance(radar, ChirpFramesRadar):
         yield keyed("radar", f"radar.adc_rate_hz={radar.adc_rate_hz / 2:g}", Worth.SAVES)
@@ -67,7 +66,7 @@ def frame_settings(radar: FramesRadar, config: Config) -> Iterator[Setting]:
         yield from _point_settings(config)
 
 
-def half_as_many_steps(radar: SfcwRadar | StepFramesRadar) -> Setting:
+def half_as_many_steps(radar: Steps) -> Setting:
     """Setting of half as many steps, each twice as long, of a sweep.
 
     Args:

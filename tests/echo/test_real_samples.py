@@ -108,7 +108,7 @@ def test_a_mean_of_chirps_has_less_noise() -> None:
     several = LOW_POWER.replace("frameCfg 2 0 600", "frameCfg 2 4 600")
     mean = board(several, "IWRL6432BOOST")
     assert mean.waveform.sample_rate == pytest.approx(LOW.waveform.sample_rate / 4)
-    assert mean.slot == pytest.approx(4 * LOW.slot)
+    assert mean.slot_s == pytest.approx(4 * LOW.slot_s)
 
 
 def test_the_image_band_is_left_out() -> None:

@@ -115,7 +115,15 @@ class BeamConfig(Section, Generic[N]):
 
 
 class PulseNumbers(Protocol):
-    """Numbers of the pulses of any radar of a scene."""
+    """Numbers of the pulses of any radar of a scene.
+
+    Attributes:
+        carrier_hz: Carrier frequency at the start of a pulse.
+        bandwidth_hz: Bandwidth that a pulse covers.
+        prf_hz: Pulse repetition frequency.
+        adc_rate_hz: Sampling rate within a pulse.
+        chirp_s: Duration of a pulse.
+    """
 
     @property
     def carrier_hz(self) -> float: ...
@@ -253,14 +261,14 @@ class _Emission(AnyRadar, Generic[N]):
     which image.reference has its dBm."""
 
 
-class Sweep(_Band[N], Generic[N]):
+class SweptPulses(_Band[N], Generic[N]):
     """Keys of pulses that sweep their band, whose beat is sampled."""
 
     residual_video_phase: Flag = False
     """Whether the beat keeps the residual video phase, the term pi K tau^2."""
 
 
-class FmcwRadar(_Emission[N], _AntennaPair[N], Sweep[N], Generic[N]):
+class FmcwRadar(_Emission[N], _AntennaPair[N], SweptPulses[N], Generic[N]):
     """A radar that sends chirps: antennas, gains, and a linear sweep sampled by an ADC."""
 
     kind: ClassVar[str] = "fmcw"
@@ -302,7 +310,7 @@ class Steps(AnyRadar, Generic[N]):
         return self.steps * self.dwell_s
 
 
-class SfcwRadar(Steps[N], _Emission[N], _AntennaPair[N], Sweep[N], Generic[N]):
+class SfcwRadar(Steps[N], _Emission[N], _AntennaPair[N], SweptPulses[N], Generic[N]):
     """A radar that steps through frequencies and takes a sample at each."""
 
     kind: ClassVar[str] = "sfcw"
@@ -310,7 +318,7 @@ class SfcwRadar(Steps[N], _Emission[N], _AntennaPair[N], Sweep[N], Generic[N]):
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
 
-class Tone(AnyRadar):
+class ContinuousWave(AnyRadar):
     """Keys of radars that send one frequency: pulses of a sample, whose band changes nothing."""
 
     has_range: ClassVar[bool] = False
@@ -327,7 +335,7 @@ class Tone(AnyRadar):
         return NO_RANGE if kind.transform is Transform.RTM else super().why_no_map(kind, gating)
 
 
-class CwRadar(Tone, _Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
+class CwRadar(ContinuousWave, _Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
     """A radar that sends one frequency and takes one sample a pulse; it has no range."""
 
     kind: ClassVar[str] = "cw"
@@ -869,7 +877,7 @@ class StepFramesRadar(FramesRadar[N], Steps[N], _SweptBand[N], Generic[N]):
     waveform: Literal["sfcw"] = "sfcw"
 
 
-class CwFramesRadar(Tone, FramesRadar[N], Generic[N]):
+class CwFramesRadar(ContinuousWave, FramesRadar[N], Generic[N]):
     """A radar that sends one frequency, whose samples are taken in frames: it has no range."""
 
     kind: ClassVar[str] = "cw_frames"

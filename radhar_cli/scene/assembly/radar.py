@@ -12,7 +12,7 @@ from radhar_cli.config.radar import (
     BeamConfig,
     BoardRadar,
     FramesRadar,
-    Sweep,
+    SweptPulses,
 )
 from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.detection import Detection
@@ -79,7 +79,7 @@ def waveform_of(scene: Scene) -> Waveform:
         return replace(waveform, window=chirp_window_of(processing))
     centred = processing.range_reference == "centre" and radar.has_range
     waveform = radar.make_waveform(scene.seconds, processing.range_fft_length, centred)
-    if not isinstance(radar, Sweep):
+    if not isinstance(radar, SweptPulses):
         return waveform
     return replace(
         waveform,

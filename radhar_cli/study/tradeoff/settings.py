@@ -10,7 +10,7 @@ from radhar_cli.config.radar import (
     FmcwRadar,
     ImpulseRadar,
     SfcwRadar,
-    Sweep,
+    SweptPulses,
 )
 from radhar_cli.config.room import WallConfig
 from radhar_cli.processing.map_kind import kind_of
@@ -146,7 +146,7 @@ def radar_settings(config: Config) -> Iterator[Setting]:
             yield keyed("radar", f"radar.profile_samples={samples}", Worth.SAVES)
         case CwRadar():
             pass
-    if isinstance(radar, Sweep) and not radar.residual_video_phase:
+    if isinstance(radar, SweptPulses) and not radar.residual_video_phase:
         yield keyed("radar", "radar.residual_video_phase=true", Worth.PHYSICS)
     if radar.beam is None:
         yield Setting("radar", "beams of 70 x 30 degrees", (BEAM,), worth=Worth.PHYSICS)

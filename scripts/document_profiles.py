@@ -89,8 +89,8 @@ def table_row(radar: BuiltInRadar, points: dict[int, tuple[float, float]]) -> st
     cells = [
         f"`{radar.name}`",
         radar.chain,
-        f"{100 * radar.header.range_step_m:.1f} cm, {radar.header.farthest_m:.1f} m",
-        f"{radar.header.doppler_step_mps():.3f}, ±{radar.header.fastest_mps:.1f} m/s",
+        f"{100 * radar.header.timing.range_step_m:.1f} cm, {radar.header.timing.farthest_m:.1f} m",
+        f"{radar.header.timing.doppler_step_mps():.3f}, ±{radar.header.timing.fastest_mps:.1f} m/s",
         f"{radar.frames_per_s:.3g}",
         *(f"{count:.3g}; {share:.2f}".replace("; 0.", "; .") for count, share in points.values()),
     ]

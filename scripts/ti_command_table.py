@@ -49,8 +49,8 @@ def _rows_of_files() -> Iterator[str]:
         except CaptureError as error:
             yield f"| {name}, {device} | refused: `{error}` | | | | |"
             continue
-        chain, period_ms = header.firmware or "best, said", header.period_s * 1e3
-        cubes, maps = zip(*_shapes(text, device, header.subframes), strict=True)
+        chain, period_ms = header.firmware or "best, said", header.timing.period_s * 1e3
+        cubes, maps = zip(*_shapes(text, device, header.timing.subframes), strict=True)
         software = header.family.value
         yield (
             f"| {name}, {device} | {software if software != 'all' else 'any'} | {chain} "

@@ -23,7 +23,7 @@ def test_a_config_of_plain_values_is_that_of_a_file(tmp_path: Path) -> None:
 def test_values_that_a_config_is_made_of_stay_as_they_are() -> None:
     values = {"radar": {"cfg": "iwr1443boost", "device": "IWR1443BOOST"}}
     config = radhar.load_config(values)
-    assert config.radar.header.loops > 1
+    assert config.radar.timing.loops > 1
     assert values == {"radar": {"cfg": "iwr1443boost", "device": "IWR1443BOOST"}}
 
 

@@ -21,7 +21,6 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.board import Board
-from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.scene.products.board import products_of_frames
 from radhar_cli.scene.products.images import level_scale_of, scale_of
@@ -76,7 +75,7 @@ def frames_of_recording(
     inputs = {"cube": cube, "board": board, **scales}
     table = products(config) if isinstance(config, Config) else products_of_frames(config)
     outputs = run(plan(table, names, inputs), inputs).products
-    middles = part.segments.times(np.array(starts)) + board.loops * board.loop / 2
+    middles = part.segments.times(np.array(starts)) + board.loops * board.loop_s / 2
     results = {
         name: _at_times(product, middles) if isinstance(product, PowerMap) else product
         for name, product in outputs.items()
@@ -131,8 +130,8 @@ def _describe_difference(recording: Recording, board: Board) -> str | None:
     """Say in what the content of a recording differs from that of a board; None if it does not."""
     content = recording.info.content
     if board.samples == 1:
-        return describe_difference(content, SlowTime(board.fc, 1 / board.loop))
-    return describe_other_chirps(content, Beat(timing_of(board)))
+        return describe_difference(content, SlowTime(board.carrier_hz, board.prf_hz))
+    return describe_other_chirps(content, Beat.of_frames(board))
 
 
 def _require_kind_of_samples(recording: Recording, board: Board) -> None:
@@ -144,9 +143,3 @@ def _require_kind_of_samples(recording: Recording, board: Board) -> None:
             f"{recording.path}: samples are {kinds[is_real]}: should be {kinds[board.is_real]}, as "
             "radar.cfg has it"
         )
-
-
-def timing_of(board: Board) -> FmcwTiming:
-    """Timing of a board's chirps, of one transmitter."""
-    bandwidth = board.slope * board.samples / board.adc_rate
-    return FmcwTiming(board.fc, bandwidth, board.adc_rate, board.samples, 1 / board.loop)

@@ -187,7 +187,7 @@ def _without_mean(signal: Signal, config: AnyConfig) -> Signal:
     """Take the mean out of a recording, of a radar with frames out of each frame, as simulated."""
     if not isinstance(config.radar, ArrayRadar):
         return signal.with_samples(without_static(signal.x))
-    if config.radar.header.loops == 1:  # of which the mean of a frame would leave nothing
+    if config.radar.timing.loops == 1:  # of which the mean of a frame would leave nothing
         return signal
     return signal.cancelled(MeanRemoval())
 
@@ -391,13 +391,13 @@ def _windows_of_config(signal: Signal, config: AnyConfig) -> list[Frames]:
     radar, times = config.radar, signal.times
     duration = signal.pulses / signal.prf
     if isinstance(radar, ArrayRadar) and radar.frames_apart:
-        duration = float(times.start[-1] - times.start[0]) + radar.header.period_s
+        duration = float(times.start[-1] - times.start[0]) + radar.timing.period_s
     processing, arguments = config.processing, (duration, signal.prf, signal.f0)
     windows = [processing.make_frames(*arguments), processing.make_fsst_frames(*arguments)]
     if not isinstance(radar, ArrayRadar):
         return windows
     are_apart = radar.frames_apart and len(times) > 1
-    return [one.within(radar.header.loops, are_apart) for one in windows]
+    return [one.within(radar.timing.loops, are_apart) for one in windows]
 
 
 def even_columns(power_map: PowerMap) -> PowerMap:

@@ -64,7 +64,7 @@ def _settings_of(
 ) -> dict[str, Any]:
     """Settings of a capture of a radar, whose numbers are taken at their middle."""
     if isinstance(radar, FramesRadar):
-        settings = settings_of_frames(radar.header)
+        settings = settings_of_frames(radar.timing)
         of_chirps = () if radar.has_range else ("bandwidth_hz", "adc_rate_hz", "samples")
         return {key: value for key, value in settings.items() if key not in of_chirps}
     carrier, prf = nominal(radar.carrier_hz), nominal(radar.prf_hz)

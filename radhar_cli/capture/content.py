@@ -1,12 +1,12 @@
 """What the samples of a recording are: beat signals of chirps, range profiles, or slow time."""
 
-from dataclasses import asdict, dataclass, fields, replace
-from typing import Any, ClassVar, TypeAlias
+from dataclasses import asdict, dataclass, replace
+from typing import Any, ClassVar, Self, TypeAlias
 
 from radhar_cli.config.radar import class_of_radar
 from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.range_compression import range_compression
-from radhar_cli.radar.fmcw_timing import FmcwTiming
+from radhar_cli.radar.frame_timing import FrameTiming
 from radhar_cli.radar.impulse import Impulse, impulse
 from radhar_cli.radar.waveform import Waveform
 
@@ -36,32 +36,46 @@ class Beat:
     noun: ClassVar[str] = "samples of chirps"
     axes: ClassVar[tuple[str, ...]] = ("receiver", "fast time", "pulse")
 
-    timing: FmcwTiming
+    carrier_hz: float  # frequency at the first sample of a chirp that is kept
+    bandwidth_hz: float  # B, swept while the samples are taken
+    adc_rate_hz: float  # fs
+    samples: int  # N, of a chirp
+    prf_hz: float  # pulses per second of one receiver, within a segment
     is_whole: bool = False  # whether echoes lie in both halves of the band of complex samples
 
-    @property
-    def carrier_hz(self) -> float:
-        """Frequency at the first sample of a chirp, Hz."""
-        return self.timing.carrier_hz
+    @classmethod
+    def of_frames(cls, timing: FrameTiming) -> Self:
+        """Samples of the chirps of one transmitter of a radar with frames."""
+        rates = timing.adc_rate_hz, timing.samples, timing.prf_hz
+        return cls(timing.carrier_hz, timing.bandwidth_hz, *rates)
 
-    @property
-    def prf_hz(self) -> float:
-        """Pulses per second of one receiver, within a segment."""
-        return self.timing.prf_hz
-
-    @property
-    def samples(self) -> int:
-        """Number N of samples of a pulse."""
-        return self.timing.samples
+    @classmethod
+    def of_waveform(cls, w: Waveform, is_whole: bool = False) -> Self:
+        """Samples of the chirps of a waveform, N = N_ADC."""
+        bandwidth = w.slope * w.n_adc / w.adc_rate
+        return cls(w.fc, bandwidth, w.adc_rate, w.n_adc, w.prf, is_whole)
 
     def waveform(
         self, duration: float, fft_length: int | None = None, centred: bool = True
     ) -> Waveform:
-        """Waveform of the chirps; arguments are those of `FmcwTiming.waveform`."""
-        w = self.timing.waveform(duration, fft_length, centred)
-        if not self.is_whole:
-            return w
-        return WholeBand(**{field.name: getattr(w, field.name) for field in fields(w)})
+        """Waveform of the chirps.
+
+        Args:
+            duration: Duration of the recording, s.
+            fft_length: Length of the transform over a chirp; None is the number of samples.
+            centred: Whether ranges refer to the middle of the chirp.
+        """
+        kind = WholeBand if self.is_whole else Waveform
+        return kind(
+            fc=self.carrier_hz,
+            bandwidth=self.bandwidth_hz,
+            chirp=self.samples / self.adc_rate_hz,
+            adc_rate=self.adc_rate_hz,
+            prf=self.prf_hz,
+            duration=duration,
+            fft_length=fft_length,
+            centred=centred,
+        )
 
     def range_bins(self, pulses: Complex, w: Waveform) -> Complex:
         """Range bins [K, M] of pulses [N, M], referred to the chirp's start unless w is centred."""
@@ -129,9 +143,8 @@ Content: TypeAlias = Ranging | SlowTime
 
 def numbers_of(content: Content) -> dict[str, Any]:
     """Numbers of the radar behind a content, by the names that they have in a recording's file."""
-    if isinstance(content, Beat):
-        return asdict(content.timing) | ({"whole_band": True} if content.is_whole else {})
-    return {name: value for name, value in asdict(content).items() if name != "is_iq"}
+    numbers = {name: value for name, value in asdict(content).items() if name != "is_iq"}
+    return numbers | {"whole_band": True} if numbers.pop("is_whole", False) else numbers
 
 
 def describe_difference(
@@ -215,11 +228,11 @@ def _radar_keys(content: Content, waveform: str) -> dict[str, Any]:
                 "profile_m": [content.first_range_m, w.half_band_range],
                 "profile_samples": content.samples,
             }
-        case Beat(timing):
-            steps = {"steps": timing.samples, "dwell_s": 1 / timing.adc_rate_hz}
+        case Beat():
+            steps = {"steps": content.samples, "dwell_s": 1 / content.adc_rate_hz}
             return numbers | {
                 **({"waveform": "sfcw", **steps} if waveform == "sfcw" else {"waveform": "fmcw"}),
-                "bandwidth_hz": timing.bandwidth_hz,
-                "adc_rate_hz": timing.adc_rate_hz,
-                "chirp_s": timing.chirp_s,
+                "bandwidth_hz": content.bandwidth_hz,
+                "adc_rate_hz": content.adc_rate_hz,
+                "chirp_s": content.samples / content.adc_rate_hz,
             }

@@ -29,8 +29,7 @@ from radhar_cli.config.radar import (
 )
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.errors import CaptureError, did_you_mean
-from radhar_cli.radar.fmcw_timing import FmcwTiming
-from radhar_cli.radar.frame_header import Sampling
+from radhar_cli.radar.frame_timing import Sampling
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.schema.number import nominal
 
@@ -153,23 +152,22 @@ def _chirps(
     recording: Recording, content: Beat, note: Mapping[str, Any], frames: RecordedFrames | None
 ) -> dict[str, Any]:
     """Radar that sends chirps: with frames and an array, or plain ones of one antenna pair."""
-    timing = content.timing
     has_steps = note.get("waveform") == "sfcw"
     waves: dict[str, Any] = {
-        "carrier_hz": _number(timing.carrier_hz),
-        "bandwidth_hz": _number(timing.bandwidth_hz),
-        "adc_rate_hz": _number(timing.adc_rate_hz),
-        "chirp_s": _number(timing.chirp_s),
+        "carrier_hz": _number(content.carrier_hz),
+        "bandwidth_hz": _number(content.bandwidth_hz),
+        "adc_rate_hz": _number(content.adc_rate_hz),
+        "chirp_s": _number(content.samples / content.adc_rate_hz),
         "waveform": "sfcw" if has_steps else "fmcw",
     }
     if has_steps:
-        waves |= {"steps": timing.samples, "dwell_s": _number(1 / timing.adc_rate_hz)}
+        waves |= {"steps": content.samples, "dwell_s": _number(1 / content.adc_rate_hz)}
     turns = _turns_of(recording, content)
     if frames is None and not _has_frames(note):
         if _why_frames(recording, content, turns):
             note = dict(note) | {"frame": {"chirps": chirps_of_frames(recording)}}
         else:
-            return dict(note) | waves | {"prf_hz": _number(timing.prf_hz)}
+            return dict(note) | waves | {"prf_hz": _number(content.prf_hz)}
     return dict(note) | waves | _frame_keys(recording, content, note, frames)
 
 
@@ -347,27 +345,19 @@ def _board(recording: Recording, note: Mapping[str, Any]) -> dict[str, Any]:
         )
     radar = read_radar(section, where)
     assert isinstance(radar, ArrayRadar)
-    header = radar.header
-    timing = FmcwTiming(
-        header.carrier_hz,
-        header.bandwidth_hz,
-        header.adc_rate_hz,
-        header.samples,
-        header.prf_hz,
-    )
-    difference = describe_other_chirps(recording.info.content, Beat(timing), TOLERANCE)
-    channels = len(header.order) * len(header.receivers)
-    if recording.info.receivers != channels:
-        difference = f"receivers = {recording.info.receivers}: should be {channels}"
+    timing = radar.timing
+    difference = describe_other_chirps(recording.info.content, Beat.of_frames(timing), TOLERANCE)
+    if recording.info.receivers != timing.channels:
+        difference = f"receivers = {recording.info.receivers}: should be {timing.channels}"
     frames = frames_in(recording.segments)
-    if frames is not None and frames.pulses != header.loops:
-        difference = f"frame_pulses = {frames.pulses}: should be {header.loops}"
+    if frames is not None and frames.pulses != timing.loops:
+        difference = f"frame_pulses = {frames.pulses}: should be {timing.loops}"
     if difference is not None:
         raise CaptureError(f"{where}: {difference}, as the .cfg of the import has it")
     return section
 
 
-def read_radar(section: Mapping[str, Any], where: str = "radar") -> AnyRadar[Any]:
+def read_radar(section: Mapping[str, Any], where: str = "radar") -> AnyRadar:
     """Read a section `radar` of a config.
 
     Raises:
@@ -377,7 +367,7 @@ def read_radar(section: Mapping[str, Any], where: str = "radar") -> AnyRadar[Any
     return validated(Config, {"radar": dict(section), "maps": maps}, where, {}).radar
 
 
-def has_beam(radar: AnyRadar[Any]) -> bool:
+def has_beam(radar: AnyRadar) -> bool:
     """Whether the antennas of a radar take a part of what comes from beside their boresight."""
     return isinstance(radar, ArrayRadar) or getattr(radar, "beam", None) is not None
 
@@ -385,10 +375,10 @@ def has_beam(radar: AnyRadar[Any]) -> bool:
 def keeps_whole_band(section: Mapping[str, Any]) -> bool:
     """Whether the radar of a section has ranges in both halves of the band of its samples."""
     radar = read_radar(section)
-    return isinstance(radar, ArrayRadar) and radar.header.sampling is Sampling.COMPLEX
+    return isinstance(radar, ArrayRadar) and radar.timing.sampling is Sampling.COMPLEX
 
 
-def place_of(radar: AnyRadar[Any]) -> float:
+def place_of(radar: AnyRadar) -> float:
     """Distance x of the antennas of a radar along the x axis, m, numbers at their middle."""
     places = [getattr(radar, key) for key in radar.place_keys]
     return float(np.mean([nominal(place[0]) for place in places]))

@@ -3,6 +3,7 @@
 import shlex
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -25,7 +26,6 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import BoardWaveform
-from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
@@ -309,7 +309,7 @@ def _info(
     """Describe the recording that is made of a capture, whose echoes may fill the whole band."""
     content = _content(source, s, segments.prf)
     if isinstance(content, Beat) and is_whole:
-        content = Beat(content.timing, is_whole)
+        content = replace(content, is_whole=True)
         notes.append(
             "what moves lies in both halves of the band: ranges reach from 0 to "
             f"{content.waveform(1.0).half_band_range:.4g} m"
@@ -373,8 +373,7 @@ def _content(source: Source, s: CaptureSettings, prf_hz: float) -> Content:
         )
     assert s.bandwidth_hz is not None
     assert s.adc_rate_hz is not None
-    timing = FmcwTiming(s.carrier_hz, s.bandwidth_hz, s.adc_rate_hz, source.samples, prf_hz)
-    return Beat(timing)
+    return Beat(s.carrier_hz, s.bandwidth_hz, s.adc_rate_hz, source.samples, prf_hz)
 
 
 BEAT_KEYS = ("bandwidth_hz", "adc_rate_hz")
@@ -530,7 +529,7 @@ def write_simulated(
         )
     elif samples > 1:
         is_whole = isinstance(waveform, BoardWaveform) and waveform.n_bins == waveform.n_fft
-        content = Beat(FmcwTiming.of_waveform(waveform), is_whole)
+        content = Beat.of_waveform(waveform, is_whole)
     info = RecordingInfo(
         content=content,
         receivers=receivers,

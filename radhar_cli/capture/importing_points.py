@@ -20,7 +20,7 @@ from radhar_cli.config.documents import read_document
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import regular_size, text_of
-from radhar_cli.radar.frame_header import FrameHeader
+from radhar_cli.radar.frame_timing import FrameTiming
 from radhar_cli.readers.captures.settings import Above, Text
 from radhar_cli.readers.points.point_frames import PointFrame, RadarSteps, tracks_of
 from radhar_cli.readers.points.point_messages import (
@@ -72,8 +72,7 @@ class PointHeader:
         """Steps of the board, as far as they are known."""
         s, steps = self.settings, RadarSteps()
         if self.cfg:
-            header, bias_m = _parse_cfg(self.cfg, self.where, s.subframe)
-            steps = RadarSteps.of_header(header, bias_m)
+            steps = RadarSteps.of_frames(*_parse_cfg(self.cfg, self.where, s.subframe))
         range_m, speed_mps = s.range_step_m or steps.range_m, s.doppler_step_mps or steps.speed_mps
         return RadarSteps(range_m, speed_mps, steps.bias_m)
 
@@ -206,7 +205,7 @@ def _essential_lines(cfg: str) -> str:
     return text if len(text) <= LONGEST_CFG else ""
 
 
-def _parse_cfg(cfg: str, where: str, subframe: int) -> tuple[FrameHeader, float]:
+def _parse_cfg(cfg: str, where: str, subframe: int) -> tuple[FrameTiming, float]:
     """Chirps and frames of a .cfg, and the bias of ranges, m.
 
     Raises:
@@ -215,9 +214,9 @@ def _parse_cfg(cfg: str, where: str, subframe: int) -> tuple[FrameHeader, float]
     try:
         header = parse_ti_cfg(cfg, where, subframe=subframe)
     except CaptureError:  # such as DDMA, whose points are sent as others are
-        headers, _ = parse_frames(cfg, where)
-        return headers[min(subframe, len(headers) - 1)], 0.0
-    return header, header.detection.bias
+        timings, _ = parse_frames(cfg, where)
+        return timings[min(subframe, len(timings) - 1)], 0.0
+    return header.timing, header.detection.bias
 
 
 def _has_doppler_bins(dump: Dump) -> bool:

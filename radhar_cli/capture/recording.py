@@ -29,7 +29,6 @@ from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.files.untrusted import Closing
 from radhar_cli.numerics.arrays import Complex
-from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.readers.captures.source import Parts
@@ -103,8 +102,7 @@ class _Description(_Part):
             case (None, None, None, None, None):
                 return SlowTime(self.carrier_hz, self.prf_hz)
             case (int(n), float(band), float(rate), None, None):
-                timing = FmcwTiming(self.carrier_hz, band, rate, n, self.prf_hz)
-                return Beat(timing, self.whole_band)
+                return Beat(self.carrier_hz, band, rate, n, self.prf_hz, self.whole_band)
             case (int(n), float(band), None, float(first), float(step)):
                 return RangeProfiles(self.carrier_hz, band, n, self.prf_hz, first, step)
         return None

@@ -9,7 +9,7 @@ from radhar_cli.config.built_in_radars import device_of
 from radhar_cli.config.documents import RADARS
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import read_json, text_of
-from radhar_cli.radar.frame_header import FrameHeader, Sampling
+from radhar_cli.radar.frame_timing import FrameTiming
 from radhar_cli.readers.captures.infineon_header import is_infineon, read_infineon
 from radhar_cli.readers.ti.lvds_format import LvdsFormat, read_lvds_format, sends_samples
 from radhar_cli.readers.ti.ti_cfg import MAX_CFG, parse_frames
@@ -36,8 +36,8 @@ def read_ti_settings(path: Path) -> dict[int, dict[str, Any]]:
             return {0: read_infineon(document, path)}
     readers = {".json": read_studio, ".lua": read_lua}
     if reader := readers.get(path.suffix.lower()):
-        header, stream = reader(path)
-        return {0: settings_of_frames(header) | _settings_of_stream(stream)}
+        timing, stream = reader(path)
+        return {0: settings_of_frames(timing) | _settings_of_stream(stream)}
     built_in = {"device": device_of(path.stem)} if path in RADARS.values() else {}
     return read_cfg_settings(text_of(path, MAX_CFG, CaptureError), str(path), built_in)
 
@@ -59,34 +59,34 @@ def read_cfg_settings(
         CaptureError: as `read_ti_settings`.
     """
     settings = dict[int, dict[str, Any]]()
-    for header, stream in _read_cfg(text, where):
+    for timing, stream in _read_cfg(text, where):
         section = {"cfg": text, **radar} | (
-            {"subframe": header.subframe} if header.subframe else {}
+            {"subframe": timing.subframe} if timing.subframe else {}
         )
-        settings[header.subframe] = {
-            **settings_of_frames(header),
+        settings[timing.subframe] = {
+            **settings_of_frames(timing),
             **_settings_of_stream(stream),
             "radar": section,
         }
     return settings
 
 
-def settings_of_frames(header: FrameHeader) -> dict[str, Any]:
+def settings_of_frames(timing: FrameTiming) -> dict[str, Any]:
     """Settings of a frame, or of a subframe of it, whatever holds its samples."""
     return {
-        "carrier_hz": header.carrier_hz,
-        "bandwidth_hz": header.bandwidth_hz,
-        "adc_rate_hz": header.adc_rate_hz,
-        "prf_hz": header.prf_hz,
-        "samples": header.samples,
-        "transmitters": len(header.masks),
-        "frame_pulses": header.loops,
-        "frame_s": header.period_s,
-        "frame_delay_s": header.delay_s,
-        "receivers": len(header.receivers),
-        "receiver_lanes": list(header.receivers),
-        "complex": header.sampling is not Sampling.REAL,
-        "adc_bits": header.adc_bits,
+        "carrier_hz": timing.carrier_hz,
+        "bandwidth_hz": timing.bandwidth_hz,
+        "adc_rate_hz": timing.adc_rate_hz,
+        "prf_hz": timing.prf_hz,
+        "samples": timing.samples,
+        "transmitters": len(timing.masks),
+        "frame_pulses": timing.loops,
+        "frame_s": timing.period_s,
+        "frame_delay_s": timing.delay_s,
+        "receivers": len(timing.receivers),
+        "receiver_lanes": list(timing.receivers),
+        "complex": not timing.is_real,
+        "adc_bits": timing.adc_bits,
     }
 
 
@@ -99,8 +99,8 @@ def _settings_of_stream(stream: LvdsFormat) -> dict[str, Any]:
     }
 
 
-def _read_cfg(text: str, where: str) -> list[tuple[FrameHeader, LvdsFormat]]:
+def _read_cfg(text: str, where: str) -> list[tuple[FrameTiming, LvdsFormat]]:
     """Read the subframes that are in the stream: all, where the file sends none of them."""
-    headers, lines = parse_frames(text, where)
-    sent = [header for header in headers if sends_samples(lines, header.subframe)]
-    return [(header, read_lvds_format(lines, header.subframe)) for header in sent or headers]
+    timings, lines = parse_frames(text, where)
+    sent = [timing for timing in timings if sends_samples(lines, timing.subframe)]
+    return [(timing, read_lvds_format(lines, timing.subframe)) for timing in sent or timings]

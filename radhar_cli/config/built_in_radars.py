@@ -31,17 +31,17 @@ class BuiltInRadar:
     @property
     def frames_per_s(self) -> float:
         """Frames per second."""
-        return 1 / self.header.period_s
+        return 1 / self.header.timing.period_s
 
     @property
     def description(self) -> str:
         """Line that says what it is for."""
-        header = self.header
+        timing = self.header.timing
         return (
             f"{self.chain}; {self.frames_per_s:.3g} frames a second, "
-            f"ranges to {header.farthest_m:.3g} m in steps of "
-            f"{100 * header.range_step_m:.2g} cm, +-{header.fastest_mps:.2g} m/s in steps of "
-            f"{header.doppler_step_mps():.2g} m/s"
+            f"ranges to {timing.farthest_m:.3g} m in steps of "
+            f"{100 * timing.range_step_m:.2g} cm, +-{timing.fastest_mps:.2g} m/s in steps of "
+            f"{timing.doppler_step_mps():.2g} m/s"
         )
 
 

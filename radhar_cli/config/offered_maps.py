@@ -15,7 +15,7 @@ def possible_maps(config: Request) -> tuple[str, ...]:
     """
     radar = config.radar
     names = [*KNOWN_MAPS, "cube"]
-    if isinstance(radar, ArrayRadar) and config.processing.savgol.frame > radar.header.loops:
+    if isinstance(radar, ArrayRadar) and config.processing.savgol.frame > radar.timing.loops:
         names = [name for name in names if not treatment_of(name).denoised]
     if fewest_windows(config) < MIN_CADENCE_WINDOWS:
         names = [name for name in names if name not in CADENCE_MAPS]

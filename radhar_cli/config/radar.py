@@ -13,9 +13,11 @@ from typing import (
     ClassVar,
     Generic,
     Literal,
-    NamedTuple,
+    Protocol,
     Self,
     TypeAlias,
+    Union,
+    get_args,
 )
 
 from pydantic import (
@@ -30,6 +32,7 @@ from pydantic import (
 
 from radhar_cli.config.maps import MIN_LOOPS
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.numerics.rounding import half_up
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, RANGE
 from radhar_cli.processing.map_kind import MapKind, Transform
@@ -46,8 +49,9 @@ from radhar_cli.radar.board import (
     sidelobe,
 )
 from radhar_cli.radar.detection import Chain, Firmware
-from radhar_cli.radar.frame_header import FrameHeader
-from radhar_cli.radar.written_frames import WrittenFrames
+from radhar_cli.radar.frame_timing import FrameTiming, Sampling
+from radhar_cli.radar.impulse import Impulse, impulse
+from radhar_cli.radar.waveform import Waveform
 from radhar_cli.schema.annotations import GIVEN, ByModel, NeedsAnyKey, NeedsKey
 from radhar_cli.schema.number import (
     ANGLE,
@@ -110,25 +114,57 @@ class BeamConfig(Section, Generic[N]):
     """Largest loss: no direction gets less than this below the gain of the boresight."""
 
 
-class AnyRadar(Section, Generic[N]):
-    """What every kind of radar answers, each by its own keys."""
+class PulseNumbers(Protocol):
+    """Numbers of the pulses of any radar of a scene.
+
+    Attributes:
+        carrier_hz: Carrier frequency at the start of a pulse.
+        bandwidth_hz: Bandwidth that a pulse covers.
+        prf_hz: Pulse repetition frequency.
+        adc_rate_hz: Sampling rate within a pulse.
+        chirp_s: Duration of a pulse.
+    """
+
+    @property
+    def carrier_hz(self) -> float: ...
+    @property
+    def bandwidth_hz(self) -> float: ...
+    @property
+    def prf_hz(self) -> float: ...
+    @property
+    def adc_rate_hz(self) -> float: ...
+    @property
+    def chirp_s(self) -> float: ...
+
+
+class AnyRadar(Section):
+    """Questions that every kind of radar answers by its own keys."""
 
     kind: ClassVar[str]
     named: ClassVar[str]  # as messages name it: the key, and value, that tell the kind
     has_range: ClassVar[bool] = True  # whether pulses have a band, whose echoes tell ranges
+    sweeps: ClassVar[bool] = True  # whether pulses sweep their band, and a beat is sampled
 
-    if TYPE_CHECKING:  # keys of some kinds, which follow from others' keys
+    def make_waveform(
+        self: PulseNumbers, seconds: float, fft_length: int | None, centred: bool
+    ) -> Waveform:
+        """Make the waveform of the pulses of a recording of so many seconds.
 
-        @property
-        def carrier_hz(self) -> N: ...
-        @property
-        def bandwidth_hz(self) -> N: ...
-        @property
-        def prf_hz(self) -> N: ...
-        @property
-        def adc_rate_hz(self) -> N: ...
-        @property
-        def chirp_s(self) -> N: ...
+        Args:
+            seconds: Duration of the recording.
+            fft_length: Length of the transform over a chirp; None is the number of samples.
+            centred: Whether ranges refer to the middle of the chirp.
+        """
+        return Waveform(
+            fc=self.carrier_hz,
+            bandwidth=self.bandwidth_hz,
+            chirp=self.chirp_s,
+            adc_rate=self.adc_rate_hz,
+            prf=self.prf_hz,
+            duration=seconds,
+            fft_length=fft_length,
+            centred=centred,
+        )
 
     @property
     def frames_apart(self) -> bool:
@@ -162,7 +198,7 @@ class AnyRadar(Section, Generic[N]):
         )
 
 
-class _Pulses(AnyRadar[N], Generic[N]):
+class _Pulses(AnyRadar, Generic[N]):
     """Keys of radars that send pulse after pulse."""
 
     carrier_hz: Annotated[N, POSITIVE, within(1e6, 1e13, "Hz")] = default_draw(77e9)
@@ -188,7 +224,7 @@ class _Band(_Pulses[N], Generic[N]):
     30 m are seen with 1 GHz, up to 7.5 m with 4 GHz."""
 
 
-class _AntennaPair(AnyRadar[N], Generic[N]):
+class _AntennaPair(AnyRadar, Generic[N]):
     """Keys of a transmitting and a receiving antenna."""
 
     tx_m: VectorOf[N] = default_draw((0.4, -0.1, 1.5))
@@ -204,7 +240,7 @@ class _AntennaPair(AnyRadar[N], Generic[N]):
     """Beam of both antennas; null radiates evenly."""
 
 
-class _Emission(AnyRadar[N], Generic[N]):
+class _Emission(AnyRadar, Generic[N]):
     """Keys of the field that a radar sends out."""
 
     polarisation: Annotated[
@@ -225,14 +261,14 @@ class _Emission(AnyRadar[N], Generic[N]):
     which image.reference has its dBm."""
 
 
-class _Sweep(_Band[N], Generic[N]):
+class SweptPulses(_Band[N], Generic[N]):
     """Keys of pulses that sweep their band, whose beat is sampled."""
 
     residual_video_phase: Flag = False
     """Whether the beat keeps the residual video phase, the term pi K tau^2."""
 
 
-class FmcwRadar(_Emission[N], _AntennaPair[N], _Sweep[N], Generic[N]):
+class FmcwRadar(_Emission[N], _AntennaPair[N], SweptPulses[N], Generic[N]):
     """A radar that sends chirps: antennas, gains, and a linear sweep sampled by an ADC."""
 
     kind: ClassVar[str] = "fmcw"
@@ -253,7 +289,7 @@ def _require_waveform(schema: dict[str, Any]) -> None:
     schema["required"] = [*schema.get("required", ()), "waveform"]
 
 
-class _Steps(AnyRadar[N], Generic[N]):
+class Steps(AnyRadar, Generic[N]):
     """Keys of sweeps that are steps of frequency."""
 
     waveform: Literal["sfcw"] = "sfcw"
@@ -264,17 +300,17 @@ class _Steps(AnyRadar[N], Generic[N]):
     """Time that the radar stays on each frequency."""
 
     @property
-    def adc_rate_hz(self) -> float:  # type: ignore[override]
+    def adc_rate_hz(self) -> float:
         """Samples per second of a sweep."""
         return 1 / self.dwell_s
 
     @property
-    def chirp_s(self) -> float:  # type: ignore[override]
+    def chirp_s(self) -> float:
         """Duration of a sweep, s."""
         return self.steps * self.dwell_s
 
 
-class SfcwRadar(_Steps[N], _Emission[N], _AntennaPair[N], _Sweep[N], Generic[N]):
+class SfcwRadar(Steps[N], _Emission[N], _AntennaPair[N], SweptPulses[N], Generic[N]):
     """A radar that steps through frequencies and takes a sample at each."""
 
     kind: ClassVar[str] = "sfcw"
@@ -282,45 +318,36 @@ class SfcwRadar(_Steps[N], _Emission[N], _AntennaPair[N], _Sweep[N], Generic[N])
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
 
-class OneSample(NamedTuple):
-    """A pulse of one sample, whose length and band change nothing.
+class ContinuousWave(AnyRadar):
+    """Keys of radars that send one frequency: pulses of a sample, whose band changes nothing."""
 
-    Attributes:
-        adc_rate_hz: Sampling rate, Hz.
-        chirp_s: Length, s.
-        bandwidth_hz: Band, Hz.
-    """
+    has_range: ClassVar[bool] = False
+    sweeps: ClassVar[bool] = False
+    adc_rate_hz: ClassVar[float] = 1e9
+    chirp_s: ClassVar[float] = 1e-9
+    bandwidth_hz: ClassVar[float] = 1e3
 
-    adc_rate_hz: float = 1e9
-    chirp_s: float = 1e-9
-    bandwidth_hz: float = 1e3
+    waveform: Literal["cw"] = "cw"
+    """Kind of the radar."""
+
+    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
+        """Say why the radar does not make a map: it has no range."""
+        return NO_RANGE if kind.transform is Transform.RTM else super().why_no_map(kind, gating)
 
 
-ONE_SAMPLE = OneSample()
-
-
-class CwRadar(_Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
+class CwRadar(ContinuousWave, _Emission[N], _AntennaPair[N], _Pulses[N], Generic[N]):
     """A radar that sends one frequency and takes one sample a pulse; it has no range."""
 
     kind: ClassVar[str] = "cw"
     named: ClassVar[str] = "radar.waveform: cw"
-    has_range: ClassVar[bool] = False
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
-    waveform: Literal["cw"] = "cw"
-    """Kind of the radar."""
     output: Literal["iq", "real"] = "iq"
     """Output of the mixer: iq, or real for the in-phase channel alone, whose Doppler is
     symmetric."""
 
-    adc_rate_hz: ClassVar[float] = ONE_SAMPLE.adc_rate_hz  # type: ignore[assignment]
-    chirp_s: ClassVar[float] = ONE_SAMPLE.chirp_s  # type: ignore[assignment]
-    bandwidth_hz: ClassVar[float] = ONE_SAMPLE.bandwidth_hz  # type: ignore[assignment]
-
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map: it has no range, real samples no direction."""
-        if kind.transform is Transform.RTM:
-            return NO_RANGE
+        """Say why the radar does not make a map: real samples have no direction of motion."""
         if self.output == "real" and kind.treatment.compensated:
             return "radar.output: real has no sign of the Doppler"
         return super().why_no_map(kind, gating)
@@ -331,6 +358,7 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
 
     kind: ClassVar[str] = "impulse"
     named: ClassVar[str] = "radar.waveform: impulse"
+    sweeps: ClassVar[bool] = False
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
     waveform: Literal["impulse"] = "impulse"
@@ -344,8 +372,8 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
     """Number of range samples in a profile."""
 
     # A pulse of one sample, whose middle is that of the band.
-    adc_rate_hz: ClassVar[float] = 1e9  # type: ignore[assignment]
-    chirp_s: ClassVar[float] = 2e-9  # type: ignore[assignment]
+    adc_rate_hz: ClassVar[float] = 1e9
+    chirp_s: ClassVar[float] = 2e-9
 
     @field_validator("profile_m")
     @classmethod
@@ -353,6 +381,20 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
         if not 0 <= value[0] < value[1]:
             raise value_error("should be [from, to], 0 <= from < to, with radar.waveform: impulse")
         return value
+
+    def make_waveform(
+        self: "ImpulseRadar[float]", seconds: float, fft_length: int | None, centred: bool
+    ) -> Impulse:
+        """Make the waveform of the pulses, which have no chirp to transform or refer to."""
+        return impulse(
+            fc=self.carrier_hz,
+            bandwidth=self.bandwidth_hz,
+            prf=self.prf_hz,
+            duration=seconds,
+            profile=self.profile_m,
+            samples=self.profile_samples,
+            is_iq=self.output == "iq",
+        )
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
         """Say why the radar does not make a map of its samples; of complex ones it makes all."""
@@ -371,7 +413,7 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
 class ArrayRadar(_Emission[N], Generic[N]):
     """A radar that sends frames of chirps and receives them by an array: what all of them are."""
 
-    waveform: Literal["fmcw"] = "fmcw"
+    waveform: Literal["fmcw", "sfcw", "cw"] = "fmcw"
     """Waveform of a radar with frames: fmcw sends chirps, sfcw sweeps of steps, cw one
     frequency."""
     position_m: VectorOf[N] = default_draw((0.0, 0.0, 1.0))
@@ -394,7 +436,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
     chirps_key: ClassVar[str]  # as messages name what says how many loops a frame has
 
     @property
-    def header(self) -> FrameHeader:
+    def timing(self) -> FrameTiming:
         """Chirps, frames and samples of the radar."""
         raise NotImplementedError
 
@@ -436,7 +478,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
     @property
     def frames_apart(self) -> bool:
         """Whether the radar pauses between its frames."""
-        return self.header.frames_apart
+        return self.timing.frames_apart
 
     @property
     def place_keys(self) -> tuple[str, ...]:
@@ -451,23 +493,23 @@ class ArrayRadar(_Emission[N], Generic[N]):
     @property
     def virtual_places(self) -> Places:
         """Places of the virtual elements, half wavelengths; none where elements are missing."""
-        array, header = self.elements, self.header
+        array, timing = self.elements, self.timing
         if array is None:
             return ()
-        if max(header.order) >= len(array.tx) or max(header.receivers) >= len(array.rx):
+        if max(timing.order) >= len(array.tx) or max(timing.receivers) >= len(array.rx):
             return ()
         scale = 1.0
         if self.half_wavelength_m is not None:
-            scale = self.half_wavelength_m * 2 * header.centre_hz / SPEED_OF_LIGHT
+            scale = self.half_wavelength_m * 2 * timing.centre_hz / SPEED_OF_LIGHT
         return tuple(
             (scale * (array.tx[t][0] + array.rx[r][0]), scale * (array.tx[t][1] + array.rx[r][1]))
-            for t in header.order
-            for r in header.receivers
+            for t in timing.order
+            for r in timing.receivers
         )
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
         """Say why the radar does not make a map: its frames may be too short for a window."""
-        if kind.is_doppler_time and self.header.loops < MIN_WINDOW:
+        if kind.is_doppler_time and self.timing.loops < MIN_WINDOW:
             return (
                 f"the {self._loops} of a frame ({self.chirps_key}) are fewer than "
                 f"{MIN_WINDOW} pulses"
@@ -481,7 +523,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
         """
         kind = FRAME_MAP_KINDS.get(name)  # none of the points
         shows_doppler = name == "points" or (kind is not None and kind.shows_doppler)
-        if shows_doppler and 1 < self.header.loops < MIN_LOOPS:  # a window keeps a loop of one
+        if shows_doppler and 1 < self.timing.loops < MIN_LOOPS:  # a window keeps a loop of one
             return (
                 f"the {self._loops} of a frame ({self.chirps_key}) show no Doppler; "
                 f"{MIN_LOOPS} do, or 1, whose Doppler is 0"
@@ -533,7 +575,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
 
     @property
     def _loops(self) -> str:
-        return f"{self.header.loops} loop{'s' * (self.header.loops > 1)}"
+        return f"{self.timing.loops} loop{'s' * (self.timing.loops > 1)}"
 
 
 def _array_of(places: "ArrayConfig | ElementsConfig") -> Array:
@@ -548,6 +590,7 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
     named: ClassVar[str] = "radar.cfg"
     chirps_key: ClassVar[str] = "radar.cfg, frameCfg"
 
+    waveform: Literal["fmcw"] = "fmcw"
     cfg: Annotated[str, Field(min_length=1, max_length=2**16)]
     """The .cfg of a TI board, which gives the waveform: a path from this file's folder on, or a
     known radar (docs/guide/boards.md). A config that is written has its text."""
@@ -585,6 +628,11 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
         return parse_ti_cfg(self.cfg, device=self.device, subframe=self.subframe)
 
     @property
+    def timing(self) -> FrameTiming:
+        """Chirps, frames and samples that `cfg` describes."""
+        return self.header.timing
+
+    @property
     def firmware(self) -> Firmware | None:
         """Chain of TI's firmware whose commands `cfg` has; None without any."""
         return self.header.firmware
@@ -602,7 +650,7 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
     @property
     def other_subframes(self) -> dict[str, int]:
         """Numbers of the subframes of the .cfg but the chosen one, {end of products: number}."""
-        numbers = range(self.header.subframes)
+        numbers = range(self.timing.subframes)
         return {f"_sf{number}": number for number in numbers if number != self.subframe}
 
     @property
@@ -621,29 +669,29 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
         return self.model_copy(update={"subframe": 0})
 
     @property
-    def carrier_hz(self) -> float:  # type: ignore[override]
+    def carrier_hz(self) -> float:
         """Frequency at the first sample of a chirp that is kept, Hz."""
-        return self.header.carrier_hz
+        return self.timing.carrier_hz
 
     @property
-    def bandwidth_hz(self) -> float:  # type: ignore[override]
+    def bandwidth_hz(self) -> float:
         """Bandwidth that a chirp sweeps while it is sampled, Hz."""
-        return self.header.slope_hz * self.chirp_s
+        return self.timing.bandwidth_hz
 
     @property
-    def prf_hz(self) -> float:  # type: ignore[override]
+    def prf_hz(self) -> float:
         """Loops per second within a frame."""
-        return self.header.prf_hz
+        return self.timing.prf_hz
 
     @property
-    def adc_rate_hz(self) -> float:  # type: ignore[override]
+    def adc_rate_hz(self) -> float:
         """Sampling rate of the ADC, Hz."""
-        return self.header.adc_rate_hz
+        return self.timing.adc_rate_hz
 
     @property
-    def chirp_s(self) -> float:  # type: ignore[override]
+    def chirp_s(self) -> float:
         """Duration for which a chirp is sampled, s."""
-        return self.header.samples / self.header.adc_rate_hz
+        return self.timing.chirp_s
 
     @property
     def usual_noise_figure_db(self) -> float:
@@ -666,17 +714,17 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
 
         The out-of-box firmware takes two chirps alone, of TX1 and TX3, on a 1642 of TX1 and TX2.
         """
-        header = self.header
+        timing = self.timing
         firmware = self.firmware if chain == "board" else chain
-        if header.bpm is None or firmware not in ("sdk1", "sdk3"):
+        if timing.bpm is None or firmware not in ("sdk1", "sdk3"):
             return None
         masks = {"16": (3,), "18": (5,), "68": (5,)}.get(str(self.device)[3:5], (3, 5, 6))
         right = "two chirps of the same two transmitters"
-        if len(header.masks) == 2:
-            if header.masks[0] in masks:
+        if len(timing.masks) == 2:
+            if timing.masks[0] in masks:
                 return None
             right = f"the mask {masks[0]}"
-        masks_given = " ".join(map(str, header.masks))
+        masks_given = " ".join(map(str, timing.masks))
         return (
             f"bpmCfg with the masks {masks_given} (chirpCfg txEnable): the out-of-box firmware "
             f"takes {right} (cloud.chain: {chain})"
@@ -714,23 +762,32 @@ class _FrameStart(ArrayRadar[N], Generic[N]):
     frame: FrameConfig
     """Frames of the radar, which range-Doppler and angle maps, cubes, points and skeletons are
     of."""
-    carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True), FIXED] = 77e9  # type: ignore[assignment]
+    carrier_hz: Annotated[float, Field(ge=1e6, le=1e13, strict=True), FIXED] = 77e9
     """Frequency at the first sample of a chirp, of the first step, or of cw."""
+
+    if TYPE_CHECKING:  # of each waveform, in its own way
+
+        @property
+        def bandwidth_hz(self) -> float: ...
+        @property
+        def adc_rate_hz(self) -> float: ...
+        @property
+        def chirp_s(self) -> float: ...
 
 
 class _SweptBand(_FrameStart[N], Generic[N]):
     """Band of radars with frames that sweep it."""
 
-    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True), FIXED] = 1e9  # type: ignore[assignment]
+    bandwidth_hz: Annotated[float, Field(ge=1e3, le=1e12, strict=True), FIXED] = 1e9
     """Bandwidth that a chirp sweeps while it is sampled, or the steps cover."""
 
 
 class _SampledChirps(_SweptBand[N], Generic[N]):
     """Samples of radars with frames of chirps."""
 
-    adc_rate_hz: Annotated[float, Field(ge=1e-3, le=1e13, strict=True), FIXED] = 10e6  # type: ignore[assignment]
+    adc_rate_hz: Annotated[float, Field(ge=1e-3, le=1e13, strict=True), FIXED] = 10e6
     """Sampling rate of the ADC within a chirp."""
-    chirp_s: Annotated[float, Field(ge=1e-12, le=1e4, strict=True), FIXED] = 40e-6  # type: ignore[assignment]
+    chirp_s: Annotated[float, Field(ge=1e-12, le=1e4, strict=True), FIXED] = 40e-6
     """Duration of the sampled sweep."""
 
 
@@ -740,7 +797,9 @@ class FramesRadar(_FrameStart[N], Generic[N]):
     named: ClassVar[str] = "radar.frame"
     chirps_key: ClassVar[str] = "radar.frame.chirps"
 
-    prf_hz: Annotated[float, Field(ge=1e-3, le=1e7, strict=True), FIXED] | None = None  # type: ignore[assignment]
+    prf_hz: Filled[Annotated[float, Field(ge=1e-3, le=1e7, strict=True), FIXED]] = default_draw(
+        None
+    )
     """Chirps of each transmitter per second, within a frame; null is by frame.interval_s."""
     output: Literal["iq", "real"] = "iq"
     """Samples of the receivers: iq, or real for one channel of the mixer, whose range bins are
@@ -751,15 +810,6 @@ class FramesRadar(_FrameStart[N], Generic[N]):
     """Place of one transmitter in the scene, with rx_m instead of array and position_m."""
     rx_m: VectorOf[N] | None = None
     """Place of one receiver in the scene."""
-
-    if TYPE_CHECKING:  # of each kind, in its own way
-
-        @property
-        def bandwidth_hz(self) -> float: ...  # type: ignore[override]
-        @property
-        def adc_rate_hz(self) -> float: ...  # type: ignore[override]
-        @property
-        def chirp_s(self) -> float: ...  # type: ignore[override]
 
     @model_validator(mode="after")
     def _fill_prf(self) -> Self:
@@ -778,20 +828,24 @@ class FramesRadar(_FrameStart[N], Generic[N]):
         return self.chirp_s
 
     @property
-    def header(self) -> FrameHeader:
-        """Header of these frames."""
-        return WrittenFrames(
+    def timing(self) -> FrameTiming:
+        """Chirps, frames and samples of the radar."""
+        transmitters, chirps = len(self.array.tx), self.frame.chirps
+        pause_free_s = chirps * transmitters * self.interval_s
+        return FrameTiming(
+            start_hz=self.carrier_hz,
             carrier_hz=self.carrier_hz,
-            bandwidth_hz=self.bandwidth_hz,
+            slope_hz=self.bandwidth_hz / self.chirp_s,
+            samples=max(half_up(self.adc_rate_hz, self.chirp_s), 1),
             adc_rate_hz=self.adc_rate_hz,
-            chirp_s=self.chirp_s,
-            interval_s=self.interval_s,
-            chirps=self.frame.chirps,
-            period_s=self.frame.period_s,
-            transmitters=len(self.array.tx),
-            receivers=len(self.array.rx),
-            is_real=self.output == "real",
-        ).header
+            slot_s=self.interval_s,
+            masks=tuple(1 << n for n in range(transmitters)),
+            receivers=tuple(range(len(self.array.rx))),
+            loops=chirps,
+            frames=0,
+            period_s=pause_free_s if self.frame.period_s is None else self.frame.period_s,
+            sampling=Sampling.REAL if self.output == "real" else Sampling.COMPLEX,
+        )
 
     @property
     def place_keys(self) -> tuple[str, ...]:
@@ -805,37 +859,33 @@ class FramesRadar(_FrameStart[N], Generic[N]):
         return _array_of(self.array)
 
 
-class ChirpFramesRadar(FramesRadar[N], _SampledChirps[N], Generic[N]):  # type: ignore[override]
+class ChirpFramesRadar(FramesRadar[N], _SampledChirps[N], Generic[N]):
     """A radar that sends frames of chirps."""
 
     kind: ClassVar[str] = "frames"
 
+    waveform: Literal["fmcw"] = "fmcw"
 
-class StepFramesRadar(FramesRadar[N], _Steps[N], _SweptBand[N], Generic[N]):  # type: ignore[override]
+
+class StepFramesRadar(FramesRadar[N], Steps[N], _SweptBand[N], Generic[N]):
     """A radar that sends frames of sweeps, each of steps of frequency with a sample."""
 
     kind: ClassVar[str] = "sfcw_frames"
     named: ClassVar[str] = "radar.frame of waveform: sfcw"
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
-    waveform: Literal["sfcw"] = "sfcw"  # type: ignore[assignment]
-    """Kind of the radar."""
+    waveform: Literal["sfcw"] = "sfcw"
 
 
-class CwFramesRadar(FramesRadar[N], Generic[N]):
+class CwFramesRadar(ContinuousWave, FramesRadar[N], Generic[N]):
     """A radar that sends one frequency, whose samples are taken in frames: it has no range."""
 
     kind: ClassVar[str] = "cw_frames"
     named: ClassVar[str] = "radar.frame of waveform: cw"
-    has_range: ClassVar[bool] = False
     model_config = ConfigDict(json_schema_extra=_require_waveform)
 
-    waveform: Literal["cw"] = "cw"  # type: ignore[assignment]
+    waveform: Literal["cw"] = "cw"
     """Kind of the radar."""
-
-    adc_rate_hz: ClassVar[float] = ONE_SAMPLE.adc_rate_hz
-    chirp_s: ClassVar[float] = ONE_SAMPLE.chirp_s
-    bandwidth_hz: ClassVar[float] = ONE_SAMPLE.bandwidth_hz
 
     @model_validator(mode="before")
     @classmethod
@@ -850,12 +900,6 @@ class CwFramesRadar(FramesRadar[N], Generic[N]):
                 )
         return value
 
-    def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map: it has no range."""
-        if kind.transform is Transform.RTM:
-            return NO_RANGE
-        return super().why_no_map(kind, gating)
-
     def why_no_frames(self, name: str) -> str | None:
         """Say why the radar does not make a map of its frames: it has no range."""
         kind = FRAME_MAP_KINDS.get(name)
@@ -868,16 +912,17 @@ class CwFramesRadar(FramesRadar[N], Generic[N]):
         return NO_RANGE
 
 
-RADARS: tuple[type[AnyRadar[Any]], ...] = (
-    FmcwRadar,
-    SfcwRadar,
-    CwRadar,
-    ImpulseRadar,
-    BoardRadar,
-    ChirpFramesRadar,
-    StepFramesRadar,
-    CwFramesRadar,
+Kind: TypeAlias = (
+    FmcwRadar[N]
+    | SfcwRadar[N]
+    | CwRadar[N]
+    | ImpulseRadar[N]
+    | BoardRadar[N]
+    | ChirpFramesRadar[N]
+    | StepFramesRadar[N]
+    | CwFramesRadar[N]
 )
+RADARS: tuple[type[AnyRadar], ...] = get_args(Kind)
 # {waveform: kind} of the radars that have frames in the config.
 KINDS_WITH_FRAMES = {
     "fmcw": ChirpFramesRadar.kind,
@@ -888,7 +933,7 @@ for _kind in RADARS:
     _kind.ALTERNATIVES = tuple(other for other in RADARS if other is not _kind)
 
 
-def class_of_radar(value: Any) -> type[AnyRadar[Any]] | None:
+def class_of_radar(value: Any) -> type[AnyRadar] | None:
     """Return the class of a radar, or of a mapping that describes one; None of an unknown kind."""
     if isinstance(value, AnyRadar):
         return type(value)
@@ -931,29 +976,19 @@ def _without_null(value: Any) -> Any:
 
 
 # What `radar:` may be: of a config, and with its numbers as floats of a scene.
-Radar: TypeAlias = Annotated[
-    Annotated[FmcwRadar[N], Tag("<fmcw>")]
-    | Annotated[SfcwRadar[N], Tag("<sfcw>")]
-    | Annotated[CwRadar[N], Tag("<cw>")]
-    | Annotated[ImpulseRadar[N], Tag("<impulse>")]
-    | Annotated[BoardRadar[N], Tag("<board>")]
-    | Annotated[ChirpFramesRadar[N], Tag("<frames>")]
-    | Annotated[StepFramesRadar[N], Tag("<sfcw_frames>")]
-    | Annotated[CwFramesRadar[N], Tag("<cw_frames>")],
-    Discriminator(
-        _tag_of_radar,
-        custom_error_type="wrong",
-        custom_error_message="should have a waveform: fmcw, sfcw, cw or impulse; or cfg, or frame",
-    ),
-    BeforeValidator(_without_null),
-]
-SceneRadar: TypeAlias = (
-    FmcwRadar[float]
-    | SfcwRadar[float]
-    | CwRadar[float]
-    | ImpulseRadar[float]
-    | BoardRadar[float]
-    | ChirpFramesRadar[float]
-    | StepFramesRadar[float]
-    | CwFramesRadar[float]
-)
+if TYPE_CHECKING:
+    Radar: TypeAlias = Kind[N]
+    SceneRadar: TypeAlias = Kind[float]
+else:
+    Radar = Annotated[
+        Union[tuple(Annotated[radar, Tag(f"<{radar.kind}>")] for radar in RADARS)],  # noqa: UP007
+        Discriminator(
+            _tag_of_radar,
+            custom_error_type="wrong",
+            custom_error_message=(
+                "should have a waveform: fmcw, sfcw, cw or impulse; or cfg, or frame"
+            ),
+        ),
+        BeforeValidator(_without_null),
+    ]
+    SceneRadar = Kind

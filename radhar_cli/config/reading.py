@@ -579,7 +579,7 @@ def _kinds_of_class(names: list[int | str], document: Any) -> list[type[BaseMode
 
 
 def _problems_of_missing(
-    key: str, names: list[Any], beside: object, lacking: int, radar: type[AnyRadar[Any]]
+    key: str, names: list[Any], beside: object, lacking: int, radar: type[AnyRadar]
 ) -> Iterator[Problem]:
     """Problem of a value that is missing, of lists that of the first one.
 

@@ -648,7 +648,7 @@ def _pose_of_cfg(radar: Any) -> dict[str, float]:
 def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, Any]]) -> None:
     """Note the defaults that a board has of its own, of what was not given."""
     try:
-        _ = radar.header
+        _ = radar.timing
     except CaptureError as error:
         raise value_error(str(error)) from None
     if "snr_db" not in c.model_fields_set:

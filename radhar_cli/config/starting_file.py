@@ -188,24 +188,25 @@ def of_board(cfg: str, folder: Path) -> str:
         return of_preset(preset)  # a radar whose numbers stand in its config
     text = cfg_text(cfg, Path(), "--radar")
     board = parse_ti_cfg(text, cfg)
+    timing = board.timing
     device, chain = _likely_device(board, text), board.firmware or "best"
     path = os.path.relpath(Path(cfg).resolve(), folder.resolve())
     if name := name_of_radar(cfg):
         device, path = device_of(name), name
-    maps = ", ".join(_maps_of_board(text, device, board.period_s, chain))
+    maps = ", ".join(_maps_of_board(text, device, timing.period_s, chain))
     position = "" if board.pose else ", position_m: [0, 0, 1]"
-    range_end = board.farthest_m
-    speed = board.fastest_mps
+    range_end = timing.farthest_m
+    speed = timing.fastest_mps
     nearest, farthest = min(1.5, range_end / 3), min(3.0, range_end / 1.5)
     activities = "punching, kicking, grabbing, sitting_down, standing_up"
-    duration_s = max(3.0, 2 * board.period_s)
+    duration_s = max(3.0, 2 * timing.period_s)
     if chain in PEOPLE_CHAINS:  # which see persons move through a room
         nearest, farthest = min(2.0, range_end / 3), min(5.0, range_end / 1.5)
         activities = "walking, walking_to_falling, sitting_down, standing_up, punching"
         duration_s = 5.0
-    antennas = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
+    antennas = f"{len(timing.order)} transmitters and {len(timing.receivers)} receivers"
     notes = "".join(f"# {note}\n" for note in _notes_on_points(board, device, chain))
-    return f"""# {antennas}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
+    return f"""# {antennas}; {1 / timing.period_s:.4g} frames a second of {timing.loops} loops;
 # ranges to {range_end:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
 {notes}radar: {{device: {device}, cfg: {json.dumps(path)}{position}}}
 samples_per_class: 20
@@ -229,8 +230,8 @@ def _notes_on_points(board: BoardHeader, device: str, chain: Chain) -> Iterator[
             f"cloud.chain: best{others} has more"
         )
     array = DEVICES[device].array
-    if max(board.order) < len(array.tx) and max(board.receivers) < len(array.rx):
-        heights = {array.tx[t][1] + array.rx[r][1] for t, r in board.antennas}
+    if max(board.timing.order) < len(array.tx) and max(board.timing.receivers) < len(array.rx):
+        heights = {array.tx[t][1] + array.rx[r][1] for t, r in board.timing.antennas_of_channels}
         if len(heights) == 1:
             yield "the elements that the file uses lie in one row: points have no heights (z = 0)"
 
@@ -304,10 +305,10 @@ def _likely_device(board: BoardHeader, text: str) -> str:
 
 def _usual_device(board: BoardHeader) -> str:
     """Name the device that is usual with software and frequency of a .cfg."""
-    if board.start_hz < 70e9 and board.family is not Family.L_SDK:
+    if board.timing.start_hz < 70e9 and board.family is not Family.L_SDK:
         return "IWR6843ISK"
     by_family = {
-        Family.L_SDK: IWRL6844 if len(board.receivers) > 3 else "IWRL6432BOOST",
+        Family.L_SDK: IWRL6844 if len(board.timing.receivers) > 3 else "IWRL6432BOOST",
         Family.MCU_PLUS: "AWR2944EVM",
         Family.SDK_3: "IWR1843BOOST",  # which xWR14xx does not have
         Family.PEOPLE_3D: "IWR1843BOOST",

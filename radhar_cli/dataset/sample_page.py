@@ -143,7 +143,7 @@ def _cells(low: float, high: float, cells: int) -> NDArray[Any]:
 
 def _times(board: Board, frames: int) -> NDArray[Any]:
     """Middles of `frames` frames, s; a recorded sample may have other frames than its config."""
-    return np.arange(frames) * board.period + board.loops * board.loop / 2
+    return np.arange(frames) * board.period_s + board.loops * board.loop_s / 2
 
 
 def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] = ()) -> Any:

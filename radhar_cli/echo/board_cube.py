@@ -252,7 +252,7 @@ class FrameNodes(NamedTuple):
     def of(cls, board: Board, count: int) -> "FrameNodes":
         """Choose so many instants, or those of all loops where these are as few."""
         instants, loops = nodes(count - 1, board.loops), np.arange(float(board.loops))
-        later = board.delays[[k for k, _ in board.pairs]] / board.loop
+        later = board.delays[[k for k, _ in board.pairs]] / board.loop_s
         if instants.size == loops.size:
             later *= 0
         else:
@@ -276,7 +276,7 @@ class FrameNodes(NamedTuple):
 
 def _chirps_of(board: Board, nodes_of: FrameNodes) -> Chirps:
     """Chirps of a frame for `gridded_sum`."""
-    reach, rate = nodes_of.places.max(), board.slope / board.adc_rate
+    reach, rate = nodes_of.places.max(), board.slope_hz / board.adc_rate_hz
     instants, places = (2 * part / reach - 1 for part in nodes_of[:2])
     frequency = board.waveform.fc + rate * (board.samples // 2)
     return Chirps(places, powers_from_nodes(instants), frequency, rate, board.samples)
@@ -300,7 +300,7 @@ def _frame_paths(
     for first in range(0, board.frames, BLOCK_FRAMES):
         begin = board.chirp_times(slice(first, first + BLOCK_FRAMES))[:, 0]
         sampled = [
-            source((begin[:, k * nodes_of.is_exact, None] + board.loop * instants).ravel())
+            source((begin[:, k * nodes_of.is_exact, None] + board.loop_s * instants).ravel())
             for source, (k, _) in zip(channels, board.pairs, strict=True)
         ]
         shape = (-1, len(begin), instants.size)
@@ -341,7 +341,7 @@ def _frame_sum(tau: Float, a: Float, board: Board, tolerance_db: float) -> Compl
     Paths have delays (s) and amplitudes [I, virtual loop].
     """
     dtype, half = np.result_type(a.dtype, np.complex64), max(board.samples - 1, 1) / 2
-    rate, u = board.slope / board.adc_rate, np.arange(board.samples) - (board.samples - 1) / 2
+    rate, u = board.slope_hz / board.adc_rate_hz, np.arange(board.samples) - (board.samples - 1) / 2
     middle = (tau.max() + tau.min()) / 2
     turn = (2 * pi * rate * half) * (tau - middle)
     mean = turn.mean(axis=1, keepdims=True)
@@ -354,7 +354,7 @@ def _frame_sum(tau: Float, a: Float, board: Board, tolerance_db: float) -> Compl
     change = min(change, MAX_TERMS)  # beyond which the error shows
     reach = float(np.abs(mean).max()) + MARGIN * change
     left = np.empty((terms, *tau.shape), dtype)
-    left[0] = unit_phasor(board.centre * tau - half * cycles, dtype)
+    left[0] = unit_phasor(board.centre_hz * tau - half * cycles, dtype)
     left[0] *= a
     for q in range(1, terms):
         np.multiply(left[q - 1], x, out=left[q])

@@ -114,7 +114,7 @@ def draw_cloud(content: BoardFrames, path: Path, advance: Advance) -> None:
     def show(frame: int) -> None:
         film.show(*_moment(content, frame), f"t = {content.board.middles[frame]:.2f} s")
 
-    film.write(path, show, content.board.frames, round(1000 * content.board.period), advance)
+    film.write(path, show, content.board.frames, round(1000 * content.board.period_s), advance)
 
 
 def _joints(content: BoardFrames) -> Float:

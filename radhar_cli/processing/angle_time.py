@@ -78,5 +78,5 @@ def angle_time(
             power[frames] += powers_of_beams(cells[:, None], pairs)[:, 0]
     np.maximum(power, 0, out=power)  # of rounding
     power /= level * len(beams)
-    time = Axis("time", "s", board.middles, board.period)
+    time = Axis("time", "s", board.middles, board.period_s)
     return PowerMap(power.T, ANGLES[axis].of(board), time)

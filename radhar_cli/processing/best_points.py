@@ -79,7 +79,7 @@ def best_points(
             hann(board.loops), board.n_doppler, -1, has_mean=not remove_mean or board.loops == 1
         ),
         threshold=float(gammainccinv(board.channels, pfa)) / board.channels,
-        step=board.doppler_step(carrier),
+        step=board.doppler_step_mps(carrier),
         bias=bias,
     )
     frames = list[Float]()
@@ -379,7 +379,7 @@ class Finder:
             if is_beside or aside * aside + up * up > 1:
                 continue
             r = max(
-                (k + _offset(power[:, column], middle_row)) * self.board.range_step - self.bias,
+                (k + _offset(power[:, column], middle_row)) * self.board.range_step_m - self.bias,
                 0.0,
             )
             speed = (doppler + _offset(power[middle_row], column)) * self.step

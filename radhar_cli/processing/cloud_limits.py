@@ -6,7 +6,7 @@ from radhar_cli.numerics.arrays import Bool
 from radhar_cli.processing.points import Cloud
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.detection import Detection
-from radhar_cli.radar.frame_header import RoomBox
+from radhar_cli.radar.room import RoomBox
 
 
 def keep_in_view(cloud: Cloud, detection: Detection) -> Cloud:

@@ -108,7 +108,7 @@ def separate_transmitters(x: Complex, board: Board) -> Complex:
     if board.bpm is None:
         return x
     apart = board.delays[board.bpm[1]] - board.delays[board.bpm[0]]
-    turns = apart / board.loop
+    turns = apart / board.loop_s
     turned = np.exp(-2j * np.pi * turns * np.fft.fftfreq(board.n_doppler))[:, None, None]
     total = x[..., board.sums, :]
     difference = x[..., board.differences, :] * turned.astype(x.dtype)
@@ -163,7 +163,7 @@ class FrameAxis:
 
 def ranges_of_bins(board: Board) -> Float:
     """Ranges of all bins of a board [K], m."""
-    ranges: Float = np.arange(board.n_bins) * board.range_step
+    ranges: Float = np.arange(board.n_bins) * board.range_step_m
     return ranges
 
 
@@ -171,7 +171,7 @@ def speeds_of_bins(board: Board) -> Float:
     """Radial speeds of the Doppler bins of a board [N], m/s, positive approaching."""
     highest = board.n_doppler // 2
     bins = np.arange(highest - board.n_doppler + 1, highest + 1)
-    speeds: Float = bins * board.doppler_step()
+    speeds: Float = bins * board.doppler_step_mps()
     return speeds
 
 
@@ -180,8 +180,8 @@ def angles_of_beams(board: Board) -> Float:
     return np.arange(-90.0, 91.0)
 
 
-RANGE = FrameAxis("range", "m", ranges_of_bins, attrgetter("range_step"))
-SPEED = FrameAxis("radial speed", "m/s", speeds_of_bins, Board.doppler_step)
+RANGE = FrameAxis("range", "m", ranges_of_bins, attrgetter("range_step_m"))
+SPEED = FrameAxis("radial speed", "m/s", speeds_of_bins, Board.doppler_step_mps)
 # Positive left, positive up.
 ANGLES = tuple(FrameAxis(name, "degree", angles_of_beams) for name in ("azimuth", "elevation"))
 

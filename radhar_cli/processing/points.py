@@ -53,7 +53,7 @@ def board_points(
     fast, slow = np.blackman(board.samples), np.hanning(board.loops)
     fast, slow = fast / fast.sum(), slow / slow.sum()
     lsb = noise_rms(cube, board, fast, slow) / NOISE_LSB if quantise else 0.0
-    step = board.doppler_step(carrier)
+    step = board.doppler_step_mps(carrier)
     frames = list[Float]()
     # Bins in TI's order: the conjugate of a signal has the opposite frequency.
     negated = -np.arange(board.n_doppler) % board.n_doppler
@@ -109,7 +109,7 @@ def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, st
     if lsb > 0:
         symbols = np.trunc(symbols.real) + 1j * np.trunc(symbols.imag)
     n, intensity, right, up = _angles(symbols, board, detection, lsb > 0)
-    r = np.maximum(ranges[n] * board.range_step - detection.bias, 0)
+    r = np.maximum(ranges[n] * board.range_step_m - detection.bias, 0)
     aside, z = r * right, r * up
     places = np.stack([np.sqrt(np.maximum(r * r - aside * aside - z * z, 0)), -aside, z])
     if lsb > 0:

@@ -18,6 +18,7 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.radar.frame_timing import FrameTiming
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes, roll_matrix
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.room import Point
@@ -199,23 +200,12 @@ def sidelobe(row: Sequence[float] | Float) -> float:
     return float(pattern[rises[0] :].max()) if rises.size else 0.0
 
 
-@dataclass(frozen=True)
-class Board:
-    """A board with its chirp profile, its frames and its pose in the scene.
+@dataclass(frozen=True, kw_only=True)
+class Board(FrameTiming):
+    """A radar that sends frames: their timing, its array, and its pose in the scene.
 
     Attributes:
         array: Elements of the device.
-        start: Frequency at which a ramp starts, Hz.
-        fc: Frequency at the first sample that is kept, Hz.
-        slope: Slope K of a ramp, Hz/s.
-        adc_rate: Sampling rate fs, Hz.
-        samples: Number N of samples of a chirp.
-        slot: Time from chirp to chirp, s.
-        order: Numbers of the transmitters, in their order within a loop.
-        receivers: Numbers of the receivers that are on.
-        loops: Number of loops of a frame.
-        frames: Number of frames of the recording.
-        period: Time from frame to frame, s.
         position: Position of the array's origin, m.
         yaw: Angle of boresight from the x axis to the left, rad.
         tilt: Angle of boresight below the horizontal, rad.
@@ -223,33 +213,11 @@ class Board:
         half_power_deg: Half-power half-widths in place of the array's; None for the array's.
         half_wavelength: Unit of the elements' places, m; None is c/(2 f_c).
         gain: Linear gain of each antenna.
-        backoff_db: By how much the power of each transmitter of the device is lower; () for none.
-        bpm: Places in the loop of the chirps in which two transmitters send together, the second
-            one turned by 180 degrees in the latter: those of `order` there; None for none.
-        is_real: Whether samples are real.
-        keeps_half: Whether range bins are those of half the band, as the other half has images.
-        averaged: Number of chirps in a row of which one sample is the mean.
-        chirp_starts: Times from the first chirp of a loop to each of its chirps, s; () where they
-            follow each other after a slot.
-        burst_s: Time from loop to loop, s; None where loops follow without a pause.
-        delay: Time from the start of a frame to its first chirp, s.
-        subframe: Number of the subframe that these are the chirps of.
         ends: Positions of the one transmitter and the one receiver in the scene, m, in place of the
             array's elements; None for these.
     """
 
     array: Array
-    start: float
-    fc: float
-    slope: float
-    adc_rate: float
-    samples: int
-    slot: float
-    order: tuple[int, ...]
-    receivers: tuple[int, ...]
-    loops: int
-    frames: int
-    period: float
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     yaw: float = 0.0
     tilt: float = 0.0
@@ -257,55 +225,7 @@ class Board:
     half_power_deg: tuple[float, float] | None = None
     half_wavelength: float | None = None
     gain: float = 1.0
-    backoff_db: tuple[float, ...] = ()
-    bpm: tuple[int, int] | None = None
-    is_real: bool = False
-    keeps_half: bool = False
-    averaged: int = 1
-    chirp_starts: tuple[float, ...] = ()
-    burst_s: float | None = None
-    delay: float = 0.0
-    subframe: int = 0
     ends: tuple[Point, Point] | None = None
-
-    @property
-    def centre(self) -> float:
-        """Frequency of Doppler and angles: f_c = f_adc + K (N - 1)/(2 fs), Hz."""
-        return self.fc + self.slope * (self.samples - 1) / (2 * self.adc_rate)
-
-    @property
-    def loop(self) -> float:
-        """Time from a chirp to the next of the same transmitter, s."""
-        return self.burst_s or self.slot * len(self.order)
-
-    @property
-    def channels(self) -> int:
-        """Number V of virtual elements."""
-        return len(self.order) * len(self.receivers)
-
-    @property
-    def n_fft(self) -> int:
-        """Length of the transform over a chirp: the next power of two."""
-        return 1 << (self.samples - 1).bit_length()
-
-    @property
-    def n_bins(self) -> int:
-        """Number of range bins: all, or the first half."""
-        return self.n_fft // 2 if self.keeps_half else self.n_fft
-
-    @property
-    def n_doppler(self) -> int:
-        """Number of Doppler bins: the next power of two."""
-        return 1 << (self.loops - 1).bit_length()
-
-    @property
-    def range_step(self) -> float:
-        """Spacing of the range bins, c fs/(2 K N_FFT), m."""
-        return SPEED_OF_LIGHT * self.adc_rate / (2 * self.slope * self.n_fft)
-
-    def doppler_step(self, carrier: float | None = None) -> float:
-        """Spacing of the Doppler bins, c/(2 f loop N_D), m/s; f is a carrier (Hz) or f_c."""
-        return SPEED_OF_LIGHT / (2 * (carrier or self.centre) * self.loop * self.n_doppler)
 
     @cached_property
     def aim(self) -> Aim:
@@ -330,7 +250,7 @@ class Board:
     def unit(self) -> float:
         """Length of the unit of the elements' places, half a wavelength, m."""
         unit = self.half_wavelength or self.array.unit_m
-        return unit or SPEED_OF_LIGHT / (2 * self.centre)
+        return unit or SPEED_OF_LIGHT / (2 * self.centre_hz)
 
     def element(self, place: tuple[float, float]) -> tuple[float, float, float]:
         """Position (m) in the scene of an element at a place (left, up) in half wavelengths."""
@@ -349,14 +269,14 @@ class Board:
     @property
     def pairs(self) -> list[tuple[int, int]]:
         """Pairs (place in the loop, receiver) of the virtual elements [V]."""
-        return [(k, r) for k in range(len(self.order)) for r in self.receivers]
+        return [(k, r) for k in range(len(self.masks)) for r in self.receivers]
 
     @cached_property
     def places(self) -> Float:
         """Places (left, up) of the virtual elements [V, 2], half wavelengths at f_c."""
         tx, rx = np.array(self.array.tx, float), np.array(self.array.rx, float)
         sums = np.array([tx[self.order[k]] + rx[r] for k, r in self.pairs])
-        return sums * (self.unit * 2 * self.centre / SPEED_OF_LIGHT)
+        return sums * (self.unit * 2 * self.centre_hz / SPEED_OF_LIGHT)
 
     def rows_along(self, axis: int) -> tuple[list[list[int]], Float]:
         """Longest rows of virtual elements that tell angles apart, and their places.
@@ -379,9 +299,9 @@ class Board:
     @cached_property
     def delays(self) -> Float:
         """Times (s) from the first chirp of a loop to each of its chirps [place in the loop]."""
-        if self.chirp_starts:
-            return np.array(self.chirp_starts)
-        delays: Float = np.arange(len(self.order)) * self.slot
+        if self.chirp_starts_s:
+            return np.array(self.chirp_starts_s)
+        delays: Float = np.arange(len(self.masks)) * self.slot_s
         return delays
 
     @cached_property
@@ -390,10 +310,10 @@ class Board:
 
         Of two transmitters that send together both have that of the block of their sum.
         """
-        places = list(range(len(self.order)))
+        places = list(range(len(self.masks)))
         if self.bpm is not None:
             places[self.bpm[1]] = self.bpm[0]
-        turns: Float = self.delays[[places[k] for k, _ in self.pairs]] / self.loop
+        turns: Float = self.delays[[places[k] for k, _ in self.pairs]] / self.loop_s
         return turns
 
     @cached_property
@@ -440,51 +360,50 @@ class Board:
 
         Positions of the scene are frozen at these times.
         """
-        begin = np.arange(self.frames)[frames, None, None] * self.period + self.delay
-        loop, k = np.arange(self.loops)[:, None], np.arange(len(self.order))
+        begin = np.arange(self.frames)[frames, None, None] * self.period_s + self.delay_s
+        loop, k = np.arange(self.loops)[:, None], np.arange(len(self.masks))
         if self.burst_s is not None:
             times: Float = begin + loop * self.burst_s + self.delays
             return times
-        return begin + (loop * len(self.order) + k) * self.slot
+        return begin + (loop * len(self.masks) + k) * self.slot_s
 
     @property
     def middles(self) -> Float:
         """Times (s) of the middles of the frames' chirps [frame]."""
-        begins = np.arange(self.frames) * self.period + self.delay
-        return begins + self.loops * self.loop / 2
+        begins = np.arange(self.frames) * self.period_s + self.delay_s
+        return begins + self.loops * self.loop_s / 2
 
     @property
     def pulses(self) -> PulseTimes:
         """Times of the chirps of one transmitter, with a stretch for each frame."""
         frame = np.arange(self.frames)
-        if abs(self.period - self.loops * self.loop) < 1e-9 * self.period:
-            return PulseTimes.even(self.frames * self.loops, 1 / self.loop)
-        begins = frame * self.period + self.delay
-        return PulseTimes(begins, frame * self.loops, self.frames * self.loops, 1 / self.loop)
+        if not self.frames_apart:
+            return PulseTimes.even(self.frames * self.loops, self.prf_hz)
+        begins = frame * self.period_s + self.delay_s
+        return PulseTimes(begins, frame * self.loops, self.frames * self.loops, self.prf_hz)
 
     @property
     def path_waveform(self) -> Waveform:
         """Waveform at the centre frequency, without gaps, for which paths are computed."""
-        chirp = self.samples / self.adc_rate
         return Waveform(
-            fc=self.centre,
-            bandwidth=self.slope * self.samples / self.adc_rate,
-            chirp=chirp,
-            adc_rate=self.adc_rate,
-            prf=1 / self.loop,
-            duration=self.frames * self.period,
+            fc=self.centre_hz,
+            bandwidth=self.bandwidth_hz,
+            chirp=self.chirp_s,
+            adc_rate=self.adc_rate_hz,
+            prf=self.prf_hz,
+            duration=self.frames * self.period_s,
         )
 
     @cached_property
     def waveform(self) -> Waveform:
         """Waveform of one transmitter, whose `times` counts the chirps of all, frame by frame."""
         return BoardWaveform(
-            fc=self.fc,
-            bandwidth=self.slope * self.samples / self.adc_rate,
-            chirp=self.samples / self.adc_rate,
-            adc_rate=self.adc_rate,
-            prf=1 / self.loop,
-            duration=self.frames * self.period,
+            fc=self.carrier_hz,
+            bandwidth=self.bandwidth_hz,
+            chirp=self.chirp_s,
+            adc_rate=self.adc_rate_hz,
+            prf=self.prf_hz,
+            duration=self.frames * self.period_s,
             fft_length=self.n_fft,
             board=self,
         )
@@ -500,7 +419,7 @@ class BoardWaveform(Waveform):
     def n_pulses(self) -> int:
         """Number of chirps of the recording, of all transmitters."""
         assert self.board is not None
-        return self.board.frames * self.board.loops * len(self.board.order)
+        return self.board.frames * self.board.loops * len(self.board.masks)
 
     @cached_property
     def n_adc(self) -> int:
@@ -522,7 +441,7 @@ class BoardWaveform(Waveform):
         """
         assert self.board is not None
         if self.n_adc == 1:
-            return 1 / self.board.slot
+            return 1 / self.board.slot_s
         return self.adc_rate / self.board.averaged
 
     @property
@@ -541,9 +460,9 @@ class BoardWaveform(Waveform):
         Chirps are counted through frames, loops and transmitters.
         """
         assert self.board is not None
-        frame, chirp = np.divmod(pulses, self.board.loops * len(self.board.order))
-        begin = frame * self.board.period + self.board.delay
+        frame, chirp = np.divmod(pulses, self.board.loops * len(self.board.masks))
+        begin = frame * self.board.period_s + self.board.delay_s
         if self.board.burst_s is not None:
-            loop, k = np.divmod(chirp, len(self.board.order))
+            loop, k = np.divmod(chirp, len(self.board.masks))
             return begin + loop * self.board.burst_s + self.board.delays[k.astype(np.intp)]
-        return begin + chirp * self.board.slot
+        return begin + chirp * self.board.slot_s

@@ -6,6 +6,7 @@ starts at the image sign (a - shift) of the antenna.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import NamedTuple
 
@@ -168,3 +169,18 @@ def _is_path(faces: tuple[Face, ...], in_front_of_room: bool) -> bool:
     return all(
         face.name != next_.name and face.axis <= next_.axis for face, next_ in pairwise(faces)
     )
+
+
+@dataclass(frozen=True)
+class RoomBox:
+    """Box in the axes of the room, from the floor point below a board.
+
+    Attributes:
+        ahead_m: Limits along the x axis of scenes, m.
+        left_m: Limits along the y axis, m.
+        up_m: Limits of heights above the floor, m.
+    """
+
+    ahead_m: tuple[float, float]
+    left_m: tuple[float, float]
+    up_m: tuple[float, float]

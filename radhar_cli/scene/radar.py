@@ -1,10 +1,8 @@
 """Waveform, antennas, board and detection of a scene's radar."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from math import log, radians, sqrt
-from typing import TypeAlias, assert_never
+from typing import TypeAlias
 
 import numpy as np
 
@@ -13,17 +11,11 @@ from radhar_cli.config.radar import (
     ArrayRadar,
     BeamConfig,
     BoardRadar,
-    CwRadar,
-    FmcwRadar,
     FramesRadar,
-    ImpulseRadar,
-    SfcwRadar,
+    SweptPulses,
 )
 from radhar_cli.radar.board import DEVICES, Board
-from radhar_cli.radar.chirp_window import RECTANGULAR
 from radhar_cli.radar.detection import Detection
-from radhar_cli.radar.frame_header import Sampling
-from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.scene import Scene
@@ -33,23 +25,14 @@ Vector: TypeAlias = tuple[float, float, float]
 
 def board_of(radar: ArrayRadar[float], seconds: float = 0.0) -> Board:
     """Make the board of a radar with frames, as many as so many seconds have, at least one."""
-    header, array = radar.header, radar.elements
+    timing, array = radar.timing, radar.elements
     assert array is not None  # refused where the config is read
     ends = ends_of(radar)
-    frames = max(int(seconds / header.period_s + 1e-9), 1)
+    frames = max(int(seconds / timing.period_s + 1e-9), 1)
+    of_frames = vars(timing) | {"frames": min(frames, timing.frames or frames)}
     return Board(
+        **of_frames,
         array=array,
-        start=header.start_hz,
-        fc=header.carrier_hz,
-        slope=header.slope_hz,
-        adc_rate=header.adc_rate_hz,
-        samples=header.samples,
-        slot=header.slot_s,
-        order=header.order,
-        receivers=header.receivers,
-        loops=header.loops,
-        frames=min(frames, header.frames or frames),
-        period=header.period_s,
         position=radar.position_m if ends is None else middle_of(*ends),
         yaw=radians(radar.yaw_deg),
         tilt=radians(radar.tilt_deg),
@@ -57,15 +40,6 @@ def board_of(radar: ArrayRadar[float], seconds: float = 0.0) -> Board:
         half_power_deg=radar.half_power_deg,
         half_wavelength=radar.half_wavelength_m,
         gain=10 ** (radar.antenna_gain_dbi / 10),
-        backoff_db=header.profile.backoff_db,
-        bpm=header.bpm,
-        is_real=header.sampling is Sampling.REAL,
-        keeps_half=header.sampling is not Sampling.COMPLEX,
-        averaged=header.averaged,
-        chirp_starts=header.chirp_starts_s,
-        burst_s=header.loop_s if header.has_bursts else None,
-        delay=header.delay_s,
-        subframe=header.subframe,
         ends=ends,
     )
 
@@ -99,38 +73,17 @@ def detection_of(radar: ArrayRadar, processing: ProcessingConfig) -> Detection:
 def waveform_of(scene: Scene) -> Waveform:
     """Make the waveform of a scene."""
     radar, processing = scene.radar, scene.config.processing
-    kind: Callable[..., Waveform] = Waveform
-    residual_video_phase, centred = False, processing.range_reference == "centre"
-    window = RECTANGULAR
-    match radar:
-        case ArrayRadar():
-            waveform = board_of(radar, scene.seconds).waveform
-            return replace(waveform, window=processing.make_chirp_window())
-        case ImpulseRadar():
-            kind = partial(
-                Impulse,
-                profile=radar.profile_m,
-                samples=radar.profile_samples,
-                is_iq=radar.output == "iq",
-            )
-        case CwRadar():
-            centred = False
-        case FmcwRadar() | SfcwRadar():
-            residual_video_phase = radar.residual_video_phase
-            window = processing.make_chirp_window()
-        case _:
-            assert_never(radar)
-    return kind(
-        fc=radar.carrier_hz,
-        bandwidth=radar.bandwidth_hz,
-        chirp=radar.chirp_s,
-        adc_rate=radar.adc_rate_hz,
-        prf=radar.prf_hz,
-        duration=scene.seconds,
-        fft_length=processing.range_fft_length,
-        centred=centred,
-        residual_video_phase=residual_video_phase,
-        window=window,
+    if isinstance(radar, ArrayRadar):
+        waveform = board_of(radar, scene.seconds).waveform
+        return replace(waveform, window=processing.make_chirp_window())
+    centred = processing.range_reference == "centre" and radar.has_range
+    waveform = radar.make_waveform(scene.seconds, processing.range_fft_length, centred)
+    if not isinstance(radar, SweptPulses):
+        return waveform
+    return replace(
+        waveform,
+        residual_video_phase=radar.residual_video_phase,
+        window=processing.make_chirp_window(),
     )
 
 

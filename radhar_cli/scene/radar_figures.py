@@ -66,13 +66,13 @@ def figures_of(scene: Scene) -> RadarFigures:
 def _figures_of_board(board: Board, has_range: bool) -> RadarFigures:
     """Work out the figures of a radar with frames, whose Doppler is that of a frame."""
     has_doppler = board.n_doppler > 1
-    step = board.doppler_step()
+    step = board.doppler_step_mps()
     return RadarFigures(
-        range_step_m=board.range_step if has_range else None,
-        last_range_m=board.n_bins * board.range_step if has_range else None,
+        range_step_m=board.range_step_m if has_range else None,
+        last_range_m=board.n_bins * board.range_step_m if has_range else None,
         speed_limit_mps=step * board.n_doppler / 2 if has_doppler else None,
         speed_step_mps=step if has_doppler else None,
-        rate_hz=1 / board.period,
+        rate_hz=1 / board.period_s,
         has_frames=True,
         transmitters=len(set(board.order)),
         receivers=len(board.receivers),

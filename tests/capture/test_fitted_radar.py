@@ -79,7 +79,7 @@ def same(radar, other):
         document = one.model_dump(mode="json")
         if isinstance(one, ArrayRadar):
             document |= {"frame": None, "prf_hz": None, "array": str(one.elements)}
-            document["header"] = asdict(one.header)
+            document["timing"] = asdict(one.timing)
         documents.append(document)
     return differing_key(*documents)
 

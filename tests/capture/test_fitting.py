@@ -23,7 +23,6 @@ from radhar_cli.capture.recording import (
 from radhar_cli.config import load_config
 from radhar_cli.errors import CaptureError
 from radhar_cli.motion.activities.activity import ACTIVITIES
-from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.scene.single.simulate import Simulation, simulate
 
@@ -103,7 +102,7 @@ def test_frames_with_gaps_between(tmp_path: Path) -> None:
     values = np.ascontiguousarray(scene.beat[:, kept.ravel()]).view(float)
     values = values.reshape(1, len(scene.beat), kept.size, 2)
     info = RecordingInfo(
-        content=Beat(FmcwTiming(10e9, 2e9, 5e6, len(scene.beat), 600)),
+        content=Beat(10e9, 2e9, 5e6, len(scene.beat), 600),
         receivers=1,
         pulses=kept.size,
         receiver_delay_s=[0.0],

@@ -365,14 +365,14 @@ def test_fit_chooses_frames_of_plain_real_chirps_and_says_so(tmp_path):
     assert "has real samples, and no frames: frames of 128 chirps without a pause" in done.stderr
     fitted = load_config(tmp_path / "fitted.yaml").filled()
     assert fitted.radar.output == "real"
-    assert fitted.radar.header.loops == 128
+    assert fitted.radar.timing.loops == 128
     assert fitted.snr_db == pytest.approx(20, abs=1.5)
     sets = ("--set", "activities=[walking]", "--set", "maps=[stft,range_doppler]")
     ok("simulate", tmp_path / "fitted.yaml", "--no-figures", "-o", tmp_path / "again", *sets)
     words = ("--set", "radar.frame.chirps=32", "--overwrite")
     done = ok("fit", tmp_path / "r.h5", "-o", tmp_path / "fitted.yaml", *words)
     assert "chosen" not in done.stderr
-    assert load_config(tmp_path / "fitted.yaml").filled().radar.header.loops == 32
+    assert load_config(tmp_path / "fitted.yaml").filled().radar.timing.loops == 32
 
 
 def test_fit_asks_where_receivers_stand(tmp_path):

@@ -1,5 +1,6 @@
 """A format of captures is added by one table row; contents of recordings are types."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,6 @@ from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config import load_config, resolved
 from radhar_cli.errors import CaptureError
-from radhar_cli.radar.fmcw_timing import FmcwTiming
 from radhar_cli.readers.captures import formats
 from radhar_cli.readers.captures.source import CaptureFiles, CaptureFormat, Parts, Source
 
@@ -50,7 +50,7 @@ def test_a_format_is_added_by_one_row(tmp_path: Path, monkeypatch: pytest.Monkey
         import_capture([tmp_path / "x.own"] * 2, tmp_path / "y.h5", settings)
 
 
-BEAT = Beat(FmcwTiming(24e9, 1e9, 2.5e6, 100, 1000.0))
+BEAT = Beat(24e9, 1e9, 2.5e6, 100, 1000.0)
 PROFILES = RangeProfiles(2.5e9, 1e9, 600, 200.0, 0.1, 0.01)
 SLOW = SlowTime(24e9, 1000.0)
 
@@ -85,10 +85,10 @@ def test_a_config_takes_the_radar_of_any_recording(
 
 
 def test_differences_of_recordings_are_said() -> None:
-    other = Beat(FmcwTiming(24e9, 1e9, 2.5e6, 100, 500.0))
+    other = Beat(24e9, 1e9, 2.5e6, 100, 500.0)
     assert describe_difference(BEAT, BEAT) is None
     assert describe_difference(other, BEAT) == "prf_hz = 500: should be 1000"
-    whole = Beat(BEAT.timing, is_whole=True)
+    whole = replace(BEAT, is_whole=True)
     assert describe_difference(whole, BEAT) == "whole_band = 1: should be 0"
     assert describe_difference(BEAT, whole) == "whole_band = 0: should be 1"
     text = "holds slow time: should hold samples of chirps"

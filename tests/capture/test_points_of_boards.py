@@ -460,7 +460,7 @@ def test_what_convert_writes_comes_back(tmp_path):
         (tmp_path / "board.cfg").write_text(radar.cfg)
         everything = [data.products["points"][row] for row in range(len(data))]
     header = read_point_header(tmp_path / "board.cfg", [])
-    assert header.frame_s == pytest.approx(radar.header.period_s)
+    assert header.frame_s == pytest.approx(radar.timing.period_s)
     matched = 0
     for dump in dumps:
         info = import_points([dump], tmp_path / "again.h5", header)

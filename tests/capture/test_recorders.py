@@ -168,8 +168,8 @@ def test_infineon_s_json_is_a_header(tmp_path):
     info, x = taken(tmp_path, "radar.npy", header=tmp_path / "config.json")
     assert isinstance(info.content, Beat)
     assert (info.pulses, info.segments, info.receivers) == (320, 10, 3)
-    timing = info.content.timing
-    assert (timing.carrier_hz, timing.bandwidth_hz) == (60e9, pytest.approx(1e9))
+    content = info.content
+    assert (content.carrier_hz, content.bandwidth_hz) == (60e9, pytest.approx(1e9))
     spectrum = np.abs(np.fft.rfft(x[0].real - x[0].real.mean(axis=0), axis=0)).mean(axis=1)
     assert spectrum.argmax() * 3e8 / 2e9 == pytest.approx(2.5, abs=0.3)  # m, in the mean
 

@@ -11,7 +11,7 @@ from radhar_cli.config import Config
 from radhar_cli.config.radar import BoardRadar
 from radhar_cli.config.starting_file import of_board
 from radhar_cli.radar.board import device_name
-from radhar_cli.radar.frame_header import RoomBox
+from radhar_cli.radar.room import RoomBox
 from radhar_cli.scene.checks.warnings import config_warnings
 from radhar_cli.scene.products.board import CloudChain
 

@@ -15,6 +15,7 @@ from radhar_cli.config.starting_file import of_board
 from radhar_cli.errors import ConfigError
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.ti_family import Family
+from radhar_cli.readers.ti.ti_commands import split_lines
 from radhar_cli.scene.single.simulate import simulate
 
 BUILT_IN = {radar.name: radar for radar in read_radars()}
@@ -26,15 +27,16 @@ BANDS_GHZ = {"6843": (60, 64), "L6432": (57, 64), "L6844": (57, 64)}  # 76 to 81
 
 @each
 def test_its_ramp_is_within_the_band_and_its_cube_within_memory(radar: BuiltInRadar) -> None:
-    header = radar.header
+    header, timing = radar.header, radar.header.timing
     low, high = next((b for n, b in BANDS_GHZ.items() if n in radar.device), (76, 81))
-    ramp_s = header.profile.ramp_end_us * 1e-6
-    assert low <= header.start_hz / 1e9
-    assert header.start_hz / 1e9 + header.slope_hz * ramp_s / 1e9 <= high
-    doppler_bins = 1 << (header.loops - 1).bit_length()
-    size = header.bins * (4 * header.loops * len(header.antennas) + 2 * doppler_bins)
+    lines = split_lines(RADARS[radar.name].read_text(), radar.name)
+    ramps = {"profileCfg": "rampEndTime", "chirpComnCfg": "chirpRampEndTime"}
+    ramp_s = max(line.numbers[ramps[line.name]] for line in lines if line.name in ramps) * 1e-6
+    assert low <= timing.start_hz / 1e9
+    assert timing.start_hz / 1e9 + timing.slope_hz * ramp_s / 1e9 <= high
+    size = timing.n_bins * (4 * timing.loops * timing.channels + 2 * timing.n_doppler)
     assert size <= L3_BYTES.get(radar.device[:7], 2**20)
-    assert header.loops * header.loop_s < header.period_s / 2  # time for the firmware
+    assert timing.loops * timing.loop_s < timing.period_s / 2  # time for the firmware
     assert not header.unknown
     not_simulated = {"IWRL": ("sigProcChainCfg", "cfarCfg"), "AWR2": ("cfarCfg",)}
     assert header.not_simulated == not_simulated.get(radar.device[:4], ())
@@ -45,11 +47,11 @@ def test_its_comment_says_what_it_is(radar: BuiltInRadar) -> None:
     text = " ".join(RADARS[radar.name].read_text().replace("%", " ").split())
     assert radar.device in text
     assert f"{radar.frames_per_s:.3g} frames a second" in text
-    assert f"to {radar.header.farthest_m:.1f} m" in text or (
-        f"to {radar.header.farthest_m:.3g} m in steps of {100 * radar.header.range_step_m:.2g} cm"
-        in text
+    timing = radar.header.timing
+    assert f"to {timing.farthest_m:.1f} m" in text or (
+        f"to {timing.farthest_m:.3g} m in steps of {100 * timing.range_step_m:.2g} cm" in text
     )
-    assert radar.header.farthest_m > 6.5  # somebody at 6 m is within
+    assert timing.farthest_m > 6.5  # somebody at 6 m is within
 
 
 def test_each_board_has_clouds_and_tracking_where_there_is_such_firmware() -> None:

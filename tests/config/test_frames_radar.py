@@ -75,9 +75,9 @@ def test_a_cfg_and_yaml_of_the_same_radar_are_the_same_board() -> None:
 def test_steps_and_limits_follow_from_the_numbers() -> None:
     board = board_of(frames_radar(), 1.0)
     assert (board.samples, board.n_bins, board.n_doppler, board.frames) == (128, 64, 64, 10)
-    assert board.range_step == pytest.approx(SPEED_OF_LIGHT / 2e9)
-    fastest = board.doppler_step() * 32
-    assert fastest == pytest.approx(SPEED_OF_LIGHT / (4 * board.centre * 500e-6))
+    assert board.range_step_m == pytest.approx(SPEED_OF_LIGHT / 2e9)
+    fastest = board.doppler_step_mps() * 32
+    assert fastest == pytest.approx(SPEED_OF_LIGHT / (4 * board.centre_hz * 500e-6))
 
 
 @given(
@@ -139,7 +139,7 @@ def test_a_pulse_radar_with_a_frame_has_its_antennas_in_the_scene() -> None:
     config = config_of(plain | {"frame": {"chirps": 64}})
     radar = config.radar
     assert isinstance(radar, ChirpFramesRadar)
-    assert (radar.header.loops, radar.prf_hz, radar.frames_apart) == (64, 2000, False)
+    assert (radar.timing.loops, radar.prf_hz, radar.frames_apart) == (64, 2000, False)
     scene = nominal_scene(config, config.chosen_activities[0])
     antennas = antennas_of(scene)
     assert (antennas.tx, antennas.rx) == ((0.0, -0.1, 1.2), (0.0, 0.1, 1.2))

@@ -143,7 +143,7 @@ def test_mars_needs_the_joints_of_people(place, tmp_path, monkeypatch):
 
 def test_axes_and_signs_of_the_formats(place):
     with open_dataset(place / "set") as data:
-        loops = parse_ti_cfg(data.config.radar.cfg).loops
+        loops = parse_ti_cfg(data.config.radar.cfg).timing.loops
         products = {
             row: (data.products["points"][row], data.products["skeleton"][row][:, 0])
             for row in range(len(data))
@@ -184,7 +184,7 @@ def test_records_of_ros_are_yaml_with_the_fields_of_the_message(place):
     stamps = [record["header"]["stamp"] for record in records]
     seconds = np.array([stamp["secs"] + 1e-9 * stamp["nsecs"] for stamp in stamps])
     with open_dataset(place / "set") as data:
-        period = parse_ti_cfg(data.config.radar.cfg).period_s
+        period = parse_ti_cfg(data.config.radar.cfg).timing.period_s
         frames = len(data.products["points_start"][0]) - 1
     np.testing.assert_allclose(seconds % period, 0, atol=1e-9)
     assert 0 <= seconds.min() <= seconds.max() <= (frames - 1) * period + 1e-9

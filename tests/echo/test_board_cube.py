@@ -102,8 +102,8 @@ def test_the_stated_error_has_the_rounding_of_the_samples_in_it(
     monkeypatch.setattr(board_cube, "NODES", nodes)
     rng, speed = np.random.default_rng(4), 1.0
     array = DEVICES[device].array
-    order = MARS.order if len(array.tx) == 3 else (0, 1)
-    board = replace(MARS, array=array, order=order, frames=2)
+    masks = MARS.masks if len(array.tx) == 3 else (1, 2)
+    board = replace(MARS, array=array, masks=masks, frames=2)
     p, v = rng.normal((3, 0, 0), 0.3, (20, 3)), speed * rng.normal(size=(20, 3))
     sources = channels(board, p, v, np.ones(20))
     cube, _, stated = fast_cube(sources, board, tolerance)
@@ -140,7 +140,7 @@ def test_any_shape_of_frames(samples: int, loops: int, frames: int, distance: fl
 @pytest.mark.parametrize("samples", [99, 100])
 def test_beats_that_turn_by_more_than_a_cycle_a_sample(samples: int) -> None:
     board = replace(MARS, samples=samples)
-    far = SPEED_OF_LIGHT * board.adc_rate / (2 * board.slope)  # a cycle a sample
+    far = SPEED_OF_LIGHT * board.adc_rate_hz / (2 * board.slope_hz)  # a cycle a sample
     p = [(2, 0, 0), (2 + 0.4 * far, 1, 0), (2 + 1.3 * far, 0, 1), (2 + 3.7 * far, 0, 0)]
     sources = channels(board, p, [(1, 0, 0)] * 4, np.linalg.norm(p, axis=1) ** 2)
     _, _, measured = fast_cube(sources, board, -80)
@@ -169,7 +169,7 @@ class Kinked(Straight):
 
     def __call__(self, t: Float) -> Paths:
         paths = super().__call__(t)
-        middle = MARS.loops * MARS.loop / 2
+        middle = MARS.loops * MARS.loop_s / 2
         return paths._replace(amplitude=paths.amplitude * (1 + np.maximum(t - middle, 0)))
 
 

@@ -13,6 +13,7 @@ from radhar_cli.echo.receiver.noise import circular_gaussian
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.frame_maps import range_doppler
 from radhar_cli.radar.board import Board
+from radhar_cli.radar.frame_timing import Sampling
 from radhar_cli.scene.products.board import compute_range_bins
 from radhar_cli.scene.radar import board_of
 
@@ -76,13 +77,13 @@ def test_chirps_of_bursts() -> None:
 
 def test_a_steady_echo_reads_as_of_complex_samples() -> None:
     """And noise twice: half of it is in the other half band, which is left out."""
-    r = 20 * LOW.range_step
+    r = 20 * LOW.range_step_m
     whole, still = cube_of((r, 0, 0), (0, 0, 0), LOW, snr_db=None, a=3.0)
     maps = range_doppler(np.ascontiguousarray(whole.real), still, False)
     assert maps.power.shape == (1, 64, 64)
     assert 10 * np.log10(maps.power.max() / 9) == pytest.approx(0, abs=0.05)
     noise = circular_gaussian(np.random.default_rng(1), (8, 64, 6, 128))
-    complex_board = replace(LOW, is_real=False, frames=8)
+    complex_board = replace(LOW, sampling=Sampling.COMPLEX_2X, frames=8)
     real_board = replace(LOW, frames=8)
     pairs = (noise, complex_board), (np.ascontiguousarray(noise.real), real_board)
     levels = [range_doppler(cube, one, False).power[:, 3:-3].mean() for cube, one in pairs]
@@ -107,7 +108,7 @@ def test_a_mean_of_chirps_has_less_noise() -> None:
     several = LOW_POWER.replace("frameCfg 2 0 600", "frameCfg 2 4 600")
     mean = board(several, "IWRL6432BOOST")
     assert mean.waveform.sample_rate == pytest.approx(LOW.waveform.sample_rate / 4)
-    assert mean.slot == pytest.approx(4 * LOW.slot)
+    assert mean.slot_s == pytest.approx(4 * LOW.slot_s)
 
 
 def test_the_image_band_is_left_out() -> None:

@@ -28,7 +28,7 @@ KNOWN = {
 PAIR = board_of(
     BoardRadar[float](cfg=CFG, device="IWR6843ISK", position_m=(0.0, 0.0, 0.0)), 0.11
 )  # masks 5, 2, 5
-TURNS = replace(PAIR, bpm=None)  # masks 1, 2, 4
+TURNS = replace(PAIR, bpm=None, masks=(1, 2, 4))
 
 
 def test_samples_are_those_of_the_chirps_as_sent() -> None:
@@ -71,7 +71,11 @@ def test_noise_of_two_that_are_told_apart_is_half() -> None:
 def test_maps_and_points_are_as_if_they_took_turns(bins: int) -> None:
     azimuth = np.radians(25.0)
     p, ahead = (3 * np.cos(azimuth), 3 * np.sin(azimuth), 0.3), np.cos(azimuth)
-    v = (-bins * PAIR.doppler_step() * ahead, -bins * PAIR.doppler_step() * np.sin(azimuth), 0)
+    v = (
+        -bins * PAIR.doppler_step_mps() * ahead,
+        -bins * PAIR.doppler_step_mps() * np.sin(azimuth),
+        0,
+    )
     found = []
     for board in (PAIR, TURNS):
         cube, board = cube_of(p, v, board, snr_db=25.0)

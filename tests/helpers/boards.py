@@ -16,17 +16,17 @@ from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 # the recordings of MARS (An and Ogras, 2021).
 MARS = Board(
     array=DEVICES["IWR1443BOOST"].array,
-    start=77e9,
-    fc=77.7e9,
-    slope=100e12,
-    adc_rate=2.499e6,
+    start_hz=77e9,
+    carrier_hz=77.7e9,
+    slope_hz=100e12,
+    adc_rate_hz=2.499e6,
     samples=80,
-    slot=57e-6,
-    order=(0, 2, 1),
+    slot_s=57e-6,
+    masks=(1, 4, 2),
     receivers=(0, 1, 2, 3),
     loops=32,
     frames=2,
-    period=0.1,
+    period_s=0.1,
 )
 CFG = """
 channelCfg 15 7 0

@@ -12,17 +12,17 @@ from radhar_cli.radar.board import DEVICES, Board
 
 ISK = Board(  # TI's profile of 3D people tracking, whose three transmitters take turns
     array=DEVICES["IWR6843ISK"].array,
-    start=60.75e9,
-    fc=60.75e9 + 54.71e12 * 25e-6,
-    slope=54.71e12,
-    adc_rate=2.95e6,
+    start_hz=60.75e9,
+    carrier_hz=60.75e9 + 54.71e12 * 25e-6,
+    slope_hz=54.71e12,
+    adc_rate_hz=2.95e6,
     samples=96,
-    slot=89.1e-6,
-    order=(0, 1, 2),
+    slot_s=89.1e-6,
+    masks=(1, 2, 4),
     receivers=(0, 1, 2, 3),
     loops=96,
     frames=1,
-    period=0.055,
+    period_s=0.055,
 )
 ISK_CFG = """
 channelCfg 15 7 0
@@ -90,7 +90,7 @@ def echo_of(
     cube = np.zeros((board.loops, len(masks), receivers, board.samples), complex)
     loop = np.arange(board.loops)
     for k, mask in enumerate(masks):
-        t = frame * board.period + (loop * len(masks) + k) * board.slot
+        t = frame * board.period_s + (loop * len(masks) + k) * board.slot_s
         for tx in (number for number in range(len(array.tx)) if mask >> number & 1):
             is_higher = mask >> (tx + 1) == 0
             code = -1.0 if bpm is not None and k == bpm[1] and is_higher else 1.0
@@ -102,6 +102,6 @@ def echo_of(
                     ends = board.element(array.tx[tx]), board.element(rx)
                     path = sum(np.linalg.norm(p - np.array(end), axis=1) for end in ends)
                     tau = (path / SPEED_OF_LIGHT)[:, None]
-                    turn = board.fc * tau + board.slope * tau * n / board.adc_rate
+                    turn = board.carrier_hz * tau + board.slope_hz * tau * n / board.adc_rate_hz
                     cube[:, k, r] += code * sign * one["amplitude"] * np.exp(-2j * np.pi * turn)
     return cube.reshape(board.loops, -1, board.samples)

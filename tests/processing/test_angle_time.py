@@ -49,7 +49,7 @@ def test_elevation_is_positive_up() -> None:
 
 @pytest.mark.parametrize("bins", [None, (50, 70)])
 def test_a_steady_echo_reads_its_power(bins: tuple[int, int] | None) -> None:
-    step = MARS.range_step
+    step = MARS.range_step_m
     limits_m = None if bins is None else (bins[0] * step, bins[1] * step)
     azimuth_time = angle_time(steady_echo(3), MARS, 0, remove_mean=False, limits_m=limits_m)
     assert azimuth_time.power.max() == pytest.approx(9, rel=1e-3)
@@ -57,7 +57,7 @@ def test_a_steady_echo_reads_its_power(bins: tuple[int, int] | None) -> None:
 
 
 def test_ranges_beyond_the_limits_are_left_out() -> None:
-    step = MARS.range_step
+    step = MARS.range_step_m
     azimuth_time = angle_time(steady_echo(3), MARS, 0, False, (90 * step, 110 * step))
     assert azimuth_time.power.max() < 1e-3
 

@@ -7,7 +7,7 @@ from helpers.boards import CFG, MARS
 
 from radhar_cli.processing.cloud_limits import keep_in_box, keep_in_view
 from radhar_cli.processing.points import COLUMNS, Cloud
-from radhar_cli.radar.frame_header import RoomBox
+from radhar_cli.radar.room import RoomBox
 from radhar_cli.readers.ti.ti_cfg import parse_ti_cfg
 
 BOX = "boundaryBox -1 2 0.5 6 0 2\n"

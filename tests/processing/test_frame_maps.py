@@ -93,7 +93,7 @@ def test_longest_rows(device: str, rows: int, elements: int) -> None:
 def test_doppler_is_positive_approaching_and_ends_at_the_highest_speed() -> None:
     cube, board = cube_of((2, 0, 0), (-1, 0, 0))
     maps = range_doppler(cube, board, False)
-    step = board.doppler_step()
+    step = board.doppler_step_mps()
     assert maps.columns.values[[0, -1]] == pytest.approx([-15 * step, 16 * step])
     assert _peak(maps)[1] == pytest.approx(1, abs=step / 2)
     receding, _ = cube_of((2, 0, 0), (1, 0, 0))
@@ -132,7 +132,7 @@ def test_doppler_azimuth_has_speed_and_angle_of_who_moves(degrees: float, speed:
     cube, board = cube_of(3 * direction, -speed * direction, snr_db=None)
     maps = doppler_angle(cube, board, False, 0)
     row, azimuth, _ = _peak(maps)
-    assert maps.rows.values[row] == pytest.approx(speed, abs=board.doppler_step())
+    assert maps.rows.values[row] == pytest.approx(speed, abs=board.doppler_step_mps())
     assert azimuth == pytest.approx(degrees, abs=2)
     assert (maps.rows.name, maps.columns.name) == ("radial speed", "azimuth")
 
@@ -153,22 +153,25 @@ def test_a_steady_echo_reads_its_power_over_doppler_and_angle() -> None:
     assert level == pytest.approx(20 * np.log10(3), abs=3e-3)
 
 
-UNEVEN = {"burst_s": 900e-6, "chirp_starts": (0.0, 60e-6, 800e-6)}
+UNEVEN = {"burst_s": 900e-6, "chirp_starts_s": (0.0, 60e-6, 800e-6)}
 BURSTS = {"burst_s": 900e-6}  # of chirps that follow each other, as boards of xWRL send them
 
 
 @pytest.mark.parametrize("pauses", [UNEVEN, BURSTS])
-@pytest.mark.parametrize("bpm", [None, (0, 1), (1, 2), (2, 0)])
+@pytest.mark.parametrize(
+    ("bpm", "masks"),
+    [(None, MARS.masks), ((0, 1), (5, 5, 2)), ((1, 2), (1, 6, 6)), ((2, 0), (3, 4, 3))],
+)
 def test_pauses_within_a_loop_do_not_turn_what_moves(
-    pauses: dict[str, Any], bpm: tuple[int, int] | None
+    pauses: dict[str, Any], bpm: tuple[int, int] | None, masks: tuple[int, ...]
 ) -> None:
     """Ahead all elements have one phase, whenever their chirps come and whoever sends together."""
-    board = replace(MARS, bpm=bpm, **pauses)
-    speed = 12 * board.doppler_step()
+    board = replace(MARS, bpm=bpm, masks=masks, **pauses)
+    speed = 12 * board.doppler_step_mps()
     cube, board = cube_of((2.5, 0.0, 0.0), (-speed, 0, 0), board, snr_db=None)
     spectrum = np.fft.fft(cube, board.n_fft, axis=-1)
     separate = without_turns(doppler_spectrum(spectrum, board, np.ones(board.loops)), board)[0]
-    near = round(2.5 / board.range_step)
+    near = round(2.5 / board.range_step_m)
     peak = separate[12, :, near]
     np.testing.assert_allclose(np.abs(peak), np.abs(peak).mean(), rtol=0.05)
     assert np.abs(np.angle(peak / peak.mean())).max() < 0.1

@@ -54,7 +54,7 @@ def test_an_approaching_scatterer() -> None:
     assert np.hypot(*best[:2]) == pytest.approx(2, abs=0.0146 + 0.04)
     assert best[3] == pytest.approx(1.0366, abs=1e-4)
     assert best[7] == 3
-    started = points((2, 0, 0), (-1, 0, 0), carrier=MARS.start)[0]
+    started = points((2, 0, 0), (-1, 0, 0), carrier=MARS.start_hz)[0]
     assert started[3] == pytest.approx(1.0673, abs=1e-4)
 
 
@@ -74,8 +74,8 @@ def test_places_of_what_stands_still(r: float, az: float, el: float, seed: int) 
 @pytest.mark.parametrize("bins", range(-9, 10))
 def test_whole_doppler_bins_do_not_bias_the_direction(bins: int) -> None:
     """Turns of the transmitters are taken out; left in they would bias z by d/32."""
-    speed = bins * MARS.doppler_step()
-    at = (2.0 + MARS.loops * MARS.loop / 2 * speed, 0, 0)
+    speed = bins * MARS.doppler_step_mps()
+    at = (2.0 + MARS.loops * MARS.loop_s / 2 * speed, 0, 0)
     best = points(at, (-speed, 0, 0), STANDING)[0]
     assert best[7] == bins
     assert best[2] / 2 == pytest.approx(0, abs=0.004)

@@ -10,11 +10,11 @@ from radhar_cli.radar.board import DEVICES
 
 
 def test_frequencies_and_steps_of_a_known_profile() -> None:
-    assert MARS.centre == pytest.approx(79.280632e9, rel=1e-8)
+    assert MARS.centre_hz == pytest.approx(79.280632e9, rel=1e-8)
     assert MARS.unit == pytest.approx(1.890704e-3, rel=1e-6)
-    assert MARS.range_step == pytest.approx(29.264897e-3, rel=1e-7)
-    assert MARS.doppler_step() == pytest.approx(0.345523, rel=1e-5)
-    assert MARS.doppler_step(MARS.start) == pytest.approx(0.355757, rel=1e-5)
+    assert MARS.range_step_m == pytest.approx(29.264897e-3, rel=1e-7)
+    assert MARS.doppler_step_mps() == pytest.approx(0.345523, rel=1e-5)
+    assert MARS.doppler_step_mps(MARS.start_hz) == pytest.approx(0.355757, rel=1e-5)
 
 
 def test_virtual_elements_of_the_boost_are_a_row_of_eight_and_four_above() -> None:
@@ -24,7 +24,7 @@ def test_virtual_elements_of_the_boost_are_a_row_of_eight_and_four_above() -> No
 
 
 def test_other_order_of_transmitters_swaps_their_blocks() -> None:
-    swapped = replace(MARS, order=(0, 1, 2))
+    swapped = replace(MARS, masks=(1, 2, 4))
     np.testing.assert_array_equal(swapped.places[4:8], MARS.places[8:])
     np.testing.assert_array_equal(swapped.places[8:], MARS.places[4:8])
 
@@ -66,16 +66,16 @@ def test_chirps_follow_frames_loops_and_turns() -> None:
 
 
 def test_chirps_of_a_loop_may_start_at_any_times() -> None:
-    board = replace(MARS, chirp_starts=(0.0, 60e-6, 800e-6), burst_s=900e-6)
+    board = replace(MARS, chirp_starts_s=(0.0, 60e-6, 800e-6), burst_s=900e-6)
     times = board.chirp_times()
     assert times.shape == (2, 32, 3)
-    np.testing.assert_allclose(times[1, 3], 0.1 + 3 * 900e-6 + np.array(board.chirp_starts))
+    np.testing.assert_allclose(times[1, 3], 0.1 + 3 * 900e-6 + np.array(board.chirp_starts_s))
     numbers = np.arange(times.size, dtype=float)
     np.testing.assert_allclose(board.waveform.times(numbers), times.ravel(), rtol=0, atol=1e-15)
 
 
 def test_frames_without_idle_time_have_no_gaps() -> None:
-    assert len(replace(MARS, period=32 * 3 * 57e-6).pulses) == 1
+    assert len(replace(MARS, period_s=32 * 3 * 57e-6).pulses) == 1
 
 
 TRANSMITTERS = {

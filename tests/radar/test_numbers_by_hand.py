@@ -117,13 +117,17 @@ def test_axes_are_those_computed_by_hand(case: str) -> None:
     subframe = int(case.endswith("subframe 1"))
     radar = BoardRadar[float].model_validate({"cfg": cfg, "device": device, "subframe": subframe})
     board = board_of(radar, 1.0)
-    speed_step = board.doppler_step()
+    speed_step = board.doppler_step_mps()
     highest = speed_step * board.n_doppler / 2
     values = Numbers(
-        *(board.fc / 1e9, board.centre / 1e9, board.slope * board.samples / board.adc_rate / 1e6),
-        *(board.range_step * 1e3, board.n_bins, radar.header.farthest_m, len(board.order)),
-        *(board.loop * 1e6, board.loops, board.n_doppler, speed_step, highest),
-        *(board.loops * board.loop * 1e3, board.channels),
+        *(
+            board.carrier_hz / 1e9,
+            board.centre_hz / 1e9,
+            board.slope_hz * board.samples / board.adc_rate_hz / 1e6,
+        ),
+        *(board.range_step_m * 1e3, board.n_bins, radar.timing.farthest_m, len(board.order)),
+        *(board.loop_s * 1e6, board.loops, board.n_doppler, speed_step, highest),
+        *(board.loops * board.loop_s * 1e3, board.channels),
     )
     assert values == pytest.approx(numbers, rel=6e-5, abs=6e-4)
     assert board.waveform.n_bins == numbers.bins
@@ -132,9 +136,9 @@ def test_axes_are_those_computed_by_hand(case: str) -> None:
 
 def test_subframes_follow_each_other() -> None:
     headers = [parse_ti_cfg(text_of("advframe"), subframe=number) for number in (0, 1)]
-    assert [header.delay_s for header in headers] == [0.0, pytest.approx(0.05)]
-    assert [header.period_s for header in headers] == [pytest.approx(0.1)] * 2
-    assert [header.order for header in headers] == [(0,), (2,)]
+    assert [header.timing.delay_s for header in headers] == [0.0, pytest.approx(0.05)]
+    assert [header.timing.period_s for header in headers] == [pytest.approx(0.1)] * 2
+    assert [header.timing.order for header in headers] == [(0,), (2,)]
 
 
 DDMA = """
@@ -163,25 +167,25 @@ def test_transmitters_that_all_send_at_once_are_refused(line: str, words: str) -
 
 def test_the_likely_board_of_low_power_has_as_many_receivers() -> None:
     """The ADC of the 6844 runs twice as fast, and two bits of a mask are an antenna."""
-    assert parse_ti_cfg(LOW_POWER).adc_rate_hz == pytest.approx(100e6 / 15)
+    assert parse_ti_cfg(LOW_POWER).timing.adc_rate_hz == pytest.approx(100e6 / 15)
     wide = LOW_POWER.replace("channelCfg 7 3", "channelCfg 153 255").replace(
         "frameCfg 2", "frameCfg 4"
     )
     header = parse_ti_cfg(wide)
-    assert (header.order, header.receivers) == ((0, 1, 2, 3), (0, 1, 2, 3))
-    assert header.adc_rate_hz == pytest.approx(200e6 / 15)
+    assert (header.timing.order, header.timing.receivers) == ((0, 1, 2, 3), (0, 1, 2, 3))
+    assert header.timing.adc_rate_hz == pytest.approx(200e6 / 15)
     assert parse_ti_cfg(wide, device="IWRL6844EVM") == header
 
 
 def test_bursts_and_means_of_low_power() -> None:
-    burst = parse_ti_cfg(LOW_POWER.replace("frameCfg 2 0 600 64", "frameCfg 2 4 600 64"))
+    burst = parse_ti_cfg(LOW_POWER.replace("frameCfg 2 0 600 64", "frameCfg 2 4 600 64")).timing
     assert (burst.averaged, burst.slot_s, burst.loop_s) == (4, pytest.approx(160e-6), 600e-6)
-    single = parse_ti_cfg(LOW_POWER.replace("frameCfg 2 0 600 64", "frameCfg 64 0 600 1"))
-    assert (single.loops, single.loop_s, single.has_bursts) == (32, pytest.approx(80e-6), False)
-    together = parse_ti_cfg(LOW_POWER.replace("128 1 34", "128 4 34"))
+    single = parse_ti_cfg(LOW_POWER.replace("frameCfg 2 0 600 64", "frameCfg 64 0 600 1")).timing
+    assert (single.loops, single.loop_s, single.burst_s) == (32, pytest.approx(80e-6), None)
+    together = parse_ti_cfg(LOW_POWER.replace("128 1 34", "128 4 34")).timing
     assert (together.masks, together.bpm, together.order) == ((3, 3), (0, 1), (0, 1))
     less = parse_ti_cfg(f"{LOW_POWER}factoryCalibCfg 1 0 40 6 0x1ff000\n")
-    assert less.profile.backoff_db == (6, 6, 6, 6)
+    assert less.timing.backoff_db == (6, 6, 6, 6)
 
 
 WRONG_OF_LOW_POWER = [

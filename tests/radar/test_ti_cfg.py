@@ -18,11 +18,19 @@ PEOPLE = PEOPLE.replace("clutterRemoval 1", "doaCfg 600 1875 30 1")
 
 def test_what_a_cfg_says() -> None:
     board = parse_ti_cfg(CFG)
-    assert (board.start_hz, board.carrier_hz, board.slope_hz) == (77e9, 77.7e9, 100e12)
-    assert (board.samples, board.adc_rate_hz) == (80, 2.499e6)
-    assert board.slot_s == pytest.approx(57e-6)
-    assert (board.order, board.receivers) == (MARS.order, MARS.receivers)
-    assert (board.loops, board.frames, board.period_s) == (32, 0, pytest.approx(0.1))
+    assert (board.timing.start_hz, board.timing.carrier_hz, board.timing.slope_hz) == (
+        77e9,
+        77.7e9,
+        100e12,
+    )
+    assert (board.timing.samples, board.timing.adc_rate_hz) == (80, 2.499e6)
+    assert board.timing.slot_s == pytest.approx(57e-6)
+    assert (board.timing.order, board.timing.receivers) == (MARS.order, MARS.receivers)
+    assert (board.timing.loops, board.timing.frames, board.timing.period_s) == (
+        32,
+        0,
+        pytest.approx(0.1),
+    )
     assert board.unknown == ()
     detection = board.detection
     assert detection.along_range == Cfar(CASO, 8, 4, False, pytest.approx(17.717, abs=1e-3))
@@ -154,7 +162,7 @@ def test_a_pose_may_have_a_place_and_a_third_angle(third: str) -> None:
 
 def test_fewer_bits_than_16_are_named() -> None:
     header = parse_ti_cfg(CFG.replace("adcCfg 2 1", "adcCfg 1 1"))
-    assert (header.adc_bits, header.not_simulated) == (14, ("adcCfg",))
+    assert (header.timing.adc_bits, header.not_simulated) == (14, ("adcCfg",))
 
 
 def test_transmitters_may_send_less_power() -> None:
@@ -307,16 +315,16 @@ def test_profiles_may_differ_in_the_time_that_they_take(
             parse_ti_cfg(with_second_profile(numbers), "board.cfg")
         return
     header = parse_ti_cfg(with_second_profile(numbers))
-    assert header.chirp_starts_s == pytest.approx([1e-6 * start for start in starts_us])
-    assert header.loop_s == pytest.approx(loop_us * 1e-6)
-    assert (header.order, header.loops) == (MARS.order, MARS.loops)
-    assert header.has_bursts
+    assert header.timing.chirp_starts_s == pytest.approx([1e-6 * start for start in starts_us])
+    assert header.timing.loop_s == pytest.approx(loop_us * 1e-6)
+    assert (header.timing.order, header.timing.loops) == (MARS.order, MARS.loops)
+    assert header.timing.burst_s is not None
 
 
 def test_each_transmitter_has_the_power_of_its_own_profile() -> None:
     header = parse_ti_cfg(with_second_profile("77 17 7 40 394758"))
     assert header.profile.backoff_db == (0, 6, 6, 0)
-    assert header.chirp_starts_s == ()
+    assert header.timing.chirp_starts_s == ()
     both = with_second_profile("77 17 7 40 394758").replace("0 0 0 0 2\n", "0 0 0 0 1\n")
     with pytest.raises(CaptureError, match="should have the txOutPower of the other chirps"):
         parse_ti_cfg(both.replace("0 0 0 0 4\n", "0 0 0 0 1\n"))
@@ -342,12 +350,16 @@ def test_masks_that_repeat_are_further_loops() -> None:
     """As mmwdemo_rfparser.c counts them: C numLoops/n_TX chirps, n_TX slots apart."""
     alone = CFG.replace("0 0 0 0 4\n", "0 0 0 0 1\n").replace("2 2 0 0 0 0 0 2", "2 2 0 0 0 0 0 1")
     board = parse_ti_cfg(alone)
-    assert (board.order, board.loops, board.period_s) == ((0,), 96, pytest.approx(0.1))
-    assert board.slot_s == pytest.approx(57e-6)
+    assert (board.timing.order, board.timing.loops, board.timing.period_s) == (
+        (0,),
+        96,
+        pytest.approx(0.1),
+    )
+    assert board.timing.slot_s == pytest.approx(57e-6)
     in_turn = CFG.replace("frameCfg 0 2 32", "chirpCfg 3 3 0 0 0 0 0 4\nframeCfg 0 3 32")
     in_turn = in_turn.replace("2 2 0 0 0 0 0 2", "2 2 0 0 0 0 0 1")
     board = parse_ti_cfg(in_turn)
-    assert (board.order, board.loops) == ((0, 2), 64)
+    assert (board.timing.order, board.timing.loops) == ((0, 2), 64)
 
 
 PAIR = """
@@ -365,14 +377,18 @@ frameCfg 0 2 48 0 55 1 0
 def test_two_transmitters_may_send_together() -> None:
     """The lower of them takes the place of the chirp that has their sum."""
     header = parse_ti_cfg(PAIR)
-    assert (header.masks, header.order, header.bpm) == ((5, 2, 5), (0, 1, 2), (0, 2))
-    assert (header.loops, header.not_simulated) == (48, ())
+    assert (header.timing.masks, header.timing.order, header.timing.bpm) == (
+        (5, 2, 5),
+        (0, 1, 2),
+        (0, 2),
+    )
+    assert (header.timing.loops, header.not_simulated) == (48, ())
     turned = parse_ti_cfg(PAIR.replace("bpmCfg -1 1 0 2", "bpmCfg -1 1 2 0"))
-    assert (turned.order, turned.bpm) == ((2, 1, 0), (2, 0))
+    assert (turned.timing.order, turned.timing.bpm) == ((2, 1, 0), (2, 0))
     two = PAIR.replace("chirpCfg 1 1 0 0 0 0 0 2\n", "").replace("chirpCfg 2 2", "chirpCfg 1 1")
     two = two.replace("bpmCfg -1 1 0 2", "bpmCfg -1 1 0 1").replace("frameCfg 0 2", "frameCfg 0 1")
     alone = parse_ti_cfg(two)
-    assert (alone.order, alone.bpm, alone.loops) == ((0, 2), (0, 1), 48)
+    assert (alone.timing.order, alone.timing.bpm, alone.timing.loops) == ((0, 2), (0, 1), 48)
 
 
 @pytest.mark.parametrize(
@@ -413,7 +429,12 @@ def test_two_transmitters_may_send_together_anywhere_in_the_loop(
             f"chirpCfg {place} {place} 0 0 0 0 0 {mask}",
         )
     header = parse_ti_cfg(text)
-    assert (header.masks, header.bpm, header.order, header.loops) == (masks, pair, order, 48)
+    assert (header.timing.masks, header.timing.bpm, header.timing.order, header.timing.loops) == (
+        masks,
+        pair,
+        order,
+        48,
+    )
 
 
 OBSTACLES = CFG.replace("cfarCfg 0 2 8 4 3 0 1130", "cfarCfg 1 4 12 4 2 8 2 350 30 2 0 5 20")
@@ -487,7 +508,7 @@ def test_antennas_that_the_device_lacks_are_refused(device: str | None, argument
         numbers = f"{masks['rxChannelEn']} {masks['txChannelEn']} 0"
         return one.replace("channelCfg 15 7 0", f"channelCfg {numbers}")
 
-    assert parse_ti_cfg(with_masks(), device=device).receivers == tuple(range(receivers))
+    assert parse_ti_cfg(with_masks(), device=device).timing.receivers == tuple(range(receivers))
     masks[argument] = masks[argument] * 2 + 1
     noun = "receivers" if argument == "rxChannelEn" else "transmitters"
     message = f"channelCfg {argument} = {masks[argument]}: should be at most"

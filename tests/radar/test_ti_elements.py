@@ -143,7 +143,9 @@ def test_an_order_of_chirps_belongs_to_its_elements() -> None:
 def test_a_built_in_radar_fits_its_device(radar: BuiltInRadar) -> None:
     assert radar.device in fitting_devices(radar.header)
     array = DEVICES[radar.device].array
-    assert not compare_elements(radar.header.elements, array, radar.header.antennas).commands
+    assert not compare_elements(
+        radar.header.elements, array, radar.timing.antennas_of_channels
+    ).commands
 
 
 def test_places_of_a_file_are_those_of_its_virtual_elements() -> None:
@@ -151,5 +153,5 @@ def test_places_of_a_file_are_those_of_its_virtual_elements() -> None:
     header = parse_ti_cfg(RADARS["iwr6843aop_people"].read_text())
     array = DEVICES["IWR6843AOP"].array
     places = np.array(header.elements.places)
-    for (tx, rx), place in zip(header.antennas, places, strict=True):
+    for (tx, rx), place in zip(header.timing.antennas_of_channels, places, strict=True):
         assert np.add(array.tx[tx], array.rx[rx]) == pytest.approx(place)

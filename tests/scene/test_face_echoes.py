@@ -196,8 +196,8 @@ def by_hand(board: Any, k: int, r: int) -> Any:
         angles = np.degrees([np.arctan2(left, ahead), np.arctan2(up, np.hypot(ahead, left))])
         pattern *= np.exp(-np.log(2) / 2 * np.sum((angles / board.aim.half_power_deg) ** 2))
     w = board.waveform
-    a = -antennas.gain * C / board.centre / (4 * np.pi * distance) * pattern
-    f = w.fc + w.slope * np.arange(board.samples) / board.adc_rate
+    a = -antennas.gain * C / board.centre_hz / (4 * np.pi * distance) * pattern
+    f = w.fc + w.slope * np.arange(board.samples) / board.adc_rate_hz
     return a * np.exp(-2j * np.pi * f * distance / C)
 
 

@@ -13,7 +13,6 @@ from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import kind_of
 from radhar_cli.radar.board import longest_rows
 from radhar_cli.radar.detection import Chain
-from radhar_cli.radar.frame_header import Sampling
 from radhar_cli.radar.ti_family import Family
 
 if TYPE_CHECKING:
@@ -46,8 +45,7 @@ def _unknown_commands(radar: BoardRadar) -> Iterator[str]:
 
 def _window_warnings(config: Request, radar: ArrayRadar) -> Iterator[str]:
     """Say that a window that is longer than the chirps of a frame is no longer than these."""
-    header = radar.header
-    frame_s = header.loops * header.loop_s
+    frame_s = radar.timing.loops * radar.timing.loop_s
     window_s = config.processing.window_s if _gives_window(config) else None
     if window_s is not None and window_s > frame_s:
         yield (
@@ -71,7 +69,7 @@ def _header_warnings(config: Request, radar: BoardRadar) -> Iterator[str]:
             "points of a cell, the largest Doppler alone is modelled"
         )
     yield from _elements_warnings(config, radar)
-    if header.sampling is Sampling.REAL and header.family not in (Family.MCU_PLUS, Family.L_SDK):
+    if radar.timing.is_real and header.family not in (Family.MCU_PLUS, Family.L_SDK):
         yield "radar.cfg: adcCfg has real samples, which firmware of SDK 1 to 3 does not take"
     pose = {} if header.pose is None else vars(header.pose)
     config_keys = [f"radar.{key}" for key, number in pose.items() if getattr(radar, key) != number]
@@ -90,7 +88,7 @@ def _elements_warnings(config: Request, radar: BoardRadar) -> Iterator[str]:
     assert array is not None
     is_best = config.cloud.chain == "best"  # which believes the device alone
     elements = replace(header.elements, phases=()) if is_best else header.elements
-    difference = compare_elements(elements, array, header.antennas)
+    difference = compare_elements(elements, array, radar.timing.antennas_of_channels)
     if not difference.commands:
         return
     names = " and ".join(

@@ -2,22 +2,21 @@
 
 from collections.abc import Iterator
 from math import ceil
-from typing import Any, assert_never
+from typing import assert_never
 
 from radhar_cli.config.checks.smallest_waveform import ENDS, waveform_at
 from radhar_cli.config.maps import FRAME_MAPS, OF_FRAMES, OF_POINTS
 from radhar_cli.config.offered_maps import why_no_map
 from radhar_cli.config.radar import (
-    AnyRadar,
     ArrayRadar,
     BoardRadar,
-    CwFramesRadar,
     CwRadar,
     FmcwRadar,
     FramesRadar,
     ImpulseRadar,
     SfcwRadar,
-    StepFramesRadar,
+    Steps,
+    SweptPulses,
 )
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.numerics.rounding import half_up, show_beside
@@ -75,7 +74,7 @@ def _cw_problems(c: Request) -> Iterator[Problem]:
         yield Problem("engine.motion_in_chirp", True, right)
 
 
-def _cw_frames_problems(radar: CwFramesRadar) -> Iterator[Problem]:
+def _cw_frames_problems(radar: FramesRadar) -> Iterator[Problem]:
     """Find what needs both channels of the mixers."""
     if radar.output == "real":
         right = (
@@ -138,15 +137,15 @@ def _step_problems(radar: ImpulseRadar) -> Iterator[Problem]:
 
 def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
     """Find what a board cannot have, or what is not simulated for boards."""
-    board = radar.header
+    board, timing = radar.header, radar.timing
     if radar.elements is None:
         right = (
             f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
         )
         yield Problem("radar.device", radar.device, right)
         return
-    if radar.subframe >= board.subframes:
-        right = f"should be below {board.subframes}, the number of subframes of radar.cfg"
+    if radar.subframe >= timing.subframes:
+        right = f"should be below {timing.subframes}, the number of subframes of radar.cfg"
         yield Problem("radar.subframe", radar.subframe, right)
     device = DEVICES.get(str(radar.device))
     if device is not None and board.family not in (Family.ANY, *device.families):
@@ -155,11 +154,11 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
         yield Problem("radar.device", radar.device, right)
         return
     tx, rx = len(radar.elements.tx), len(radar.elements.rx)
-    if max(board.order) >= tx or max(board.receivers) >= rx:
-        masks = [1 << n for n in board.order]
+    if max(timing.order) >= tx or max(timing.receivers) >= rx:
+        masks = [1 << n for n in timing.order]
         right = (
             f"should name transmitters and receivers of the array, {tx} and {rx}: it has the "
-            f"masks {masks} and receivers {[n + 1 for n in board.receivers]}"
+            f"masks {masks} and receivers {[n + 1 for n in timing.receivers]}"
         )
         yield Problem("radar.cfg", "chirpCfg, channelCfg", right)
         return
@@ -173,7 +172,7 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
 def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
     """Find what a radar with frames cannot have, or numbers that do not fit together."""
     yield from _place_problems(radar)
-    if isinstance(radar, CwFramesRadar):
+    if not radar.has_range:
         yield from _cw_problems(c)
         yield from _cw_frames_problems(radar)
     transmitters, samples = len(radar.array.tx), half_up(radar.adc_rate_hz, radar.chirp_s)
@@ -208,7 +207,7 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
 
 def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
     """Say that a chirp of a radar with frames has too few samples, or too many."""
-    if isinstance(radar, StepFramesRadar):
+    if isinstance(radar, Steps):
         right = f"should be at most {MAX_SAMPLES} with radar.frame"
         return Problem("radar.steps", radar.steps, right)
     right = (
@@ -218,7 +217,7 @@ def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
 
 
 def _problem_of_length(
-    radar: AnyRadar[Any], longest: float, interval: float, right: str
+    radar: SweptPulses | FramesRadar, longest: float, interval: float, right: str
 ) -> Problem:
     """Say that a chirp, or a sweep of steps, is too long.
 
@@ -228,7 +227,7 @@ def _problem_of_length(
         interval: the shortest time to the next one, s.
         right: how long it may be.
     """
-    if isinstance(radar, SfcwRadar | StepFramesRadar):
+    if isinstance(radar, Steps):
         right = f"{right} (steps * dwell_s is {show_beside(longest, interval)} s)"
         return Problem("radar.steps", radar.steps, right)
     return Problem("radar.chirp_s", radar.chirp_s, right)
@@ -257,7 +256,7 @@ def _unit_problems(radar: ArrayRadar) -> Iterator[Problem]:
     array = radar.elements
     if array is None:
         return
-    used = [array.rx[r] for r in radar.header.receivers if r < len(array.rx)]
+    used = [array.rx[r] for r in radar.timing.receivers if r < len(array.rx)]
     if len({*used}) < len(used) or (extent == 0 and len(radar.virtual_places) > 1):
         count = len(radar.virtual_places)
         nouns = f"all {count} elements" if extent == 0 else "two receivers"
@@ -274,17 +273,17 @@ def _unit_problems(radar: ArrayRadar) -> Iterator[Problem]:
 
 def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
     """Find what does not fit frames: durations, clutter."""
-    clutter, board = c.processing.clutter, radar.header
-    if support(c.duration_s)[0] < board.period_s:
-        frame = show_beside(board.period_s, support(c.duration_s)[0])
+    clutter, timing = c.processing.clutter, radar.timing
+    if support(c.duration_s)[0] < timing.period_s:
+        frame = show_beside(timing.period_s, support(c.duration_s)[0])
         right = f"should hold a frame of {frame} s"
         yield Problem("duration_s", c.duration_s, right)
-    elif board.loops == 1 and support(c.duration_s)[0] < 2 * board.period_s:
-        frames = show_beside(2 * board.period_s, support(c.duration_s)[0])
+    elif timing.loops == 1 and support(c.duration_s)[0] < 2 * timing.period_s:
+        frames = show_beside(2 * timing.period_s, support(c.duration_s)[0])
         right = f"should hold two frames of a loop, {frames} s"
         yield Problem("duration_s", c.duration_s, right)
-    chirps = support(c.duration_s)[1] / board.period_s * board.loops * len(board.order)
-    samples = chirps * len(board.receivers) * board.samples
+    chirps = support(c.duration_s)[1] / timing.period_s * timing.loops * len(timing.masks)
+    samples = chirps * len(timing.receivers) * timing.samples
     if samples > MAX_CUBE:
         seconds = support(c.duration_s)[1] * MAX_CUBE / samples
         right = f"should be at most {seconds:.3g} s: a cube of {MAX_CUBE} samples is held at once"
@@ -361,7 +360,7 @@ def _missing_on_board(c: Request) -> Iterator[Problem]:
 def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
     """Find what does not fit the pulses: chirps that are too long, FFTs that are too short."""
     radar, fft_length = c.radar, c.processing.range_fft_length
-    if isinstance(radar, ImpulseRadar) or not radar.has_range:
+    if not radar.sweeps:
         right = f"should be left out with {radar.named}, which has no chirp"
         for key in ("processing.range_fft_length", "processing.range_reference"):
             if at(c, key) not in (None, "centre"):

@@ -73,7 +73,7 @@ def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
     pulses_meant = "pulses there are"
     board = c.radar if isinstance(c.radar, ArrayRadar) else None
     if board:  # frames are cancelled, filtered and windowed one by one
-        usable_pulses = board.header.loops
+        usable_pulses = board.timing.loops
         pulses_meant = f"pulses of a frame, the loops of {board.named}"
     doppler = [name for name in c.maps if name not in ("rtm", *ANGLE_TIME_MAPS, *FRAME_MAPS)]
     denoised = [n for n in doppler if treatment_of(n).denoised]
@@ -140,7 +140,7 @@ def _gate_problems(c: AnyRequest) -> Iterator[Problem]:
     within = processing.gate_m
     half_band = waveform_at(c, "bandwidth_hz").half_band_range  # the least
     if isinstance(c.radar, ArrayRadar):
-        half_band = c.radar.header.farthest_m
+        half_band = c.radar.timing.farthest_m
     if isinstance(within, tuple):
         if within[1] >= half_band:
             end = show_beside(half_band, within[1], digits=4)

@@ -1,8 +1,9 @@
 """Waveforms at the ends of what a config draws."""
 
-from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
+from typing import cast
+
+from radhar_cli.config.radar import ArrayRadar, SceneRadar
 from radhar_cli.config.request import AnyRequest
-from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.schema.number import support
 
@@ -11,36 +12,31 @@ ENDS = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz", "prf_hz", "durat
 
 def waveform_at(c: AnyRequest, *largest: str) -> Waveform:
     """Waveform of the smallest numbers that a config draws, and of the largest of those named."""
-    numbers = {key: c.duration_s if key == "duration_s" else getattr(c.radar, key) for key in ENDS}
-    fc, bandwidth, chirp, rate, prf, duration = (
-        support(number)[key in largest] for key, number in numbers.items()
-    )
-    processing = c.processing
-    length, centred = processing.range_fft_length, processing.range_reference == "centre"
-    parameters = fc, bandwidth, chirp, rate, prf, duration, length, centred
-    if isinstance(c.radar, ImpulseRadar):
-        radar = c.radar
-        profile, samples, is_iq = radar.profile_m, radar.profile_samples, radar.output == "iq"
-        return Impulse(*parameters, profile=profile, samples=samples, is_iq=is_iq)
-    return Waveform(*parameters)
+    radar, processing = c.radar, c.processing
+    keys = [key for key in ENDS if key in type(radar).model_fields]
+    numbers = {key: support(getattr(radar, key))[key in largest] for key in keys}
+    fixed = cast(SceneRadar, radar.model_copy(update=numbers))
+    seconds = support(c.duration_s)["duration_s" in largest]
+    centred = processing.range_reference == "centre"
+    return fixed.make_waveform(seconds, processing.range_fft_length, centred)
 
 
 def window_pulses(c: AnyRequest, w: Waveform) -> int:
     """Pulses of the STFT's window of a waveform, at most those of a board's frame."""
     length = c.processing.window_pulses(w.duration, w.prf, w.f0)
-    return min(length, c.radar.header.loops) if isinstance(c.radar, ArrayRadar) else length
+    return min(length, c.radar.timing.loops) if isinstance(c.radar, ArrayRadar) else length
 
 
 def fewest_windows(c: AnyRequest) -> int:
     """Fewest windows of a Doppler-time map of a config: of radars that pause, one a frame."""
     w = waveform_at(c)
     if isinstance(c.radar, ArrayRadar) and c.radar.frames_apart:
-        header = c.radar.header
-        fitting = int(w.duration / header.period_s + 1e-9)
-        return min(header.frames, fitting) if header.frames else fitting
+        timing = c.radar.timing
+        fitting = int(w.duration / timing.period_s + 1e-9)
+        return min(timing.frames, fitting) if timing.frames else fitting
     windows = c.processing.make_frames(w.duration, w.prf, w.f0)
     if isinstance(c.radar, ArrayRadar):
-        windows = windows.within(c.radar.header.loops, are_apart=False)
+        windows = windows.within(c.radar.timing.loops, are_apart=False)
     pulses = w.n_pulses - (c.processing.clutter == "difference")
     return max(0, (pulses - windows.length) // windows.hop + 1)
 

@@ -235,8 +235,8 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
         raise FolderError(
             f"{data.path}: ros needs bins of Doppler; import the recordings with --radar FILE.cfg"
         )
-    header = radar.header
-    middle = 2 ** (header.loops - 1).bit_length() // 2
+    timing = radar.timing
+    middle = timing.n_doppler // 2
     rows, short = Rows.of(data.config), 0
     for split in data.present_splits:
         for entry in _of_split(data, split):
@@ -244,7 +244,7 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
             path.parent.mkdir(parents=True, exist_ok=True)
             clouds = clouds_of(data, entry.row)
             if len(clouds.frame):  # voxels.py stops at a file without a record
-                path.write_text(_radar_scans(clouds, header.period_s, middle), encoding="utf-8")
+                path.write_text(_radar_scans(clouds, timing.period_s, middle), encoding="utf-8")
             short += 0 < len(np.unique(clouds.frame)) < VOXEL_FRAMES
             progress.advance(1)
     if short:
@@ -252,7 +252,7 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
             f"warning: {short} of {len(data)} samples have fewer than {VOXEL_FRAMES} frames with "
             "points: RadHAR's voxels.py, which cuts windows of 60 frames, stops there; simulate "
             f"for longer (duration_s; {VOXEL_FRAMES} frames of this radar take "
-            f"{VOXEL_FRAMES * header.period_s:.3g} s)"
+            f"{VOXEL_FRAMES * timing.period_s:.3g} s)"
         )
     _describe(data, folder, _ROS)
 

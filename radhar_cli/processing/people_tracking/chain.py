@@ -153,7 +153,7 @@ def track_people(
     """
     tracker, window = PeopleTracker.of(settings), np.blackman(board.samples)
     fine = settings.fine_motion
-    together = 0 if fine is None else frames_together(fine, board.loops, board.period)
+    together = 0 if fine is None else frames_together(fine, board.loops, board.period_s)
     step = firmware_doppler_step(board, carrier)
     frames = list[Float]()
     for number in range(len(cube)):
@@ -165,7 +165,7 @@ def track_people(
         if is_fine and fine is not None:
             points = points.where(np.abs(points.doppler) <= fine.highest_bin)
             points = points._replace(doppler=np.zeros_like(points.doppler))
-        frames.append(as_rows(points, board.range_step, step))
+        frames.append(as_rows(points, board.range_step_m, step))
     return Cloud.of(frames)
 
 
@@ -176,8 +176,8 @@ def firmware_doppler_step(board: Board, carrier: float | None = None) -> float:
         board: The board.
         carrier: Another frequency, Hz; None for that.
     """
-    middle = board.fc + board.slope * board.samples / (2 * board.adc_rate)
-    return SPEED_OF_LIGHT / (2 * (carrier or middle) * board.loop * board.n_doppler)
+    middle = board.carrier_hz + board.slope_hz * board.samples / (2 * board.adc_rate_hz)
+    return SPEED_OF_LIGHT / (2 * (carrier or middle) * board.loop_s * board.n_doppler)
 
 
 def as_rows(points: DetectedPoints, range_step: float, doppler_step: float) -> Float:

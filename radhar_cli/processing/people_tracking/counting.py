@@ -52,7 +52,7 @@ def count_people(
         bins = range_bins(frame, window, turned)
         signals = bins.moving if remove_mean else bins.moving + bins.mean[..., None]
         points = find_in_row(signals[:, row], vectors, settings, board.n_doppler)
-        frames.append(as_rows(points, board.range_step, step))
+        frames.append(as_rows(points, board.range_step_m, step))
     return Cloud.of(frames)
 
 

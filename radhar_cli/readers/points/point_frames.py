@@ -7,7 +7,7 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.points import COLUMNS
-from radhar_cli.radar.frame_header import FrameHeader
+from radhar_cli.radar.frame_timing import FrameTiming
 
 TARGET_COLUMNS = ("track", "x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az", "confidence")
 NO_TRACK = -1
@@ -30,13 +30,13 @@ class RadarSteps:
     bias_m: float = 0.0
 
     @classmethod
-    def of_header(cls, header: FrameHeader, bias_m: float = 0.0) -> "RadarSteps":
+    def of_frames(cls, timing: FrameTiming, bias_m: float = 0.0) -> "RadarSteps":
         """Return the steps that TI's demos take for those of a board.
 
         The speed of a Doppler bin is that at the frequency where a ramp starts, as the firmware
         has it, and not at the middle of the sampled band: one or two percent larger.
         """
-        return cls(header.range_step_m, header.doppler_step_mps(header.start_hz), bias_m)
+        return cls(timing.range_step_m, timing.doppler_step_mps(timing.start_hz), bias_m)
 
     def range_bins(self, ranges: Float) -> Float:
         """Range bins [n] of ranges [n], m; NaN where the step is unknown."""

@@ -1,11 +1,6 @@
-"""The header of a TI radar: what its .cfg, or mmWave Studio's JSON, says of chirps and frames.
+"""The .cfg of a TI radar: its chirps and frames, how points are found, where the board stands."""
 
-A chirp takes idle time + ramp end time. Transmitters that take turns have PRF = 1/(n T_c) each. The
-ADC starts later than the ramp: carrier = start frequency + slope times that. Masks of transmitters
-that repeat within a loop are further loops, as the firmware counts them (`mmwdemo_rfparser.c`).
-"""
-
-from collections.abc import Collection, Hashable, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import accumulate
@@ -14,16 +9,19 @@ from math import inf
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.detection import Detection, Firmware
-from radhar_cli.radar.frame_header import (
-    ROUNDING,
-    ChirpProfile,
-    FrameHeader,
-    RoomBox,
-    Sampling,
-    transmitters_of,
-)
+from radhar_cli.radar.frame_timing import FrameTiming, Sampling
 from radhar_cli.radar.people_tracking import PeopleCounting, PeopleTracking
+from radhar_cli.radar.room import RoomBox
 from radhar_cli.radar.ti_family import Family
+from radhar_cli.readers.ti.ti_chirps import (
+    MAX_CHIRPS,
+    MOST_ANTENNAS,
+    ChirpPair,
+    ChirpProfile,
+    ChirpRange,
+    StatedFrame,
+    make_timing,
+)
 from radhar_cli.readers.ti.ti_commands import (
     CHIRP_VARIATIONS,
     COUNT,
@@ -52,67 +50,6 @@ from radhar_cli.readers.ti.ti_people import (
 )
 
 MAX_CFG = 2**16  # characters
-MOST_ANTENNAS = 4  # receivers, or transmitters, of a device
-MAX_CHIRPS = 512  # of a frame
-
-
-@dataclass(frozen=True)
-class ChirpRange:
-    """Chirps `first` to `last`, which are alike.
-
-    Attributes:
-        first: Index of the first.
-        last: Index of the last.
-        profile: Number of their profile.
-        mask: Transmitters, bit n for transmitter n.
-        place: Line or key that messages name.
-    """
-
-    first: int
-    last: int
-    profile: int
-    mask: int
-    place: str
-
-
-@dataclass(frozen=True)
-class FrameTiming:
-    """The chirps of a frame by their indices, and the time between frames.
-
-    Attributes:
-        first: Index of the first chirp of a loop.
-        last: Index of the last.
-        loops: Number of loops of a frame.
-        frames: Number of frames of a recording; 0 is as many as there is time for.
-        period_ms: Time from frame to frame.
-        place: Line or key that messages name.
-        chirps_name: Arguments of the chirps, which messages name.
-        period_name: Argument of the time between frames.
-    """
-
-    first: int
-    last: int
-    loops: int
-    frames: int
-    period_ms: float
-    place: str
-    chirps_name: str = "chirpStartIdx chirpEndIdx"
-    period_name: str = "framePeriodicity"
-
-
-@dataclass(frozen=True)
-class ChirpPair:
-    """Two chirps in which the same two transmitters send, the second one turned in the later.
-
-    Attributes:
-        first: Index of the chirp that has their sum (chirp0Idx).
-        second: Index of the chirp that has their difference (chirp1Idx).
-        place: Line or key that messages name.
-    """
-
-    first: int
-    second: int
-    place: str
 
 
 @dataclass(frozen=True)
@@ -131,12 +68,13 @@ class BoardPose:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BoardHeader(FrameHeader):
+class BoardHeader:
     """Board of a .cfg that is simulated, whichever device it runs on.
 
     That is more than its frames: how its firmware finds points, and where the board stands.
 
     Attributes:
+        timing: Chirps and frames.
         family: Software that the file is for.
         detection: Detection of its points.
         has_cfar: Whether a line sets the CFAR of an out-of-box demo.
@@ -151,6 +89,7 @@ class BoardHeader(FrameHeader):
         not_simulated: Commands that switch on what is not simulated.
     """
 
+    timing: FrameTiming
     family: Family
     detection: Detection
     has_cfar: bool
@@ -183,7 +122,7 @@ class BoardHeader(FrameHeader):
         if self.grid.phases:
             return correct_feeds(self.grid, corrections)
         if not corrections and self.firmware is not None:
-            corrections = (1,) * len(self.antennas)
+            corrections = (1,) * self.timing.channels
         return replace(self.grid, phases=corrections, of_phases=(CORRECTIONS,))
 
 
@@ -205,20 +144,20 @@ def parse_ti_cfg(
     """
     lines = _Lines(text, where)
     lines.require_none(Effect.NOT_SIMULATED)
-    headers = _read_subframes(lines, device)
+    timings = _read_subframes(lines, device)
     if lines.family is not Family.L_SDK:
         _require_antennas(lines.of_name("channelCfg")[-1], device)
-        for subframe_header in headers:
-            _require_simulated(subframe_header, lines)
-    header = headers[min(subframe, len(headers) - 1)]
-    channels, bins = len(header.masks) * len(header.receivers), header.bins
+        for timing in timings:
+            _require_simulated(timing, lines)
+    timing = timings[min(subframe, len(timings) - 1)]
+    channels, bins = timing.channels, timing.n_bins
     family = lines.family
-    detection = read_detection(lines.lines, channels, bins, header.subframe)
-    line_of = last_lines(lines.lines, header.subframe)
+    detection = read_detection(lines.lines, channels, bins, timing.subframe)
+    line_of = last_lines(lines.lines, timing.subframe)
     others = {line.name: line for line in lines.with_effect(Effect.WARNING)}
     why_no_chain = reasons_against(line_of, family, others, bins)
     return BoardHeader(
-        **vars(header),
+        timing=timing,
         family=family,
         detection=detection,
         has_cfar=any(
@@ -232,7 +171,7 @@ def parse_ti_cfg(
         grid=read_geometry(line_of, channels)
         or read_rows_and_columns(
             {line.name: line for line in lines.with_effect(Effect.ELEMENTS)},
-            header.antennas,
+            timing.antennas_of_channels,
             family,
         ),
         unknown=tuple(dict.fromkeys(line.name[:40] for line in lines.lines if not line.command)),
@@ -240,7 +179,7 @@ def parse_ti_cfg(
     )
 
 
-def parse_frames(text: str, where: str) -> tuple[list[FrameHeader], Sequence[CfgLine]]:
+def parse_frames(text: str, where: str) -> tuple[list[FrameTiming], Sequence[CfgLine]]:
     """Parse chirps, frames and samples of a .cfg, as a raw capture needs them.
 
     Args:
@@ -248,7 +187,7 @@ def parse_frames(text: str, where: str) -> tuple[list[FrameHeader], Sequence[Cfg
         where: File that messages name.
 
     Returns:
-        The header of each subframe of a frame, in order, or of the frame; and all lines, in which
+        The timing of each subframe of a frame, in order, or of the frame; and all lines, in which
         other readers find their own.
 
     Raises:
@@ -256,152 +195,6 @@ def parse_frames(text: str, where: str) -> tuple[list[FrameHeader], Sequence[Cfg
     """
     lines = _Lines(text, where)
     return _read_subframes(lines, None), lines.lines
-
-
-def make_frame_header(
-    profiles: Mapping[int, ChirpProfile],
-    chirps: Sequence[ChirpRange],
-    timing: FrameTiming,
-    receiver_mask: int,
-    sampling: Sampling,
-    adc_bits: int,
-    pair: ChirpPair | None = None,
-) -> FrameHeader:
-    """Make a header of what a file states.
-
-    Args:
-        profiles: {number: profile}.
-        chirps: Chirps; of those with the same index the last holds.
-        timing: Chirps of a frame and time between frames.
-        receiver_mask: Receivers that are on, bit n for receiver n.
-        sampling: Kind of the samples.
-        adc_bits: Number of bits of a sample.
-        pair: Chirps in which two transmitters send together; None for none.
-
-    Raises:
-        CaptureError: The statements do not fit together; names the first and what would be right.
-    """
-    loop = _chirps_of_loop(chirps, timing)
-    of_chirps = _profiles_of(loop, profiles)
-    for profile in of_chirps:
-        profile.require_samples_within_ramp()
-    slots_s = [profile.slot_s for profile in of_chirps]
-    busy_s = timing.loops * sum(slots_s)
-    if busy_s > timing.period_ms * 1e-3 * ROUNDING:
-        lengths = " and ".join(f"{slot_s * 1e6:g}" for slot_s in dict.fromkeys(slots_s))
-        raise CaptureError(
-            f"{timing.place} {timing.period_name} = {timing.period_ms:g}: should be at least "
-            f"{busy_s * 1e3:.6g} ms, {timing.loops} loops of {len(loop)} chirps of {lengths} us"
-        )
-    masks = [chirp.mask for chirp in loop]
-    bpm = None if pair is None else _places_of(pair, loop, timing)
-    roles = [bpm.index(place) if bpm and place in bpm else None for place in range(len(masks))]
-    times = [(profile.idle_us, profile.ramp_end_us) for profile in of_chirps]
-    turns = count_turns(list(zip(masks, roles, times, strict=True)))
-    is_even = len(set(times)) == 1
-    return FrameHeader(
-        profile=replace(of_chirps[0], backoff_db=_backoff_of(loop, of_chirps)),
-        masks=tuple(masks[:turns]),
-        loops=timing.loops * len(masks) // turns,
-        frames=timing.frames,
-        period_s=timing.period_ms * 1e-3,
-        receivers=tuple(n for n in range(4) if receiver_mask >> n & 1),
-        sampling=sampling,
-        loop_s=turns * slots_s[0] if is_even else sum(slots_s[:turns]),
-        adc_bits=adc_bits,
-        bpm=bpm,
-        chirp_starts_s=() if is_even else _ramp_starts_of(of_chirps[:turns]),
-    )
-
-
-def count_turns(masks: Sequence[Hashable]) -> int:
-    """Count the chirps after which a sequence of transmitters repeats."""
-    count = len(masks)
-    return next(
-        n
-        for n in range(1, count + 1)
-        if count % n == 0 and all(masks[k] == masks[k % n] for k in range(count))
-    )
-
-
-def _chirps_of_loop(chirps: Sequence[ChirpRange], timing: FrameTiming) -> list[ChirpRange]:
-    """Find the chirps of a loop, in order."""
-    by_index = {
-        index: chirp
-        for chirp in chirps
-        for index in range(chirp.first, min(chirp.last, MAX_CHIRPS - 1) + 1)
-    }
-    indices = range(timing.first, min(timing.last, MAX_CHIRPS) + 1)
-    loop = [by_index[index] for index in indices if index in by_index]
-    if not loop or len(loop) < len(indices):
-        raise CaptureError(
-            f"{timing.place} {timing.chirps_name} = {timing.first} {timing.last}: should be "
-            f"chirps that are all defined (chirpCfg), at most {MAX_CHIRPS}"
-        )
-    return loop
-
-
-def _places_of(pair: ChirpPair, loop: Sequence[ChirpRange], timing: FrameTiming) -> tuple[int, int]:
-    """Find the places in the loop of the chirps in which two transmitters send together."""
-    first, second = pair.first - timing.first, pair.second - timing.first
-    for name, place in (("chirp0Idx", first), ("chirp1Idx", second)):
-        if not 0 <= place < len(loop):
-            raise CaptureError(
-                f"{pair.place} {name} = {place + timing.first}: should be a chirp of the frame, "
-                f"{timing.first} to {timing.last}"
-            )
-    masks = loop[first].mask, loop[second].mask
-    if first == second or masks[0] != masks[1] or masks[0].bit_count() != 2:
-        raise CaptureError(
-            f"{pair.place} chirp0Idx chirp1Idx = {pair.first} {pair.second}: should be two chirps "
-            f"of the same two transmitters (chirpCfg txEnable = {masks[0]} and {masks[1]})"
-        )
-    return first, second
-
-
-def _profiles_of(
-    loop: Sequence[ChirpRange], profiles: Mapping[int, ChirpProfile]
-) -> list[ChirpProfile]:
-    """Return the profile of each chirp of a loop, whose sampled sweeps are equal."""
-    for chirp in loop:
-        if chirp.profile not in profiles:
-            known = ", ".join(map(str, sorted(profiles)))
-            raise CaptureError(
-                f"{chirp.place} profileId = {chirp.profile}: should be one that is defined "
-                f"(profileCfg): {known}"
-            )
-    of_chirps = [profiles[chirp.profile] for chirp in loop]
-    for chirp, profile in zip(loop, of_chirps, strict=True):
-        if profile.sweep != of_chirps[0].sweep:
-            raise CaptureError(
-                f"{chirp.place} profileId = {chirp.profile}: should be {loop[0].profile}: a frame "
-                "has chirps of one profile, or of profiles that differ in idleTime, rampEndTime "
-                "and txOutPower alone; subFrameCfg has one each"
-            )
-    return of_chirps
-
-
-def _ramp_starts_of(profiles: Sequence[ChirpProfile]) -> tuple[float, ...]:
-    """Times (s) from the first ramp of a loop to each of its ramps."""
-    ends = accumulate(profile.slot_s for profile in profiles)
-    starts = [end - profile.ramp_end_us * 1e-6 for end, profile in zip(ends, profiles, strict=True)]
-    return tuple(start - starts[0] for start in starts)
-
-
-def _backoff_of(loop: Sequence[ChirpRange], profiles: Sequence[ChirpProfile]) -> tuple[float, ...]:
-    """Return by how much the power of each transmitter is lower in the chirps that it sends."""
-    if len({profile.backoff_db for profile in profiles}) == 1:
-        return profiles[0].backoff_db
-    lower_db = dict[int, float]()
-    for chirp, profile in zip(loop, profiles, strict=True):
-        for transmitter in transmitters_of(chirp.mask):
-            decibels = profile.backoff_db[transmitter] if profile.backoff_db else 0.0
-            if lower_db.setdefault(transmitter, decibels) != decibels:
-                raise CaptureError(
-                    f"{chirp.place} profileId = {chirp.profile}: should have the txOutPower of the "
-                    f"other chirps of its transmitter, {lower_db[transmitter]:g} dB"
-                )
-    return tuple(lower_db.get(transmitter, 0.0) for transmitter in range(MOST_ANTENNAS))
 
 
 class _Lines:
@@ -440,7 +233,7 @@ class _Lines:
             _ = line.numbers
 
 
-def _read_subframes(lines: _Lines, device: str | None) -> list[FrameHeader]:
+def _read_subframes(lines: _Lines, device: str | None) -> list[FrameTiming]:
     """Read all that the lines say of chirps, frames and samples, of each subframe."""
     lines.require_none(Effect.NOT_READ)
     if lines.family is Family.L_SDK:
@@ -449,8 +242,8 @@ def _read_subframes(lines: _Lines, device: str | None) -> list[FrameHeader]:
     adc = lines.require("adcCfg", "adcCfg 2 1")[-1]
     profiles = lines.require("profileCfg", "profileCfg 0 77 10 6 48 0 0 70 1 128 3200 0 0 30")
     chirps = lines.require("chirpCfg", "chirpCfg 0 0 0 0 0 0 0 1")
-    timings = _read_timings(lines)
-    used = _chirps_in_use(chirps, timings)
+    frames = _read_frames(lines)
+    used = _chirps_in_use(chirps, frames)
     for line in used:
         _require_plain(line)
     lines.drop(_unused_profiles(profiles, used))
@@ -458,23 +251,23 @@ def _read_subframes(lines: _Lines, device: str | None) -> list[FrameHeader]:
         _ = line.numbers  # lines that do not hold must be right, too
     adc_numbers = adc.numbers
     bits = 12 + 2 * int(adc_numbers["numADCBits"])
-    headers = [
-        make_frame_header(
+    subframes = [
+        make_timing(
             dict(map(_read_profile, lines.of_name("profileCfg"))),
             [_read_chirp(line) for line in chirps],
-            timing,
+            frame,
             int(receivers.numbers["rxChannelEn"]),
             Sampling(int(adc_numbers["adcOutputFmt"])),
             bits,
             _read_pair(lines, subframe),
         )
-        for subframe, timing in enumerate(timings)
+        for subframe, frame in enumerate(frames)
     ]
-    _require_stated_samples(headers[0], lines)
-    return _place_subframes(headers)
+    _require_stated_samples(subframes[0], lines)
+    return _place_subframes(subframes)
 
 
-def _chirps_in_use(chirps: Sequence[CfgLine], timings: Sequence[FrameTiming]) -> list[CfgLine]:
+def _chirps_in_use(chirps: Sequence[CfgLine], frames: Sequence[StatedFrame]) -> list[CfgLine]:
     """Return the lines chirpCfg of the chirps that frames send, of which the last counts."""
     line_of = {
         index: line
@@ -484,9 +277,7 @@ def _chirps_in_use(chirps: Sequence[CfgLine], timings: Sequence[FrameTiming]) ->
         )
     }
     sent = {
-        index
-        for timing in timings
-        for index in range(timing.first, min(timing.last, MAX_CHIRPS) + 1)
+        index for frame in frames for index in range(frame.first, min(frame.last, MAX_CHIRPS) + 1)
     }
     return list(dict.fromkeys(line for index, line in line_of.items() if index in sent))
 
@@ -511,33 +302,33 @@ def _unused_profiles(profiles: Sequence[CfgLine], chirps: Sequence[CfgLine]) -> 
     return [line for line, number in number_of.items() if number not in named]
 
 
-def _require_stated_samples(header: FrameHeader, lines: _Lines) -> None:
+def _require_stated_samples(timing: FrameTiming, lines: _Lines) -> None:
     """Raise CaptureError where frameCfg has another number of samples than the profile."""
     for frame in lines.of_name("frameCfg"):
         samples = frame.numbers.get("numAdcSamples")
-        if samples not in (None, header.samples):
-            right = f"{header.samples}, as profileCfg has it"
+        if samples not in (None, timing.samples):
+            right = f"{timing.samples}, as profileCfg has it"
             raise frame.refusal("numAdcSamples", samples or 0, right)
 
 
-def _place_subframes(headers: Sequence[FrameHeader]) -> list[FrameHeader]:
+def _place_subframes(timings: Sequence[FrameTiming]) -> list[FrameTiming]:
     """Set the times of subframes, which follow each other; a frame lasts as long as all."""
-    if len(headers) == 1:
-        return [*headers]
-    begins = [0.0, *accumulate(header.period_s for header in headers)]
+    if len(timings) == 1:
+        return [*timings]
+    begins = [0.0, *accumulate(timing.period_s for timing in timings)]
     return [
         replace(
-            header,
+            timing,
             subframe=subframe,
-            subframes=len(headers),
+            subframes=len(timings),
             delay_s=begins[subframe],
             period_s=begins[-1],
         )
-        for subframe, header in enumerate(headers)
+        for subframe, timing in enumerate(timings)
     ]
 
 
-def _read_timings(lines: _Lines) -> list[FrameTiming]:
+def _read_frames(lines: _Lines) -> list[StatedFrame]:
     """Read the chirps of a frame, or of each of its subframes."""
     modes = [line.numbers["modeType"] for line in lines.of_name("dfeDataOutputMode")]
     names = {line.name for line in lines.lines}
@@ -557,11 +348,11 @@ def _read_timings(lines: _Lines) -> list[FrameTiming]:
     return [_read_subframe(by_number[number], frames) for number in range(count)]
 
 
-def _read_subframe(line: CfgLine, frames: int) -> FrameTiming:
+def _read_subframe(line: CfgLine, frames: int) -> StatedFrame:
     """Read a line subFrameCfg of so many frames."""
     numbers = line.numbers
     first = int(numbers["chirpStartIdx"])
-    return FrameTiming(
+    return StatedFrame(
         first=first,
         last=first + int(numbers["numOfChirps"]) - 1,
         loops=int(numbers["numLoops"]),
@@ -602,10 +393,10 @@ def _read_chirp(line: CfgLine) -> ChirpRange:
     )
 
 
-def _read_frame(line: CfgLine) -> FrameTiming:
+def _read_frame(line: CfgLine) -> StatedFrame:
     """Read a line frameCfg."""
     numbers = line.numbers
-    return FrameTiming(
+    return StatedFrame(
         first=int(numbers["chirpStartIdx"]),
         last=int(numbers["chirpEndIdx"]),
         loops=int(numbers["numLoops"]),
@@ -678,37 +469,37 @@ def _require_antennas(line: CfgLine, device: str | None) -> None:
             raise line.refusal(argument, mask, f"at most {largest}: {owner} {count} {noun}")
 
 
-def _require_simulated(header: FrameHeader, lines: _Lines) -> None:
+def _require_simulated(timing: FrameTiming, lines: _Lines) -> None:
     """Raise CaptureError for chirps and samples that boards of radhar do not have."""
     channels = lines.of_name("channelCfg")[-1]
-    if not header.receivers:
+    if not timing.receivers:
         raise channels.refusal("rxChannelEn", channels.words[0], "1 to 15: a receiver that is on")
     transmitters = int(channels.numbers.get("txChannelEn", COUNT))
-    shared = None if header.bpm is None else header.masks[header.bpm[0]]
+    shared = None if timing.bpm is None else timing.masks[timing.bpm[0]]
     for line in lines.of_name("chirpCfg"):
         mask = _read_chirp(line).mask
-        if mask in header.masks and mask.bit_count() != 1 and mask != shared:
+        if mask in timing.masks and mask.bit_count() != 1 and mask != shared:
             right = (
                 "one transmitter a chirp (the TDM demo's profile), or two in two chirps with "
                 "bpmCfg enabled: DDMA is not simulated"
             )
             raise line.refusal("txEnable", mask, right)
-        if mask in header.masks and mask & ~transmitters:
+        if mask in timing.masks and mask & ~transmitters:
             right = f"of transmitters that are on (channelCfg txChannelEn = {transmitters})"
             raise line.refusal("txEnable", mask, right)
-    if header.bpm is not None:
-        _require_known_pair(header, _lines_of_pair(lines, header.subframe)[-1])
-    elif len(set(header.masks)) < len(header.masks):
+    if timing.bpm is not None:
+        _require_known_pair(timing, _lines_of_pair(lines, timing.subframe)[-1])
+    elif len(set(timing.masks)) < len(timing.masks):
         raise lines.of_name("chirpCfg")[-1].refusal(
             "txEnable",
-            " ".join(map(str, header.masks[:8])) + " ..." * (len(header.masks) > 8),
+            " ".join(map(str, timing.masks[:8])) + " ..." * (len(timing.masks) > 8),
             "each transmitter once, and again in the same order",
         )
 
 
-def _require_known_pair(header: FrameHeader, line: CfgLine) -> None:
+def _require_known_pair(timing: FrameTiming, line: CfgLine) -> None:
     """Raise CaptureError for a loop that no firmware decodes."""
-    masks, bpm = header.masks, header.bpm
+    masks, bpm = timing.masks, timing.bpm
     assert bpm is not None
     alone = [mask for place, mask in enumerate(masks) if place not in bpm]
     if len(alone) > 1 or any(mask & masks[bpm[0]] for mask in alone):

@@ -177,9 +177,9 @@ def fitting_devices(header: "BoardHeader") -> list[str]:
         for name, device in DEVICES.items()
         if not name.startswith(TWINS)
         and header.family in (Family.ANY, *device.families)
-        and low_ghz(name) <= header.start_hz / 1e9 < low_ghz(name) + 10
-        and _has_antennas(device.array, header.antennas)
-        and _could_be(header.elements, device.array, header.antennas)
+        and low_ghz(name) <= header.timing.start_hz / 1e9 < low_ghz(name) + 10
+        and _has_antennas(device.array, header.timing.antennas_of_channels)
+        and _could_be(header.elements, device.array, header.timing.antennas_of_channels)
     ]
 
 

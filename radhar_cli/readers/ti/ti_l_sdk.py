@@ -8,7 +8,8 @@ from collections.abc import Sequence
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.board import DEVICES
-from radhar_cli.radar.frame_header import ROUNDING, ChirpProfile, FrameHeader, Sampling
+from radhar_cli.radar.frame_timing import FrameTiming, Sampling
+from radhar_cli.readers.ti.ti_chirps import ROUNDING, ChirpProfile
 from radhar_cli.readers.ti.ti_commands import CfgLine, describe_missing
 
 IWRL6844 = "IWRL6844EVM"  # whose masks have two bits an antenna
@@ -22,7 +23,7 @@ _EXAMPLES = {
 _TOGETHER = 4  # chirpTxMimoPatSel of two transmitters that send together
 
 
-def read_l_sdk(lines: Sequence[CfgLine], where: str, device: str | None) -> FrameHeader:
+def read_l_sdk(lines: Sequence[CfgLine], where: str, device: str | None) -> FrameTiming:
     """Read all that lines say of chirps, frames and samples.
 
     Args:
@@ -51,16 +52,18 @@ def read_l_sdk(lines: Sequence[CfgLine], where: str, device: str | None) -> Fram
             raise last["chirpComnCfg"].refusal("chirpTxMimoPatSel", pattern, right)
         masks, bpm = (sum(masks),) * 2, (0, 1)
     averaged = max(1, int(frame.numbers["numOfChirpsAccum"]))
-    loops, loop_s = _read_loops(frame, len(masks), len(masks) * averaged * profile.slot_s)
-    return FrameHeader(
-        profile=profile,
+    slot_s = profile.slot_s * averaged
+    loops, loop_s = _read_loops(frame, len(masks), slot_s * len(masks))
+    follow = abs(loop_s - slot_s * len(masks)) <= 1e-9 * loop_s
+    return profile.timing(
+        slot_s=slot_s,
         masks=masks,
         loops=loops,
         frames=int(frame.numbers["numOfFrames"]),
         period_s=frame.numbers["framePeriodicity"] * 1e-3,
         receivers=receivers,
         sampling=Sampling.REAL,
-        loop_s=loop_s,
+        burst_s=None if follow else loop_s,
         bpm=bpm,
         averaged=averaged,
     )

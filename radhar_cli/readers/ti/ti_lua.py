@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import text_of
-from radhar_cli.radar.frame_header import ChirpProfile, FrameHeader, Sampling
+from radhar_cli.radar.frame_timing import FrameTiming, Sampling
 from radhar_cli.readers.ti.lua_calls import DeviceCall, read_device_calls
 from radhar_cli.readers.ti.lvds_format import LvdsFormat
-from radhar_cli.readers.ti.ti_cfg import ChirpRange, FrameTiming, make_frame_header
+from radhar_cli.readers.ti.ti_chirps import ChirpProfile, ChirpRange, StatedFrame, make_timing
 
 MAX_LUA = 2**18  # bytes
 NEEDED = ("ChanNAdcConfig", "ProfileConfig", "ChirpConfig", "FrameConfig")
@@ -60,7 +60,7 @@ class Call(NamedTuple):
         return int(value)
 
 
-def read_lua(path: Path) -> tuple[FrameHeader, LvdsFormat]:
+def read_lua(path: Path) -> tuple[FrameTiming, LvdsFormat]:
     """Read a header from a script of mmWave Studio.
 
     Returns:
@@ -80,10 +80,10 @@ def read_lua(path: Path) -> tuple[FrameHeader, LvdsFormat]:
     channels = _calls_of("ChanNAdcConfig", calls)[-1]  # the last call is the one that holds
     frame = _calls_of("FrameConfig", calls)[-1]
     receivers = sum(bool(channels.whole_number(TRANSMITTERS + n)) << n for n in range(RECEIVERS))
-    header = make_frame_header(
+    timing = make_timing(
         {call.whole_number(0): _profile(call) for call in _calls_of("ProfileConfig", calls)},
         [_chirps(call) for call in _calls_of("ChirpConfig", calls)],
-        FrameTiming(
+        StatedFrame(
             frame.whole_number(0),
             frame.whole_number(1),
             frame.whole_number(3),
@@ -102,7 +102,7 @@ def read_lua(path: Path) -> tuple[FrameHeader, LvdsFormat]:
         bool(formats) and formats[-1].whole_number(2) == 1
     )
     is_interleaved = bool(formats) and formats[-1].whole_number(3) == 0
-    return header, LvdsFormat(count, is_interleaved, is_q_first)
+    return timing, LvdsFormat(count, is_interleaved, is_q_first)
 
 
 def _calls(text: str, path: Path) -> list[Call]:

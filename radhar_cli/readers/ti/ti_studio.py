@@ -19,9 +19,9 @@ from pydantic import (
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import read_json
-from radhar_cli.radar.frame_header import ChirpProfile, FrameHeader, Sampling
+from radhar_cli.radar.frame_timing import FrameTiming, Sampling
 from radhar_cli.readers.ti.lvds_format import LvdsFormat
-from radhar_cli.readers.ti.ti_cfg import ChirpRange, FrameTiming, make_frame_header
+from radhar_cli.readers.ti.ti_chirps import ChirpProfile, ChirpRange, StatedFrame, make_timing
 
 
 def _parse_hexadecimal(value: object) -> object:
@@ -107,7 +107,7 @@ class _Studio(_Ti):
     devices: tuple[_Device] = _field_at("mmWaveDevices")  # cascades are not read
 
 
-def read_studio(path: Path) -> tuple[FrameHeader, LvdsFormat]:
+def read_studio(path: Path) -> tuple[FrameTiming, LvdsFormat]:
     """Read a header from the JSON of mmWave Studio.
 
     Returns:
@@ -124,13 +124,13 @@ def read_studio(path: Path) -> tuple[FrameHeader, LvdsFormat]:
     if device.lanes.bit_count() not in (2, 4):
         raise CaptureError(f"{path}: laneEn = {device.lanes:#x}: should enable 2 or 4 lanes")
     place = f"{path}:"
-    header = make_frame_header(
+    timing = make_timing(
         {each.number: each.profile(f"{place} numAdcSamples") for each in device.profiles},
         [
             ChirpRange(each.first, each.last, each.profile, each.transmitters, place)
             for each in device.chirps
         ],
-        FrameTiming(
+        StatedFrame(
             device.first, device.last, device.loops, device.frames, device.period_ms, place
         ),
         device.receivers,
@@ -138,7 +138,7 @@ def read_studio(path: Path) -> tuple[FrameHeader, LvdsFormat]:
         12 + 2 * device.bits,
     )
     stream = LvdsFormat(device.lanes.bit_count(), device.interleave == 0, device.swap == 1)
-    return header, stream
+    return timing, stream
 
 
 def _first_mistake(error: ValidationError) -> str:

@@ -82,7 +82,7 @@ def describe_flag(flag: Flags, config: Config | None) -> str:
     """Say what a flag means, of scenes of a config where there is one."""
     radar = None if config is None else config.radar
     if flag is Flags.ALIASING and isinstance(radar, ArrayRadar):
-        turns = len(radar.header.order) > 1
+        turns = len(radar.timing.order) > 1
         return WORDING[flag] + ANGLES_ALIAS * turns
     if flag is Flags.SWEEP and config is not None:
         return f"{WORDING[flag]}: {describe_slow_sweep(config)}"

@@ -1,7 +1,7 @@
 """Positions that are frozen during a sweep: how far they leave echoes from where they belong."""
 
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import ArrayRadar, BoardRadar, SfcwRadar, StepFramesRadar
+from radhar_cli.config.radar import ArrayRadar, BoardRadar, Steps
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.radar import waveform_of
 from radhar_cli.scene.scene import nominal_scene
@@ -21,7 +21,7 @@ def describe_slow_sweep(config: Config) -> str:
     """Say how far frozen positions leave echoes from where they belong, and the remedies."""
     radar = config.radar
     w = waveform_of(nominal_scene(config, config.chosen_activities[0]))
-    has_steps = isinstance(radar, SfcwRadar | StepFramesRadar)
+    has_steps = isinstance(radar, Steps)
     shorter = "radar.dwell_s or radar.steps" if has_steps else "radar.chirp_s"
     within = "engine.motion_in_chirp: true with engine.kind: cube has it, "
     if isinstance(radar, ArrayRadar):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.config.radar import ArrayRadar, FmcwRadar, SfcwRadar
+from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.echo.bodies.motion_paths import point_delay, through_wall_delay
 from radhar_cli.echo.bodies.segment_paths import Body
 from radhar_cli.errors import SceneError
@@ -211,7 +211,6 @@ class Surroundings:
         is_gated = config.processing.range_sum == "gated"
         has_segments = config.body.scatterers == "segments"
         is_alone = not config.people and config.room.faces is None
-        sweeps = isinstance(config.radar, FmcwRadar | SfcwRadar | ArrayRadar)
         return cls(
             antennas=antennas_of(scene),
             wall=wall_of(scene),
@@ -219,7 +218,7 @@ class Surroundings:
             waveform=waveform_of(scene),
             body=body_of(person, moving(person)) if has_segments else None,
             gate_m=gate_m if is_gated and isinstance(gate_m, tuple) else None,
-            freezes_sweeps=sweeps and not config.engine.motion_in_chirp,
+            freezes_sweeps=config.radar.sweeps and not config.engine.motion_in_chirp,
             shares_grid=is_alone and not isinstance(config.radar, ArrayRadar),
             one_of_several=bool(config.other_radars),
         )

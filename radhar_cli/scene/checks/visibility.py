@@ -173,8 +173,8 @@ def _window_pulses(scene: Scene, w: Waveform) -> int:
     if not isinstance(scene.radar, ArrayRadar):
         return scene.config.processing.make_frames(w.duration, w.prf, w.f0).length
     board = board_of(scene.radar, scene.seconds)
-    seconds = board.frames * board.period
-    frames = scene.config.processing.make_frames(seconds, 1 / board.loop, board.centre)
+    seconds = board.frames * board.period_s
+    frames = scene.config.processing.make_frames(seconds, 1 / board.loop_s, board.centre_hz)
     return min(frames.length, board.loops)
 
 

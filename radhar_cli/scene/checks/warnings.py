@@ -13,7 +13,6 @@ from radhar_cli.config.checks.doubts import (
 )
 from radhar_cli.config.checks.unused_keys import unused_keys
 from radhar_cli.config.data_set import Config
-from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.errors import SceneError
 from radhar_cli.radar.propagation import leg
 from radhar_cli.scene.checks.drawing import CROWDED, describe_crowd, find_crowded, suggest_cure
@@ -48,11 +47,7 @@ def warnings_of_signal(config: Config) -> list[str]:
 
 def _folding_warnings(config: Config) -> list[str]:
     """Say that some echoes by way of faces come from beyond the ranges that the radar has."""
-    if (
-        config.room.faces is None
-        or isinstance(config.radar, ImpulseRadar)
-        or not config.radar.has_range
-    ):
+    if config.room.faces is None or not config.radar.sweeps:
         return []
     farthest, reach = 0.0, 0.0
     for activity in config.chosen_activities:

@@ -330,7 +330,7 @@ def compute_faces_echo(scene: Scene, board: Board, wall: Wall | None) -> Complex
         wall: wall that the paths cross, or None.
     """
     ways, fc = echo_ways_of(scene), board.path_waveform.fc
-    latest = 2 * board.range_step * board.n_bins / SPEED_OF_LIGHT
+    latest = 2 * board.range_step_m * board.n_bins / SPEED_OF_LIGHT
     pairs = [echoes_of_faces(board.antennas(k, r), ways, wall, fc, latest) for k, r in board.pairs]
     return still_samples(combine_transmitters(pairs, board), board)
 
@@ -438,7 +438,7 @@ def find_points(
         settings: chain, and what of its points is kept.
         detection: settings of an out-of-box demo's .cfg.
     """
-    carrier = board.start if settings.doppler_carrier == "start" else None
+    carrier = board.start_hz if settings.doppler_carrier == "start" else None
     header = radar.header if isinstance(radar, BoardRadar) else None
     if header is None or settings.chain == "best" or radar.firmware is None:
         bias, removes_mean = detection.bias, detection.remove_mean
@@ -515,6 +515,6 @@ def make_gate_of_board(
 
 def make_board_windows(scene: Scene, board: Board, make: MakeFrames) -> Frames:
     """Make the windows of a Doppler-time map of a board, within its frames."""
-    seconds = board.frames * board.period
-    windows = make(scene.config.processing, seconds, 1 / board.loop, board.centre)
+    seconds = board.frames * board.period_s
+    windows = make(scene.config.processing, seconds, 1 / board.loop_s, board.centre_hz)
     return windows.within(board.loops, are_apart=len(board.pulses) > 1)

@@ -195,7 +195,7 @@ def _echo_of_row(tx_images: Float, rx_images: Float, board: Board, row: list[int
         antennas = board.antennas(k, r)
         length = np.linalg.norm(tx_images - antennas.tx, axis=-1)
         length += np.linalg.norm(rx_images - antennas.rx, axis=-1)
-        echoes.append(np.exp(-2j * np.pi * board.centre / SPEED_OF_LIGHT * length))
+        echoes.append(np.exp(-2j * np.pi * board.centre_hz / SPEED_OF_LIGHT * length))
     return np.stack(echoes, axis=-1)
 
 

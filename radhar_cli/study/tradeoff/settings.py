@@ -15,8 +15,8 @@ from radhar_cli.config.radar import (
     ChirpFramesRadar,
     FmcwRadar,
     ImpulseRadar,
-    SfcwRadar,
-    StepFramesRadar,
+    Steps,
+    SweptPulses,
 )
 from radhar_cli.processing.map_kind import kind_of
 from radhar_cli.schema.number import nominal
@@ -164,7 +164,7 @@ def _body(config: Config) -> Iterator[Setting]:
 def _radar(config: Config) -> Iterator[Setting]:
     """Yield fewer pulses, samples, frames and antennas, other points, and other radar physics."""
     radar = config.radar
-    if isinstance(radar, SfcwRadar | StepFramesRadar):  # each step twice as long
+    if isinstance(radar, Steps):  # each step twice as long
         steps = (f"radar.steps={radar.steps // 2}", f"radar.dwell_s={2 * radar.dwell_s:g}")
         yield Setting(steps, Worth.SAVES)
     elif isinstance(radar, FmcwRadar | ChirpFramesRadar):
@@ -178,7 +178,7 @@ def _radar(config: Config) -> Iterator[Setting]:
         return
     for share in (0.5, 0.75):
         yield from _single(Worth.SAVES, f"radar.prf_hz={share * nominal(radar.prf_hz):g}")
-    if isinstance(radar, FmcwRadar | SfcwRadar) and not radar.residual_video_phase:
+    if isinstance(radar, SweptPulses) and not radar.residual_video_phase:
         yield from _single(Worth.PHYSICS, "radar.residual_video_phase=true")
     if radar.beam is None:
         yield Setting((BEAM,), Worth.PHYSICS, "beams of 70 x 30 degrees")
@@ -188,20 +188,20 @@ def _radar(config: Config) -> Iterator[Setting]:
 
 def _frames(radar: ArrayRadar) -> Iterator[Setting]:
     """Yield fewer frames and chirps; of a board's .cfg numbers of its lines, command and place."""
-    header = radar.header
+    timing = radar.timing
     if not isinstance(radar, BoardRadar):
-        yield from _single(Worth.SAVES, f"radar.frame.period_s={2 * header.period_s:g}")
-        if header.loops > 1:
-            yield from _single(Worth.SAVES, f"radar.frame.chirps={header.loops // 2}")
+        yield from _single(Worth.SAVES, f"radar.frame.period_s={2 * timing.period_s:g}")
+        if timing.loops > 1:
+            yield from _single(Worth.SAVES, f"radar.frame.chirps={timing.loops // 2}")
         return
-    receivers = len(header.receivers)
-    mask = sum(1 << receiver for receiver in header.receivers[: receivers // 2])
+    receivers = len(timing.receivers)
+    mask = sum(1 << receiver for receiver in timing.receivers[: receivers // 2])
     changes: dict[str, tuple[str, dict[int, float | int]]] = {
         "half as many frames": ("frameCfg", {5: 2.0}),
-        f"{header.loops // 2} loops a frame": ("frameCfg", {3: 0.5}),
+        f"{timing.loops // 2} loops a frame": ("frameCfg", {3: 0.5}),
         "half as many samples a chirp": ("profileCfg", {10: 0.5, 11: 0.5}),
     }
-    for count in range(len(header.masks) - 1, 0, -1):
+    for count in range(len(timing.masks) - 1, 0, -1):
         changes[f"{count} transmitter{'s' * (count > 1)}"] = ("frameCfg", {2: count - 1})
     if receivers > 2:
         changes[f"{receivers // 2} receivers"] = ("channelCfg", {1: mask})

@@ -17,17 +17,17 @@ from radhar_cli.readers.ti.ti_people import last_lines, read_people_counting
 
 IWR1642 = Board(
     array=DEVICES["IWR1642BOOST"].array,
-    start=77e9,
-    fc=77e9 + 60e12 * 7e-6,
-    slope=60e12,
-    adc_rate=2.5e6,
+    start_hz=77e9,
+    carrier_hz=77e9 + 60e12 * 7e-6,
+    slope_hz=60e12,
+    adc_rate_hz=2.5e6,
     samples=128,
-    slot=92e-6,
-    order=(0, 1),
+    slot_s=92e-6,
+    masks=(1, 2),
     receivers=(0, 1, 2, 3),
     loops=128,
     frames=1,
-    period=0.05,
+    period_s=0.05,
 )
 LINES = "cfarCfg 6 4 4 0 0 16 16 4 4 50 62 0\ndoaCfg 600 1875 30 1\n"
 SETTINGS: PeopleCounting = read_people_counting(last_lines(split_lines(LINES, "cfg")), 8, 128)

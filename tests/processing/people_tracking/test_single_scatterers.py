@@ -59,7 +59,7 @@ def middle(cloud: Cloud) -> Float:
     ("board", "more", "per_speed"),
     [
         (replace(ISK, loops=48), "", (0.0285, 0.0)),
-        (replace(ISK, loops=48, bpm=BPM), "", (0.0, -0.075)),
+        (replace(ISK, loops=48, bpm=BPM, masks=BPM_MASKS), "", (0.0, -0.075)),
         (replace(ODS, loops=48), ODS_GEOMETRY, (0.030, 0.035)),
     ],
     ids=["ISK", "ISK with bpmCfg", "ODS"],
@@ -95,7 +95,7 @@ def test_two_on_both_sides_in_a_bin_are_apart_with_their_speeds() -> None:
 
 def test_noise_alone_gives_no_moving_points_and_many_resting_ones() -> None:
     assert not sum(
-        len(cloud_of(replace(ISK, loops=48, start=start)).points) for start in (60.75e9, 60.8e9)
+        len(cloud_of(replace(ISK, loops=48, start_hz=start)).points) for start in (60.75e9, 60.8e9)
     )
     static = "staticRangeAngleCfg -1 1 8 8\n"
     assert 50 <= len(cloud_of(replace(ISK, loops=48), more=static).points) <= 150
@@ -106,7 +106,7 @@ def test_bpm_lowers_the_noise_of_the_map_by_three_decibels() -> None:
     from radhar_cli.processing.people_tracking.spectrum import decode_bpm, range_bins
 
     levels = []
-    for board in (replace(ISK, loops=48), replace(ISK, loops=48, bpm=BPM)):
+    for board in (replace(ISK, loops=48), replace(ISK, loops=48, bpm=BPM, masks=BPM_MASKS)):
         cube = repeatable_noise((48, 12, 96), 1.0, 7)
         tracker = PeopleTracker.of(settings_of(board))
         frame = decode_bpm(cube, board.sums, board.differences)
@@ -125,7 +125,7 @@ def test_more_loops_give_no_more_signal_over_noise() -> None:
 
 def test_slow_breath_is_seen_over_several_frames() -> None:
     board = replace(ISK, loops=48, frames=40)
-    breath = 2 * np.pi * 0.3 * np.arange(40) * board.period
+    breath = 2 * np.pi * 0.3 * np.arange(40) * board.period_s
     frames = [echo_of(board, [scatterer(r=2.5 + 0.003 * np.sin(phase), a=0.3)]) for phase in breath]
     cube = np.stack(frames)
     cube = cube + repeatable_noise(cube.shape, 1.0, 3)

@@ -54,7 +54,9 @@ class Case:
         self.masks = [int(line.words[-1]) for line in lines if line.name == "chirpCfg"]
         self.bpm = (int(words["bpmCfg"][2]), int(words["bpmCfg"][3])) if "bpmCfg" in words else None
         device = ISK if self.case["board"] == "ISK" else ODS
-        self.board: Board = replace(device, samples=48, loops=24, bpm=self.bpm)
+        self.board: Board = replace(
+            device, samples=48, loops=24, bpm=self.bpm, masks=tuple(self.masks)
+        )
         self.settings: PeopleTracking = read_people_tracking(
             last_lines(lines), 12, self.board.n_fft
         )
@@ -128,7 +130,7 @@ def test_samples_sizes_map_and_cells(name: str) -> None:
     tracker, sizes = PeopleTracker.of(case.settings), case.case["sizes"]
     assert len(tracker.vectors) == sizes["angles"]
     assert (case.board.n_fft, case.board.n_doppler) == (sizes["bins"], sizes["doppler_bins"])
-    assert case.board.range_step == pytest.approx(sizes["range_step_m"], abs=1e-12)
+    assert case.board.range_step_m == pytest.approx(sizes["range_step_m"], abs=1e-12)
     assert firmware_doppler_step(case.board) == pytest.approx(sizes["doppler_step_mps"], abs=1e-12)
     _, power = case.moving(tracker)
     for cell in case.case["power"]:

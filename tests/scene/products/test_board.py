@@ -56,7 +56,7 @@ def made(path: Path, *names: str, overrides: tuple[str, ...] = ()) -> dict[str, 
 def test_a_config_gives_the_board_of_its_cfg(path: Path) -> None:
     scene = scene_of(path)
     board = board_of(scene.radar, scene.seconds)
-    assert (board.fc, board.loops, board.frames, board.order) == (77.7e9, 32, 3, MARS.order)
+    assert (board.carrier_hz, board.loops, board.frames, board.order) == (77.7e9, 32, 3, MARS.order)
     assert board.position == (0, 0, 1)
     assert board.gain == pytest.approx(10**0.9)
 
@@ -81,7 +81,7 @@ def test_cube_is_the_sum_over_the_scatterers_of_every_channel(path: Path) -> Non
         antennas = board.antennas(k, r)
         legs = [np.linalg.norm(p[..., 0].T - one, axis=1) for one in (antennas.tx, antennas.rx)]
         a = np.sqrt(motion.cross_sections(np.zeros(1))[:, 0]) * board.aim.two_way(p)[:, 0]
-        a *= board.gain * C / board.centre / (4 * np.pi) ** 1.5 / (legs[0] * legs[1])
+        a *= board.gain * C / board.centre_hz / (4 * np.pi) ** 1.5 / (legs[0] * legs[1])
         tau = sum(legs) / C
         right = beat_matrix(tau[:, None], a[:, None], board.waveform)[:, 0]
         largest = np.abs(right).max()
@@ -100,7 +100,7 @@ def test_the_radar_equation_gives_436_db_for_a_square_metre_at_a_metre(path: Pat
     """12 dBm, 9 dBi each, noise figure 15 dB, 2.499 MHz."""
     found = made(path, "noise_sigma", "board")
     board = found["board"]
-    a = board.gain * (C / board.centre) / (4 * np.pi) ** 1.5
+    a = board.gain * (C / board.centre_hz) / (4 * np.pi) ** 1.5
     assert 20 * np.log10(a / found["noise_sigma"]) == pytest.approx(43.6, abs=0.05)
 
 

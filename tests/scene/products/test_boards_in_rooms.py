@@ -94,7 +94,7 @@ def test_what_channels_share_is_what_each_has_alone(
     made = record(scene, ["channels", "board", "motions", "wall"])
     board_, motions = made["board"], made["motions"]
     first = board_.antennas(*board_.pairs[0])
-    t = 0.1 + board_.loop * np.arange(5.0)
+    t = 0.1 + board_.loop_s * np.arange(5.0)
     alone = [
         sum_of_paths(
             make_path_sources(

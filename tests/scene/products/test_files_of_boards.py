@@ -70,7 +70,7 @@ def test_a_file_gives_the_cube_and_the_maps_of_its_board(name: str, tmp_path: Pa
     config = config_of(tmp_path, name, outcome.device, seconds=seconds)
     radar: Any = config.radar
     assert radar.header.family is outcome.family
-    assert radar.header.period_s == pytest.approx(outcome.period_s)
+    assert radar.timing.period_s == pytest.approx(outcome.period_s)
     assert config.cloud.chain == outcome.chain
     command = ("simulate", tmp_path / "config.yaml", "-o", tmp_path / "out", "--raw")
     result = ok(*command, "--maps", "range_doppler,points")

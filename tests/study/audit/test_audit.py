@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from audit.trees import body, clean, save, tree
+from study.audit.trees import body, clean, save, tree
 from helpers.command_line import ok, radhar
 from helpers.listener import Listener
 from helpers.slow import slow

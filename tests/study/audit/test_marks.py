@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from audit.trees import body, tree
+from study.audit.trees import body, tree
 from helpers.listener import Listener
 
 from radhar_cli.study.audit.audit import audit

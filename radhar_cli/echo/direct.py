@@ -103,7 +103,7 @@ class DirectEcho:
         aim = first_aim(self.tolerance_db)
         chosen, motion = self._settings(aim), self._motion
         while True:
-            is_faint = motion.largest < FAINTEST_SINGLE
+            is_faint = 0 < motion.largest < FAINTEST_SINGLE
             chosen = chosen._replace(
                 single=chosen.single and not is_faint and self._single_will_do(motion)
             )

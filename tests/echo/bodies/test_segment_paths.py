@@ -115,6 +115,16 @@ def test_amplitudes_are_those_of_the_cross_section():
     assert found.amplitude[0, 0] == pytest.approx(expected)
 
 
+@pytest.mark.parametrize(
+    ("start", "end", "clear"),
+    [((5, 0, 0), (5.4, 0, 0), 5.0), ((5, 0, -0.2), (5, 0, 0.2), 4.95)],
+    ids=["end on", "broadside"],
+)
+def test_an_antenna_is_clear_of_a_limb_by_its_distance_less_a_semi_axis(start, end, clear):
+    body = stick(fixed(*start), fixed(*end))
+    assert body.clearance(AT_ORIGIN.tx, np.zeros(1))[0, 0] == pytest.approx(clear)
+
+
 def test_a_limb_flashes_when_it_is_broadside():
     """A swing from pointing at the radar to broadside: 20 log (c/r)^2 = 24 dB."""
     angle = lambda t: np.pi / 2 * t  # noqa: E731
